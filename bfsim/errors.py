@@ -1,0 +1,35 @@
+"""The errors of bfsim: one class per kind of mistake, each a child of the built-in that a caller expects.
+
+A message says what must be, what was, and where. The command line prints it as one paragraph and
+exits with code 2. A missed deadline or a missed frame is a result and never an error.
+"""
+
+from __future__ import annotations
+
+
+class BfsimError(Exception):
+    """Parent of every error that bfsim raises on purpose."""
+
+
+class ConfigError(BfsimError, ValueError):
+    """Raised when a board, an option, a baseline or a mode says something that cannot be."""
+
+
+class RecordingError(BfsimError, ValueError):
+    """Raised when a recording, or an image that should become one, cannot be read or written."""
+
+
+class KernelError(BfsimError, ValueError):
+    """Raised when a kernel leaves the language, is called wrongly, or indexes outside an array."""
+
+
+class LinkError(BfsimError, ValueError):
+    """Raised when an LDF cannot be parsed or does not have room for the firmware."""
+
+
+class FirmwareError(BfsimError, RuntimeError):
+    """Raised when firmware cannot be imported, or uses the machine in a way the chip does not allow."""
+
+
+class DeadlockError(FirmwareError):
+    """Raised when every core waits for something that can no longer happen."""
