@@ -1,0 +1,65 @@
+"""Time in whole numbers: ticks, the clocks that are multiples of a tick, and clocks that are not.
+
+A tick is the longest time of which a CCLK and an SCLK cycle are both whole multiples, so no rounding
+happens between core and bus. PPI_CLK and recorded time stamps are asynchronous; `PeriodicEdges` and
+`Clocks.ticks_of_ns` convert them exactly, in fractions, and round once per edge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import lcm
+
+
+@dataclass(frozen=True, slots=True)
+class Clocks:
+    """The two synchronous clocks of the chip, in Hz (exact fractions: 133⅓ MHz is 400_000_000 / 3)."""
+
+    cclk_hz: Fraction
+    sclk_hz: Fraction
+
+    @property
+    def tick_hz(self) -> Fraction:
+        """Ticks per second: the least common multiple of both clocks."""
+        common = lcm(self.cclk_hz.denominator, self.sclk_hz.denominator)
+        scaled = [int(each * common) for each in (self.cclk_hz, self.sclk_hz)]
+        return Fraction(lcm(*scaled), common)
+
+    @property
+    def cclk_ticks(self) -> int:
+        """Ticks of one CCLK cycle."""
+        return int(self.tick_hz / self.cclk_hz)
+
+    @property
+    def sclk_ticks(self) -> int:
+        """Ticks of one SCLK cycle."""
+        return int(self.tick_hz / self.sclk_hz)
+
+    def ticks_of_ns(self, time_ns: int) -> int:
+        """Return the first tick at or after `time_ns`."""
+        return -int(-(time_ns * self.tick_hz) // 1_000_000_000)
+
+    def next_cclk(self, tick: int) -> int:
+        """Return the first tick at or after `tick` that is a CCLK edge."""
+        return -(-tick // self.cclk_ticks) * self.cclk_ticks
+
+    def next_sclk(self, tick: int) -> int:
+        """Return the first tick at or after `tick` that is an SCLK edge."""
+        return -(-tick // self.sclk_ticks) * self.sclk_ticks
+
+
+@dataclass(frozen=True, slots=True)
+class PeriodicEdges:
+    """Edges of an asynchronous clock: edge n is at n · period after its start, rounded up to a tick, never drifting."""
+
+    period_ticks: Fraction
+
+    @classmethod
+    def of(cls, clocks: Clocks, hz: Fraction, every: int = 1) -> PeriodicEdges:
+        """Edges at every `every`-th cycle of a clock of `hz`."""
+        return cls(clocks.tick_hz * every / hz)
+
+    def after(self, count: int) -> int:
+        """Return the ticks from the start to edge `count`."""
+        return -int(-(count * self.period_ticks) // 1)

@@ -1,0 +1,12 @@
+"""Python kernels → counted machine code, and what each call costs as Blackfin code. Knows nothing of time."""
+
+from __future__ import annotations
+
+from bfsim.kernel.decorator import Kernel, kernel
+from bfsim.kernel.profile import VDSP_O2, CompilerProfile
+from bfsim.kernel.types import i8, i16, i32, u8, u16, u32
+from bfsim.kernel.work import PreparedCall, Work
+
+__all__ = [
+    "VDSP_O2", "CompilerProfile", "Kernel", "PreparedCall", "Work", "i8", "i16", "i32", "kernel", "u8", "u16", "u32",
+]  # fmt: skip

@@ -1,0 +1,221 @@
+"""Counters, written into the very text of the optimised IR that was costed, and the entry that Python calls.
+
+Each counter is a local of its function until the function returns: LLVM keeps it in a register or folds it
+to the trip count, so that counting costs next to nothing. The entry point runs the kernel once, adds the
+counts to the caller's totals (one word per counter, at least one) and returns the issue cycles of the call.
+
+The entry's argument block is an array of 64-bit words: pointer and length of each array, each integer, the
+follower's state (followed kernels only), and last the kernel's result.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from bfsim.kernel import tree
+from bfsim.kernel.ir_text import DEFINE, LABEL
+from bfsim.kernel.schedule import Counter
+from bfsim.kernel.types import ArrayType
+
+DIVISION = re.compile(r"^(  %[\w.$]+ = )(sdiv|udiv|srem|urem)(?: exact)? i32 ([^,]+), (.+)$")
+ACCESS = re.compile(r"^  (?:%[\w.$]+ = load|store) (i\d+)(?: [^,]+)?, ptr (%[\w.$]+)")
+SWITCH = re.compile(r"^  switch (i\d+) ")
+NOISE = re.compile(r" local_unnamed_addr| #\d+| !dbg !\d+")
+TERMINATORS = ("  br ", "  ret ", "  switch ", "  unreachable")
+
+# A division by zero must not stop the host. The chip's library gives all ones; INT_MIN // -1 wraps.
+SAFE_DIVISION = """
+define internal i32 @bfsim.{op}(i32 %a, i32 %b) alwaysinline {{
+  %zero = icmp eq i32 %b, 0
+  %low = icmp eq i32 %a, -2147483648
+  %minus = icmp eq i32 %b, -1
+  %both = and i1 %low, %minus
+  %wraps = and i1 %both, {signed}
+  %unsafe = or i1 %zero, %wraps
+  %divisor = select i1 %unsafe, i32 1, i32 %b
+  %good = {op} i32 %a, %divisor
+  %result = select i1 %zero, i32 {by_zero}, i32 %good
+  ret i32 %result
+}}
+"""
+FOLLOW = """
+define internal void @bfsim.follow(ptr %address, i64 %access) alwaysinline {
+  %state = load ptr, ptr @bfsim.state
+  %function = load ptr, ptr %state
+  call void %function(ptr %state, ptr %address, i64 %access)
+  ret void
+}
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """A counter and its number."""
+
+    number: int
+    counter: Counter
+
+
+def instrument(text: str, function: tree.Function, counters: Sequence[Counter], entry: str, *, followed: bool) -> str:
+    """Return the module `text` with counters, safe divisions and the entry point `entry`.
+
+    With `followed`, every access to an array also calls the memory follower that the argument block names.
+    """
+    body = "\n".join(_rows(text.splitlines(), counters, followed))
+    division = "".join(
+        SAFE_DIVISION.format(op=op, signed=str(op[0] == "s").lower(), by_zero=-1 if op.endswith("div") else "%a")
+        for op in ("sdiv", "udiv", "srem", "urem")
+    )
+    state = "@bfsim.state = internal global ptr null\n" if followed else ""
+    cycles = [each.cclk for each in counters] or [0]
+    count = len(cycles)
+    tables = (
+        f"@bfsim.counts = internal global [{count} x i64] zeroinitializer\n"
+        f"@bfsim.cclk = internal constant [{count} x i64] [{', '.join(f'i64 {each}' for each in cycles)}]\n"
+    )
+    return "\n".join([state + tables, body, division, FOLLOW if followed else "", _entry(function, count, entry, followed)])
+
+
+def _rows(rows: Iterable[str], counters: Sequence[Counter], followed: bool) -> list[str]:
+    """Rewrite the functions of a module row by row."""
+    places: dict[tuple[str, str], list[_Place]] = {}
+    for number, counter in enumerate(counters):
+        places.setdefault((counter.routine, counter.label), []).append(_Place(number, counter))
+    out: list[str] = []
+    routine, here, entered, first, exit_number = "", list[_Place](), True, False, 0
+    for row in rows:
+        if row.startswith(("!", "attributes", "target", "source_filename", ";")):
+            continue
+        row = NOISE.sub("", row.split(", !")[0])
+        if found := DEFINE.match(row):
+            routine, first = found.group(1), True
+            out.append(re.sub(r"^define ", "define internal ", row))
+        elif found := LABEL.match(row):
+            out.append(row.split(";")[0])
+            if first:
+                out.extend(_allocations(routine, counters))
+            here, entered, first = places.get((routine, found.group(1)), []), False, False
+        elif row.startswith("  "):
+            if not entered and " = phi " not in row:
+                entered = True
+                out.extend(line for each in here if each.counter.value is None for line in _add(each.number, "1"))
+            if row.startswith(TERMINATORS):
+                out.extend(_tests(here, row))
+                if row.startswith("  ret "):
+                    out.extend(_flush(routine, counters, exit_number := exit_number + 1))
+            out.extend(_access(row) if followed else ())
+            out.append(DIVISION.sub(r"\1call i32 @bfsim.\2(i32 \3, i32 \4)", row))
+        else:
+            out.append(row)
+    return out
+
+
+def _allocations(routine: str, counters: Sequence[Counter]) -> list[str]:
+    mine = [number for number, each in enumerate(counters) if each.routine == routine]
+    slots = [f"  %bf.{number} = alloca i64" for number in mine]
+    return slots + [f"  store i64 0, ptr %bf.{number}" for number in mine]
+
+
+def _add(number: int, amount: str) -> list[str]:
+    return [
+        f"  %bf.{number}.old = load i64, ptr %bf.{number}",
+        f"  %bf.{number}.new = add i64 %bf.{number}.old, {amount}",
+        f"  store i64 %bf.{number}.new, ptr %bf.{number}",
+    ]
+
+
+def _tests(here: list[_Place], terminator: str) -> list[str]:
+    rows = []
+    for place in here:
+        number, value, equals = place.number, place.counter.value, place.counter.equals
+        if value is None:
+            continue
+        truth = value
+        if equals is not None and (kind := SWITCH.match(terminator)):
+            truth = f"%bf.{number}.is"
+            rows.append(f"  {truth} = icmp eq {kind.group(1)} {value}, {equals}")
+        rows.append(f"  %bf.{number}.true = zext i1 {truth} to i64")
+        rows.extend(_add(number, f"%bf.{number}.true"))
+    return rows
+
+
+def _flush(routine: str, counters: Sequence[Counter], exit_number: int) -> list[str]:
+    """Move the counts of one run of `routine` into the module's table, at one of its exits."""
+    rows = []
+    for number, each in enumerate(counters):
+        if each.routine == routine:
+            name = f"%bf.{number}.exit{exit_number}"
+            rows += [
+                f"  {name}.mine = load i64, ptr %bf.{number}",
+                f"  {name}.slot = getelementptr i64, ptr @bfsim.counts, i64 {number}",
+                f"  {name}.sum = load i64, ptr {name}.slot",
+                f"  {name}.total = add i64 {name}.sum, {name}.mine",
+                f"  store i64 {name}.total, ptr {name}.slot",
+            ]
+    return rows
+
+
+def _access(row: str) -> list[str]:
+    """Tell the follower about an access: bytes, and 256 more for a write."""
+    found = ACCESS.match(row)
+    if not found:
+        return []
+    nbytes = int(found.group(1)[1:]) // 8
+    write = 256 if row.startswith("  store") else 0
+    return [f"  call void @bfsim.follow(ptr {found.group(2)}, i64 {nbytes + write})"]
+
+
+def _entry(function: tree.Function, count: int, entry: str, followed: bool) -> str:
+    """The function that Python calls: `i64 entry(ptr arguments, ptr totals)` → issue cycles."""
+    rows, values, slot = [], [], 0
+
+    def take(kind: str) -> str:
+        nonlocal slot
+        rows.append(f"  %p{slot} = getelementptr i64, ptr %arguments, i64 {slot}")
+        rows.append(f"  %a{slot} = load {kind}, ptr %p{slot}")
+        slot += 1
+        return f"%a{slot - 1}"
+
+    for parameter in function.parameters:
+        if isinstance(parameter.type, ArrayType):
+            values.append(f"ptr {take('ptr')}")
+        values.append(f"i32 {take('i32')}")
+    if followed:
+        rows.append(f"  store ptr {take('ptr')}, ptr @bfsim.state")
+    call = f"@{function.symbol}({', '.join(values)})"
+    if function.result:
+        rows.append(f"  %value = call i32 {call}")
+        rows.append(f"  %wide = {'sext' if function.result.signed else 'zext'} i32 %value to i64")
+        rows.append(f"  %result = getelementptr i64, ptr %arguments, i64 {slot}")
+        rows.append("  store i64 %wide, ptr %result")
+    else:
+        rows.append(f"  call void {call}")
+    body = "\n".join(rows)
+    return f"""
+define i64 @{entry}(ptr %arguments, ptr %totals) {{
+start:
+{body}
+  br label %turn
+turn:
+  %i = phi i64 [ 0, %start ], [ %i.next, %turn ]
+  %cclk = phi i64 [ 0, %start ], [ %cclk.next, %turn ]
+  %slot = getelementptr i64, ptr @bfsim.counts, i64 %i
+  %events = load i64, ptr %slot
+  store i64 0, ptr %slot
+  %total.slot = getelementptr i64, ptr %totals, i64 %i
+  %total = load i64, ptr %total.slot
+  %total.next = add i64 %total, %events
+  store i64 %total.next, ptr %total.slot
+  %each.slot = getelementptr i64, ptr @bfsim.cclk, i64 %i
+  %each = load i64, ptr %each.slot
+  %product = mul i64 %each, %events
+  %cclk.next = add i64 %cclk, %product
+  %i.next = add i64 %i, 1
+  %more = icmp ult i64 %i.next, {count}
+  br i1 %more, label %turn, label %done
+done:
+  ret i64 %cclk.next
+}}
+"""

@@ -1,0 +1,125 @@
+"""`@kernel`: a Python function that is compiled for the host, run on real pixels, and costed as Blackfin code."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.errors import KernelError
+from bfsim.kernel import sanitizer, tree
+from bfsim.kernel.followers import Follower
+from bfsim.kernel.jit import Compiled, compiled
+from bfsim.kernel.language import read_kernel
+from bfsim.kernel.profile import VDSP_O2, CompilerProfile
+from bfsim.kernel.types import ArrayType, IntType
+from bfsim.kernel.work import PreparedCall
+
+
+@dataclass(frozen=True, eq=False)
+class Kernel:
+    """A kernel. Calling it runs the compiled code on numpy arrays; `python` is the function as it was written."""
+
+    function: tree.Function
+    python: Callable[..., Any]
+
+    @property
+    def name(self) -> str:
+        """Name of the function."""
+        return self.function.name
+
+    @property
+    def place(self) -> str:
+        """Where it is defined, as file:line."""
+        return f"{self.function.file}:{self.function.first_line}"
+
+    @cached_property
+    def array_positions(self) -> tuple[int, ...]:
+        """Which parameters are arrays."""
+        return tuple(i for i, each in enumerate(self.function.parameters) if isinstance(each.type, ArrayType))
+
+    @cached_property
+    def integer_positions(self) -> tuple[int, ...]:
+        """Which parameters are integers."""
+        return tuple(i for i, each in enumerate(self.function.parameters) if isinstance(each.type, IntType))
+
+    def compiled(self, profile: CompilerProfile, *, followed: bool = False, counted: bool = True) -> Compiled:
+        """Compile for `profile`, or take it from the cache on disk. See `jit.compiled`."""
+        return compiled(self.function, profile, followed=followed, counted=counted)
+
+    def prepare(
+        self,
+        code: Compiled,
+        arrays: Sequence[NDArray[Any]],
+        totals: NDArray[np.int64],
+        follower: Follower | None = None,
+    ) -> PreparedCall:
+        """Bind `arrays`, in the order of the array parameters. Raises KernelError when one does not fit its type."""
+        slots = self._slots()
+        bound = []
+        for position, array in zip(self.array_positions, arrays, strict=True):
+            self.check_array(position, array)
+            bound.append((slots[position], array.ctypes.data, len(array)))
+        integers = [slots[each] for each in self.integer_positions]
+        has_value = self.function.result is not None
+        return PreparedCall(code, bound, integers, has_value=has_value, follower=follower, totals=totals)
+
+    def _slots(self) -> list[int]:
+        """First word of each parameter in the argument block: two words an array, one an integer."""
+        slots, slot = [], 0
+        for each in self.function.parameters:
+            slots.append(slot)
+            slot += 2 if isinstance(each.type, ArrayType) else 1
+        return slots
+
+    def check_count(self, arguments: Sequence[object]) -> None:
+        """Raise KernelError unless there is one argument per parameter."""
+        if len(arguments) != len(self.function.parameters):
+            names = ", ".join(each.name for each in self.function.parameters)
+            raise KernelError(f"{self.name} must get {names}, not {len(arguments)} arguments ({self.place})")
+
+    def check_array(self, position: int, array: object) -> None:
+        """Raise KernelError unless `array` is what parameter number `position` takes."""
+        parameter = self.function.parameters[position]
+        assert isinstance(parameter.type, ArrayType)
+        wanted = parameter.type.element.dtype
+        where = f"({parameter.name} of {self.name}, {self.place})"
+        if not isinstance(array, np.ndarray):
+            raise KernelError(f"{parameter.name} must be an array {parameter.type}, not {type(array).__name__} {where}")
+        if array.dtype != wanted or array.ndim != 1 or not array.flags.c_contiguous:
+            shape = "x".join(map(str, array.shape))
+            raise KernelError(
+                f"{parameter.name} must be one contiguous row of {wanted}, not {array.dtype} of shape {shape} {where}"
+            )
+
+    def check_integer(self, position: int, value: object) -> int:
+        """Return `value` as the int that parameter number `position` takes, or raise KernelError."""
+        parameter = self.function.parameters[position]
+        assert isinstance(parameter.type, IntType)
+        low, high = parameter.type.bounds
+        if not isinstance(value, (int, np.integer)) or not low <= value <= high:
+            raise KernelError(
+                f"{parameter.name} must be an int in {low}..{high}, not {value!r} ({self.name}, {self.place})"
+            )
+        return int(value)
+
+    def sanitize(self, arrays: Sequence[NDArray[Any]], integers: Sequence[int]) -> None:
+        """Run on copies of the arrays with every index checked; raise KernelError at the first one outside."""
+        sanitizer.check(self.function, dict(zip(self.array_positions, arrays, strict=True)), integers)
+
+    def __call__(self, *arguments: Any) -> int | None:
+        """Run on numpy arrays and ints, as the firmware would, but without a machine around it."""
+        self.check_count(arguments)
+        arrays = [arguments[each] for each in self.array_positions]
+        integers = [self.check_integer(each, arguments[each]) for each in self.integer_positions]
+        code = self.compiled(VDSP_O2)
+        return self.prepare(code, arrays, code.new_totals()).run(integers).value
+
+
+def kernel(python: Callable[..., Any]) -> Kernel:
+    """Make `python` a kernel. Raises KernelError, with file, line and caret, where it leaves the language."""
+    return Kernel(read_kernel(python), python)

@@ -1,0 +1,352 @@
+"""Typed tree → LLVM IR, unoptimised: every local in a stack slot, one debug line per statement.
+
+An array is a plain pointer and its length; a call of another kernel is a real call (`noinline`), as the
+firmware's C would have it. Lengths follow their pointers in the parameter list.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+from llvmlite import ir
+
+from bfsim.kernel import tree
+from bfsim.kernel.types import ArrayType, IntType, u32
+
+I1, I32, POINTER = ir.IntType(1), ir.IntType(32), ir.PointerType()
+SIMPLE = {"+": "add", "-": "sub", "*": "mul", "&": "and_", "|": "or_", "^": "xor"}
+SHIFT_MASK = 31  # a shift count uses its low five bits; the language refuses constants outside 0..31
+
+
+TRAP = "bfsim.trap"  # line, number of the function, position of the array, index; line 0: nothing happened
+TRAP_WORDS = 4
+
+
+def emit(function: tree.Function, *, checked: bool = False) -> ir.Module:
+    """Emit `function` and every kernel it calls as one module.
+
+    With `checked`, the first index outside its array is noted in the global `TRAP` and every kernel returns.
+    """
+    module = ir.Module(name=function.symbol)
+    module.add_named_metadata("llvm.module.flags", module.add_metadata([I32(2), "Debug Info Version", I32(3)]))
+    trap = None
+    if checked:
+        trap = ir.GlobalVariable(module, ir.ArrayType(I32, TRAP_WORDS), TRAP)
+        trap.initializer = ir.Constant(trap.value_type, [0] * TRAP_WORDS)
+    family = (*function.callees(), function)
+    for each in family:
+        _declare(module, each)
+    for number, each in enumerate(family):
+        _Emitter(module, each, number, trap).run()
+    return module
+
+
+def _declare(module: ir.Module, function: tree.Function) -> None:
+    types: list[ir.Type] = []
+    for parameter in function.parameters:
+        types.extend([POINTER, I32] if isinstance(parameter.type, ArrayType) else [I32])
+    result = I32 if function.result else ir.VoidType()
+    declared = ir.Function(module, ir.FunctionType(result, types), function.symbol)
+    declared.attributes.add("noinline")
+    declared.attributes.add("nounwind")
+
+
+@dataclass(slots=True)
+class _Emitter:
+    module: ir.Module
+    function: tree.Function
+    number: int
+    trap: ir.GlobalVariable | None
+    builder: ir.IRBuilder = field(init=False)
+    scope: ir.values.MDValue = field(init=False)
+    slots: dict[str, ir.Value] = field(init=False, default_factory=dict)
+    arrays: dict[str, tuple[ir.Value, ir.Value]] = field(init=False, default_factory=dict)
+    loops: list[tuple[ir.Block, ir.Block]] = field(init=False, default_factory=list)
+    """Of each open loop: where `continue` and where `break` go."""
+
+    def run(self) -> None:
+        target = self.module.get_global(self.function.symbol)
+        self.scope = self._debug_scope(target)
+        self.builder = ir.IRBuilder(target.append_basic_block("entry"))
+        self._at(1)
+        for name, kind in self.function.locals:
+            slot = self.builder.alloca(I32 if isinstance(kind, IntType) else I1, name=name)
+            self.slots[name] = slot
+        arguments = iter(target.args)
+        for parameter in self.function.parameters:
+            value = next(arguments)
+            value.name = parameter.name
+            if isinstance(parameter.type, ArrayType):
+                length = next(arguments)
+                length.name = f"{parameter.name}.len"
+                self.arrays[parameter.name] = (value, length)
+            else:
+                self.builder.store(value, self.slots[parameter.name])
+        self._block(self.function.body)
+        if not self.builder.block.is_terminated:
+            if self.function.result:
+                self.builder.unreachable()
+            else:
+                self.builder.ret_void()
+
+    def _debug_scope(self, target: ir.Function) -> ir.values.MDValue:
+        file = self.module.add_debug_info("DIFile", {"filename": self.function.name, "directory": ""})
+        unit = self.module.add_debug_info(
+            "DICompileUnit",
+            {"language": ir.DIToken("DW_LANG_C99"), "file": file, "isOptimized": True, "emissionKind": 2},
+            is_distinct=True,
+        )
+        self.module.add_named_metadata("llvm.dbg.cu", unit)
+        kind = self.module.add_debug_info("DISubroutineType", {"types": self.module.add_metadata([])})
+        scope = self.module.add_debug_info(
+            "DISubprogram",
+            {"name": self.function.name, "file": file, "line": 1, "type": kind, "unit": unit, "spFlags": 8},
+            is_distinct=True,
+        )
+        target.set_metadata("dbg", scope)
+        return scope
+
+    def _at(self, line: int) -> None:
+        self.builder.debug_metadata = self.module.add_debug_info(
+            "DILocation", {"line": line, "column": 1, "scope": self.scope}
+        )
+
+    # Statements
+
+    def _block(self, body: tuple[tree.Stmt, ...]) -> None:
+        for each in body:
+            self._at(each.line)
+            getattr(self, f"_{type(each).__name__.lower()}")(each)
+
+    def _assign(self, node: tree.Assign) -> None:
+        value = self.value(node.value)
+        self.builder.store(value, self.slots[node.name])
+
+    def _store(self, node: tree.Store) -> None:
+        value = self.value(node.value)
+        address = self._address(node.array, node.element, node.index)
+        if node.element.bits < 32:
+            value = self.builder.trunc(value, ir.IntType(node.element.bits))
+        self.builder.store(value, address)
+
+    def _evaluate(self, node: tree.Evaluate) -> None:
+        self.value(node.call)
+
+    def _return(self, node: tree.Return) -> None:
+        if node.value is None:
+            self.builder.ret_void()
+        else:
+            self.builder.ret(self.value(node.value))
+
+    def _break(self, node: tree.Break) -> None:
+        self.builder.branch(self.loops[-1][1])
+
+    def _continue(self, node: tree.Continue) -> None:
+        self.builder.branch(self.loops[-1][0])
+
+    def _if(self, node: tree.If) -> None:
+        yes, no, after = (self.builder.append_basic_block(name) for name in ("then", "else", "after"))
+        self.builder.cbranch(self.value(node.test), yes, no)
+        for block, body in ((yes, node.body), (no, node.orelse)):
+            self.builder.position_at_end(block)
+            self._block(body)
+            self._fall_to(after)
+        self.builder.position_at_end(after)
+
+    def _while(self, node: tree.While) -> None:
+        test, body, after = (self.builder.append_basic_block(name) for name in ("test", "body", "after"))
+        self.builder.branch(test)
+        self.builder.position_at_end(test)
+        self._at(node.line)
+        self.builder.cbranch(self.value(node.test), body, after)
+        self.builder.position_at_end(body)
+        with self._loop(test, after):
+            self._block(node.body)
+        self._fall_to(test)
+        self.builder.position_at_end(after)
+
+    def _for(self, node: tree.For) -> None:
+        """The counter is hidden: what the body assigns to the loop's name does not change the turns, as in Python."""
+        builder = self.builder
+        start, stop = self.value(node.start), self.value(node.stop)
+        counter = self._entry_slot(f"{node.name}.turn")
+        builder.store(start, counter)
+        test, body, step, after = (builder.append_basic_block(name) for name in ("for", "body", "step", "after"))
+        builder.branch(test)
+        builder.position_at_end(test)
+        now = builder.load(counter, typ=I32)
+        builder.cbranch(builder.icmp_signed("<" if node.step > 0 else ">", now, stop), body, after)
+        builder.position_at_end(body)
+        builder.store(now, self.slots[node.name])
+        with self._loop(step, after):
+            self._block(node.body)
+        self._at(node.line)
+        self._fall_to(step)
+        builder.position_at_end(step)
+        # nsw: the counter cannot wrap before it passes `stop`, unless a step larger than 1 ends beyond 2**31
+        builder.store(builder.add(builder.load(counter, typ=I32), I32(node.step), flags=["nsw"]), counter)
+        builder.branch(test)
+        builder.position_at_end(after)
+
+    @contextmanager
+    def _loop(self, again: ir.Block, after: ir.Block) -> Iterator[None]:
+        self.loops.append((again, after))
+        yield
+        self.loops.pop()
+
+    def _entry_slot(self, name: str) -> ir.Value:
+        with self.builder.goto_entry_block():
+            return self.builder.alloca(I32, name=name)
+
+    def _fall_to(self, block: ir.Block) -> None:
+        if not self.builder.block.is_terminated:
+            self.builder.branch(block)
+
+    # Expressions
+
+    def value(self, node: tree.Expr) -> ir.Value:
+        """Emit `node`; an i32, or an i1 when it is a truth value."""
+        result: ir.Value = getattr(self, f"_{type(node).__name__.lower()}")(node)
+        return result
+
+    def _const(self, node: tree.Const) -> ir.Value:
+        return I32(node.value)
+
+    def _local(self, node: tree.Local) -> ir.Value:
+        return self.builder.load(self.slots[node.name], typ=I32 if isinstance(node.type, IntType) else I1)
+
+    def _length(self, node: tree.Length) -> ir.Value:
+        return self.arrays[node.array][1]
+
+    def _address(self, array: str, element: IntType, index: tree.Expr) -> ir.Value:
+        pointer, length = self.arrays[array]
+        offset = self.value(index)
+        if self.trap:
+            inside = self.builder.icmp_unsigned("<", offset, length)
+            with self.builder.if_then(self.builder.not_(inside)):
+                position = list(self.arrays).index(array)
+                self._note([I32(index.line), I32(self.number), I32(position), offset])
+                self._leave()
+        return self.builder.gep(pointer, [offset], source_etype=ir.IntType(element.bits))
+
+    def _note(self, words: list[ir.Value]) -> None:
+        for position, word in enumerate(words):
+            self.builder.store(word, self.builder.gep(self.trap, [I32(0), I32(position)]))
+
+    def _leave(self) -> None:
+        if self.function.result:
+            self.builder.ret(I32(0))
+        else:
+            self.builder.ret_void()
+
+    def _load(self, node: tree.Load) -> ir.Value:
+        address = self._address(node.array, node.element, node.index)
+        value = self.builder.load(address, typ=ir.IntType(node.element.bits))
+        return self._extend(value, node.element)
+
+    def _extend(self, value: ir.Value, kind: IntType) -> ir.Value:
+        if kind.bits == 32:
+            return value
+        return self.builder.sext(value, I32) if kind.signed else self.builder.zext(value, I32)
+
+    def _cast(self, node: tree.Cast) -> ir.Value:
+        value = self.value(node.operand)
+        if node.to.bits == 32:
+            return value
+        return self._extend(self.builder.trunc(value, ir.IntType(node.to.bits)), node.to)
+
+    def _unary(self, node: tree.Unary) -> ir.Value:
+        value = self.value(node.operand)
+        if node.op == "-":
+            return self.builder.neg(value)
+        if node.op == "~":
+            return self.builder.not_(value)
+        return self._intrinsic("llvm.abs.i32", [I32, I1], [value, I1(0)])
+
+    def _intrinsic(self, name: str, types: list[ir.Type], arguments: list[ir.Value]) -> ir.Value:
+        target = self.module.globals.get(name) or ir.Function(self.module, ir.FunctionType(I32, types), name)
+        return self.builder.call(target, arguments)
+
+    def _binary(self, node: tree.Binary) -> ir.Value:
+        left, right = self.value(node.left), self.value(node.right)
+        unsigned = node.type is u32
+        if node.op in SIMPLE:
+            return getattr(self.builder, SIMPLE[node.op])(left, right)
+        if node.op in ("<<", ">>"):
+            return self._shift(node, left, right)
+        if node.op in ("min", "max"):
+            return self._intrinsic(f"llvm.{'u' if unsigned else 's'}{node.op}.i32", [I32, I32], [left, right])
+        if unsigned:
+            return (self.builder.udiv if node.op == "//" else self.builder.urem)(left, right)
+        return self._floor_division(node.op, left, right)
+
+    def _shift(self, node: tree.Binary, left: ir.Value, right: ir.Value) -> ir.Value:
+        if not isinstance(node.right, tree.Const):
+            right = self.builder.and_(right, I32(SHIFT_MASK))
+        if node.op == "<<":
+            return self.builder.shl(left, right)
+        return (self.builder.lshr if node.type is u32 else self.builder.ashr)(left, right)
+
+    def _floor_division(self, op: str, left: ir.Value, right: ir.Value) -> ir.Value:
+        """Python rounds down, the chip towards zero; LLVM drops the correction where the signs are known."""
+        builder = self.builder
+        quotient = builder.sdiv(left, right)
+        rest = builder.sub(left, builder.mul(quotient, right))
+        signs_differ = builder.icmp_signed("<", builder.xor(rest, right), I32(0))
+        down = builder.and_(signs_differ, builder.icmp_signed("!=", rest, I32(0)))
+        if op == "//":
+            return builder.sub(quotient, builder.zext(down, I32))
+        return builder.add(rest, builder.select(down, right, I32(0)))
+
+    def _compare(self, node: tree.Compare) -> ir.Value:
+        left, right = self.value(node.left), self.value(node.right)
+        if node.left.type is u32:
+            return self.builder.icmp_unsigned(node.op, left, right)
+        return self.builder.icmp_signed(node.op, left, right)
+
+    def _logic(self, node: tree.Logic) -> ir.Value:
+        """The right side runs only when the left one does not decide."""
+        slot = self._decided(node.left)
+        more, after = (self.builder.append_basic_block(name) for name in (node.op, "decided"))
+        left = self.builder.load(slot, typ=I1)
+        self.builder.cbranch(left, *((more, after) if node.op == "and" else (after, more)))
+        self.builder.position_at_end(more)
+        self.builder.store(self.value(node.right), slot)
+        self.builder.branch(after)
+        self.builder.position_at_end(after)
+        return self.builder.load(slot, typ=I1)
+
+    def _decided(self, node: tree.Expr) -> ir.Value:
+        value = self.value(node)
+        with self.builder.goto_entry_block():
+            slot = self.builder.alloca(I1)
+        self.builder.store(value, slot)
+        return slot
+
+    def _not(self, node: tree.Not) -> ir.Value:
+        return self.builder.not_(self.value(node.operand))
+
+    def _choose(self, node: tree.Choose) -> ir.Value:
+        """Only the chosen side runs, as in Python."""
+        slot = self._entry_slot("chosen")
+        yes, no, after = (self.builder.append_basic_block(name) for name in ("yes", "no", "chosen"))
+        self.builder.cbranch(self.value(node.test), yes, no)
+        for block, side in ((yes, node.yes), (no, node.no)):
+            self.builder.position_at_end(block)
+            self.builder.store(self.value(side), slot)
+            self.builder.branch(after)
+        self.builder.position_at_end(after)
+        return self.builder.load(slot, typ=I32)
+
+    def _call(self, node: tree.Call) -> ir.Value:
+        arguments: list[ir.Value] = []
+        for each in node.arguments:
+            arguments.extend(self.arrays[each] if isinstance(each, str) else [self.value(each)])
+        result = self.builder.call(self.module.get_global(node.callee.symbol), arguments)
+        if self.trap:
+            line = self.builder.load(self.builder.gep(self.trap, [I32(0), I32(0)]))
+            with self.builder.if_then(self.builder.icmp_signed("!=", line, I32(0))):
+                self._leave()
+        return result

@@ -1,0 +1,286 @@
+"""Expressions of the kernel language: Python AST → typed tree.
+
+All arithmetic is 32 bits wide and wraps. An int literal takes the type of the other side; mixing i32
+and u32 is refused, because C and Python disagree about what it means.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from bfsim.kernel import tree
+from bfsim.kernel.refusal import Source
+from bfsim.kernel.types import BOOL, ArrayType, IntType, Value, i32, promoted, u32
+
+BINARY = {
+    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.FloorDiv: "//", ast.Mod: "%",
+    ast.LShift: "<<", ast.RShift: ">>", ast.BitAnd: "&", ast.BitOr: "|", ast.BitXor: "^",
+}  # fmt: skip
+COMPARE = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
+
+FOLD = {
+    "+": lambda a, b: a + b, "-": lambda a, b: a - b, "*": lambda a, b: a * b,
+    "//": lambda a, b: a // b, "%": lambda a, b: a % b, "<<": lambda a, b: a << b,
+    ">>": lambda a, b: a >> b, "&": lambda a, b: a & b, "|": lambda a, b: a | b,
+    "^": lambda a, b: a ^ b, "min": min, "max": max,
+}  # fmt: skip
+
+
+@dataclass(slots=True)
+class Scope:
+    """What names mean inside one kernel: parameters, locals seen so far, and the module's constants and kernels."""
+
+    source: Source
+    outer: Mapping[str, object]
+    arrays: dict[str, ArrayType] = field(default_factory=dict)
+    locals: dict[str, Value] = field(default_factory=dict)
+    assigned: set[str] = field(default_factory=set)
+    """Locals that hold a value on every way to the statement being read."""
+
+    def expression(self, node: ast.expr) -> tree.Expr:
+        """Read an expression of any type."""
+        method = getattr(self, f"_{type(node).__name__.lower()}", None)
+        if method is None:
+            self.source.refuse(
+                node,
+                f"a kernel cannot use {_plain(node)}",
+                "write it with integers, array elements, + - * // % << >> & | ^ ~, comparisons, min, max and abs",
+            )
+        result: tree.Expr = method(node)
+        return result
+
+    def integer(self, node: ast.expr, wanted: IntType | None = None) -> tree.Expr:
+        """Read an expression that must be an integer; a literal becomes `wanted`, anything else must be it."""
+        result = self.expression(node)
+        if isinstance(result.type, IntType):
+            return self._as_type(node, result, wanted)
+        self.source.refuse(node, "a number is needed here, not a truth value", "write `1 if test else 0`")
+
+    def condition(self, node: ast.expr) -> tree.Expr:
+        """Read an expression as a truth value; an integer counts as `!= 0`."""
+        result = self.expression(node)
+        if isinstance(result.type, IntType):
+            zero = tree.Const(0, result.type, result.line)
+            return tree.Compare("!=", result, zero, BOOL, result.line)
+        return result
+
+    def _as_type(self, node: ast.expr, value: tree.Expr, wanted: IntType | None) -> tree.Expr:
+        if wanted is None or value.type is wanted:
+            return value
+        if isinstance(value, tree.Const):
+            low, high = wanted.bounds
+            if not low <= value.value <= high:
+                self.source.refuse(
+                    node, f"{value.value} does not fit in {wanted}", f"use a value in {low}..{high} or another type"
+                )
+            return replace(value, type=wanted)
+        self.source.refuse(
+            node, f"{wanted} is needed here, not {value.type}", f"write {wanted}(...) round it if that is meant"
+        )
+
+    def _constant(self, node: ast.Constant) -> tree.Expr:
+        if type(node.value) is bool:
+            truth = tree.Const(int(node.value), i32, node.lineno)
+            return tree.Compare("!=", truth, tree.Const(0, i32, node.lineno), BOOL, node.lineno)
+        if type(node.value) is int:
+            return self._literal(node, node.value)
+        if type(node.value) is float:
+            self.source.refuse(node, "a kernel cannot use floats", "scale to integers, for example 8.8 fixed point")
+        self.source.refuse(node, f"a kernel cannot use the constant {node.value!r}", "use integers")
+
+    def _literal(self, node: ast.expr, value: int) -> tree.Expr:
+        if not i32.bounds[0] <= value <= u32.bounds[1]:
+            self.source.refuse(node, f"{value} does not fit in 32 bits", "use a value in -2147483648..4294967295")
+        return tree.Const(value, i32 if value <= i32.bounds[1] else u32, node.lineno)
+
+    def _name(self, node: ast.Name) -> tree.Expr:
+        name = node.id
+        if name in self.arrays:
+            self.source.refuse(node, f"the array {name} is used like a number", f"write {name}[i] or len({name})")
+        if name in self.locals:
+            if name not in self.assigned:
+                self.source.refuse(
+                    node, f"{name} may be used before it has a value", f"give {name} a value on every way to this line"
+                )
+            return tree.Local(name, self.locals[name], node.lineno)
+        constant = self.outer.get(name)
+        if type(constant) is int:
+            return self._literal(node, constant)
+        if name not in self.outer:
+            self.source.refuse(node, f"the name {name} is not defined", "assign it first, or make it a parameter")
+        self.source.refuse(
+            node,
+            f"a kernel cannot read {name}, which is a {type(constant).__name__}",
+            "pass it as an array or integer parameter; only int constants of the module can be read",
+        )
+
+    def _binop(self, node: ast.BinOp) -> tree.Expr:
+        op = BINARY.get(type(node.op))
+        if op is None:
+            instead = "write // (rounds down)" if isinstance(node.op, ast.Div) else "write it with + - * // % << >> & | ^"
+            self.source.refuse(node, f"a kernel cannot use {_plain(node.op)}", instead)
+        if op in ("<<", ">>"):
+            return self._shift(node, op)
+        return self._arithmetic(node, op, node.left, node.right)
+
+    def _shift(self, node: ast.BinOp, op: str) -> tree.Expr:
+        left, right = self.integer(node.left), self.integer(node.right)
+        if isinstance(right, tree.Const) and not 0 <= right.value <= 31:
+            self.source.refuse(node.right, f"a shift must be by 0..31, not by {right.value}", "shift by less")
+        if isinstance(right, tree.Const) and isinstance(left, tree.Const):
+            return self._literal(node, FOLD[op](left.value, right.value))
+        assert isinstance(left.type, IntType)
+        return tree.Binary(op, left, right, left.type, node.lineno)
+
+    def _arithmetic(self, node: ast.expr, op: str, left_node: ast.expr, right_node: ast.expr) -> tree.Expr:
+        left, right, kind = self._pair(left_node, right_node)
+        if op in ("//", "%") and isinstance(right, tree.Const) and right.value == 0:
+            self.source.refuse(right_node, "the division is by zero", "divide by something else")
+        if isinstance(left, tree.Const) and isinstance(right, tree.Const):
+            return self._literal(node, FOLD[op](left.value, right.value))
+        return tree.Binary(op, left, right, kind, node.lineno)
+
+    def _pair(self, left_node: ast.expr, right_node: ast.expr) -> tuple[tree.Expr, tree.Expr, IntType]:
+        """Both sides of an operation in one type."""
+        left, right = self.integer(left_node), self.integer(right_node)
+        assert isinstance(left.type, IntType) and isinstance(right.type, IntType)
+        if isinstance(left, tree.Const) and not isinstance(right, tree.Const):
+            return self._as_type(left_node, left, right.type), right, right.type
+        if not isinstance(right, tree.Const) and left.type is not right.type:
+            self.source.refuse(
+                right_node,
+                f"the two sides are {left.type} and {right.type}",
+                "write i32(...) or u32(...) round one of them",
+            )
+        if isinstance(right, tree.Const) and isinstance(left, tree.Const):
+            return left, right, i32
+        return left, self._as_type(right_node, right, left.type), left.type
+
+    def _unaryop(self, node: ast.UnaryOp) -> tree.Expr:
+        if isinstance(node.op, ast.Not):
+            return tree.Not(self.condition(node.operand), BOOL, node.lineno)
+        operand = self.integer(node.operand)
+        if isinstance(node.op, ast.UAdd):
+            return operand
+        op = "-" if isinstance(node.op, ast.USub) else "~"
+        if isinstance(operand, tree.Const):
+            return self._literal(node, -operand.value if op == "-" else ~operand.value)
+        assert isinstance(operand.type, IntType)
+        return tree.Unary(op, operand, operand.type, node.lineno)
+
+    def _compare(self, node: ast.Compare) -> tree.Expr:
+        result: tree.Expr | None = None
+        for left_node, operator, right_node in zip(
+            [node.left, *node.comparators], node.ops, node.comparators, strict=False
+        ):
+            op = COMPARE.get(type(operator))
+            if op is None:
+                self.source.refuse(node, f"a kernel cannot use {_plain(operator)}", "write < <= > >= == !=")
+            left, right, _ = self._pair(left_node, right_node)
+            link = tree.Compare(op, left, right, BOOL, node.lineno)
+            result = link if result is None else tree.Logic("and", result, link, BOOL, node.lineno)
+        assert result is not None
+        return result
+
+    def _boolop(self, node: ast.BoolOp) -> tree.Expr:
+        op = "and" if isinstance(node.op, ast.And) else "or"
+        parts = [self.expression(each) for each in node.values]
+        for part_node, part in zip(node.values, parts, strict=True):
+            if part.type is not BOOL:
+                self.source.refuse(part_node, f"`{op}` needs truth values, not numbers", "write a comparison, `x != 0`")
+        result = parts[0]
+        for part in parts[1:]:
+            result = tree.Logic(op, result, part, BOOL, node.lineno)
+        return result
+
+    def _ifexp(self, node: ast.IfExp) -> tree.Expr:
+        test = self.condition(node.test)
+        yes, no, kind = self._pair(node.body, node.orelse)
+        return tree.Choose(test, yes, no, kind, node.lineno)
+
+    def _subscript(self, node: ast.Subscript) -> tree.Expr:
+        name, element = self.array_of(node)
+        return tree.Load(name, element, self.index(node), promoted(element), node.lineno)
+
+    def array_of(self, node: ast.Subscript) -> tuple[str, IntType]:
+        """Name and element type of the array that `node` indexes."""
+        if not isinstance(node.value, ast.Name) or node.value.id not in self.arrays:
+            self.source.refuse(node, "only array parameters can be indexed", "pass the array as a parameter")
+        return node.value.id, self.arrays[node.value.id].element
+
+    def index(self, node: ast.Subscript) -> tree.Expr:
+        """Read the index of `node`."""
+        if isinstance(node.slice, (ast.Slice, ast.Tuple)):
+            self.source.refuse(node.slice, "an array has one integer index", "loop over the elements")
+        index = self.integer(node.slice)
+        if isinstance(index, tree.Const) and index.value < 0:
+            name = ast.unparse(node.value)
+            self.source.refuse(
+                node.slice, "an index cannot be negative", f"write {name}[len({name}) - {-index.value}] for the end"
+            )
+        return index
+
+    def _call(self, node: ast.Call) -> tree.Expr:
+        if not isinstance(node.func, ast.Name) or node.keywords:
+            self.source.refuse(
+                node, "a kernel can only call kernels, len, min, max, abs and casts", "call by name, without keywords"
+            )
+        name = node.func.id
+        target = self.outer.get(name)
+        if isinstance(target, IntType):
+            return self._cast(node, target)
+        callee = getattr(target, "function", None)
+        if isinstance(callee, tree.Function):
+            return self._kernel_call(node, callee)
+        if name == "len":
+            return self._length(node)
+        if name in ("min", "max") and len(node.args) == 2:
+            return self._arithmetic(node, name, node.args[0], node.args[1])
+        if name == "abs" and len(node.args) == 1:
+            operand = self.integer(node.args[0], i32)
+            if isinstance(operand, tree.Const):
+                return self._literal(node, abs(operand.value))
+            return tree.Unary("abs", operand, i32, node.lineno)
+        advice = "give min and max two arguments" if name in ("min", "max") else f"make {name} a @kernel, or inline it"
+        self.source.refuse(node, f"a kernel cannot call {name} like this", advice)
+
+    def _cast(self, node: ast.Call, to: IntType) -> tree.Expr:
+        if len(node.args) != 1:
+            self.source.refuse(node, f"{to}(...) takes one number", f"write {to}(x)")
+        operand = self.integer(node.args[0])
+        if isinstance(operand, tree.Const):
+            return tree.Const(to(operand.value), promoted(to), node.lineno)
+        return tree.Cast(operand, to, promoted(to), node.lineno)
+
+    def _length(self, node: ast.Call) -> tree.Expr:
+        if len(node.args) == 1 and isinstance(node.args[0], ast.Name) and node.args[0].id in self.arrays:
+            return tree.Length(node.args[0].id, i32, node.lineno)
+        self.source.refuse(node, "len is for array parameters", "write len(array)")
+
+    def _kernel_call(self, node: ast.Call, callee: tree.Function) -> tree.Call:
+        if len(node.args) != len(callee.parameters):
+            self.source.refuse(
+                node, f"{callee.name} takes {len(callee.parameters)} arguments, not {len(node.args)}", "match its def"
+            )
+        arguments = tuple(
+            self._argument(each, parameter) for each, parameter in zip(node.args, callee.parameters, strict=True)
+        )
+        return tree.Call(callee, arguments, callee.result, node.lineno)
+
+    def _argument(self, node: ast.expr, parameter: tree.Parameter) -> tree.Expr | str:
+        if isinstance(parameter.type, IntType):
+            return self.integer(node, parameter.type)
+        if isinstance(node, ast.Name) and self.arrays.get(node.id) == parameter.type:
+            return node.id
+        self.source.refuse(node, f"{parameter.name} must be an array {parameter.type}", "pass such a parameter on")
+
+
+def _plain(node: ast.AST) -> str:
+    """What `node` is, in words."""
+    names = {"listcomp": "comprehensions", "joinedstr": "strings", "tuple": "tuples", "list": "lists",
+             "dict": "dictionaries", "attribute": "attributes", "lambda": "lambda", "namedexpr": "`:=`",
+             "div": "the float division /", "pow": "**", "matmult": "@", "is": "`is`", "in": "`in`"}  # fmt: skip
+    name = type(node).__name__.lower()
+    return names.get(name, f"`{name}`")

@@ -1,0 +1,138 @@
+"""Optimised LLVM IR as data: functions, blocks and instructions, read from LLVM's own text.
+
+Only what `select` and `counters` ask for is kept. The text stays the authority: counters are written into
+the same lines that were read here.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+DEFINE = re.compile(r"^define .*?@([\w.$]+)\((.*)\)")
+LABEL = re.compile(r"^([\w.$]+):")
+RESULT = re.compile(r"^  (%[\w.$]+) = (.*)$")
+NAME = re.compile(r"%[\w.$]+")
+TARGET = re.compile(r"label (%[\w.$]+)")
+DEBUG = re.compile(r", !dbg !(\d+)")
+LOCATION = re.compile(r"^!(\d+) = !DILocation\(line: (\d+)")
+PHI_ARM = re.compile(r"\[ ([^,\]]+), (%[\w.$]+) \]")
+CASE = re.compile(r"i(?:8|16|32) (-?\d+), label (%[\w.$]+)")
+OPCODE_NOISE = {"tail", "musttail", "notail"}
+
+
+@dataclass(frozen=True, slots=True)
+class Instruction:
+    """One instruction. `operands` are the texts of its value operands: names such as %x, or constants."""
+
+    result: str | None
+    opcode: str
+    text: str
+    operands: tuple[str, ...]
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A basic block: phi nodes, other instructions, terminator last. Labels are written without %."""
+
+    label: str
+    instructions: tuple[Instruction, ...]
+
+    @property
+    def terminator(self) -> Instruction:
+        """The last instruction."""
+        return self.instructions[-1]
+
+    @property
+    def successors(self) -> tuple[str, ...]:
+        """Labels that the terminator can go to: of a branch the true side first, of a switch the default first."""
+        return tuple(each[1:] for each in TARGET.findall(self.terminator.text))
+
+    @property
+    def cases(self) -> tuple[tuple[int, str], ...]:
+        """(value, label) of each case of a switch."""
+        return tuple((int(value), label[1:]) for value, label in CASE.findall(self.terminator.text))
+
+
+@dataclass(frozen=True, slots=True)
+class Routine:
+    """A function of the module."""
+
+    symbol: str
+    parameters: tuple[str, ...]
+    blocks: tuple[Block, ...]
+
+
+def read_module(text: str) -> tuple[Routine, ...]:
+    """Read every function definition of an LLVM module."""
+    lines_of = {number: int(line) for number, line in _matches(LOCATION, text)}
+    routines = []
+    rows = iter(text.splitlines())
+    for row in rows:
+        if found := DEFINE.match(row):
+            body = []
+            for inner in rows:
+                if inner == "}":
+                    break
+                body.append(inner)
+            parameters = tuple(NAME.findall(found.group(2)))
+            routines.append(Routine(found.group(1), parameters, _blocks(_joined(body), lines_of)))
+    return tuple(routines)
+
+
+def _matches(pattern: re.Pattern[str], text: str) -> list[tuple[str, str]]:
+    return [(m.group(1), m.group(2)) for m in map(pattern.match, text.splitlines()) if m]
+
+
+def _joined(body: list[str]) -> list[str]:
+    """Put the cases of a switch, which LLVM writes on lines of their own, behind it."""
+    rows: list[str] = []
+    for row in body:
+        if row.startswith(("    i", "  ]")):
+            rows[-1] += " " + row.strip()
+        else:
+            rows.append(row)
+    return rows
+
+
+def _blocks(rows: list[str], lines_of: dict[str, int]) -> tuple[Block, ...]:
+    blocks: list[Block] = []
+    label, instructions, line = "", list[Instruction](), 0
+    for row in rows:
+        if found := LABEL.match(row):
+            label, instructions = found.group(1), []
+        elif row.startswith("  "):
+            debug = DEBUG.search(row)
+            # line 0 is LLVM's word for code merged from several lines; it stays with the line before it
+            line = (lines_of.get(debug.group(1), 0) if debug else 0) or line or 1
+            instructions.append(_instruction(row, line))
+            if instructions[-1].opcode in ("br", "ret", "switch", "unreachable"):
+                blocks.append(Block(label, tuple(instructions)))
+    return tuple(blocks)
+
+
+def _instruction(row: str, line: int) -> Instruction:
+    text = DEBUG.sub("", row).split(", !")[0].strip()
+    found = RESULT.match(row)
+    result = found.group(1) if found else None
+    body = text.split(" = ", 1)[1] if result else text
+    words = [word for word in body.split() if word not in OPCODE_NOISE]
+    return Instruction(result, words[0], body, _operands(words[0], body), line)
+
+
+def _operands(opcode: str, body: str) -> tuple[str, ...]:
+    if opcode == "phi":
+        return tuple(value for value, _ in PHI_ARM.findall(body))
+    if opcode == "call":
+        inside = body[body.index("(", body.index("@")) + 1 : body.rindex(")")]
+        return tuple(part.split()[-1] for part in inside.split(",") if part.strip())
+    if opcode in ("br", "switch"):
+        return tuple(NAME.findall(body.split("label")[0]))
+    body = re.sub(r", align \d+$", "", body)
+    return tuple(part.split()[-1] for part in re.split(r",(?![^(]*\))", body.replace(" to ", ", "))
+                 if part.split() and (part.split()[-1].startswith("%") or _is_constant(part.split()[-1])))  # fmt: skip
+
+
+def _is_constant(word: str) -> bool:
+    return bool(re.fullmatch(r"-?\d+|true|false|null|poison", word))

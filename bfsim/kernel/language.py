@@ -1,0 +1,266 @@
+"""The kernel language: the Python source of a function → typed tree, or a refusal with file, line and caret.
+
+The subset: parameters that are integers or arrays, 32-bit local integers, assignments, `if`, `while`,
+`for ... in range(...)`, `break`, `continue`, `return`, and the expressions of `expressions.py`. Anything
+else is refused when the function is decorated, before it ever runs.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import inspect
+import re
+import textwrap
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from bfsim.errors import KernelError
+from bfsim.kernel import tree
+from bfsim.kernel.expressions import BINARY, Scope
+from bfsim.kernel.refusal import Source
+from bfsim.kernel.types import ArrayType, IntType, i32, u32
+
+STATEMENTS = {"for": "for x in range(...)", "try": "tests with if", "with": "plain statements"}
+
+
+def read_kernel(python: Callable[..., Any]) -> tree.Function:
+    """Read the source of `python` as a kernel. Raises KernelError where it leaves the language."""
+    source, definition = _definition(python)
+    if python.__closure__:
+        names = ", ".join(python.__code__.co_freevars)
+        source.refuse(definition, f"a kernel cannot close over {names}", "pass it as a parameter or make it a module constant")
+    scope = Scope(source, {**vars(builtins), **python.__globals__})
+    parameters = _parameters(scope, definition)
+    reader = _Reader(scope, _result_type(scope, definition))
+    body = reader.block(_without_docstring(definition.body))
+    if reader.result is not None and not reader.ended:
+        source.refuse(definition, f"{definition.name} can end without a value", f"return an {reader.result} on every way")
+    return tree.Function(
+        name=definition.name,
+        symbol=re.sub(r"\W", "_", f"{python.__module__}.{python.__qualname__}"),
+        file=source.file,
+        first_line=source.first_line,
+        source=source.text,
+        parameters=parameters,
+        result=reader.result,
+        locals=tuple(scope.locals.items()),
+        body=body,
+    )
+
+
+def _definition(python: Callable[..., Any]) -> tuple[Source, ast.FunctionDef]:
+    try:
+        lines, first_line = inspect.getsourcelines(python)
+    except (OSError, TypeError) as reason:
+        raise KernelError(f"{python!r} must be a function in a file, so that its source can be read") from reason
+    text = "".join(lines)
+    dedented = textwrap.dedent(text)
+    indent = len(text) - len(text.lstrip())
+    source = Source(inspect.getsourcefile(python) or "?", first_line, indent, dedented)
+    node = ast.parse(dedented).body[0]
+    if not isinstance(node, ast.FunctionDef):
+        source.refuse(node, "a kernel must be a plain `def`", "write def, not lambda, class or async def")
+    return source, node
+
+
+def _parameters(scope: Scope, definition: ast.FunctionDef) -> tuple[tree.Parameter, ...]:
+    arguments = definition.args
+    if arguments.vararg or arguments.kwarg or arguments.kwonlyargs or arguments.defaults:
+        scope.source.refuse(definition, "a kernel takes plain parameters only", "remove *, ** and default values")
+    parameters = []
+    for each in [*arguments.posonlyargs, *arguments.args]:
+        kind = _annotation(scope.outer, each.annotation)
+        if not isinstance(kind, ArrayType) and kind not in (i32, u32):
+            scope.source.refuse(
+                each, f"the parameter {each.arg} needs a type", "write i32, u32, or an array such as u8[:] or i16[:]"
+            )
+        parameters.append(tree.Parameter(each.arg, kind))
+        if isinstance(kind, ArrayType):
+            scope.arrays[each.arg] = kind
+        else:
+            scope.locals[each.arg] = kind
+            scope.assigned.add(each.arg)
+    return tuple(parameters)
+
+
+def _annotation(outer: Mapping[str, object], node: ast.expr | None) -> IntType | ArrayType | None:
+    """Type named by an annotation, or None when it names none."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        node = ast.parse(node.value, mode="eval").body
+    if isinstance(node, ast.Subscript) and ast.unparse(node.slice) == ":":
+        element = _annotation(outer, node.value)
+        return ArrayType(element) if isinstance(element, IntType) else None
+    if isinstance(node, ast.Name) and isinstance(named := outer.get(node.id), IntType):
+        return named
+    return None
+
+
+def _result_type(scope: Scope, definition: ast.FunctionDef) -> IntType | None:
+    node = definition.returns
+    if node is None or (isinstance(node, ast.Constant) and node.value is None):
+        return None
+    kind = _annotation(scope.outer, node)
+    if isinstance(kind, IntType) and kind in (i32, u32):
+        return kind
+    scope.source.refuse(node, "a kernel returns i32, u32 or nothing", "write -> i32")
+
+
+def _without_docstring(body: list[ast.stmt]) -> list[ast.stmt]:
+    first = body[0]
+    documented = isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant) and isinstance(first.value.value, str)
+    return body[1:] if documented else body
+
+
+@dataclass(slots=True)
+class _Reader:
+    """Reads statements. `ended`: no way leads past the statement just read."""
+
+    scope: Scope
+    result: IntType | None
+    ended: bool = False
+    loops: int = 0
+    breaks: list[set[str]] = field(default_factory=list)
+
+    def block(self, body: list[ast.stmt]) -> tuple[tree.Stmt, ...]:
+        self.ended = False
+        found: list[tree.Stmt] = []
+        for node in body:
+            if self.ended:
+                self.scope.source.refuse(node, "this line is never reached", "remove it")
+            found.extend(self.statement(node))
+        return tuple(found)
+
+    def statement(self, node: ast.stmt) -> list[tree.Stmt]:
+        method = getattr(self, f"_{type(node).__name__.lower()}", None)
+        if method is None:
+            name = type(node).__name__.lower()
+            instead = STATEMENTS.get(name, "use assignments, if, while, for, break, continue and return")
+            self.scope.source.refuse(node, f"a kernel cannot use `{name}` statements", instead)
+        result: list[tree.Stmt] = method(node)
+        return result
+
+    def _pass(self, node: ast.Pass) -> list[tree.Stmt]:
+        return []
+
+    def _assign(self, node: ast.Assign) -> list[tree.Stmt]:
+        if len(node.targets) != 1:
+            self.scope.source.refuse(node, "a kernel assigns one name at a time", "write two lines")
+        return self._set(node.targets[0], node.value, None)
+
+    def _annassign(self, node: ast.AnnAssign) -> list[tree.Stmt]:
+        kind = _annotation(self.scope.outer, node.annotation)
+        if kind not in (i32, u32) or node.value is None:
+            self.scope.source.refuse(node, "a local is an i32 or a u32 with a value", "write x: u32 = 0")
+        assert isinstance(kind, IntType)
+        return self._set(node.target, node.value, kind)
+
+    def _augassign(self, node: ast.AugAssign) -> list[tree.Stmt]:
+        if type(node.op) not in BINARY:
+            self.scope.source.refuse(node, "a kernel cannot use this operator", "use + - * // % << >> & | ^")
+        old = ast.copy_location(ast.parse(ast.unparse(node.target), mode="eval").body, node.target)
+        for each in ast.walk(old):
+            ast.copy_location(each, node.target)
+        value = ast.copy_location(ast.BinOp(old, node.op, node.value), node)
+        return self._set(node.target, value, None)
+
+    def _set(self, target: ast.expr, value: ast.expr, kind: IntType | None) -> list[tree.Stmt]:
+        scope = self.scope
+        if isinstance(target, ast.Subscript):
+            name, element = scope.array_of(target)
+            return [tree.Store(name, element, scope.index(target), scope.integer(value), target.lineno)]
+        if not isinstance(target, ast.Name) or target.id in scope.arrays:
+            scope.source.refuse(target, "only a local name or an array element can be assigned", "write x = or a[i] =")
+        known = scope.locals.get(target.id, kind)
+        if kind is not None and known is not kind:
+            scope.source.refuse(target, f"{target.id} is {known} already, not {kind}", "use another name")
+        result = scope.integer(value, known) if isinstance(known, IntType) else scope.expression(value)
+        scope.locals.setdefault(target.id, result.type or i32)
+        if scope.locals[target.id] != result.type:
+            scope.source.refuse(value, f"{target.id} holds {scope.locals[target.id]}, not {result.type}", "use another name")
+        scope.assigned.add(target.id)
+        return [tree.Assign(target.id, result, target.lineno)]
+
+    def _expr(self, node: ast.Expr) -> list[tree.Stmt]:
+        if isinstance(node.value, ast.Call) and isinstance(call := self.scope.expression(node.value), tree.Call):
+            return [tree.Evaluate(call, node.lineno)]
+        self.scope.source.refuse(node, "this line does nothing", "assign the result, or remove the line")
+
+    def _if(self, node: ast.If) -> list[tree.Stmt]:
+        test = self.scope.condition(node.test)
+        before = set(self.scope.assigned)
+        body = self.block(node.body)
+        after_body, body_ended = self.scope.assigned, self.ended
+        self.scope.assigned = set(before)
+        orelse = self.block(node.orelse)
+        if self.ended:
+            self.scope.assigned = after_body
+        elif not body_ended:
+            self.scope.assigned &= after_body
+        self.ended = self.ended and body_ended
+        return [tree.If(test, body, orelse, node.lineno)]
+
+    def _while(self, node: ast.While) -> list[tree.Stmt]:
+        self._no_else(node)
+        test = self.scope.condition(node.test)
+        endless = isinstance(node.test, ast.Constant) and node.test.value is True
+        before = set(self.scope.assigned)
+        body = self._loop_body(node.body)
+        self.scope.assigned = before
+        self.ended = not self.breaks.pop() and endless
+        return [tree.While(test, body, node.lineno)]
+
+    def _for(self, node: ast.For) -> list[tree.Stmt]:
+        self._no_else(node)
+        source = self.scope.source
+        call = node.iter
+        if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "range"):
+            source.refuse(call, "a kernel loops over range(...) only", "write for i in range(len(a)) and use a[i]")
+        if not isinstance(node.target, ast.Name) or node.target.id in self.scope.arrays or call.keywords:
+            source.refuse(node, "a loop counts one plain name", "write for i in range(...)")
+        bounds = [self.scope.integer(each, i32) for each in call.args]
+        if not 1 <= len(bounds) <= 3:
+            source.refuse(call, "range takes one to three numbers", "write range(stop) or range(start, stop, step)")
+        step = bounds[2] if len(bounds) == 3 else tree.Const(1, i32, node.lineno)
+        if not isinstance(step, tree.Const) or step.value == 0:
+            source.refuse(call.args[-1], "the step of a range must be a constant other than 0", "use a while loop")
+        start, stop = (bounds[0], bounds[1]) if len(bounds) > 1 else (tree.Const(0, i32, node.lineno), bounds[0])
+        name = node.target.id
+        if self.scope.locals.setdefault(name, i32) is not i32:
+            source.refuse(node.target, f"{name} is {self.scope.locals[name]}, not i32", "use another name for the counter")
+        before = set(self.scope.assigned)
+        self.scope.assigned.add(name)
+        body = self._loop_body(node.body)
+        self.scope.assigned = before
+        self.breaks.pop()
+        self.ended = False
+        return [tree.For(name, start, stop, step.value, body, node.lineno)]
+
+    def _no_else(self, node: ast.While | ast.For) -> None:
+        if node.orelse:
+            self.scope.source.refuse(node.orelse[0], "a loop cannot have an else", "use a flag")
+
+    def _loop_body(self, body: list[ast.stmt]) -> tuple[tree.Stmt, ...]:
+        self.loops += 1
+        self.breaks.append(set())
+        result = self.block(body)
+        self.loops -= 1
+        return result
+
+    def _break(self, node: ast.Break) -> list[tree.Stmt]:
+        self.breaks[-1].add("break")
+        self.ended = True
+        return [tree.Break(node.lineno)]
+
+    def _continue(self, node: ast.Continue) -> list[tree.Stmt]:
+        self.ended = True
+        return [tree.Continue(node.lineno)]
+
+    def _return(self, node: ast.Return) -> list[tree.Stmt]:
+        if (node.value is None) != (self.result is None):
+            must = "must return a value" if self.result else "has no result type"
+            self.scope.source.refuse(node, f"this kernel {must}", "match the return line and the -> annotation")
+        value = None if node.value is None else self.scope.integer(node.value, self.result)
+        self.ended = True
+        return [tree.Return(value, node.lineno)]

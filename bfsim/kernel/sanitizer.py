@@ -1,0 +1,59 @@
+"""`--sanitize`: a second build of a kernel that checks every index, run on copies before the real one.
+
+The counted build stays untouched, so a sanitized run reports the very same cycles; it only takes longer.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+from numpy.typing import NDArray
+
+from bfsim.errors import KernelError
+from bfsim.kernel import jit, tree
+from bfsim.kernel.counters import instrument
+from bfsim.kernel.emit import TRAP, TRAP_WORDS
+from bfsim.kernel.profile import VDSP_O2
+from bfsim.kernel.types import ArrayType
+
+
+def check(function: tree.Function, arrays: Mapping[int, NDArray[Any]], integers: Sequence[int]) -> None:
+    """Run the checked build on copies of `arrays` (by parameter position). Raise KernelError at a bad index."""
+    entry, trap = _checked(function)
+    copies = {position: array.copy() for position, array in arrays.items()}
+    numbers = iter(integers)
+    words: list[int] = []
+    for position, parameter in enumerate(function.parameters):
+        if isinstance(parameter.type, ArrayType):
+            words += [copies[position].ctypes.data, len(copies[position])]
+        else:
+            words.append(next(numbers))
+    arguments = (ctypes.c_int64 * (len(words) + 1))(*words)
+    totals = (ctypes.c_int64 * 1)()
+    trap[0] = 0
+    entry(ctypes.addressof(arguments), ctypes.addressof(totals))
+    if trap[0]:
+        _report(function, *trap)
+
+
+def _report(function: tree.Function, line: int, number: int, position: int, index: int) -> None:
+    routine = (*function.callees(), function)[number]
+    array = [each.name for each in routine.parameters if isinstance(each.type, ArrayType)][position]
+    text = routine.source.splitlines()[line - 1].strip()
+    raise KernelError(
+        f"{routine.file}:{routine.first_line + line - 1}: index {index} is outside of {array} in kernel {routine.name}; "
+        f"an index must be 0 or more and less than len({array})\n    {text}"
+    )
+
+
+@lru_cache(maxsize=None)
+def _checked(function: tree.Function) -> tuple[Any, Any]:
+    """Compile the checked build: its entry point and the words of its trap."""
+    name = f"checked_{function.symbol}_{id(function):x}"
+    text = jit.optimised(function, VDSP_O2, checked=True).replace(f"@{TRAP}", f"@trap_{name}")
+    jit.load(jit.host_code(instrument(text, function, (), name, followed=False)))
+    trap = (ctypes.c_int32 * TRAP_WORDS).from_address(jit.address_of(f"trap_{name}"))
+    return jit.ENTRY(jit.address_of(name)), trap

@@ -1,0 +1,97 @@
+"""The cache of compiled kernels on disk: machine code and its counters, shared by every process of a user.
+
+An entry's name is a digest of everything it depends on, so a changed source, profile, bfsim, LLVM or host
+processor never meets a stale one. Files are written aside and renamed: two processes may start at once.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import cache
+from pathlib import Path
+
+import llvmlite
+import llvmlite.binding as llvm
+import platformdirs
+
+from bfsim.kernel import tree
+from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.schedule import Counter
+
+CHECKSUM_BYTES = 32
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """Machine code of one kernel (an object file) and the counters that its entry point fills."""
+
+    code: bytes
+    counters: tuple[Counter, ...]
+
+
+def folder() -> Path:
+    """Where compiled kernels are kept: $BFSIM_CACHE_DIR, or the user's cache folder."""
+    named = os.environ.get("BFSIM_CACHE_DIR")
+    return Path(named) if named else Path(platformdirs.user_cache_dir("bfsim"))
+
+
+def key(function: tree.Function, profile: CompilerProfile, variant: str) -> str:
+    """Digest of all that the binary of `function` depends on."""
+    digest = hashlib.sha256()
+    for part in (_tools(), repr(profile), variant, repr(function)):
+        digest.update(part.encode())
+        digest.update(b"\0")
+    return digest.hexdigest()
+
+
+@cache
+def _tools() -> str:
+    """The compiler's own sources, LLVM and the host's processor."""
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(path.read_bytes())
+    host = (llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten(), llvmlite.__version__, llvm.llvm_version_info)
+    return f"{digest.hexdigest()} {host}"
+
+
+def load(name: str) -> Binary | None:
+    """Return the entry `name`, or None when there is none or it is damaged."""
+    try:
+        data = (folder() / name[:2] / name).read_bytes()
+    except OSError:
+        return None
+    checksum, body = data[:CHECKSUM_BYTES], data[CHECKSUM_BYTES:]
+    if hashlib.sha256(body).digest() != checksum:
+        return None
+    header, _, code = body.partition(b"\n")
+    return Binary(code, tuple(_counter(each) for each in json.loads(header)))
+
+
+def save(name: str, binary: Binary) -> None:
+    """Keep `binary` under `name`. A cache that cannot be written is no error; the next start compiles again."""
+    header = json.dumps([asdict(each) for each in binary.counters], separators=(",", ":")).encode()
+    body = header + b"\n" + binary.code
+    try:
+        place = folder() / name[:2]
+        place.mkdir(parents=True, exist_ok=True)
+        handle, aside = tempfile.mkstemp(dir=place)
+        with os.fdopen(handle, "wb") as file:
+            file.write(hashlib.sha256(body).digest() + body)
+        os.replace(aside, place / name)
+    except OSError:
+        return
+
+
+def _counter(row: dict[str, object]) -> Counter:
+    """Build a counter from its JSON; the lists of pairs become tuples again."""
+    fields = {name: _tupled(value) if isinstance(value, Sequence) else value for name, value in row.items()}
+    return Counter(**fields)  # type: ignore[arg-type]
+
+
+def _tupled(value: object) -> object:
+    return tuple(_tupled(each) for each in value) if isinstance(value, list) else value

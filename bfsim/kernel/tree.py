@@ -1,0 +1,234 @@
+"""The typed tree of a kernel: what `language` makes of the Python source and `emit` turns into LLVM IR.
+
+Every node carries `line`, counted from the first line of the kernel's source (its decorator) = 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bfsim.kernel.types import ArrayType, IntType, Value
+
+
+@dataclass(frozen=True, slots=True)
+class Const:
+    value: int
+    type: IntType
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Local:
+    name: str
+    type: Value
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """`array[index]`, extended to 32 bits."""
+
+    array: str
+    element: IntType
+    index: Expr
+    type: IntType
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Length:
+    array: str
+    type: IntType
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """Arithmetic: one of + - * // % << >> & | ^ min max, both sides of one type."""
+
+    op: str
+    left: Expr
+    right: Expr
+    type: IntType
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """One of - ~ abs."""
+
+    op: str
+    operand: Expr
+    type: IntType
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Compare:
+    op: str
+    left: Expr
+    right: Expr
+    type: Value
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Logic:
+    """`and` / `or` with the short circuit of Python."""
+
+    op: str
+    left: Expr
+    right: Expr
+    type: Value
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    operand: Expr
+    type: Value
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Choose:
+    """`yes if test else no`."""
+
+    test: Expr
+    yes: Expr
+    no: Expr
+    type: Value
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Cast:
+    """Keep the low bits of `operand` as `to`, then extend to 32 bits."""
+
+    operand: Expr
+    to: IntType
+    type: IntType
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A call of another kernel; array arguments are names."""
+
+    callee: Function
+    arguments: tuple[Expr | str, ...]
+    type: IntType | None
+    line: int
+
+
+Expr = Const | Local | Load | Length | Binary | Unary | Compare | Logic | Not | Choose | Cast | Call
+
+
+@dataclass(frozen=True, slots=True)
+class Assign:
+    name: str
+    value: Expr
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Store:
+    array: str
+    element: IntType
+    index: Expr
+    value: Expr
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class If:
+    test: Expr
+    body: tuple[Stmt, ...]
+    orelse: tuple[Stmt, ...]
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class While:
+    test: Expr
+    body: tuple[Stmt, ...]
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class For:
+    """`for name in range(start, stop, step)`; step is a constant other than 0."""
+
+    name: str
+    start: Expr
+    stop: Expr
+    step: int
+    body: tuple[Stmt, ...]
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Return:
+    value: Expr | None
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluate:
+    """A call made for its effect."""
+
+    call: Call
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Break:
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Continue:
+    line: int
+
+
+Stmt = Assign | Store | If | While | For | Return | Evaluate | Break | Continue
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    name: str
+    type: IntType | ArrayType
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A whole kernel. `locals` gives the type of every local name; `file` and `first_line` say where it
+    stands; `symbol` is its name in the machine code, with the module in front."""
+
+    name: str
+    symbol: str
+    file: str
+    first_line: int
+    source: str
+    parameters: tuple[Parameter, ...]
+    result: IntType | None
+    locals: tuple[tuple[str, Value], ...]
+    body: tuple[Stmt, ...]
+
+    def callees(self) -> tuple[Function, ...]:
+        """Kernels that this one calls, directly or not, each once, callees first."""
+        found: dict[str, Function] = {}
+        for call in _calls(self.body):
+            for each in (*call.callee.callees(), call.callee):
+                found.setdefault(each.symbol, each)
+        return tuple(found.values())
+
+
+def _calls(node: object) -> list[Call]:
+    """Every call below `node`, in source order."""
+    if isinstance(node, tuple):
+        return [call for each in node for call in _calls(each)]
+    if isinstance(node, Function) or not hasattr(node, "line"):
+        return []
+    inner = [call for field in node.__slots__ for call in _calls(getattr(node, field))]  # type: ignore[attr-defined]
+    return [*inner, node] if isinstance(node, Call) else inner

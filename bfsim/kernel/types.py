@@ -1,0 +1,85 @@
+"""The types of the kernel language: 32-bit integers to compute with, narrower ones to store in arrays.
+
+A name such as `u8` has two uses: in an annotation `u8[:]` is an array of bytes, and in an expression
+`u8(x)` keeps the low eight bits of `x`, in a kernel as in plain Python.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True)
+class IntType:
+    """A two's complement integer of `bits` bits; arithmetic on it wraps."""
+
+    name: str
+    bits: int
+    signed: bool
+
+    @property
+    def nbytes(self) -> int:
+        """Size of one element in bytes."""
+        return self.bits // 8
+
+    @property
+    def dtype(self) -> np.dtype[np.generic]:
+        """Element type of the numpy arrays that hold it."""
+        return np.dtype(f"{'i' if self.signed else 'u'}{self.nbytes}")
+
+    @property
+    def bounds(self) -> tuple[int, int]:
+        """Smallest and largest value."""
+        if self.signed:
+            return -(1 << (self.bits - 1)), (1 << (self.bits - 1)) - 1
+        return 0, (1 << self.bits) - 1
+
+    def __getitem__(self, item: object) -> ArrayType:
+        if item != slice(None):
+            raise TypeError(f"an array type must be written {self.name}[:], not {self.name}[{item!r}]")
+        return ArrayType(self)
+
+    def __call__(self, value: int) -> int:
+        low, high = self.bounds
+        return (int(value) - low & (high - low)) + low
+
+    def __str__(self) -> str:
+        return self.name
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayType:
+    """A one-dimensional array in the chip's memory."""
+
+    element: IntType
+
+    def __str__(self) -> str:
+        return f"{self.element}[:]"
+
+
+@dataclass(frozen=True, slots=True)
+class BoolType:
+    """What a comparison gives: good for `if`, `while`, `and`, `or`, `not`."""
+
+    def __str__(self) -> str:
+        return "bool"
+
+
+i8 = IntType("i8", 8, signed=True)
+u8 = IntType("u8", 8, signed=False)
+i16 = IntType("i16", 16, signed=True)
+u16 = IntType("u16", 16, signed=False)
+i32 = IntType("i32", 32, signed=True)
+u32 = IntType("u32", 32, signed=False)
+BOOL = BoolType()
+
+INT_TYPES = {each.name: each for each in (i8, u8, i16, u16, i32, u32)}
+
+Value = IntType | BoolType
+
+
+def promoted(element: IntType) -> IntType:
+    """Type of `element` once loaded into a register: 32 bits wide, unsigned only for u32 (C's promotion)."""
+    return u32 if element is u32 else i32

@@ -1,0 +1,158 @@
+"""What a run leaves behind: flat records of facts. Every statistic is derived from them later, in `report/`.
+
+Cycles are CCLK cycles counted from the start of the run. For each core and frame, always:
+issue + stall + idle = elapsed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+REST = "(the rest)"
+"""The row of everything that a core does outside of a stage."""
+
+
+class StallReason(StrEnum):
+    """Why a core did not retire work although it had work to do."""
+
+    L2_LATENCY = "L2 latency"
+    SDRAM_PAGE_HIT = "SDRAM page hit"
+    SDRAM_PAGE_MISS = "SDRAM page miss"
+    SDRAM_PAGE_CONFLICT = "SDRAM page conflict"
+    EBIU_ARBITRATION = "EBIU arbitration"
+    RING_EMPTY = "ring empty"
+    RING_FULL = "ring full"
+    DMA_SETUP = "DMA set-up"
+    SEMAPHORE = "semaphore"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StageCost:
+    """What one stage cost one core in one frame. A stall of no cycles is left out of `stall_cclk`."""
+
+    stage: str
+    issue_cclk: int
+    stall_cclk: Mapping[StallReason, int]
+    idle_cclk: int
+
+    @property
+    def elapsed_cclk(self) -> int:
+        """Cycles from first to last, whatever the core did in them."""
+        return self.issue_cclk + sum(self.stall_cclk.values()) + self.idle_cclk
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoreFrame:
+    """One frame on one core, from the end of the frame before to its own end; the stages fill it exactly."""
+
+    core: str
+    begin_cclk: int
+    end_cclk: int
+    stages: tuple[StageCost, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrameRecord:
+    """One stereo frame. `index` counts in the recording; latency runs from `last_line_cclk` to `result_cclk`.
+
+    `cores` holds core A first. `results` are numbers that the firmware published for the frame (edges found ...).
+    """
+
+    index: int
+    last_line_cclk: int
+    result_cclk: int
+    cores: tuple[CoreFrame, ...]
+    results: Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LineCost:
+    """One source line of a kernel: how often its first operation ran, and the issue cycles of all of them."""
+
+    line: int
+    executions: int
+    issue_cclk: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KernelRecord:
+    """All calls of one kernel (or of a kernel called by it) by one core in one stage, over the whole run.
+
+    `file` and `LineCost.line` say where the source is; `text` holds its lines, the first one being `first_line`.
+    `accesses` counts (reads, writes) of the kernel's array elements per memory; `issue_cclk` is without its callees.
+    """
+
+    core: str
+    stage: str
+    kernel: str
+    file: str
+    first_line: int
+    text: tuple[str, ...]
+    calls: int
+    issue_cclk: int
+    lines: tuple[LineCost, ...]
+    accesses: Mapping[str, tuple[int, int]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrafficRecord:
+    """What one master moved to and from one memory over the whole run.
+
+    `master` is a core, an MDMA stream or a PPI. The page counts are zero for memories without pages.
+    `busy_cclk` is how long it held the memory's bus, in CCLK cycles.
+    """
+
+    memory: str
+    master: str
+    read_bytes: int
+    written_bytes: int
+    page_hits: int
+    page_misses: int
+    page_conflicts: int
+    busy_cclk: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BudgetRow:
+    """A row of the budget: a stage of the firmware, and what the thesis measured for it (T Table 6.4), if it did."""
+
+    stage: str
+    thesis_ms: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Identity:
+    """All that a result depends on. Digests are sha256 in hex; paths are left out on purpose."""
+
+    recording: str
+    recording_digest: str
+    firmware: str
+    firmware_digest: str
+    board: str
+    board_digest: str
+    ldf: str
+    ldf_digest: str
+    compiler: str
+    feed: str
+    bfsim_version: str
+    llvm_version: str
+    cclk_hz: float
+    sclk_hz: float
+    width_px: int
+    height_px: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunRecord:
+    """One run. `missed` are the recording's frames that came while the firmware was busy; `interrupted` by Ctrl-C."""
+
+    identity: Identity
+    rows: tuple[BudgetRow, ...]
+    frames: tuple[FrameRecord, ...]
+    missed: tuple[int, ...]
+    interrupted: bool
+    kernels: tuple[KernelRecord, ...]
+    traffic: tuple[TrafficRecord, ...]
+    events: int
