@@ -1,0 +1,181 @@
+"""The commands `bfsim record import` and `bfsim record info`: parse, call, print."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from bfsim import recording
+from bfsim.recording import importer
+
+
+class _Size(click.ParamType[tuple[int, int]]):
+    name = "WxH"
+
+    def convert(
+        self, value: str, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, int]:
+        width, _, height = value.partition("x")
+        if not (width.isdecimal() and height.isdecimal() and int(width) and int(height)):
+            self.fail(f"size must be like 320x240, not {value!r}", param, ctx)
+        return int(width), int(height)
+
+
+@click.group(name="record")
+def record() -> None:
+    """Make recordings of stereo frames, and look at them."""
+
+
+@record.command(name="import")
+@click.argument("output", type=click.Path(path_type=Path))
+@click.argument("sources", nargs=-1, required=True, metavar="SOURCE [SOURCE2]")
+@click.option(
+    "--side-by-side", is_flag=True, help="Each picture of SOURCE is the left and the right camera's."
+)
+@click.option("--mono", is_flag=True, help="The one camera of SOURCE feeds both sides.")
+@click.option(
+    "--format",
+    type=click.Choice(recording.SOURCE_FORMATS),
+    help="What the sources are, if names do not tell.",
+)
+@click.option("--size", type=_Size(), metavar="WxH", help="Size of the frames in raw UYVY and I420 files.")
+@click.option(
+    "--resize",
+    type=_Size(),
+    metavar="WxH",
+    help="Scale every picture; what sticks out of the aspect ratio is cut off.",
+)
+@click.option("--fps", type=float, help="Frames per second.  [default: the source's own, or 30]")
+@click.option(
+    "--geometry",
+    type=float,
+    nargs=4,
+    metavar="FOCAL BASELINE HEIGHT TILT",
+    help="Focal length in px, baseline and height over the floor in mm, degrees the cameras look down.",
+)
+@click.option(
+    "--rectification",
+    nargs=2,
+    metavar="LEFT RIGHT",
+    help="Two .npy files: for each pixel the index of its source pixel.",
+)
+@click.option("--description", default="", help="Free text to keep with the recording.")
+@click.option("--force", is_flag=True, help="Overwrite OUTPUT if it exists.")
+def import_command(
+    output: Path,
+    sources: tuple[str, ...],
+    side_by_side: bool,
+    mono: bool,
+    format: recording.SourceFormat | None,
+    size: tuple[int, int] | None,
+    resize: tuple[int, int] | None,
+    fps: float | None,
+    geometry: tuple[float, float, float, float] | None,
+    rectification: tuple[str, str] | None,
+    description: str,
+    force: bool,
+) -> None:
+    """Make the recording OUTPUT from pictures.
+
+    A SOURCE is a folder of images, a quoted pattern such as "seq/left_*.png", one image, a raw file
+    (.uyvy, .yuv or .i420), a .y4m file or a video. Two sources are the left and the right camera.
+
+    \b
+    bfsim record import run.mcap left/ right/ --fps 25
+    bfsim record import run.mcap frames/ --side-by-side
+    bfsim record import run.mcap left.uyvy right.uyvy --size 320x240 --geometry 386 30 60 20
+    bfsim record import run.mcap phone.mp4 --mono --resize 320x240
+    """
+    with _progress("Importing") as progress:
+        summary = recording.import_recording(
+            sources,
+            output,
+            format=format,
+            size=size,
+            resize=resize,
+            side_by_side=side_by_side,
+            mono=mono,
+            fps=fps,
+            geometry=recording.StereoGeometry(*geometry) if geometry else None,
+            rectification=recording.load_rectification(*rectification) if rectification else None,
+            description=description,
+            force=force,
+            progress=progress,
+        )
+    click.echo(
+        f"{summary.path}: {summary.frame_count} stereo frames of {summary.width}x{summary.height} "
+        f"at {float(summary.fps):g} per second, {summary.size_bytes / 1e6:.1f} MB"
+    )
+
+
+@record.command(name="info")
+@click.argument("path", metavar="RECORDING", type=click.Path(path_type=Path))
+@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
+def info_command(path: Path, as_json: bool) -> None:
+    """Describe RECORDING. Reads all of it, so an answer also says that it is whole.
+
+    \b
+    bfsim record info run.mcap
+    bfsim record info run.mcap --json
+    """
+    with recording.RecordingReader(path) as reader, _progress("Reading") as progress:
+        info = recording.describe_recording(reader, progress)
+    if as_json:
+        click.echo(json.dumps(asdict(info), default=str, indent=2))
+    else:
+        Console().print(_info_table(info))
+
+
+def _info_table(info: recording.RecordingInfo) -> Table:
+    table = Table(title=str(info.path), show_header=False, title_justify="left")
+    table.add_row("Images", f"{info.width}x{info.height} UYVY, left and right")
+    table.add_row("Stereo frames", f"{info.frame_count} in {info.duration_ns / 1e9:.3f} s")
+    table.add_row("Left camera", _timing_text(info.left))
+    table.add_row("Right camera", _timing_text(info.right))
+    least_ms, greatest_ms = (skew / 1e6 for skew in info.skew_ns)
+    table.add_row("Right after left", f"{least_ms:.3f} to {greatest_ms:.3f} ms")
+    table.add_row("Geometry", _geometry_text(info.geometry))
+    table.add_row(
+        "Rectification tables", "left and right" if info.has_rectification else "none: taken as rectified"
+    )
+    table.add_row("Ground truth", f"{info.truth_count} frames" if info.truth_count else "none")
+    table.add_row(
+        "File", f"{info.size_bytes / 1e6:.1f} MB, compression {info.compression}, checksums verified"
+    )
+    table.add_row("Written by", info.library or "unknown")
+    table.add_row("Description", info.description or "none")
+    return table
+
+
+def _timing_text(timing: recording.CameraTiming) -> str:
+    if timing.rate_hz is None or timing.shortest_interval_ns is None or timing.longest_interval_ns is None:
+        return "one picture"
+    shortest_ms, longest_ms = timing.shortest_interval_ns / 1e6, timing.longest_interval_ns / 1e6
+    return f"{timing.rate_hz:.3f} per second, intervals {shortest_ms:.3f} to {longest_ms:.3f} ms"
+
+
+def _geometry_text(geometry: recording.StereoGeometry | None) -> str:
+    if geometry is None:
+        return "unknown"
+    return (
+        f"focal length {geometry.focal_px:g} px, baseline {geometry.baseline_mm:g} mm, "
+        f"height {geometry.height_mm:g} mm, looking down {geometry.tilt_deg:g}°"
+    )
+
+
+@contextmanager
+def _progress(title: str) -> Iterator[importer.Progress]:
+    """Show a bar on a terminal while the block runs; it leaves nothing behind."""
+    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+    console = Console(stderr=True)
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task(title, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)

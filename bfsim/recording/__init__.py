@@ -1,0 +1,27 @@
+"""Recorded stereo frames: MCAP files in and out, and the importers that make them. Knows no simulator."""
+
+from __future__ import annotations
+
+from bfsim.recording.frames import RectificationTables, StereoFrame, StereoGeometry, UyvyImage
+from bfsim.recording.importer import ImportSummary, import_recording, load_rectification
+from bfsim.recording.info import CameraTiming, RecordingInfo, describe_recording
+from bfsim.recording.reader import RecordingReader
+from bfsim.recording.sources import SOURCE_FORMATS, SourceFormat
+from bfsim.recording.writer import RecordingWriter
+
+__all__ = [
+    "SOURCE_FORMATS",
+    "CameraTiming",
+    "ImportSummary",
+    "RecordingInfo",
+    "RecordingReader",
+    "RecordingWriter",
+    "RectificationTables",
+    "SourceFormat",
+    "StereoFrame",
+    "StereoGeometry",
+    "UyvyImage",
+    "describe_recording",
+    "import_recording",
+    "load_rectification",
+]

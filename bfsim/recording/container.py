@@ -1,0 +1,188 @@
+"""The MCAP file under a recording: opened with every checksum verified, and with errors that name the byte.
+
+Knows records, channels and chunks; knows nothing of pictures.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import struct
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO
+
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.reader import SeekingReader
+from mcap.records import Attachment, Channel, Message, Metadata, Schema
+from mcap.summary import Summary
+from mcap.writer import MCAP0_MAGIC
+from zstandard import ZstdError
+
+from bfsim.errors import RecordingError
+
+# All that mcap 1.x lets through when the bytes under it are wrong; its CRCValidationError is a ValueError.
+_DAMAGE = (
+    McapError,
+    ZstdError,
+    struct.error,
+    ValueError,
+    LookupError,
+    MemoryError,
+    OverflowError,
+    RuntimeError,
+    OSError,
+)
+
+# Footer record [MCAP specification, "Footer (op=0x02)"]: opcode, length, summary start, summary offset start,
+# CRC32 of the summary and of the footer up to here. The closing magic follows.
+_FOOTER = struct.Struct("<BQQQI")
+_TAIL_BYTES = _FOOTER.size + len(MCAP0_MAGIC)
+_RECORD_HEAD_BYTES = 9  # opcode, length
+_CRC_BYTES = 4
+
+
+class McapContainer:
+    """An open MCAP file. Raises RecordingError, on opening and reading, for all that is wrong with it."""
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        try:
+            self._stream: IO[bytes] = self.path.open("rb")
+        except OSError as error:
+            raise RecordingError(
+                f"{self.path}: recording must be a readable file: {error.strerror}"
+            ) from None
+        try:
+            self.size_bytes = os.fstat(self._stream.fileno()).st_size
+            self._check_ends()
+            self._stream.seek(0)
+            self._reader = SeekingReader(self._stream, validate_crcs=True, record_size_limit=self.size_bytes)
+            self.summary = self._read_summary()
+            self.library = self._reader.get_header().library
+        except _DAMAGE as error:
+            self.close()
+            if isinstance(error, RecordingError):
+                raise
+            raise self._damaged("its header or index", error) from None
+
+    def close(self) -> None:
+        """Close the file."""
+        self._stream.close()
+
+    def messages(self, topics: list[str]) -> Iterator[tuple[Channel, Message]]:
+        """Messages of `topics` in the order of their time stamps, a few chunks in memory at a time."""
+        messages = self._reader.iter_messages(topics)
+        while True:
+            try:
+                _, channel, message = next(messages)
+            except StopIteration:
+                return
+            except _DAMAGE as error:
+                raise self._damaged(f"the chunk at byte {self._chunk_under_way()}", error) from None
+            yield channel, message
+
+    def channel(self, topic: str) -> tuple[Channel, Schema | None] | None:
+        """The channel with this topic and its schema, or None."""
+        for channel in self.summary.channels.values():
+            if channel.topic == topic:
+                return channel, self.summary.schemas.get(channel.schema_id)
+        return None
+
+    def message_count(self, topic: str) -> int:
+        """How many messages of `topic` the file's statistics promise."""
+        found = self.channel(topic)
+        counts = self.summary.statistics.channel_message_counts if self.summary.statistics else {}
+        return counts.get(found[0].id, 0) if found else 0
+
+    def metadata(self, name: str) -> dict[str, str] | None:
+        """Entries of the metadata record `name`, or None."""
+        for index in self.summary.metadata_indexes:
+            if index.name == name:
+                body, _ = self._record(Opcode.METADATA, index.offset, name)
+                where, stream = f"metadata {name!r} at byte {index.offset}", ReadDataStream(io.BytesIO(body))
+                try:
+                    metadata: Metadata = Metadata.read(stream)
+                except _DAMAGE as error:
+                    raise self._damaged(where, error) from None
+                if stream.count != len(body):
+                    raise self._damaged(where, "it has fewer entries than its length says")
+                return metadata.metadata
+        return None
+
+    def attachment(self, name: str) -> bytes | None:
+        """Bytes of the attachment `name`, or None."""
+        for index in self.summary.attachment_indexes:
+            if index.name == name:
+                where = f"attachment {name!r} at byte {index.offset}"
+                body, crc = self._record(Opcode.ATTACHMENT, index.offset, name)
+                if crc not in (0, zlib.crc32(body[:-_CRC_BYTES])):
+                    raise self._damaged(where, "its checksum does not match")
+                try:
+                    attachment: Attachment = Attachment.read(ReadDataStream(io.BytesIO(body)))
+                except _DAMAGE as error:
+                    raise self._damaged(where, error) from None
+                return attachment.data
+        return None
+
+    def _record(self, opcode: Opcode, offset: int, name: str) -> tuple[bytes, int]:
+        """Return the body of the record at `offset` and its last four bytes as a number."""
+        self._stream.seek(offset)
+        head = self._stream.read(_RECORD_HEAD_BYTES)
+        found, length = struct.unpack("<BQ", head) if len(head) == _RECORD_HEAD_BYTES else (0, 0)
+        if found != opcode or not _CRC_BYTES <= length <= self.size_bytes - offset:
+            raise self._damaged(f"record {name!r} at byte {offset}", "it is not where the index says")
+        body = self._stream.read(length)
+        return body, int.from_bytes(body[-_CRC_BYTES:], "little")
+
+    def _check_ends(self) -> None:
+        head = self._stream.read(len(MCAP0_MAGIC))
+        if head != MCAP0_MAGIC:
+            start = f"one that starts with {head!r}" if head else "an empty one"
+            raise RecordingError(
+                f"{self.path}: recording must be an MCAP file, not {start}; "
+                "`bfsim record import` makes a recording from images, raw frames or video"
+            )
+        self._stream.seek(max(0, self.size_bytes - _TAIL_BYTES))
+        tail = self._stream.read()
+        if len(tail) < _TAIL_BYTES or not tail.endswith(MCAP0_MAGIC):
+            raise RecordingError(
+                f"{self.path}: recording must end with an MCAP footer, "
+                f"but breaks off at byte {self.size_bytes}; "
+                "it was truncated while it was written or copied; copy or import it again"
+            )
+        _, _, summary_start, _, crc = _FOOTER.unpack(tail[: _FOOTER.size])
+        summary_end = self.size_bytes - _TAIL_BYTES
+        if not len(MCAP0_MAGIC) <= summary_start <= summary_end:
+            raise RecordingError(
+                f"{self.path}: recording must have an MCAP index, but its footer (byte {summary_end}) "
+                "points to none; `mcap recover` writes one"
+            )
+        self._stream.seek(summary_start)
+        summary = self._stream.read(summary_end - summary_start)
+        if crc not in (0, zlib.crc32(tail[: _FOOTER.size - _CRC_BYTES], zlib.crc32(summary))):
+            raise self._damaged(f"the index at byte {summary_start}", "its checksum does not match")
+
+    def _read_summary(self) -> Summary:
+        summary = self._reader.get_summary()
+        if summary is None or summary.statistics is None or not summary.chunk_indexes:
+            raise RecordingError(
+                f"{self.path}: recording must be a chunked MCAP file with statistics and a chunk index, "
+                "not one without; `mcap recover` writes them"
+            )
+        return summary
+
+    def _chunk_under_way(self) -> int:
+        """Return the offset of the chunk last read: the file stands in it, or right behind it."""
+        position = self._stream.tell()
+        offsets = [index.chunk_start_offset for index in self.summary.chunk_indexes]
+        return max((offset for offset in offsets if offset < position), default=position)
+
+    def _damaged(self, what: str, why: BaseException | str) -> RecordingError:
+        reason = str(why) or type(why).__name__
+        return RecordingError(
+            f"{self.path}: {what} must be readable, but is damaged ({reason}); copy or import it again"
+        )

@@ -1,0 +1,85 @@
+"""What a recording holds, as plain data: stereo frames, stereo geometry, rectification tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.errors import RecordingError
+
+UyvyImage = NDArray[np.uint8]
+"""One picture as the camera sends it: shape (height, 2 * width), bytes U0 Y0 V0 Y1 for each two pixels."""
+
+
+@dataclass(frozen=True, slots=True)
+class StereoGeometry:
+    """Where the two cameras are: equal, parallel, side by side.
+
+    focal_px is the focal length after rectification, in pixels of the recorded image; baseline_mm the
+    distance between the optical centres; height_mm their height above the floor; tilt_deg how far they look
+    down.
+    """
+
+    focal_px: float
+    baseline_mm: float
+    height_mm: float
+    tilt_deg: float
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not math.isfinite(value):
+                raise RecordingError(f"stereo geometry: {field.name} must be a finite number, not {value}")
+        for name in ("focal_px", "baseline_mm"):
+            if getattr(self, name) <= 0:
+                raise RecordingError(f"stereo geometry: {name} must be above 0, not {getattr(self, name)}")
+        if not -90 <= self.tilt_deg <= 90:
+            raise RecordingError(f"stereo geometry: tilt_deg must be -90 to 90, not {self.tilt_deg}")
+
+
+@dataclass(frozen=True, slots=True)
+class RectificationTables:
+    """For each camera the source pixel of each rectified pixel: `rectified[i] = picture[table[i]]`.
+
+    left and right are int32 of shape (height * width,), row by row, every value in 0 .. height * width - 1.
+    """
+
+    left: NDArray[np.int32]
+    right: NDArray[np.int32]
+
+    def check(self, width: int, height: int) -> None:
+        """Raise RecordingError unless both tables fit pictures of width x height pixels."""
+        pixel_count = width * height
+        for side, table in (("left", self.left), ("right", self.right)):
+            if table.dtype != np.int32 or table.shape != (pixel_count,):
+                raise RecordingError(
+                    f"{side} rectification table must be int32 of shape ({pixel_count},) for "
+                    f"{width}x{height} pixels, not {table.dtype} of shape {table.shape}"
+                )
+            if table.min() < 0 or table.max() >= pixel_count:
+                worst = int(np.argmax((table < 0) | (table >= pixel_count)))
+                raise RecordingError(
+                    f"{side} rectification table must point at pixels 0 to {pixel_count - 1}, "
+                    f"not {table[worst]} (entry {worst})"
+                )
+
+
+@dataclass(frozen=True, slots=True)
+class StereoFrame:
+    """One picture of each camera, with the time each was taken and, where known, what is in the scene.
+
+    left and right may be read-only. left_ns and right_ns are nanoseconds since the recording's own epoch;
+    they differ when the cameras are not locked to each other.
+    """
+
+    index: int
+    left: UyvyImage
+    right: UyvyImage
+    left_ns: int
+    right_ns: int
+    truth: Mapping[str, Any] | None

@@ -1,0 +1,83 @@
+"""Pictures from image files: a folder of them, a pattern, or a single file."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+
+from PIL import Image, ImageOps, UnidentifiedImageError
+
+from bfsim.errors import RecordingError
+from bfsim.recording.planes import YuvPlanes
+from bfsim.recording.sources import IMAGE_SUFFIXES, PictureSource, is_pattern
+
+_EIGHT_BIT_MODES = frozenset({"1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", "CMYK", "YCbCr"})
+
+
+def open_images(source: str) -> PictureSource:
+    """Images of a folder, of a pattern or of one file, in natural order of their names (2 before 10)."""
+    paths = _image_paths(source)
+    size = _load(paths[0]).size
+    return PictureSource(
+        name=source, size=size, count=len(paths), fps=None, pictures=lambda: _pictures(paths, size)
+    )
+
+
+def _pictures(paths: list[Path], size: tuple[int, int]) -> Iterator[YuvPlanes]:
+    for path in paths:
+        image = _load(path)
+        if image.size != size:
+            raise RecordingError(
+                f"{path}: image must be {size[0]}x{size[1]} like {paths[0].name}, the first of its folder, "
+                f"not {image.width}x{image.height}"
+            )
+        yield YuvPlanes.from_image(image)
+
+
+def _image_paths(source: str) -> list[Path]:
+    path = Path(source)
+    if is_pattern(source):
+        anchor = Path(path.anchor)
+        found = list(anchor.glob(str(path.relative_to(anchor))))
+    elif path.is_dir():
+        found = list(path.iterdir())
+    elif path.exists():
+        return [path]
+    else:
+        raise RecordingError(
+            f"{source}: source must be a file, a folder or a pattern of image files, but is not there"
+        )
+    images = [
+        file for file in found if file.suffix.lower() in IMAGE_SUFFIXES and not file.name.startswith(".")
+    ]
+    if not images:
+        raise RecordingError(
+            f"{source}: source must hold images ({', '.join(sorted(IMAGE_SUFFIXES))}), "
+            f"but none of its {len(found)} files is one"
+        )
+    return sorted(images, key=_natural_key)
+
+
+def _natural_key(path: Path) -> list[tuple[int, str]]:
+    return [(int(part), "") if part.isdecimal() else (0, part) for part in re.split(r"(\d+)", str(path))]
+
+
+def _load(path: Path) -> Image.Image:
+    """Return the decoded image, turned upright as its EXIF orientation says."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            with Image.open(path) as image:
+                image.load()
+                mode = image.mode
+                upright = ImageOps.exif_transpose(image)
+    except UnidentifiedImageError:
+        raise RecordingError(f"{path}: file must be an image that Pillow reads, not something else") from None
+    # Pillow's decoders report damage with any of these.
+    except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError, Warning) as error:
+        raise RecordingError(f"{path}: image must be readable: {error}") from None
+    if mode not in _EIGHT_BIT_MODES:
+        raise RecordingError(f"{path}: image must have 8 bits a channel, not the pixel format {mode}")
+    return upright

@@ -1,0 +1,80 @@
+"""Describes a recording by reading all of it, which also proves every checksum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+from bfsim.recording.frames import StereoGeometry
+from bfsim.recording.importer import Progress
+from bfsim.recording.reader import RecordingReader
+
+
+@dataclass(frozen=True, slots=True)
+class CameraTiming:
+    """When one camera took its pictures. rate_hz and the intervals are None for a single picture."""
+
+    first_ns: int
+    last_ns: int
+    rate_hz: float | None
+    shortest_interval_ns: int | None
+    longest_interval_ns: int | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordingInfo:
+    """What `bfsim record info` shows. skew_ns: right minus left time stamp of a frame, least and greatest."""
+
+    path: Path
+    width: int
+    height: int
+    frame_count: int
+    duration_ns: int
+    left: CameraTiming
+    right: CameraTiming
+    skew_ns: tuple[int, int]
+    geometry: StereoGeometry | None
+    has_rectification: bool
+    truth_count: int
+    description: str
+    compression: str
+    size_bytes: int
+    library: str
+
+
+def describe_recording(reader: RecordingReader, progress: Progress | None = None) -> RecordingInfo:
+    """Read every frame of the recording and sum it up. Raises RecordingError where it is damaged."""
+    left_ns: list[int] = []
+    right_ns: list[int] = []
+    for frame in reader.frames():
+        left_ns.append(frame.left_ns)
+        right_ns.append(frame.right_ns)
+        if progress is not None:
+            progress(len(left_ns), reader.frame_count)
+    skews_ns = [right - left for left, right in zip(left_ns, right_ns, strict=True)]
+    return RecordingInfo(
+        path=reader.path,
+        width=reader.width,
+        height=reader.height,
+        frame_count=reader.frame_count,
+        duration_ns=max(left_ns[-1], right_ns[-1]) - min(left_ns[0], right_ns[0]),
+        left=_timing(left_ns),
+        right=_timing(right_ns),
+        skew_ns=(min(skews_ns), max(skews_ns)),
+        geometry=reader.geometry,
+        has_rectification=reader.rectification is not None,
+        truth_count=reader.truth_count,
+        description=reader.description,
+        compression=" and ".join(name or "none" for name in reader.compressions),
+        size_bytes=reader.size_bytes,
+        library=reader.library,
+    )
+
+
+def _timing(stamps_ns: list[int]) -> CameraTiming:
+    intervals_ns = [after - before for before, after in pairwise(stamps_ns)]
+    if not intervals_ns:
+        return CameraTiming(stamps_ns[0], stamps_ns[-1], None, None, None)
+    rate_hz = len(intervals_ns) * 1e9 / (stamps_ns[-1] - stamps_ns[0])
+    return CameraTiming(stamps_ns[0], stamps_ns[-1], rate_hz, min(intervals_ns), max(intervals_ns))

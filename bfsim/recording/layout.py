@@ -1,0 +1,79 @@
+"""How a recording is laid out in its MCAP file: the names, and the two small encodings that are ours.
+
+Pictures are `foxglove.RawImage` messages (encoding `uyvy`), so that Foxglove and other viewers show them.
+A message's log time is the moment the picture was taken, in nanoseconds since the recording's own epoch.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import zlib
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.errors import RecordingError
+
+LEFT_TOPIC = "/camera/left/image_raw"
+RIGHT_TOPIC = "/camera/right/image_raw"
+TRUTH_TOPIC = "/truth"
+
+IMAGE_SCHEMA = "foxglove.RawImage"
+IMAGE_ENCODINGS = ("uyvy", "yuv422")
+"""The two names that the RawImage schema has for the byte order U0 Y0 V0 Y1; the first is the one written."""
+
+TRUTH_SCHEMA = "bfsim.GroundTruth"
+TRUTH_JSON_SCHEMA = json.dumps({"title": TRUTH_SCHEMA, "type": "object"}).encode()
+"""One object a frame; the message's sequence number is the frame's index."""
+
+GEOMETRY_RECORD = "stereo_geometry"
+DESCRIPTION_RECORD = "recording"
+RECTIFICATION_NAMES = {"left": "rectification_left.npy", "right": "rectification_right.npy"}
+
+CHUNK_BYTES = 1 << 20
+"""A chunk is decompressed as a whole: small chunks keep memory low, large ones keep the index short."""
+
+LAST_NS = (1 << 63) - 1
+"""MCAP has room for twice as much; viewers and numpy hold signed nanoseconds."""
+
+CRC_KEY = "crc32"
+LIBRARY_PREFIX = "bfsim/"
+
+
+def seal(record: Mapping[str, str]) -> dict[str, str]:
+    """Metadata record with a checksum of its entries: MCAP protects only chunks, attachments and index."""
+    return {**record, CRC_KEY: f"{_metadata_crc(record):08x}"}
+
+
+def unseal(record: Mapping[str, str], library: str) -> dict[str, str]:
+    """Entries of a metadata record without the checksum; ValueError if they do not match it.
+
+    Only a record that bfsim itself wrote, as the file's `library` tells, must have one.
+    """
+    entries = {key: value for key, value in record.items() if key != CRC_KEY}
+    unsealed = CRC_KEY not in record and not library.startswith(LIBRARY_PREFIX)
+    if not unsealed and record.get(CRC_KEY) != f"{_metadata_crc(entries):08x}":
+        raise ValueError("its checksum does not match its entries")
+    return entries
+
+
+def _metadata_crc(record: Mapping[str, str]) -> int:
+    return zlib.crc32(json.dumps(sorted(record.items())).encode())
+
+
+def table_to_npy(table: NDArray[np.int32]) -> bytes:
+    """Rectification table as the bytes of a .npy file."""
+    stream = io.BytesIO()
+    np.save(stream, table, allow_pickle=False)
+    return stream.getvalue()
+
+
+def table_from_npy(data: bytes) -> NDArray[np.int32]:
+    """Rectification table out of the bytes of a .npy file; its type and shape are not checked here."""
+    try:
+        table: NDArray[np.int32] = np.load(io.BytesIO(data), allow_pickle=False)
+    except (ValueError, OSError, EOFError, MemoryError) as error:
+        raise RecordingError(f"rectification table must be a .npy array: {error}") from None
+    return table

@@ -1,0 +1,108 @@
+"""Pictures as separate brightness and colour planes, and the way from there to the camera's UYVY.
+
+UYVY here is BT.601 in full range (0 to 255), as JPEG has it and as OmniVision sensors send it with output
+range "00 to FF" (register COM15, the setting of the Linux driver ov7670.c for YUV). One colour sample serves
+two neighbouring pixels and is their mean, so it sits midway between them; 4:2:0 colour rows are used twice.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from bfsim.recording.frames import UyvyImage
+
+Plane = NDArray[np.uint8]
+
+# R, G, B (rows) to Y, U, V (columns) in 1/65536: BT.601 as in JFIF 1.02, rounded as in libjpeg's jccolor.c.
+# Pillow's own YCbCr truncates instead, and turns grey 11 into 10.
+_RGB_TO_YUV = np.array([[19595, -11059, 32768], [38470, -21709, -27439], [7471, 32768, -5329]], np.int32)
+_YUV_OFFSET = np.array([1 << 15, (128 << 16) + (1 << 15) - 1, (128 << 16) + (1 << 15) - 1], np.int32)
+
+
+@dataclass(frozen=True, slots=True)
+class YuvPlanes:
+    """One picture: y is (height, width); u and v are the same, half as wide, or half as wide and high."""
+
+    y: Plane
+    u: Plane
+    v: Plane
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels."""
+        return self.y.shape[1], self.y.shape[0]
+
+    def halves(self) -> tuple[YuvPlanes, YuvPlanes]:
+        """The left and the right half of a picture of two cameras side by side, whose width must be 4 x n."""
+        pairs = [np.split(plane, 2, axis=1) for plane in (self.y, self.u, self.v)]
+        return YuvPlanes(*(pair[0] for pair in pairs)), YuvPlanes(*(pair[1] for pair in pairs))
+
+    def resized(self, width: int, height: int) -> YuvPlanes:
+        """The picture scaled to width x height (4:2:2); what sticks out of that shape is cut off evenly.
+
+        Shapes are kept (a ball stays round), and the triangle filter does not invent edges by ringing.
+        """
+        cut = _centred_cut(self.size, (width, height))
+        return YuvPlanes(
+            _scaled(self.y, (width, height), cut),
+            _scaled(self.u, (width // 2, height), cut),
+            _scaled(self.v, (width // 2, height), cut),
+        )
+
+    def to_uyvy(self) -> UyvyImage:
+        """The picture, of even width, as the camera sends it: uint8 of shape (height, 2 * width)."""
+        width, height = self.size
+        uyvy = np.empty((height, width // 2, 4), np.uint8)
+        uyvy[..., 0] = _chroma_422(self.u, width, height)
+        uyvy[..., 1] = self.y[:, 0::2]
+        uyvy[..., 2] = _chroma_422(self.v, width, height)
+        uyvy[..., 3] = self.y[:, 1::2]
+        return uyvy.reshape(height, 2 * width)
+
+    @classmethod
+    def from_uyvy(cls, uyvy: UyvyImage) -> YuvPlanes:
+        """The planes (4:2:2) of a picture of shape (height, 2 * width)."""
+        return cls(uyvy[:, 1::2], uyvy[:, 0::4], uyvy[:, 2::4])
+
+    @classmethod
+    def from_image(cls, image: Image.Image) -> YuvPlanes:
+        """The planes (4:4:4) of an image of 8 bits a channel."""
+        rgb = np.asarray(image.convert("RGB"), np.int32)
+        yuv = ((rgb @ _RGB_TO_YUV + _YUV_OFFSET) >> 16).astype(np.uint8)
+        return cls(yuv[..., 0], yuv[..., 1], yuv[..., 2])
+
+    def stretched(self) -> YuvPlanes:
+        """The picture from limited range (16 to 235, colour 16 to 240 [BT.601]) in full range."""
+        levels = np.arange(256)
+        y_levels = np.clip(np.rint((levels - 16) * 255 / 219), 0, 255).astype(np.uint8)
+        chroma_levels = np.clip(np.rint((levels - 128) * 255 / 224 + 128), 0, 255).astype(np.uint8)
+        return YuvPlanes(y_levels[self.y], chroma_levels[self.u], chroma_levels[self.v])
+
+
+def _chroma_422(plane: Plane, width: int, height: int) -> Plane:
+    """Return a colour plane as (height, width / 2): pairs of columns averaged, missing rows repeated."""
+    if plane.shape[0] != height:
+        plane = plane.repeat(2, axis=0)[:height]
+    if plane.shape[1] == width:
+        pairs = plane.reshape(height, width // 2, 2).astype(np.uint16)
+        plane = ((pairs[..., 0] + pairs[..., 1] + 1) >> 1).astype(np.uint8)
+    return plane
+
+
+def _centred_cut(source: tuple[int, int], target: tuple[int, int]) -> tuple[float, float]:
+    """Return the parts (0 to 1) of the source's width and height that have the target's aspect ratio."""
+    aspect = (target[0] * source[1]) / (target[1] * source[0])
+    return min(1.0, aspect), min(1.0, 1 / aspect)
+
+
+def _scaled(plane: Plane, size: tuple[int, int], cut: tuple[float, float]) -> Plane:
+    height, width = plane.shape
+    left, top = width * (1 - cut[0]) / 2, height * (1 - cut[1]) / 2
+    box = (left, top, width - left, height - top)
+    return np.asarray(
+        Image.fromarray(np.ascontiguousarray(plane)).resize(size, Image.Resampling.BILINEAR, box=box)
+    )

@@ -1,0 +1,188 @@
+"""Pictures from files without a container: raw UYVY and I420 frames back to back, and YUV4MPEG2 (.y4m).
+
+Their bytes are kept as they are. Only a y4m file that says XCOLORRANGE=LIMITED is stretched to full range.
+YUV4MPEG2: the MJPEG Tools' yuv4mpeg(5) manual page, with FFmpeg's X parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+
+from bfsim.errors import RecordingError
+from bfsim.recording.planes import YuvPlanes
+from bfsim.recording.sources import PictureSource
+
+_Y4M_MAGIC = b"YUV4MPEG2"
+_LONGEST_LINE_BYTES = 1024
+
+# How far the colour planes are divided, in columns and rows; (0, 0): there are none.
+_Y4M_SUBSAMPLING = {
+    "420": (2, 2), "420jpeg": (2, 2), "420mpeg2": (2, 2), "420paldv": (2, 2),
+    "422": (2, 1), "444": (1, 1), "mono": (0, 0),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class _Layout:
+    """How one frame lies in the file: planes one after the other, colour divided by (columns, rows)."""
+
+    width: int
+    height: int
+    subsampling: tuple[int, int]
+
+    @property
+    def chroma_shape(self) -> tuple[int, int]:
+        columns, rows = self.subsampling
+        return (-(-self.height // rows), -(-self.width // columns)) if columns else (0, 0)
+
+    @property
+    def frame_bytes(self) -> int:
+        return self.width * self.height + 2 * self.chroma_shape[0] * self.chroma_shape[1]
+
+    def planes(self, data: bytes) -> YuvPlanes:
+        pixels = np.frombuffer(data, np.uint8)
+        luma_bytes = self.width * self.height
+        y = pixels[:luma_bytes].reshape(self.height, self.width)
+        if self.subsampling == (0, 0):
+            grey = np.full((self.height, self.width), 128, np.uint8)
+            return YuvPlanes(y, grey, grey)
+        u, v = pixels[luma_bytes:].reshape(2, *self.chroma_shape)
+        return YuvPlanes(y, u, v)
+
+
+def open_uyvy(source: str, size: tuple[int, int]) -> PictureSource:
+    """Raw UYVY frames of `size` (width, height) in pixels."""
+    width, height = size
+    if width % 2:
+        raise RecordingError(f"{source}: width of UYVY frames must be even, not {width}")
+
+    def planes(data: bytes) -> YuvPlanes:
+        return YuvPlanes.from_uyvy(np.frombuffer(data, np.uint8).reshape(height, 2 * width))
+
+    return _open_raw(source, "UYVY", size, 2 * width * height, planes)
+
+
+def open_i420(source: str, size: tuple[int, int]) -> PictureSource:
+    """Raw I420 frames (planes Y, U, V; colour halved both ways) of `size` (width, height) in pixels."""
+    width, height = size
+    if width % 2 or height % 2:
+        raise RecordingError(f"{source}: width and height of I420 frames must be even, not {width}x{height}")
+    frame = _Layout(width, height, (2, 2))
+    return _open_raw(source, "I420", size, frame.frame_bytes, frame.planes)
+
+
+def _open_raw(
+    source: str, name: str, size: tuple[int, int], frame_bytes: int, planes: Callable[[bytes], YuvPlanes]
+) -> PictureSource:
+    with _open(source) as stream:
+        size_bytes = stream.seek(0, 2)
+    if size_bytes == 0 or size_bytes % frame_bytes:
+        raise RecordingError(
+            f"{source}: file must be a whole number of {size[0]}x{size[1]} {name} frames "
+            f"of {frame_bytes} bytes, not {size_bytes} bytes = {size_bytes / frame_bytes:.2f} frames; "
+            "is `--size` right?"
+        )
+
+    def pictures() -> Iterator[YuvPlanes]:
+        with _open(source) as stream:
+            for index in range(size_bytes // frame_bytes):
+                yield planes(_read_frame(stream, frame_bytes, source, index))
+
+    return PictureSource(name=source, size=size, count=size_bytes // frame_bytes, fps=None, pictures=pictures)
+
+
+def open_y4m(source: str) -> PictureSource:
+    """Frames of a YUV4MPEG2 file with 8 bits a sample, 4:2:0, 4:2:2, 4:4:4 or mono."""
+    with _open(source) as stream:
+        header = _read_line(stream, source, 0).split(" ")
+        start = stream.tell()
+        size_bytes = stream.seek(0, 2)
+    if header[0].encode() != _Y4M_MAGIC:
+        raise RecordingError(f"{source}: file must start with {_Y4M_MAGIC.decode()}, not {header[0][:20]!r}")
+    frame = _y4m_layout(source, header)
+    limited = "XCOLORRANGE=LIMITED" in header
+
+    def pictures() -> Iterator[YuvPlanes]:
+        with _open(source) as stream:
+            stream.seek(start)
+            index = 0
+            while stream.tell() < size_bytes:
+                line = _read_line(stream, source, index)
+                if line.split(" ")[0] != "FRAME":
+                    raise RecordingError(
+                        f"{source}: frame {index} must start with FRAME, not {line[:20]!r} "
+                        f"(before byte {stream.tell()})"
+                    )
+                planes = frame.planes(_read_frame(stream, frame.frame_bytes, source, index))
+                yield planes.stretched() if limited else planes
+                index += 1
+
+    count = (size_bytes - start) // (frame.frame_bytes + len("FRAME\n"))
+    if count == 0:
+        raise RecordingError(
+            f"{source}: file must have at least one whole frame, not {size_bytes - start} bytes of one"
+        )
+    fps = _y4m_fps(source, header)
+    return PictureSource(
+        name=source, size=(frame.width, frame.height), count=None, fps=fps, pictures=pictures
+    )
+
+
+def _y4m_layout(source: str, header: list[str]) -> _Layout:
+    fields = {field[0]: field[1:] for field in reversed(header[1:]) if field}
+    colourspace = fields.get("C", "420jpeg")
+    if colourspace not in _Y4M_SUBSAMPLING:
+        raise RecordingError(
+            f"{source}: y4m colourspace must be one of {', '.join(_Y4M_SUBSAMPLING)}, not {colourspace} "
+            "(in its first line)"
+        )
+    width, height = fields.get("W", ""), fields.get("H", "")
+    if not (width.isdecimal() and height.isdecimal() and int(width) > 0 and int(height) > 0):
+        raise RecordingError(f"{source}: y4m header must give a size W… H… above 0, not W{width} H{height}")
+    return _Layout(int(width), int(height), _Y4M_SUBSAMPLING[colourspace])
+
+
+def _y4m_fps(source: str, header: list[str]) -> Fraction | None:
+    """Return the frame rate; None for one that is not given or unknown (0:0)."""
+    for field in header[1:]:
+        if field.startswith("F"):
+            frames, _, seconds = field[1:].partition(":")
+            if not (frames.isdecimal() and seconds.isdecimal()):
+                raise RecordingError(f"{source}: y4m frame rate must be like F30:1, not {field}")
+            return Fraction(int(frames), int(seconds)) if int(frames) and int(seconds) else None
+    return None
+
+
+def _open(source: str) -> IO[bytes]:
+    try:
+        return Path(source).open("rb")
+    except OSError as error:
+        raise RecordingError(f"{source}: source must be a readable file: {error.strerror}") from None
+
+
+def _read_line(stream: IO[bytes], source: str, index: int) -> str:
+    start = stream.tell()
+    line = stream.readline(_LONGEST_LINE_BYTES)
+    if not line.endswith(b"\n"):
+        raise RecordingError(
+            f"{source}: y4m header line must end within {_LONGEST_LINE_BYTES} bytes "
+            f"(frame {index}, byte {start})"
+        )
+    return line[:-1].decode("ascii", "replace")
+
+
+def _read_frame(stream: IO[bytes], frame_bytes: int, source: str, index: int) -> bytes:
+    start = stream.tell()
+    data = stream.read(frame_bytes)
+    if len(data) < frame_bytes:
+        raise RecordingError(
+            f"{source}: frame {index} must have {frame_bytes} bytes, not {len(data)}: the file breaks off "
+            f"(frame starts at byte {start})"
+        )
+    return data

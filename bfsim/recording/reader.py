@@ -1,0 +1,256 @@
+"""Reads a recording, stereo frame by stereo frame, in memory that does not depend on its length."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections import deque
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
+from google.protobuf.message import DecodeError
+from mcap.records import Message
+
+from bfsim.errors import RecordingError
+from bfsim.recording import layout
+from bfsim.recording.container import McapContainer
+from bfsim.recording.frames import RectificationTables, StereoFrame, StereoGeometry, UyvyImage
+
+# One camera may start before the other. Farther ahead its clock is another, and waiting would fill memory.
+_AHEAD_BYTES = 64 << 20
+
+
+class RecordingReader:
+    """Context manager that opens one recording; its properties are checked and known from the start.
+
+    width and height are in pixels and the same for both cameras. frame_count is the number of stereo frames.
+    geometry and rectification are None where the recording has none. library names the program that wrote the
+    file. Everything raises RecordingError.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self._file = McapContainer(path)
+        self.path = self._file.path
+        try:
+            self._check_channels()
+            self.width, self.height = self._image_size()
+            self.frame_count = self._count_frames()
+            self.description = self._metadata(layout.DESCRIPTION_RECORD).get("description", "")
+            self.geometry = self._read_geometry()
+            self.rectification = self._read_rectification()
+        except BaseException:
+            self._file.close()
+            raise
+
+    @property
+    def library(self) -> str:
+        """Name of the program that wrote the file."""
+        return self._file.library
+
+    @property
+    def size_bytes(self) -> int:
+        """Size of the file."""
+        return self._file.size_bytes
+
+    @property
+    def compressions(self) -> list[str]:
+        """Compressions of the file's chunks, "" for none."""
+        return sorted({index.compression for index in self._file.summary.chunk_indexes})
+
+    @property
+    def truth_count(self) -> int:
+        """How many frames have ground truth."""
+        return self._file.message_count(layout.TRUTH_TOPIC)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def frames(self, limit: int | None = None) -> Iterator[StereoFrame]:
+        """Stereo frames from the first, at most `limit`.
+
+        The k-th picture of the left camera goes with the k-th of the right. The pictures are read-only.
+        Each camera's time stamps rise strictly.
+        """
+        count = self.frame_count if limit is None else min(limit, self.frame_count)
+        frames = self._pair()
+        for _ in range(count):
+            frame = next(frames, None)
+            if frame is None:
+                raise RecordingError(
+                    f"{self.path}: recording must hold {self.frame_count} stereo frames, not fewer"
+                )
+            yield frame
+
+    def _pair(self) -> Iterator[StereoFrame]:
+        waiting: dict[str, deque[Message]] = {layout.LEFT_TOPIC: deque(), layout.RIGHT_TOPIC: deque()}
+        truths: dict[int, Mapping[str, Any]] = {}
+        last_ns = {layout.LEFT_TOPIC: -1, layout.RIGHT_TOPIC: -1}
+        index = 0
+        for channel, message in self._file.messages([*waiting, layout.TRUTH_TOPIC]):
+            if channel.topic == layout.TRUTH_TOPIC:
+                truths[message.sequence] = self._decode_truth(message)
+                continue
+            place = f"({self.path}: {channel.topic}, image {index + len(waiting[channel.topic])})"
+            if message.log_time <= last_ns[channel.topic]:
+                raise RecordingError(f"time stamps must rise, but {message.log_time} ns comes twice {place}")
+            last_ns[channel.topic] = message.log_time
+            waiting[channel.topic].append(message)
+            if len(waiting[channel.topic]) * len(message.data) > _AHEAD_BYTES:
+                raise RecordingError(
+                    f"left and right camera must be on one clock, but one is far ahead {place}"
+                )
+            if all(waiting.values()):
+                left, right = (queue.popleft() for queue in waiting.values())
+                yield StereoFrame(
+                    index,
+                    self._decode_image(left, layout.LEFT_TOPIC, index),
+                    self._decode_image(right, layout.RIGHT_TOPIC, index),
+                    left.log_time,
+                    right.log_time,
+                    truths.pop(index, None),
+                )
+                index += 1
+
+    def _decode_image(self, message: Message, topic: str, index: int) -> UyvyImage:
+        where = f"({self.path}: {topic}, image {index})"
+        image = _parse_image(message, where)
+        if (image.width, image.height) != (self.width, self.height):
+            raise RecordingError(
+                f"every image must have the size of the first, {self.width}x{self.height}, "
+                f"not {image.width}x{image.height} {where}"
+            )
+        rows = np.frombuffer(image.data, np.uint8).reshape(image.height, image.step)
+        return rows[:, : 2 * image.width]
+
+    def _decode_truth(self, message: Message) -> Mapping[str, Any]:
+        where = f"({self.path}: {layout.TRUTH_TOPIC}, frame {message.sequence})"
+        try:
+            truth = json.loads(message.data)
+        except (ValueError, RecursionError) as error:
+            raise RecordingError(f"ground truth must be JSON: {error} {where}") from None
+        if not isinstance(truth, dict):
+            raise RecordingError(f"ground truth must be a JSON object, not {type(truth).__name__} {where}")
+        return truth
+
+    def _check_channels(self) -> None:
+        topics = sorted(channel.topic for channel in self._file.summary.channels.values())
+        for topic in (layout.LEFT_TOPIC, layout.RIGHT_TOPIC):
+            found = self._file.channel(topic)
+            if found is None:
+                raise RecordingError(
+                    f"{self.path}: recording must have the topics {layout.LEFT_TOPIC} and "
+                    f"{layout.RIGHT_TOPIC}, not {', '.join(topics) or 'none'}"
+                )
+            channel, schema = found
+            name = schema.name if schema else "no schema"
+            if (channel.message_encoding, name) != ("protobuf", layout.IMAGE_SCHEMA):
+                raise RecordingError(
+                    f"{self.path}: topic {topic} must hold {layout.IMAGE_SCHEMA} messages in protobuf, "
+                    f"not {name} in {channel.message_encoding or 'no encoding'}"
+                )
+
+    def _count_frames(self) -> int:
+        left, right = (self._file.message_count(topic) for topic in (layout.LEFT_TOPIC, layout.RIGHT_TOPIC))
+        if left != right:
+            raise RecordingError(
+                f"{self.path}: recording must have as many images from the left camera as from the right, "
+                f"not {left} and {right}"
+            )
+        return left
+
+    def _image_size(self) -> tuple[int, int]:
+        sizes = []
+        for topic in (layout.LEFT_TOPIC, layout.RIGHT_TOPIC):
+            first = next(self._file.messages([topic]), None)
+            if first is None:
+                raise RecordingError(f"{self.path}: recording must have images in {topic}, not none")
+            image = _parse_image(first[1], f"({self.path}: {topic}, image 0)")
+            sizes.append((image.width, image.height))
+        if sizes[0] != sizes[1]:
+            (left_width, left_height), (right_width, right_height) = sizes
+            raise RecordingError(
+                f"{self.path}: images of both cameras must have one size, "
+                f"not {left_width}x{left_height} (left) and {right_width}x{right_height} (right)"
+            )
+        return sizes[0]
+
+    def _metadata(self, name: str) -> dict[str, str]:
+        record = self._file.metadata(name)
+        if record is None:
+            return {}
+        try:
+            return layout.unseal(record, self.library)
+        except ValueError as error:
+            raise RecordingError(f"{self.path}: metadata {name!r} must be readable, but {error}") from None
+
+    def _read_geometry(self) -> StereoGeometry | None:
+        record = self._metadata(layout.GEOMETRY_RECORD)
+        if not record:
+            return None
+        try:
+            return StereoGeometry(
+                **{field.name: float(record[field.name]) for field in fields(StereoGeometry)}
+            )
+        except KeyError as error:
+            raise RecordingError(
+                f"{self.path}: metadata {layout.GEOMETRY_RECORD!r} must give {error.args[0]}"
+            ) from None
+        except ValueError as error:
+            raise RecordingError(f"{self.path}: metadata {layout.GEOMETRY_RECORD!r}: {error}") from None
+
+    def _read_rectification(self) -> RectificationTables | None:
+        found = {side: self._file.attachment(name) for side, name in layout.RECTIFICATION_NAMES.items()}
+        tables = {side: data for side, data in found.items() if data is not None}
+        if not tables:
+            return None
+        if len(tables) < len(found):
+            raise RecordingError(f"{self.path}: rectification tables must be there for both cameras, not one")
+        try:
+            rectification = RectificationTables(
+                **{side: layout.table_from_npy(data) for side, data in tables.items()}
+            )
+            rectification.check(self.width, self.height)
+        except RecordingError as error:
+            raise RecordingError(f"{self.path}: {error}") from None
+        return rectification
+
+
+def _parse_image(message: Message, where: str) -> RawImage:
+    """Return the message as an image whose sizes fit each other and its data."""
+    try:
+        image: RawImage = RawImage.FromString(message.data)
+    except DecodeError:
+        raise RecordingError(
+            f"image must be a {layout.IMAGE_SCHEMA} message, not {len(message.data)} other bytes {where}"
+        ) from None
+    if image.encoding not in layout.IMAGE_ENCODINGS:
+        raise RecordingError(f"image must be in UYVY (encoding 'uyvy'), not {image.encoding!r} {where}")
+    if image.width == 0 or image.height == 0 or image.width % 2:
+        raise RecordingError(
+            f"image width must be even (UYVY pixels come in pairs) and no side 0, "
+            f"not {image.width}x{image.height} {where}"
+        )
+    if image.step < 2 * image.width:
+        raise RecordingError(
+            f"UYVY image of width {image.width} must have rows of at least {2 * image.width} bytes, "
+            f"not {image.step} {where}"
+        )
+    if len(image.data) != image.step * image.height:
+        raise RecordingError(
+            f"image of {image.height} rows of {image.step} bytes must have {image.step * image.height} "
+            f"bytes, not {len(image.data)} {where}"
+        )
+    return image

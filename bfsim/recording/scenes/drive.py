@@ -1,0 +1,37 @@
+"""The robot's way over the floor, and its two cameras at any moment of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from bfsim.recording.frames import StereoGeometry
+from bfsim.recording.scenes.pinhole import Pinhole, stereo_pair
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drive:
+    """A drive at constant speed and turning rate, from a first pose of the middle between the cameras."""
+
+    x_mm: float
+    y_mm: float
+    heading_deg: float
+    speed_mm_per_s: float
+    turn_deg_per_s: float
+
+    def cameras(self, seconds: float, geometry: StereoGeometry) -> dict[str, Pinhole]:
+        """Return the "left" and the "right" camera `seconds` after the start."""
+        turned_deg = self.turn_deg_per_s * seconds
+        # The chord of an arc points half-way between the first heading and the last; sinc is chord over arc.
+        chord = math.radians(self.heading_deg + turned_deg / 2)
+        chord_mm = self.speed_mm_per_s * seconds * float(np.sinc(turned_deg / 360))
+        x_mm = self.x_mm + chord_mm * math.cos(chord)
+        y_mm = self.y_mm + chord_mm * math.sin(chord)
+        left, right = stereo_pair(
+            np.array([x_mm, y_mm, geometry.height_mm]),
+            heading_deg=self.heading_deg + turned_deg,
+            geometry=geometry,
+        )
+        return {"left": left, "right": right}

@@ -1,0 +1,91 @@
+"""Mitsuba behind a small door: shapes in, linear pictures out. Loaded only when a scene is really rendered.
+
+The renderer integrates each pixel over its own square: no lens blur and no motion blur.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.errors import RecordingError
+from bfsim.recording.scenes.pinhole import HEIGHT_PX, WIDTH_PX, Pinhole, Vector
+from bfsim.recording.scenes.shapes import Shape
+
+# Light that went from a lamp over at most three surfaces: enough for colours mirrored in the floor.
+MAX_DEPTH = 4
+
+
+class Renderer:
+    """A loaded scene that can be looked at from any camera."""
+
+    def __init__(self, shapes: Mapping[str, Shape]) -> None:
+        self._mitsuba = _load_mitsuba()
+        scene = {name: self._with_transforms(shape) for name, shape in shapes.items()}
+        integrator = {"type": "path", "max_depth": MAX_DEPTH}
+        self._scene = self._mitsuba.load_dict({"type": "scene", "integrator": integrator, **scene})
+
+    @property
+    def version(self) -> str:
+        """Return name and version of the renderer."""
+        return f"mitsuba {self._mitsuba.__version__} scalar_rgb"
+
+    def look(self, camera: Pinhole, *, samples: int, seed: int) -> NDArray[np.float32]:
+        """Return the radiance (HEIGHT_PX, WIDTH_PX, 3) of red, green and blue that reaches each pixel."""
+        picture = self._mitsuba.render(self._scene, sensor=self._sensor(camera), spp=samples, seed=seed)
+        return np.asarray(picture, dtype=np.float32)
+
+    def sees(self, camera: Pinhole, point_mm: Vector) -> bool:
+        """Tell if nothing stands between the camera and a world point (3,)."""
+        way_mm = point_mm - camera.position_mm
+        distance_mm = float(np.linalg.norm(way_mm))
+        origin, direction = camera.position_mm.tolist(), (way_mm / distance_mm).tolist()
+        # Stop a millimetre short, or the surface that holds the point would hide it.
+        ray = self._mitsuba.Ray3f(origin, direction, distance_mm - 1.0, 0.0, [])
+        return not self._scene.ray_test(ray)
+
+    def _sensor(self, camera: Pinhole) -> Any:
+        _, down, forward = camera.rotation
+        position = camera.position_mm
+        look_at = self._mitsuba.ScalarTransform4f().look_at(
+            origin=position.tolist(), target=(position + forward).tolist(), up=(-down).tolist()
+        )
+        film = {
+            "type": "hdrfilm",
+            "width": WIDTH_PX,
+            "height": HEIGHT_PX,
+            "pixel_format": "rgb",
+            "rfilter": {"type": "box"},
+        }
+        return self._mitsuba.load_dict(
+            {
+                "type": "perspective",
+                "fov_axis": "x",
+                "fov": camera.horizontal_view_deg,
+                "near_clip": 10.0,
+                "far_clip": 20_000.0,
+                "to_world": look_at,
+                "film": film,
+            }
+        )
+
+    def _with_transforms(self, shape: Shape) -> Shape:
+        if "to_world" not in shape:
+            return shape
+        return {**shape, "to_world": self._mitsuba.ScalarTransform4f(shape["to_world"])}
+
+
+def _load_mitsuba() -> Any:
+    try:
+        mitsuba = importlib.import_module("mitsuba")
+    except ImportError as error:
+        raise RecordingError(
+            'the renderer mitsuba must be installed to render a scene: pip install "bfsim[scenes]"'
+        ) from error
+    # The scalar variant needs no LLVM of the system and gives the same picture on every machine.
+    mitsuba.set_variant("scalar_rgb")
+    return mitsuba

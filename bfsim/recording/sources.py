@@ -1,0 +1,52 @@
+"""Where pictures for a recording come from: which reader a path needs, and what every reader gives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Literal, get_args
+
+from bfsim.recording.planes import YuvPlanes
+
+SourceFormat = Literal["images", "uyvy", "i420", "y4m", "video"]
+SOURCE_FORMATS: tuple[SourceFormat, ...] = get_args(SourceFormat)
+
+IMAGE_SUFFIXES = frozenset({".bmp", ".jpeg", ".jpg", ".pgm", ".png", ".ppm", ".tif", ".tiff", ".webp"})
+
+_FILE_SUFFIXES: dict[str, SourceFormat] = {
+    ".uyvy": "uyvy", ".422": "uyvy",
+    ".i420": "i420", ".yuv": "i420", ".yuv420": "i420",
+    ".y4m": "y4m",
+    ".avi": "video", ".m4v": "video", ".mkv": "video", ".mov": "video", ".mp4": "video", ".mpg": "video",
+    ".mpeg": "video", ".ogv": "video", ".ts": "video", ".webm": "video", ".wmv": "video",
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PictureSource:
+    """One stream of pictures, all of one size.
+
+    count is None when only reading to the end tells; fps is None when the source does not say. `pictures`
+    opens the source and yields from the first picture on, one in memory at a time.
+    """
+
+    name: str
+    size: tuple[int, int]
+    count: int | None
+    fps: Fraction | None
+    pictures: Callable[[], Iterator[YuvPlanes]]
+
+
+def guess_format(source: str) -> SourceFormat | None:
+    """Format of a source by its name; None if the name does not tell."""
+    path = Path(source)
+    if path.is_dir() or is_pattern(source) or path.suffix.lower() in IMAGE_SUFFIXES:
+        return "images"
+    return _FILE_SUFFIXES.get(path.suffix.lower())
+
+
+def is_pattern(source: str) -> bool:
+    """Whether the source is a pattern such as `frames/left_*.png` and not the name of a file or folder."""
+    return any(sign in source for sign in "*?[") and not Path(source).exists()

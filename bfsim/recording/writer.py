@@ -1,0 +1,183 @@
+"""Writes a recording, pair by pair; it appears under its name when it is complete, or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import asdict
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Any, Self
+
+import numpy as np
+from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
+from mcap.writer import Writer
+from mcap_protobuf.schema import register_schema
+
+from bfsim import __version__
+from bfsim.errors import RecordingError
+from bfsim.recording import layout
+from bfsim.recording.frames import RectificationTables, StereoGeometry, UyvyImage
+
+
+class RecordingWriter:
+    """Context manager that writes one recording.
+
+    The file grows under a temporary name beside `path` and takes its place on a clean exit of the `with`
+    block; after an error or Ctrl-C nothing is left and a file that was at `path` before is untouched.
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        width: int,
+        height: int,
+        geometry: StereoGeometry | None = None,
+        description: str = "",
+        rectification: RectificationTables | None = None,
+    ) -> None:
+        self.path = Path(path)
+        self.width = width
+        self.height = height
+        self.frame_count = 0
+        self._geometry = geometry
+        self._description = description
+        self._rectification = rectification
+        self._last_ns = {layout.LEFT_TOPIC: -1, layout.RIGHT_TOPIC: -1}
+        if not self.path.name or self.path.is_dir():
+            raise RecordingError(f"{path}: recording must be a file, not a folder")
+        if width <= 0 or width % 2:
+            raise RecordingError(
+                f"{path}: image width must be even and above 0 (UYVY pixels come in pairs), not {width}"
+            )
+        if height <= 0:
+            raise RecordingError(f"{path}: image height must be above 0, not {height}")
+        if rectification is not None:
+            rectification.check(width, height)
+        self._temporary = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
+
+    def __enter__(self) -> Self:
+        with self._writing():
+            self._stream: IO[bytes] = self._temporary.open("xb")
+        try:
+            with self._writing():
+                self._start()
+        except BaseException:
+            self._discard()
+            raise
+        return self
+
+    def _start(self) -> None:
+        self._mcap = Writer(self._stream, chunk_size=layout.CHUNK_BYTES)
+        self._mcap.start(profile="", library=layout.LIBRARY_PREFIX + __version__)
+        self._mcap.add_metadata(layout.DESCRIPTION_RECORD, layout.seal({"description": self._description}))
+        if self._geometry is not None:
+            record = {name: repr(float(value)) for name, value in asdict(self._geometry).items()}
+            self._mcap.add_metadata(layout.GEOMETRY_RECORD, layout.seal(record))
+        if self._rectification is not None:
+            for side, name in layout.RECTIFICATION_NAMES.items():
+                data = layout.table_to_npy(getattr(self._rectification, side))
+                self._mcap.add_attachment(0, 0, name, "application/octet-stream", data)
+        image_schema = register_schema(self._mcap, RawImage)
+        truth_schema = self._mcap.register_schema(layout.TRUTH_SCHEMA, "jsonschema", layout.TRUTH_JSON_SCHEMA)
+        self._channels = {
+            layout.LEFT_TOPIC: self._mcap.register_channel(layout.LEFT_TOPIC, "protobuf", image_schema),
+            layout.RIGHT_TOPIC: self._mcap.register_channel(layout.RIGHT_TOPIC, "protobuf", image_schema),
+            layout.TRUTH_TOPIC: self._mcap.register_channel(layout.TRUTH_TOPIC, "json", truth_schema),
+        }
+
+    def add(
+        self,
+        left: UyvyImage,
+        right: UyvyImage,
+        left_ns: int,
+        right_ns: int,
+        truth: Mapping[str, Any] | None = None,
+    ) -> None:
+        """Append one stereo frame.
+
+        left and right are uint8 of shape (height, 2 * width) in UYVY order; left_ns and right_ns are when
+        they were taken, later than those of the frame before; truth is what JSON can hold. Raises
+        RecordingError.
+        """
+        for topic, image, time_ns in (
+            (layout.LEFT_TOPIC, left, left_ns),
+            (layout.RIGHT_TOPIC, right, right_ns),
+        ):
+            self._check(topic, image, time_ns)
+        if truth is not None:
+            # Stamped no later than its pictures: a reader in time order has it when the pair is complete.
+            self._add_message(layout.TRUTH_TOPIC, min(left_ns, right_ns), self._encode_truth(truth))
+        self._add_image(layout.LEFT_TOPIC, left, left_ns)
+        self._add_image(layout.RIGHT_TOPIC, right, right_ns)
+        self.frame_count += 1
+
+    def _check(self, topic: str, image: UyvyImage, time_ns: int) -> None:
+        where = f"({self.path}: frame {self.frame_count}, {topic})"
+        if image.dtype != np.uint8 or image.shape != (self.height, 2 * self.width):
+            raise RecordingError(
+                f"image must be uint8 of shape ({self.height}, {2 * self.width}), UYVY, "
+                f"not {image.dtype} of shape {image.shape} {where}"
+            )
+        if not self._last_ns[topic] < time_ns <= layout.LAST_NS:
+            raise RecordingError(
+                f"time stamp must be later than the one before ({self._last_ns[topic]} ns) "
+                f"and fit 63 bits, not {time_ns} ns {where}"
+            )
+
+    def _add_image(self, topic: str, image: UyvyImage, time_ns: int) -> None:
+        self._last_ns[topic] = time_ns
+        message = RawImage(
+            frame_id=topic.split("/")[2],
+            width=self.width,
+            height=self.height,
+            encoding=layout.IMAGE_ENCODINGS[0],
+            step=2 * self.width,
+            data=image.tobytes(),
+        )
+        message.timestamp.FromNanoseconds(time_ns)
+        self._add_message(topic, time_ns, message.SerializeToString(deterministic=True))
+
+    def _add_message(self, topic: str, time_ns: int, data: bytes) -> None:
+        with self._writing():
+            self._mcap.add_message(self._channels[topic], time_ns, data, time_ns, sequence=self.frame_count)
+
+    def _encode_truth(self, truth: Mapping[str, Any]) -> bytes:
+        try:
+            return json.dumps(truth, allow_nan=False, separators=(",", ":")).encode()
+        except (TypeError, ValueError) as error:
+            raise RecordingError(
+                f"ground truth must be plain JSON data: {error} ({self.path}: frame {self.frame_count})"
+            ) from None
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            if kind is None:
+                self._finish()
+        finally:
+            self._discard()
+
+    def _finish(self) -> None:
+        if self.frame_count == 0:
+            raise RecordingError(f"{self.path}: a recording must have at least one stereo frame, not 0")
+        with self._writing():
+            self._mcap.finish()  # type: ignore[no-untyped-call]  # mcap left this one unannotated
+            self._stream.close()
+            self._temporary.replace(self.path)
+
+    def _discard(self) -> None:
+        with suppress(OSError):  # a full disk refuses what is still buffered; the file goes away all the same
+            self._stream.close()
+        self._temporary.unlink(missing_ok=True)
+
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise RecordingError(f"{self.path}: recording must be writable: {error.strerror}") from None

@@ -1,0 +1,360 @@
+"""Recordings made from images, raw frames, y4m and video: the right bytes, or an error that says where."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from bfsim.errors import RecordingError
+from bfsim.recording import (
+    RecordingReader,
+    RectificationTables,
+    StereoFrame,
+    StereoGeometry,
+    import_recording,
+    load_rectification,
+)
+
+PRIMARIES = {"red": (255, 0, 0), "green": (0, 255, 0), "blue": (0, 0, 255), "white": (255, 255, 255)}
+# BT.601, full range, by the equations of JFIF 1.02: (U, Y, V).
+PRIMARIES_UYV = {
+    "red": (85, 76, 255),
+    "green": (44, 150, 21),
+    "blue": (255, 29, 107),
+    "white": (128, 255, 128),
+}
+
+
+def frames_of(path: Path) -> list[StereoFrame]:
+    """Return all frames of a recording."""
+    with RecordingReader(path) as reader:
+        return list(reader.frames())
+
+
+def save_grey(path: Path, level: int, size: tuple[int, int] = (8, 4)) -> None:
+    """Save an image of one grey level."""
+    path.parent.mkdir(exist_ok=True)
+    Image.new("L", size, level).save(path)
+
+
+def noise(shape: tuple[int, ...], seed: int = 0) -> np.ndarray:
+    """Return random bytes."""
+    return np.random.default_rng(seed).integers(0, 256, shape, dtype=np.uint8)
+
+
+def test_two_folders_in_natural_order(tmp_path: Path) -> None:
+    """Image 2 comes before image 10, other files are no images, and grey has no colour."""
+    for k in (1, 2, 10):
+        save_grey(tmp_path / "left" / f"im{k}.png", k)
+        save_grey(tmp_path / "right" / f"im{k}.bmp", 100 + k)
+    (tmp_path / "left" / "im1.txt").write_text("a label")
+    geometry = StereoGeometry(386, 30, 60, 20)
+    summary = import_recording(
+        [tmp_path / "left", tmp_path / "right"],
+        tmp_path / "a.mcap",
+        fps=25,
+        geometry=geometry,
+        description="x",
+    )
+    assert (summary.width, summary.height, summary.frame_count, summary.fps) == (8, 4, 3, 25)
+    frames = frames_of(tmp_path / "a.mcap")
+    assert [frame.left[0].tolist() for frame in frames] == [[128, k] * 8 for k in (1, 2, 10)]
+    assert [frame.right[3, 1] for frame in frames] == [101, 102, 110]
+    assert [(frame.left_ns, frame.right_ns) for frame in frames] == [(k * 40_000_000,) * 2 for k in range(3)]
+    with RecordingReader(tmp_path / "a.mcap") as reader:
+        assert (reader.geometry, reader.description) == (geometry, "x")
+
+
+def test_pattern_and_single_files(tmp_path: Path) -> None:
+    """Left and right images may share a folder, picked by pattern or one by one."""
+    for k in range(2):
+        save_grey(tmp_path / "both" / f"l{k}.png", k)
+        save_grey(tmp_path / "both" / f"r{k}.png", 10 + k)
+    import_recording([tmp_path / "both" / "l*.png", tmp_path / "both" / "r*.png"], tmp_path / "a.mcap")
+    assert [(frame.left[0, 1], frame.right[0, 1]) for frame in frames_of(tmp_path / "a.mcap")] == [
+        (0, 10),
+        (1, 11),
+    ]
+    import_recording([tmp_path / "both" / "l1.png", tmp_path / "both" / "r0.png"], tmp_path / "b.mcap")
+    assert [(frame.left[0, 1], frame.right[0, 1]) for frame in frames_of(tmp_path / "b.mcap")] == [(1, 10)]
+
+
+@pytest.mark.parametrize("colour", PRIMARIES)
+def test_colours(tmp_path: Path, colour: str) -> None:
+    """Colours become full-range BT.601 in the byte order U Y V Y."""
+    Image.new("RGB", (4, 2), PRIMARIES[colour]).save(tmp_path / "a.png")
+    import_recording([tmp_path / "a.png"], tmp_path / "a.mcap", mono=True)
+    u, y, v = PRIMARIES_UYV[colour]
+    (frame,) = frames_of(tmp_path / "a.mcap")
+    np.testing.assert_array_equal(frame.left, np.tile(np.array([u, y, v, y], np.uint8), (2, 2)))
+    np.testing.assert_array_equal(frame.left, frame.right)
+
+
+def test_colour_is_the_mean_of_a_pair(tmp_path: Path) -> None:
+    """Two neighbouring pixels share the mean of their colours and keep their own brightness."""
+    pixels = np.array([[PRIMARIES["red"], PRIMARIES["blue"]]], np.uint8)
+    Image.fromarray(pixels).save(tmp_path / "a.png")
+    import_recording([tmp_path / "a.png"], tmp_path / "a.mcap", mono=True)
+    assert frames_of(tmp_path / "a.mcap")[0].left.tolist() == [[(85 + 255) // 2, 76, (255 + 107) // 2, 29]]
+
+
+def test_side_by_side(tmp_path: Path) -> None:
+    """The left half of each picture is the left camera's."""
+    halves = np.hstack([np.full((4, 8), 10, np.uint8), np.full((4, 8), 200, np.uint8)])
+    save_grey(tmp_path / "im" / "0.png", 0)
+    Image.fromarray(halves).save(tmp_path / "im" / "0.png")
+    summary = import_recording([tmp_path / "im"], tmp_path / "a.mcap", side_by_side=True)
+    assert (summary.width, summary.height) == (8, 4)
+    (frame,) = frames_of(tmp_path / "a.mcap")
+    assert set(frame.left[:, 1::2].flat) == {10}
+    assert set(frame.right[:, 1::2].flat) == {200}
+
+
+def test_raw_uyvy_keeps_every_byte(tmp_path: Path) -> None:
+    """Raw UYVY goes into the recording as it is."""
+    pixels = noise((2, 3, 6, 16))
+    for side, name in enumerate(("l.uyvy", "r.uyvy")):
+        (tmp_path / name).write_bytes(pixels[side].tobytes())
+    import_recording([tmp_path / "l.uyvy", tmp_path / "r.uyvy"], tmp_path / "a.mcap", size=(8, 6))
+    for k, frame in enumerate(frames_of(tmp_path / "a.mcap")):
+        np.testing.assert_array_equal(frame.left, pixels[0, k])
+        np.testing.assert_array_equal(frame.right, pixels[1, k])
+
+
+def test_raw_i420(tmp_path: Path) -> None:
+    """I420 keeps its brightness; a row of colour serves two rows of pixels."""
+    y, u, v = noise((4, 8)), noise((2, 4), 1), noise((2, 4), 2)
+    (tmp_path / "a.yuv").write_bytes(y.tobytes() + u.tobytes() + v.tobytes())
+    import_recording([tmp_path / "a.yuv"], tmp_path / "a.mcap", mono=True, size=(8, 4))
+    (frame,) = frames_of(tmp_path / "a.mcap")
+    np.testing.assert_array_equal(frame.left[:, 1::2], y)
+    np.testing.assert_array_equal(frame.left[:, 0::4], u.repeat(2, axis=0))
+    np.testing.assert_array_equal(frame.left[:, 2::4], v.repeat(2, axis=0))
+
+
+@pytest.mark.parametrize(
+    ("colourspace", "chroma_shape", "expected"),
+    [
+        ("C420jpeg", (2, 4), lambda u: u.repeat(2, axis=0)[:3]),
+        ("C422", (3, 4), lambda u: u),
+        ("C444", (3, 8), lambda u: ((u[:, 0::2].astype(int) + u[:, 1::2] + 1) // 2).astype(np.uint8)),
+        ("Cmono", (0, 0), lambda u: np.full((3, 4), 128, np.uint8)),
+    ],
+)
+def test_y4m(
+    tmp_path: Path, colourspace: str, chroma_shape: tuple[int, int], expected: Callable[..., Any]
+) -> None:
+    """Each colour layout, an odd number of rows, parameters on FRAME, and the frame rate of the header."""
+    y, u, v = noise((3, 8)), noise(chroma_shape, 1), noise(chroma_shape, 2)
+    frame_bytes = y.tobytes() + u.tobytes() + v.tobytes()
+    header = f"YUV4MPEG2 W8 H3 F30000:1001 Ip A1:1 {colourspace} XYSCSS=X\n".encode()
+    (tmp_path / "a.y4m").write_bytes(header + b"FRAME\n" + frame_bytes + b"FRAME Ip\n" + frame_bytes)
+    summary = import_recording([tmp_path / "a.y4m"], tmp_path / "a.mcap", mono=True)
+    assert (summary.frame_count, summary.fps) == (2, Fraction(30000, 1001))
+    frames = frames_of(tmp_path / "a.mcap")
+    np.testing.assert_array_equal(frames[1].left[:, 1::2], y)
+    np.testing.assert_array_equal(frames[1].left[:, 0::4], expected(u))
+    np.testing.assert_array_equal(frames[1].left[:, 2::4], expected(v))
+    assert frames[1].left_ns == 33_366_667
+
+
+def test_y4m_of_limited_range_is_stretched(tmp_path: Path) -> None:
+    """Black 16 and white 235 become 0 and 255 when the header says that they are black and white."""
+    pixels = bytes([16, 235, 126, 0]) + bytes([128, 240]) * 2
+    (tmp_path / "a.y4m").write_bytes(b"YUV4MPEG2 W4 H1 F25:1 C422 XCOLORRANGE=LIMITED\nFRAME\n" + pixels)
+    import_recording([tmp_path / "a.y4m"], tmp_path / "a.mcap", mono=True)
+    assert frames_of(tmp_path / "a.mcap")[0].left.tolist() == [[128, 0, 128, 255, 255, 128, 255, 0]]
+
+
+def test_resize_keeps_shapes(tmp_path: Path) -> None:
+    """A tall image is cut to the camera's aspect ratio about its centre, then scaled; odd widths are fine."""
+    tall = np.zeros((30, 15), np.uint8)
+    tall[10:20] = 200
+    Image.fromarray(tall).save(tmp_path / "a.png")
+    summary = import_recording([tmp_path / "a.png"], tmp_path / "a.mcap", mono=True, resize=(6, 4))
+    assert (summary.width, summary.height) == (6, 4)
+    luma = frames_of(tmp_path / "a.mcap")[0].left[:, 1::2]
+    assert luma.min() > 150
+
+
+def test_rectification_tables_from_npy(tmp_path: Path) -> None:
+    """Tables come from .npy files of any integer type, flat or as a picture."""
+    table = np.arange(32).reshape(4, 8)[::-1]
+    np.save(tmp_path / "l.npy", table)
+    np.save(tmp_path / "r.npy", table.ravel().astype(np.uint16))
+    tables = load_rectification(tmp_path / "l.npy", tmp_path / "r.npy")
+    save_grey(tmp_path / "a.png", 1)
+    import_recording([tmp_path / "a.png"], tmp_path / "a.mcap", mono=True, rectification=tables)
+    with RecordingReader(tmp_path / "a.mcap") as reader:
+        assert isinstance(reader.rectification, RectificationTables)
+        np.testing.assert_array_equal(reader.rectification.left, table.ravel())
+        np.testing.assert_array_equal(reader.rectification.right, table.ravel())
+
+
+def test_rectification_tables_of_other_kinds(tmp_path: Path) -> None:
+    """A missing file, a table of floats and one of 64-bit indices beyond the picture are refused."""
+    np.save(tmp_path / "float.npy", np.zeros(32))
+    np.save(tmp_path / "far.npy", np.full(32, 1 << 32))
+    with pytest.raises(RecordingError, match=r"none\.npy: .* must be a readable file"):
+        load_rectification(tmp_path / "none.npy", tmp_path / "none.npy")
+    with pytest.raises(RecordingError, match=r"float\.npy: .* must hold integers, not 32 of float64"):
+        load_rectification(tmp_path / "float.npy", tmp_path / "float.npy")
+    with pytest.raises(RecordingError, match="must point at pixels 0 to 31, not"):
+        load_rectification(tmp_path / "far.npy", tmp_path / "far.npy").check(8, 4)
+
+
+def test_video_without_pyav(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the optional package the error says which command brings it."""
+    monkeypatch.setitem(sys.modules, "av", None)
+    with pytest.raises(RecordingError, match=r'a\.mp4: .* pip install "bfsim\[video\]"'):
+        import_recording([tmp_path / "a.mp4"], tmp_path / "a.mcap", mono=True)
+
+
+def test_video(tmp_path: Path) -> None:
+    """A video in limited range arrives in full range, with its frame rate."""
+    av = pytest.importorskip("av", reason="needs the optional extra: video")
+    with av.open(tmp_path / "a.mkv", "w") as container:
+        stream = container.add_stream("ffv1", rate=12)
+        stream.width, stream.height, stream.pix_fmt = 32, 16, "yuv420p"
+        for level in (16, 235):
+            planes = np.vstack([np.full((16, 32), level, np.uint8), np.full((8, 32), 128, np.uint8)])
+            container.mux(stream.encode(av.VideoFrame.from_ndarray(planes, format="yuv420p")))
+        container.mux(stream.encode())
+    summary = import_recording([tmp_path / "a.mkv"], tmp_path / "a.mcap", mono=True)
+    assert (summary.frame_count, summary.fps) == (2, 12)
+    frames = frames_of(tmp_path / "a.mcap")
+    assert [set(frame.left[:, 1::2].flat) for frame in frames] == [{0}, {255}]
+    assert set(frames[0].left[:, 0::4].flat) == {128}
+
+
+def test_existing_recording_needs_force(tmp_path: Path) -> None:
+    """A recording is not overwritten by accident."""
+    save_grey(tmp_path / "a.png", 7)
+    (tmp_path / "a.mcap").write_bytes(b"precious")
+    with pytest.raises(RecordingError, match=r"a\.mcap: recording must not exist yet; `--force`"):
+        import_recording([tmp_path / "a.png"], tmp_path / "a.mcap", mono=True)
+    assert (tmp_path / "a.mcap").read_bytes() == b"precious"
+    import_recording([tmp_path / "a.png"], tmp_path / "a.mcap", mono=True, force=True)
+    assert frames_of(tmp_path / "a.mcap")[0].left[0, 1] == 7
+
+
+def test_progress(tmp_path: Path) -> None:
+    """The caller hears of every frame."""
+    for k in range(3):
+        save_grey(tmp_path / "im" / f"{k}.png", k)
+    heard: list[tuple[int, int | None]] = []
+    import_recording(
+        [tmp_path / "im"], tmp_path / "a.mcap", mono=True, progress=lambda *now: heard.append(now)
+    )
+    assert heard == [(1, 3), (2, 3), (3, 3)]
+
+
+@pytest.fixture
+def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A folder with a little of everything that can be wrong."""
+    monkeypatch.chdir(tmp_path)
+    for k in range(3):
+        save_grey(Path("three") / f"{k}.png", k)
+    for k in range(2):
+        save_grey(Path("two") / f"{k}.png", k)
+        save_grey(Path("large") / f"{k}.png", k, (10, 4))
+        save_grey(Path("odd") / f"{k}.png", k, (7, 4))
+        save_grey(Path("mixed") / f"{k}.png", k, (8, 4 + k))
+    Path("empty").mkdir()
+    Path("texts").mkdir()
+    Path("texts/a.txt").touch()
+    Image.fromarray(noise((32, 32))).save("whole.png")
+    Path("bad.png").write_bytes(Path("whole.png").read_bytes()[:500])
+    Path("text.png").write_text("no image")
+    Image.fromarray(np.zeros((4, 8), np.uint16)).save("deep.png")
+    Path("short.uyvy").write_bytes(bytes(100))
+    Path("none.uyvy").touch()
+    Path("frames.raw").write_bytes(bytes(64))
+    head = b"YUV4MPEG2 W8 H4 F25:1 C420\n"
+    one = b"FRAME\n" + bytes(48)
+    Path("one.y4m").write_bytes(head + one)
+    Path("two.y4m").write_bytes(head + 2 * one)
+    Path("cut.y4m").write_bytes(head + one + one[:20])
+    Path("frameless.y4m").write_bytes(head)
+    Path("framing.y4m").write_bytes(head + one + b"X" + one)
+    Path("ten_bit.y4m").write_bytes(head.replace(b"C420", b"C420p10") + one)
+    Path("sizeless.y4m").write_bytes(head.replace(b"W8", b"W0") + one)
+    Path("rate.y4m").write_bytes(head.replace(b"F25:1", b"Fast") + one)
+    Path("fast.y4m").write_bytes(head.replace(b"F25:1", b"F50:1") + one)
+    Path("other.y4m").write_bytes(b"RIFF" + bytes(2000))
+
+
+@pytest.mark.usefixtures("sources")
+@pytest.mark.parametrize(
+    ("names", "options", "message"),
+    [
+        (["three", "two"], {}, r"same number of images, not 3 \(three\) and 2 \(two\)"),
+        (["two", "large"], {}, r"one size, not 8x4 \(two\) and 10x4 \(large\)"),
+        (["one.y4m", "two.y4m"], {}, r"but one\.y4m ends after 1 and two\.y4m has more"),
+        (["two.y4m", "one.y4m"], {}, r"but one\.y4m ends after 1 and two\.y4m has more"),
+        (["one.y4m", "fast.y4m"], {}, "one frame rate, not 25 and 50; `--fps` sets it"),
+        (["odd"], {"mono": True}, "odd: image width must be even .* not 7; `--resize`"),
+        (
+            ["large"],
+            {"side_by_side": True},
+            "large: side-by-side image must have a width of 4 x n pixels, not 10",
+        ),
+        (["mixed"], {"mono": True}, r"mixed/1\.png: image must be 8x4 like 0\.png, .* not 8x5"),
+        (["empty"], {"mono": True}, r"empty: source must hold images \(\.bmp, .*none of its 0 files"),
+        (["texts"], {"mono": True}, "none of its 1 files"),
+        (["two/*.jpg"], {"mono": True}, "none of its 0 files"),
+        (["nowhere"], {"mono": True}, "nowhere: source .* is not there"),
+        (["nowhere.png"], {"mono": True}, r"nowhere\.png: source must be .* is not there"),
+        (["nowhere.uyvy"], {"mono": True, "size": (8, 4)}, "must be a readable file: No such file"),
+        (["bad.png"], {"mono": True}, r"bad\.png: image must be readable: "),
+        (["text.png"], {"mono": True}, r"text\.png: file must be an image that Pillow reads"),
+        (["deep.png"], {"mono": True}, r"deep\.png: image must have 8 bits a channel, not .* I;16"),
+        (["short.uyvy"], {"mono": True}, r"short\.uyvy: raw UYVY needs the size .* `--size 320x240`"),
+        (
+            ["short.uyvy"],
+            {"mono": True, "size": (8, 4)},
+            "8x4 UYVY frames of 64 bytes, not 100 bytes = 1.56 frames",
+        ),
+        (["none.uyvy"], {"mono": True, "size": (8, 4)}, "not 0 bytes"),
+        (["short.uyvy"], {"mono": True, "size": (7, 4)}, "width of UYVY frames must be even, not 7"),
+        (["short.uyvy"], {"mono": True, "size": (8, 3), "format": "i420"}, "must be even, not 8x3"),
+        (["frames.raw"], {"mono": True}, r"does not tell its format \(`--format` images, uyvy, i420"),
+        (["cut.y4m"], {"mono": True}, r"frame 1 must have 48 bytes, not 14: .* starts at byte 87"),
+        (["frameless.y4m"], {"mono": True}, "at least one whole frame"),
+        (["framing.y4m"], {"mono": True}, r"frame 1 must start with FRAME, not 'XFRAME' \(before byte 88\)"),
+        (["ten_bit.y4m"], {"mono": True}, "colourspace must be one of 420, .* not 420p10"),
+        (["sizeless.y4m"], {"mono": True}, "must give a size .* not W0 H4"),
+        (["rate.y4m"], {"mono": True}, "frame rate must be like F30:1, not Fast"),
+        (["other.y4m"], {"mono": True}, r"header line must end within 1024 bytes \(frame 0, byte 0\)"),
+        (["two"], {}, "sources must be 2, not 1: two"),
+        (["two", "two", "two"], {}, "sources must be 2, not 3"),
+        (["two", "two"], {"mono": True}, "sources must be 1, not 2"),
+        (["two"], {"mono": True, "side_by_side": True}, "not both"),
+        (["two"], {"mono": True, "fps": 0}, "frame rate must be above 0 .* not 0"),
+        (["two"], {"mono": True, "fps": float("nan")}, "frame rate must be above 0 .* not nan"),
+        (["two"], {"mono": True, "resize": (7, 4)}, "`--resize` must be above 0 and of even width, not 7x4"),
+    ],
+)
+def test_bad_input(names: list[str], options: dict[str, Any], message: str) -> None:
+    """Each mistake is named with its file and place, and no recording, not even half of one, is left."""
+    before = sorted(Path().rglob("*"))
+    with pytest.raises(RecordingError, match=message):
+        import_recording(names, "out.mcap", **options)
+    assert sorted(Path().rglob("*")) == before
+
+
+def test_every_grey_level_is_kept(tmp_path: Path) -> None:
+    """A grey image arrives bit for bit, level by level, without colour."""
+    levels = np.arange(256, dtype=np.uint8).reshape(16, 16)
+    Image.fromarray(levels).save(tmp_path / "a.png")
+    import_recording([tmp_path / "a.png"], tmp_path / "a.mcap", mono=True)
+    (frame,) = frames_of(tmp_path / "a.mcap")
+    np.testing.assert_array_equal(frame.left[:, 1::2], levels)
+    assert set(frame.left[:, 0::2].flat) == {128}
