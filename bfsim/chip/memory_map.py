@@ -1,0 +1,77 @@
+"""The memories of the ADSP-BF561 by address: what lies where, how large it is, and which core reaches it.
+
+Latencies and banks are not here; nor are the memory-mapped registers, where nothing can be placed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from bfsim.errors import ConfigError
+
+KIB = 1024
+MIB = 1024 * KIB
+
+Owner = Literal["A", "B", "shared"]
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """One memory: `nbytes` from byte address `start`, reached by its owner's loads and stores alone."""
+
+    memory: str
+    owner: Owner
+    start: int
+    nbytes: int
+
+    @property
+    def name(self) -> str:
+        """Name of the region on the whole chip, such as COREA_L1_DATA_A, or L2 where both cores share it."""
+        return self.memory if self.owner == "shared" else f"CORE{self.owner}_{self.memory}"
+
+    def holds(self, address: int, nbytes: int) -> bool:
+        """Say whether all `nbytes` from `address` lie in this region."""
+        return self.start <= address and address + nbytes <= self.start + self.nbytes
+
+
+# Addresses and sizes: Linux arch/blackfin/mach-bf561/include/mach/mem_map.h; GNU sim/bfin/machs.c
+# bf561_mem[]; the memory map in the comments of the VisualDSP++ 5.0 default LDF of the ADSP-BF561.
+ON_CHIP = (
+    Region("L1_CODE", "A", 0xFFA0_0000, 16 * KIB),
+    Region("L1_CODE_CACHE", "A", 0xFFA1_0000, 16 * KIB),  # SRAM as long as the instruction cache is off
+    Region("L1_DATA_A", "A", 0xFF80_0000, 32 * KIB),  # the upper 16 KB can be cache instead
+    Region("L1_DATA_B", "A", 0xFF90_0000, 32 * KIB),  # the upper 16 KB can be cache instead
+    Region("SCRATCH", "A", 0xFFB0_0000, 4 * KIB),  # no DMA, no cache
+    Region("L1_CODE", "B", 0xFF60_0000, 16 * KIB),
+    Region("L1_CODE_CACHE", "B", 0xFF61_0000, 16 * KIB),
+    Region("L1_DATA_A", "B", 0xFF40_0000, 32 * KIB),
+    Region("L1_DATA_B", "B", 0xFF50_0000, 32 * KIB),
+    Region("SCRATCH", "B", 0xFF70_0000, 4 * KIB),
+    Region("L2", "shared", 0xFEB0_0000, 128 * KIB),
+    Region("ASYNC0", "shared", 0x2000_0000, 64 * MIB),
+    Region("ASYNC1", "shared", 0x2400_0000, 64 * MIB),
+    Region("ASYNC2", "shared", 0x2800_0000, 64 * MIB),
+    Region("ASYNC3", "shared", 0x2C00_0000, 64 * MIB),
+)
+
+
+def bf561_regions(sdram_nbytes: int) -> tuple[Region, ...]:
+    """Return the memories of a BF561 board with `sdram_nbytes` of SDRAM, which starts at address 0."""
+    return (*ON_CHIP, Region("SDRAM", "shared", 0x0000_0000, sdram_nbytes))
+
+
+# One MT48LC8M32B2: Linux arch/blackfin/configs/CM-BF561_defconfig of 2008-02..04, CONFIG_MEM_SIZE=32
+CM_BF561_REGIONS = bf561_regions(sdram_nbytes=32 * MIB)
+
+
+def region_of(address: int, nbytes: int, regions: Sequence[Region] = CM_BF561_REGIONS) -> Region:
+    """Return the region that holds all `nbytes` from `address`; raise ConfigError if no single one does."""
+    problem = "at an address where there is none"
+    for region in regions:
+        if region.holds(address, nbytes):
+            return region
+        if region.holds(address, 1):
+            problem = f"beyond the end of {region.name}, 0x{region.start + region.nbytes - 1:08X}"
+    raise ConfigError(f"{nbytes} bytes at 0x{address:08X} must lie inside one memory, not {problem}")

@@ -1,0 +1,398 @@
+"""Where the linker puts symbols: order, spill, alignment, location pointers, reserves, what has no place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bfsim.chip.memory_map import bf561_regions
+from bfsim.errors import LinkError
+from bfsim.linker import LinkerScript, LinkMap, Symbol, link, parse_ldf
+
+Parse = Callable[[str], LinkerScript]
+
+L1_A, L1_B, L2, SDRAM = 0xFF800000, 0xFF400000, 0xFEB00000, 0x1000
+
+TWO_CORES = """$OBJECTS = $COMMAND_LINE_OBJECTS;
+MEMORY {
+   MEM_L2    { TYPE(RAM) START(0xFEB00000) LENGTH(1K) WIDTH(8) }
+   MEM_SDRAM { TYPE(RAM) START(0x00001000) LENGTH(1M) WIDTH(8) }
+}
+COMMON_MEMORY {
+   MASTERS(p0, p1)
+   SECTIONS { shared { INPUT_SECTIONS($OBJECTS(l2_shared)) } > MEM_L2 }
+}
+PROCESSOR p0 {
+   MEMORY { MEM_A { TYPE(RAM) START(0xFF800000) LENGTH(256) WIDTH(8) } }
+   SECTIONS {
+      a_fast { INPUT_SECTIONS($OBJECTS(fast)) INPUT_SECTIONS($OBJECTS(data1)) } > MEM_A
+      a_l2   { INPUT_SECTIONS($OBJECTS(data1)) } > MEM_L2
+      a_sdram { INPUT_SECTION_ALIGN(32) INPUT_SECTIONS($OBJECTS(data1)) } > MEM_SDRAM
+   }
+}
+PROCESSOR p1 {
+   MEMORY { MEM_B { TYPE(RAM) START(0xFF400000) LENGTH(256) WIDTH(8) } }
+   SECTIONS {
+      b_fast { INPUT_SECTIONS($OBJECTS(fast data1)) } > MEM_B
+      b_l2   { INPUT_SECTIONS($OBJECTS(data1)) } > MEM_L2
+   }
+}
+"""
+
+
+def addresses(link_map: LinkMap) -> dict[str, int]:
+    """Return the address of each symbol by its name."""
+    return {placed.symbol.name: placed.address for placed in link_map.placements}
+
+
+def used(link_map: LinkMap) -> dict[str, int]:
+    """Return the bytes used in each segment by its name."""
+    return {segment.name: segment.used_bytes for segment in link_map.segments}
+
+
+def symbol(name: str, section: str, nbytes: int, processor: str | None = "p0", align: int = 4) -> Symbol:
+    """Make a symbol, of core A unless said otherwise."""
+    return Symbol(name, section, nbytes, align=align, processor=processor)
+
+
+def one_section(statements: str, segment: str = "START(0xFF800000) LENGTH(256)", commands: str = "") -> str:
+    """Write an LDF of one output section `data`."""
+    return (
+        f"PROCESSOR p0 {{ MEMORY {{ M {{ TYPE(RAM) {segment} WIDTH(8) }} }} {commands}\n"
+        f"SECTIONS {{ data {{ {statements} }} > M }} }}"
+    )
+
+
+def test_statements_come_before_symbols(parse: Parse) -> None:
+    """Within an output section the first statement's symbols come first, each in the given order."""
+    symbols = [
+        symbol("d", "data1", 8),
+        symbol("f", "fast", 8),
+        symbol("e", "data1", 8),
+        symbol("g", "fast", 8),
+    ]
+    placed = link(parse(TWO_CORES), symbols)
+    assert addresses(placed) == {"f": L1_A, "g": L1_A + 8, "d": L1_A + 16, "e": L1_A + 24}
+    assert [p.symbol.name for p in placed.placements] == ["f", "g", "d", "e"]
+
+
+def test_what_does_not_fit_spills_in_order(parse: Parse) -> None:
+    """A section goes from L1 to L2 to SDRAM, and a small symbol takes the room that a large one left."""
+    symbols = [symbol("big", "data1", 250), symbol("huge", "data1", 2000), symbol("mid", "data1", 500)]
+    symbols += [symbol("bit", "data1", 4), symbol("left", "data1", 520)]
+    placed = link(parse(TWO_CORES), symbols)
+    assert addresses(placed) == {"big": L1_A, "bit": L1_A + 252, "mid": L2, "left": L2 + 500, "huge": SDRAM}
+    assert [p.output_section for p in placed.placements] == ["a_fast", "a_fast", "a_l2", "a_l2", "a_sdram"]
+    assert placed.find("p0", "huge").segment == "MEM_SDRAM"
+    assert placed.find("p0", "huge").line == 15
+
+
+def test_the_last_byte_of_a_segment_can_be_used(parse: Parse) -> None:
+    """A symbol of the segment's size fits; one byte more does not."""
+    script = parse(one_section("INPUT_SECTIONS($COMMAND_LINE_OBJECTS(a))"))
+    assert addresses(link(script, [symbol("x", "a", 256)])) == {"x": L1_A}
+    with pytest.raises(LinkError, match=r"symbol 'x' of p0 .* 257 bytes"):
+        link(script, [symbol("x", "a", 257)])
+
+
+def test_both_cores_share_one_location_pointer(parse: Parse) -> None:
+    """L2 fills from one pointer: shared symbols, core A's spill, core B's; L1 is each core's own."""
+    symbols = [
+        symbol("b", "data1", 300, "p1"),
+        symbol("a", "data1", 300, "p0"),
+        symbol("s", "l2_shared", 10, None),
+    ]
+    symbols += [symbol("fast", "fast", 16, "p0"), symbol("fast", "fast", 24, "p1")]
+    placed = link(parse(TWO_CORES), symbols)
+    assert (placed.find("p0", "s").address, placed.find("p0", "a").address) == (L2, L2 + 12)
+    assert placed.find("p1", "b").address == L2 + 312
+    assert placed.find("p0", "fast").address == L1_A
+    assert placed.find("p1", "fast").address == L1_B
+    assert used(placed) == {"MEM_L2": 612, "MEM_SDRAM": 0, "MEM_A": 16, "MEM_B": 24}
+
+
+def test_common_memory_takes_what_a_processor_owns(parse: Parse) -> None:
+    """A COMMON_MEMORY block places the symbols of its masters and the shared ones, in one order."""
+    symbols = [
+        symbol("b", "l2_shared", 4, "p1"),
+        symbol("s", "l2_shared", 4, None),
+        symbol("a", "l2_shared", 4, "p0"),
+    ]
+    assert addresses(link(parse(TWO_CORES), symbols)) == {"b": L2, "s": L2 + 4, "a": L2 + 8}
+    only_p0 = parse(TWO_CORES.replace("MASTERS(p0, p1)", "MASTERS(p0)"))
+    with pytest.raises(
+        LinkError, match=r"section of symbol 'b' of p1 .* for p1 \(data1, fast\), not l2_shared"
+    ):
+        link(only_p0, symbols)
+
+
+def test_shared_memory_is_for_both_cores(parse: Parse) -> None:
+    """SHARED_MEMORY needs no MASTERS: it takes what both cores share and what either owns."""
+    script = parse(TWO_CORES.replace("COMMON_MEMORY", "SHARED_MEMORY").replace("MASTERS(p0, p1)", ""))
+    symbols = [symbol("s", "l2_shared", 4, None), symbol("b", "l2_shared", 4, "p1")]
+    assert addresses(link(script, symbols)) == {"s": L2, "b": L2 + 4}
+
+
+def test_find_prefers_the_core_and_falls_back_to_shared(parse: Parse) -> None:
+    """Each core finds its own symbol of a name, else the shared one, else an error says whose it would be."""
+    symbols = [
+        symbol("own", "fast", 4, "p0"),
+        symbol("own", "fast", 8, "p1"),
+        symbol("all", "l2_shared", 4, None),
+    ]
+    placed = link(parse(TWO_CORES), symbols)
+    assert placed.find("p0", "own").symbol.nbytes == 4
+    assert placed.find("p1", "own").symbol.nbytes == 8
+    assert placed.find("p1", "all") == placed.find(None, "all")
+    with pytest.raises(LinkError, match=r"symbol must be one that was linked for p1, not 'none'"):
+        placed.find("p1", "none")
+    with pytest.raises(LinkError, match=r"linked for both cores, not 'own'"):
+        placed.find(None, "own")
+
+
+def test_the_larger_alignment_holds(parse: Parse) -> None:
+    """A symbol lies on a multiple of its own alignment and of the INPUT_SECTION_ALIGN in force there."""
+    statements = (
+        "INPUT_SECTIONS($COMMAND_LINE_OBJECTS(a))"
+        " INPUT_SECTION_ALIGN(16) INPUT_SECTIONS($COMMAND_LINE_OBJECTS(b))"
+    )
+    symbols = [symbol("a1", "a", 3, align=1), symbol("a2", "a", 1, align=1), symbol("a3", "a", 1, align=8)]
+    symbols += [symbol("b1", "b", 1, align=2), symbol("b2", "b", 1, align=64)]
+    placed = link(parse(one_section(statements)), symbols)
+    offsets = {name: address - L1_A for name, address in addresses(placed).items()}
+    assert offsets == {"a1": 0, "a2": 3, "a3": 8, "b1": 16, "b2": 64}
+    assert used(placed) == {"M": 65}
+
+
+def test_reserves_are_stepped_over(parse: Parse) -> None:
+    """RESERVE with an address is never used, without one it moves the pointer, EXPAND takes its minimum."""
+    script = parse(
+        one_section(
+            "INPUT_SECTIONS($COMMAND_LINE_OBJECTS(a)) RESERVE(heap, heap_length = 10, 8)"
+            "INPUT_SECTIONS($COMMAND_LINE_OBJECTS(b)) RESERVE_EXPAND(heap, heap_length, 6, 4)"
+            "INPUT_SECTIONS($COMMAND_LINE_OBJECTS(c))",
+        ).replace(
+            "SECTIONS {",
+            "SECTIONS { RESERVE(hole = 0xFF800008, hole_length = 24) RESERVE(end = 0xFF8000F0, n = 16)",
+            1,
+        )
+    )
+    symbols = [symbol("a1", "a", 6), symbol("a2", "a", 4), symbol("b", "b", 5, align=1), symbol("c", "c", 4)]
+    placed = link(script, symbols)
+    offsets = {name: address - L1_A for name, address in addresses(placed).items()}
+    # 0 a1, 8 hole, 32 a2, 40 heap (aligned to 8), 50 b, 56 the minimum, 62 c at 64
+    assert offsets == {"a1": 0, "a2": 32, "b": 50, "c": 64}
+    assert used(placed) == {"M": 68 + 16}
+    with pytest.raises(LinkError, match=r"does not fit in M: 172 of 256 bytes free"):
+        link(script, [*symbols, symbol("c2", "c", 173)])
+
+
+def test_a_reserve_that_does_not_fit_is_out_of_memory(parse: Parse) -> None:
+    """A RESERVE needs its bytes as a symbol does."""
+    script = parse(one_section("RESERVE(stack, stack_length = 4K, 4)"))
+    with pytest.raises(
+        LinkError, match=r":2: Out of memory in output section 'data' \[li1040\]: RESERVE\(stack, 4096"
+    ):
+        link(script, [])
+
+
+def test_out_of_memory_names_section_memory_sizes_and_lines(parse: Parse) -> None:
+    """The error has all that is needed to fix it, and every memory that was tried before."""
+    symbols = [
+        symbol("full", "data1", 200),
+        symbol("frame", "data1", 2 << 20),
+        symbol("more", "data1", 3 << 20),
+    ]
+    message = (
+        r"test\.ldf:15: Out of memory in output section 'a_sdram' \[li1040\]: symbol 'frame' of p0 "
+        r"\(section data1, 2097152 bytes, align 32\) does not fit in MEM_SDRAM: "
+        r"1048576 of 1048576 bytes free; "
+        r"nor in MEM_A: 56 of 256 bytes free \('a_fast', line 13\); "
+        r"nor in MEM_L2: 1024 of 1024 bytes free \('a_l2', line 14\); "
+        r"in all 2 symbols, 5242880 bytes, are left without a place$"
+    )
+    with pytest.raises(LinkError, match=message):
+        link(parse(TWO_CORES), symbols)
+
+
+def test_a_section_that_nothing_takes_is_named(parse: Parse) -> None:
+    """The error names section, symbol, core and the sections that the LDF does take for that core."""
+    message = (
+        r"section of symbol 'x' of p1 \(firmware.doj, 4 bytes\).*for p1 \(data1, fast, l2_shared\), not slow"
+    )
+    with pytest.raises(LinkError, match=message):
+        link(parse(TWO_CORES), [symbol("x", "slow", 4, "p1")])
+    with pytest.raises(
+        LinkError, match=r"symbol 'x' of both cores .* for both cores \(l2_shared\), not fast"
+    ):
+        link(parse(TWO_CORES), [symbol("x", "fast", 4, None)])
+
+
+@pytest.mark.parametrize(
+    ("symbols", "message"),
+    [
+        ([symbol("x", "fast", -1)], r"symbol 'x' of p0 must have a size of 0 bytes or more, not -1"),
+        ([symbol("x", "fast", 4, align=3)], r"symbol 'x' of p0 must be aligned to a power of two, not 3"),
+        ([symbol("x", "fast", 4, align=0)], r"must be aligned to a power of two, not 0"),
+        ([symbol("x", "fast", 4, "p2")], r"symbol 'x' of p2 must belong to a processor of .* \(p0 or p1\)"),
+        (
+            [symbol("x", "fast", 4), symbol("x", "data1", 8)],
+            r"'x' of p0 \(section data1, 8 .* 'x' of p0 \(section fast",
+        ),
+        (
+            [symbol("x", "l2_shared", 4, None), symbol("x", "fast", 4)],
+            r"'x' of p0 .*of its own: symbol 'x' of both",
+        ),
+        (
+            [symbol("x", "l2_shared", 4, None)] * 2,
+            r"'x' of both cores .* of its own: symbol 'x' of both cores",
+        ),
+    ],
+)
+def test_impossible_symbols_are_refused(parse: Parse, symbols: list[Symbol], message: str) -> None:
+    """A symbol has a size, an alignment, a processor of the LDF, and a name of its own on each core."""
+    with pytest.raises(LinkError, match=message):
+        link(parse(TWO_CORES), symbols)
+
+
+@pytest.mark.parametrize(
+    ("segment", "message"),
+    [
+        (
+            "START(0xFF808000) LENGTH(4)",
+            r"'M': 4 bytes at 0xFF808000 must lie inside one memory, not at an address where",
+        ),
+        (
+            "START(0xFF807FFC) LENGTH(8)",
+            r"'M': 8 bytes at .* one memory, not beyond the end of COREA_L1_DATA_A",
+        ),
+        ("START(0x02000000) LENGTH(4)", r"'M': 4 bytes at 0x02000000 must lie inside one memory"),
+        (
+            "START(0xFF400000) LENGTH(4)",
+            r"'M' lies in COREB_L1_DATA_A, which only core B reaches: .* not by p0",
+        ),
+    ],
+)
+def test_segments_lie_in_a_memory_of_their_core(parse: Parse, segment: str, message: str) -> None:
+    """A segment outside the chip, or in the other core's L1, is an error with its line."""
+    with pytest.raises(LinkError, match=r"test\.ldf:1: segment " + message):
+        link(parse(one_section("", segment)), [])
+
+
+def test_common_memory_is_no_place_for_l1(parse: Parse) -> None:
+    """COMMON_MEMORY can use shared memories only, and one core not the other's segment."""
+    script = parse(
+        "MEMORY { M { START(0xFF800000) LENGTH(4) } } COMMON_MEMORY { MASTERS(p0)\nSECTIONS { s { } > M } }"
+    )
+    with pytest.raises(
+        LinkError, match=r"test\.ldf:2: segment 'M' lies in COREA_L1_DATA_A.* not by both cores"
+    ):
+        link(script, [])
+    with pytest.raises(LinkError, match=r"test\.ldf:21: segment 'MEM_A' lies in COREA_L1_DATA_A.* not by p1"):
+        link(parse(TWO_CORES.replace("} > MEM_B", "} > MEM_A")), [])
+
+
+def test_the_board_says_how_much_sdram_there_is(parse: Parse) -> None:
+    """The same LDF links on a 64 MB board and not on the 32 MB one."""
+    script = parse(one_section("", "START(0x03000000) END(0x03FFFFFF)"))
+    assert link(script, [], bf561_regions(64 << 20)).segments[0].free_bytes == 16 << 20
+    with pytest.raises(LinkError, match=r"16777216 bytes at 0x03000000"):
+        link(script, [])
+
+
+def test_fixed_reserves_lie_in_segments_and_apart(parse: Parse) -> None:
+    """A RESERVE at an address where there is no segment, or over another RESERVE, is an error."""
+    text = one_section("").replace(
+        "SECTIONS {", "SECTIONS { RESERVE(a = {a}, la = 8) RESERVE(b = 0xFF800004, lb = 8)", 1
+    )
+    with pytest.raises(
+        LinkError, match=r"test\.ldf:2: RESERVE\(a\) must lie inside one segment of MEMORY, not at 0xFF8000FC"
+    ):
+        link(parse(text.replace("{a}", "0xFF8000FC")), [])
+    with pytest.raises(
+        LinkError, match=r"RESERVE\(b\) at 0xFF800004 must not overlap RESERVE\(a\) of line 2"
+    ):
+        link(parse(text.replace("{a}", "0xFF800000")), [])
+
+
+def test_force_contiguity_needs_a_segment_in_one_piece(parse: Parse) -> None:
+    """FORCE_CONTIGUITY is refused where a RESERVE lies in the middle of the segment, not at its end."""
+    text = one_section("FORCE_CONTIGUITY").replace("SECTIONS {", "SECTIONS { RESERVE(r = {r}, n = 16)", 1)
+    with pytest.raises(LinkError, match=r"'data' must be in one piece, not M, cut by RESERVE\(r\) of line 2"):
+        link(parse(text.replace("{r}", "0xFF800080")), [])
+    assert used(link(parse(text.replace("{r}", "0xFF8000F0")), [])) == {"M": 16}
+
+
+def test_resolve_must_agree_with_the_placement(parse: Parse) -> None:
+    """RESOLVE gives a symbol's address: if the firmware has that symbol, it has to lie there."""
+    script = parse(
+        one_section("INPUT_SECTIONS($COMMAND_LINE_OBJECTS(a))", commands="RESOLVE(start, 0xFF800000)")
+    )
+    start, other = symbol("start", "a", 8), symbol("other", "a", 8)
+    assert addresses(link(script, [start, other]))["start"] == L1_A
+    assert addresses(link(script, [other])) == {"other": L1_A}
+    with pytest.raises(
+        LinkError, match=r"test\.ldf:1: symbol 'start' of p0 must lie at 0xFF800000, .* not at 0xFF800008"
+    ):
+        link(script, [other, start])
+
+
+@st.composite
+def firmware(draw: st.DrawFn) -> list[Symbol]:
+    """Draw symbols of both cores and shared ones that all fit, most of them only by spilling."""
+    homes = st.sampled_from([("data1", "p0"), ("l2_shared", None), ("fast", "p1"), ("data1", "p1")])
+    drawn = draw(
+        st.lists(st.tuples(homes, st.integers(0, 90), st.sampled_from([1, 2, 4, 8, 32])), max_size=12)
+    )
+    return [
+        Symbol(f"s{i}", section, nbytes, align, processor)
+        for i, ((section, processor), nbytes, align) in enumerate(drawn)
+    ]
+
+
+@pytest.fixture(scope="module")
+def room_for_all(tmp_path_factory: pytest.TempPathFactory) -> LinkerScript:
+    """Return the two-core LDF with a reserve in L1 and room in L1 B for all that can be drawn."""
+    path = tmp_path_factory.mktemp("ldf") / "test.ldf"
+    path.write_text(
+        TWO_CORES.replace("0xFF400000) LENGTH(256)", "0xFF400000) LENGTH(4K)")
+        .replace("LENGTH(1K)", "LENGTH(4K)")
+        .replace("a_fast {", "RESERVE(hole = 0xFF800040, n = 40)\n a_fast {")
+    )
+    return parse_ldf(path)
+
+
+@given(symbols=firmware())
+def test_placements_are_sound(room_for_all: LinkerScript, symbols: list[Symbol]) -> None:
+    """Whatever is linked: each symbol once, inside its segment, aligned, over no symbol and no reserve."""
+    placed = link(room_for_all, symbols)
+    assert {p.symbol for p in placed.placements} == set(symbols)
+    segments = {segment.name: segment for segment in room_for_all.segments}
+    taken = [(reserve.start, reserve.start + reserve.nbytes) for reserve in room_for_all.reserves]
+    for p in placed.placements:
+        segment = segments[p.segment]
+        assert segment.start <= p.address
+        assert p.address + p.symbol.nbytes <= segment.start + segment.nbytes
+        assert p.address % max(p.symbol.align, 32 if p.segment == "MEM_SDRAM" else 1) == 0
+        assert all(p.address + p.symbol.nbytes <= start or end <= p.address for start, end in taken)
+        if p.symbol.nbytes:
+            taken.append((p.address, p.address + p.symbol.nbytes))
+    nbytes = sum(s.nbytes for s in symbols) + 40
+    assert nbytes <= sum(usage.used_bytes for usage in placed.segments) <= nbytes + 32 * len(symbols) + 90
+
+
+@given(symbols=firmware(), data=st.data())
+def test_a_placement_depends_on_what_was_linked_before_it_only(
+    room_for_all: LinkerScript, symbols: list[Symbol], data: st.DataObject
+) -> None:
+    """Linking the same symbols again, or with one more at the end of their sections, moves none of them."""
+    again = link(room_for_all, [replace(s) for s in symbols])
+    assert again.placements == link(room_for_all, symbols).placements
+    more = link(room_for_all, [*symbols, Symbol("last", "fast", data.draw(st.integers(0, 90)), 1, "p1")])
+    for placed in again.placements:
+        if placed.symbol.section != "data1":
+            assert more.find(placed.symbol.processor, placed.symbol.name) == placed
