@@ -1,0 +1,248 @@
+"""The command line: parses, calls, prints. Everything that takes time to import is imported by the command."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Timer
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from bfsim import __version__
+from bfsim.cli_record import record
+from bfsim.errors import BfsimError, ConfigError
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from bfsim.trace import RunRecord
+
+LIMIT_BROKEN, MISTAKE, INTERRUPTED = 1, 2, 130
+"""Exit codes other than 0; a run that Ctrl-C cut short is never 0, for it did not do what was asked."""
+
+STDOUT = Path("-")
+WIDTH_WITHOUT_TERMINAL = 100
+PATIENCE_S = 1.0
+"""A run shorter than this shows no progress bar."""
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+class _Bfsim(click.Group):
+    """Ends every command that goes wrong for a known reason with one paragraph and an exit code."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except BfsimError as error:
+            click.echo(f"bfsim: error: {error}", err=True)
+            ctx.exit(MISTAKE)
+        except KeyboardInterrupt:
+            click.echo("bfsim: interrupted", err=True)
+            ctx.exit(INTERRUPTED)
+
+
+@click.group(cls=_Bfsim, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="bfsim")
+def main() -> None:
+    """Simulate robot-vision firmware on a dual-core Blackfin ADSP-BF561, and report what each frame costs.
+
+    Without arguments, `bfsim run` runs the built-in recording through the built-in firmware.
+
+    Exit codes: 0 done, 1 a limit of `bfsim check` is broken, 2 a mistake in what was given, 130 interrupted.
+    """
+
+
+main.add_command(record)
+
+_RUN_PARAMETERS = (
+    click.argument("recording", required=False, type=click.Path(path_type=Path)),
+    click.option(
+        "--firmware",
+        metavar="PACKAGE:NAME",
+        default="firmware:tinyphoon",
+        show_default=True,
+        help="Firmware to run: NAME in the importable PACKAGE.",
+    ),
+    click.option("--board", metavar="NAME", default="cm-bf561", show_default=True, help="Board to run on."),
+    click.option(
+        "--ldf",
+        metavar="FILE",
+        type=click.Path(path_type=Path),
+        help="Linker description file that places the buffers.  [default: the thesis placement]",
+    ),
+    click.option("--frames", metavar="N", type=click.IntRange(min=1), help="Stop after N frames."),
+    click.option(
+        "--feed",
+        type=click.Choice(["demand", "recorded"]),
+        default="demand",
+        show_default=True,
+        help="When the cameras deliver: as fast as the firmware asks, or at the recorded time stamps.",
+    ),
+    click.option("--sanitize", is_flag=True, help="Stop at the first index outside an array. Slower."),
+)
+
+
+def _takes_a_run(command: Command) -> Command:
+    """Give a command the argument and the options that say what to run."""
+    for parameter in reversed(_RUN_PARAMETERS):
+        command = parameter(command)
+    return command
+
+
+@main.command(short_help="Print what each frame costs: the timing budget.")
+@_takes_a_run
+@click.option(
+    "--json",
+    "json_path",
+    metavar="FILE",
+    type=click.Path(path_type=Path, allow_dash=True),
+    help="Write all records and the budget as JSON, too; - writes it to standard output instead of the tables.",
+)
+def run(json_path: Path | None, **what: Any) -> None:
+    """Run RECORDING through the firmware and print the frame timing budget.
+
+    RECORDING is an MCAP file (see `bfsim record`); without it, the built-in soccer scene runs.
+
+    \b
+    Examples:
+      bfsim run
+      bfsim run drive.mcap --frames 20 --ldf ldf/thesis.ldf
+      bfsim run drive.mcap --feed recorded --json drive.json
+    """
+    from bfsim.report.as_json import json_text
+    from bfsim.report.save import require_place, write_text
+    from bfsim.report.tables import run_report
+
+    if json_path and json_path != STDOUT:
+        require_place(json_path)
+    done = _simulate(**what)
+    if json_path == STDOUT:
+        click.echo(json_text(done), nl=False)
+    else:
+        _print(run_report(done))
+        if json_path:
+            write_text(json_path, json_text(done))
+    _exit_if_interrupted(done)
+
+
+@main.command(short_help="Print where the cycles go, down to source lines.")
+@_takes_a_run
+@click.option("--core", type=click.Choice(["A", "B"]), help="Show one core only.  [default: both together]")
+@click.option(
+    "--top",
+    metavar="N",
+    type=click.IntRange(min=0),
+    default=20,
+    show_default=True,
+    help="Show the N source lines that cost most.",
+)
+def profile(core: str | None, top: int, **what: Any) -> None:
+    """Run RECORDING and print where the cycles go: stage, kernel, source line, memory.
+
+    The cycles here are issue cycles; `bfsim run` has the stalls beside them.
+
+    \b
+    Examples:
+      bfsim profile
+      bfsim profile drive.mcap --core A --top 40
+    """
+    from bfsim.report.profile_tables import profile_report
+
+    done = _simulate(**what)
+    _print(profile_report(done, core, top))
+    _exit_if_interrupted(done)
+
+
+@main.command(short_help="Fail if a frame costs more than a baseline allows.")
+@_takes_a_run
+@click.option(
+    "--baseline",
+    "path",
+    metavar="FILE",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="TOML file with the limits, kept in your repository.",
+)
+@click.option("--update", is_flag=True, help="Make the numbers of this run the limits.")
+def check(path: Path, update: bool, **what: Any) -> None:
+    """Run RECORDING and exit with 1 if a frame costs more than the baseline allows.
+
+    Limits are on the frame rate, on missed frames, and on the median and the maximum cycles of every row on
+    either core. Any excess breaks a limit unless the file has a tolerance_percent, for all or for a row.
+
+    \b
+    Examples:
+      bfsim check --baseline bfsim.toml --update     once, then commit the file
+      bfsim check --baseline bfsim.toml              after every change
+      bfsim check drive.mcap --baseline drive.toml --feed recorded
+    """
+    from bfsim.report import baseline
+    from bfsim.report.budget import budget_of
+    from bfsim.report.check import check as judge
+    from bfsim.report.check_tables import check_report
+    from bfsim.report.save import require_place
+
+    limits = None if update else baseline.read_baseline(path)
+    require_place(path)
+    done = _simulate(**what)
+    _exit_if_interrupted(done)
+    budget = budget_of(done)
+    if limits is None:
+        baseline.write_baseline(path, done, budget)
+        click.echo(f"{path} holds the limits now: {budget.frame_rate_hz:.2f} frames/s.")
+        return
+    outcome = judge(done, budget, limits, path)
+    _print(check_report(outcome))
+    if not outcome.passed:
+        raise SystemExit(LIMIT_BROKEN)
+
+
+def _simulate(*, feed: str, **what: Any) -> RunRecord:
+    """Run the simulation behind a progress bar and return at least one frame."""
+    from bfsim.run import Feed, simulate
+
+    with _progress_bar() as progress:
+        done = simulate(feed=Feed(feed), progress=progress, **what)
+    if not done.frames:
+        if done.interrupted:
+            raise KeyboardInterrupt
+        raise ConfigError("a run must have at least one frame to report on, and this one finished none")
+    return done
+
+
+def _exit_if_interrupted(done: RunRecord) -> None:
+    if done.interrupted:
+        click.echo(f"bfsim: interrupted after {len(done.frames)} frames", err=True)
+        raise SystemExit(INTERRUPTED)
+
+
+@contextmanager
+def _progress_bar() -> Iterator[Callable[[int, int], None]]:
+    """Yield what to tell (frames done, frames in all); a bar shows them if a terminal watches for long enough."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    console = Console(stderr=True)
+    bar = Progress(console=console, transient=True, disable=not console.is_terminal)
+    task = bar.add_task("Simulating frames", total=None)
+    start = Timer(PATIENCE_S, bar.start)
+    start.start()
+    try:
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+    finally:
+        start.cancel()
+        start.join()
+        bar.stop()
+
+
+def _print(report: RenderableType) -> None:
+    """Print a report as wide as the terminal; elsewhere at a fixed width and without escape codes."""
+    from rich.console import Console
+
+    fixed = None if sys.stdout.isatty() or "COLUMNS" in os.environ else WIDTH_WITHOUT_TERMINAL
+    Console(width=fixed, markup=False, emoji=False, highlight=False).print(report)

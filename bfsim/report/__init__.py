@@ -1,0 +1,1 @@
+"""From the records of a run to statistics, tables, JSON, digests and baselines. Pure; knows no machine."""

@@ -1,0 +1,158 @@
+"""The frame timing budget: what each stage cost each core, over all frames of a run.
+
+Every number is in whole CCLK cycles; only the frame rate is a float. The median and the 95th percentile are
+nearest-rank, so each is a cost that one frame really had.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from bfsim.trace import REST, CoreFrame, FrameRecord, RunRecord, StageCost, StallReason
+
+FRAME = "Frame"
+"""The row that sums all others."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spread:
+    """How a number varied from frame to frame, in the number's own unit."""
+
+    minimum: int
+    median: int
+    p95: int
+    maximum: int
+    total: int
+
+    @classmethod
+    def of(cls, values: Sequence[int]) -> Spread:
+        """Summarise at least one value."""
+        ranked = sorted(values)
+        return cls(
+            minimum=ranked[0],
+            median=_nearest_rank(ranked, 50),
+            p95=_nearest_rank(ranked, 95),
+            maximum=ranked[-1],
+            total=sum(ranked),
+        )
+
+
+def _nearest_rank(ranked: Sequence[int], percent: int) -> int:
+    return ranked[-(-len(ranked) * percent // 100) - 1]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row:
+    """One row of one core's budget. `issue_cclk`, `stall_cclk` and `idle_cclk` are totals over all frames."""
+
+    name: str
+    thesis_ms: float | None
+    elapsed_cclk: Spread
+    issue_cclk: int
+    stall_cclk: Mapping[StallReason, int]
+    idle_cclk: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoreBudget:
+    """The rows of one core, and `frame`, which they sum to."""
+
+    core: str
+    rows: tuple[Row, ...]
+    frame: Row
+
+    @property
+    def all_rows(self) -> tuple[Row, ...]:
+        """The rows, and the frame as the last one."""
+        return (*self.rows, self.frame)
+
+    def share(self, row: Row) -> float:
+        """Share of the frame time that `row` took over the whole run, 0..1."""
+        return row.elapsed_cclk.total / self.frame.elapsed_cclk.total
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Budget:
+    """A run in numbers: the budgets of the cores, core A first, the frame rate, and the latency of results."""
+
+    cores: tuple[CoreBudget, ...]
+    frame_rate_hz: float
+    latency_cclk: Spread
+
+
+def milliseconds(cclk: float, cclk_hz: float) -> float:
+    """Convert cycles to ms."""
+    return cclk * 1000 / cclk_hz
+
+
+def frame_rate_hz(frames: Sequence[FrameRecord], cclk_hz: float) -> float:
+    """Frames per second from frame end to frame end; of a single frame, one over its duration."""
+    ends = [max(core.end_cclk for core in frame.cores) for frame in frames]
+    if len(frames) == 1:
+        return cclk_hz / (ends[0] - min(core.begin_cclk for core in frames[0].cores))
+    return (len(frames) - 1) * cclk_hz / (ends[-1] - ends[0])
+
+
+def latency_cclk(frame: FrameRecord) -> int:
+    """Cycles from the last line coming in to the result going out."""
+    return frame.result_cclk - frame.last_line_cclk
+
+
+def stage_names(run: RunRecord) -> tuple[str, ...]:
+    """The rows of the budget in the firmware's order; (the rest) comes last."""
+    declared = [row.stage for row in run.rows]
+    seen = [cost.stage for frame in run.frames for core in frame.cores for cost in core.stages]
+    return (*(name for name in dict.fromkeys([*declared, *seen]) if name != REST), REST)
+
+
+def budget_of(run: RunRecord) -> Budget:
+    """Derive the budget of a run of at least one frame."""
+    names = stage_names(run)
+    thesis_ms = {row.stage: row.thesis_ms for row in run.rows}
+    cores = zip(*(frame.cores for frame in run.frames), strict=True)
+    return Budget(
+        cores=tuple(_core_budget(frames, names, thesis_ms) for frames in cores),
+        frame_rate_hz=frame_rate_hz(run.frames, run.identity.cclk_hz),
+        latency_cclk=Spread.of([latency_cclk(frame) for frame in run.frames]),
+    )
+
+
+def _core_budget(
+    frames: Sequence[CoreFrame], names: Sequence[str], thesis_ms: Mapping[str, float | None]
+) -> CoreBudget:
+    costs = [cost for frame in frames for cost in frame.stages]
+    rows = [
+        _row(
+            name,
+            thesis_ms.get(name),
+            [elapsed_cclk(frame, name) for frame in frames],
+            [cost for cost in costs if cost.stage == name],
+        )
+        for name in names
+    ]
+    known_ms = [row.thesis_ms for row in rows if row.thesis_ms is not None]
+    elapsed = [frame.end_cclk - frame.begin_cclk for frame in frames]
+    frame_row = _row(FRAME, sum(known_ms) if known_ms else None, elapsed, costs)
+    return CoreBudget(core=frames[0].core, rows=tuple(rows), frame=frame_row)
+
+
+def elapsed_cclk(frame: CoreFrame, stage: str) -> int:
+    """Cycles that one core spent in one stage of one frame."""
+    return sum(cost.elapsed_cclk for cost in frame.stages if cost.stage == stage)
+
+
+def _row(name: str, thesis_ms: float | None, elapsed: Sequence[int], costs: Iterable[StageCost]) -> Row:
+    costs = tuple(costs)
+    stall: Counter[StallReason] = Counter()
+    for cost in costs:
+        stall.update(cost.stall_cclk)
+    return Row(
+        name=name,
+        thesis_ms=thesis_ms,
+        elapsed_cclk=Spread.of(elapsed),
+        issue_cclk=sum(cost.issue_cclk for cost in costs),
+        stall_cclk={reason: stall[reason] for reason in StallReason if stall[reason]},
+        idle_cclk=sum(cost.idle_cclk for cost in costs),
+    )

@@ -1,0 +1,36 @@
+"""Writing a text file whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+from bfsim.errors import ConfigError
+
+
+def require_place(path: Path) -> None:
+    """Raise ConfigError unless a file can be written at `path`: its folder exists, and what is there is a file."""
+    if not path.parent.is_dir():
+        raise ConfigError(f"{path}: the folder {path.parent} must exist to write a file there")
+    if path.exists() and not path.is_file():
+        raise ConfigError(f"{path} must be an ordinary file to be written, not a folder or a device")
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write `text` beside `path` first and then put it in its place; a link is followed, permissions are kept.
+
+    Raises ConfigError where the system refuses.
+    """
+    require_place(path)
+    target = path.resolve()
+    try:
+        with tempfile.TemporaryDirectory(prefix=".bfsim-", dir=target.parent) as folder:
+            draft = Path(folder) / target.name
+            draft.write_text(text, encoding="utf-8")
+            if target.exists():
+                shutil.copymode(target, draft)
+            os.replace(draft, target)
+    except OSError as error:
+        raise ConfigError(f"{path} must be writable: {error.strerror}") from error

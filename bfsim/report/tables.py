@@ -1,0 +1,227 @@
+"""The report of a run as rich tables that fit 80 columns: budget, stalls, cycles, frames, configuration."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rich import box
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from bfsim.report.budget import (
+    FRAME,
+    Budget,
+    CoreBudget,
+    Row,
+    Spread,
+    budget_of,
+    elapsed_cclk,
+    latency_cclk,
+    milliseconds,
+    stage_names,
+)
+from bfsim.report.digest import cycle_digest, identity_digest
+from bfsim.trace import REST, FrameRecord, RunRecord, StallReason
+
+SHOWN_AT_EACH_END = 4
+"""Frames listed at the beginning and at the end of a long run."""
+
+MISSED_LISTED = 10
+"""Missed frames that are listed by number."""
+
+
+def run_report(run: RunRecord) -> RenderableType:
+    """Return the report of a run of at least one frame, the most wanted numbers first."""
+    budget = budget_of(run)
+    hz = run.identity.cclk_hz
+    return stacked(
+        headline(run, budget),
+        *(_budget_table(core, hz) for core in budget.cores),
+        *_start_up_note(run, budget),
+        *_stall_table(budget, len(run.frames), hz),
+        *(_cycle_table(core) for core in budget.cores),
+        _frame_table(run),
+        *_results_table(run),
+        configuration(run),
+    )
+
+
+def stacked(*parts: RenderableType) -> RenderableType:
+    """Return the parts one under the other, with an empty line after each."""
+    return Group(*(each for part in parts for each in (part, Text())))
+
+
+def new_table(title: str, first: str, *numbers: str) -> Table:
+    """Return an empty table: a column of names on the left, columns of numbers to the right of it."""
+    table = Table(
+        title=title,
+        title_style="bold not italic",
+        title_justify="left",
+        min_width=len(title),
+        box=box.HORIZONTALS,
+        show_edge=False,
+        pad_edge=False,
+        padding=0,
+    )
+    table.add_column(first, no_wrap=True, overflow="ellipsis")
+    for number in numbers:
+        table.add_column(number, justify="right", overflow="ellipsis", min_width=6, vertical="bottom")
+    return table
+
+
+def headline(run: RunRecord, budget: Budget) -> Text:
+    """Return frame rate, frame time, latency, and what went missing."""
+    latency, hz = budget.latency_cclk, run.identity.cclk_hz
+    median, maximum = milliseconds(latency.median, hz), milliseconds(latency.maximum, hz)
+    lines = [
+        f"{budget.frame_rate_hz:.2f} frames/s, {1000 / budget.frame_rate_hz:.2f} ms a frame",
+        f"Latency from last line in to result out: median {median:.2f} ms, max {maximum:.2f} ms",
+        f"Frames done: {len(run.frames)}, missed: {_missed(run)}",
+    ]
+    if run.interrupted:
+        lines.append("Interrupted: this is the report of the frames done until then.")
+    return Text("\n".join(lines))
+
+
+def _missed(run: RunRecord) -> str:
+    if not run.missed:
+        return "0"
+    listed = ", ".join(str(index) for index in run.missed[:MISSED_LISTED])
+    return f"{len(run.missed)} ({listed}{', …' if len(run.missed) > MISSED_LISTED else ''})"
+
+
+def percent(part: float, whole: float) -> str:
+    """Return a share in percent, with one digit behind the point; nothing of nothing is 0."""
+    return f"{100 * part / whole:.1f}" if whole else "0.0"
+
+
+def _budget_table(core: CoreBudget, hz: float) -> Table:
+    columns = ("min", "median", "p95", "max", "thesis", "share", "issue", "stall", "idle")
+    table = new_table(
+        f"Core {core.core}: ms per frame; share, issue, stall and idle in %",
+        "Stage",
+        *columns,
+    )
+    for row in core.all_rows:
+        table.add_row(
+            row.name,
+            *(f"{milliseconds(cclk, hz):.2f}" for cclk in _columns(row.elapsed_cclk)),
+            "" if row.thesis_ms is None else f"{row.thesis_ms:g}",
+            percent(core.share(row), 1),
+            *(percent(part, row.elapsed_cclk.total) for part in _split(row)),
+            end_section=row is core.rows[-1],
+            style="bold" if row is core.frame else None,
+        )
+    return table
+
+
+def _columns(spread: Spread) -> tuple[int, int, int, int]:
+    return spread.minimum, spread.median, spread.p95, spread.maximum
+
+
+def _split(row: Row) -> tuple[int, int, int]:
+    return row.issue_cclk, sum(row.stall_cclk.values()), row.idle_cclk
+
+
+def _start_up_note(run: RunRecord, budget: Budget) -> Iterator[Text]:
+    """Say why the first frame stands out, if it does."""
+    first = run.frames[0]
+    medians = [row.elapsed_cclk.median for core in budget.cores for row in core.rows if row.name == REST]
+    if any(elapsed_cclk(core, REST) > 2 * median for core, median in zip(first.cores, medians, strict=True)):
+        yield Text(f"{REST} of frame {first.index} holds the start-up too: the wait for the first picture.")
+
+
+def _stall_table(budget: Budget, frames: int, hz: float) -> Iterator[Table]:
+    """Yield the stalls by row and reason, if there were any."""
+    columns = [f"{core.core} {unit}" for core in budget.cores for unit in ("ms", "%")]
+    table = new_table("Stalls: mean ms per frame, % of the frame", "Stage", "Reason", *columns)
+    table.columns[1].justify = "left"
+    table.columns[1].no_wrap = True
+    for rows in zip(*(core.all_rows for core in budget.cores), strict=True):
+        reasons = [reason for reason in StallReason if any(reason in row.stall_cclk for row in rows)]
+        for reason in reasons:
+            cells = [
+                _stall_cells(core, row, reason, frames, hz)
+                for core, row in zip(budget.cores, rows, strict=True)
+            ]
+            name = rows[0].name if reason is reasons[0] else ""
+            table.add_row(name, reason, *sum(cells, ()), end_section=reason is reasons[-1])
+    if table.row_count:
+        yield table
+
+
+def _stall_cells(core: CoreBudget, row: Row, reason: StallReason, frames: int, hz: float) -> tuple[str, str]:
+    cclk = row.stall_cclk.get(reason, 0)
+    return f"{milliseconds(cclk, hz) / frames:.2f}", percent(cclk, core.frame.elapsed_cclk.total)
+
+
+def _cycle_table(core: CoreBudget) -> Table:
+    table = new_table(
+        f"Core {core.core}: CCLK cycles per frame", "Stage", "min", "median", "p95", "max", "all frames"
+    )
+    for row in core.all_rows:
+        cells = [f"{cclk:,}" for cclk in (*_columns(row.elapsed_cclk), row.elapsed_cclk.total)]
+        table.add_row(row.name, *cells, end_section=row is core.rows[-1])
+    return table
+
+
+def _frame_table(run: RunRecord) -> Table:
+    names = stage_names(run)
+    table = new_table("Frames: ms", "Frame", "Core", *names, FRAME, "Latency")
+    table.columns[1].min_width = None
+    long = len(run.frames) > 2 * SHOWN_AT_EACH_END + 1
+    head = run.frames[:SHOWN_AT_EACH_END] if long else run.frames
+    tail = run.frames[-SHOWN_AT_EACH_END:] if long else ()
+    _add_frames(table, head, names, run.identity.cclk_hz)
+    if long:
+        table.add_row("…")
+        table.caption = "--json has all of them."
+        table.caption_justify = "left"
+    _add_frames(table, tail, names, run.identity.cclk_hz)
+    return table
+
+
+def _add_frames(table: Table, frames: tuple[FrameRecord, ...], names: tuple[str, ...], hz: float) -> None:
+    for frame in frames:
+        for core in frame.cores:
+            cclk = [*(elapsed_cclk(core, name) for name in names), core.end_cclk - core.begin_cclk]
+            first = core is frame.cores[0]
+            table.add_row(
+                str(frame.index) if first else "",
+                core.core,
+                *(f"{milliseconds(each, hz):.2f}" for each in cclk),
+                f"{milliseconds(latency_cclk(frame), hz):.2f}" if first else "",
+            )
+
+
+def _results_table(run: RunRecord) -> Iterator[Table]:
+    """Yield what the firmware published, if it did."""
+    names = dict.fromkeys(name for frame in run.frames for name in frame.results)
+    if names:
+        table = new_table("Results per frame", "Result", "min", "median", "p95", "max")
+        for name in names:
+            spread = Spread.of([frame.results[name] for frame in run.frames if name in frame.results])
+            table.add_row(name, *(f"{value:,}" for value in _columns(spread)))
+        yield table
+
+
+def configuration(run: RunRecord) -> Table:
+    """Return what was run on what, and the digests of it and of its cycles."""
+    identity = run.identity
+    table = Table.grid(padding=(0, 2))
+    table.title, table.title_style, table.title_justify = "Configuration", "bold not italic", "left"
+    table.add_row("Recording", f"{identity.recording}, {identity.width_px}x{identity.height_px} px")
+    table.add_row("Firmware", identity.firmware)
+    table.add_row("Board", f"{identity.board}, CCLK {_mhz(identity.cclk_hz)}, SCLK {_mhz(identity.sclk_hz)}")
+    table.add_row("LDF", identity.ldf)
+    table.add_row("Compiler", f"{identity.compiler}, LLVM {identity.llvm_version}")
+    table.add_row("Feed", identity.feed)
+    table.add_row("bfsim", f"{identity.bfsim_version}, {run.events:,} events simulated")
+    table.add_row("Identity", identity_digest(identity))
+    table.add_row("Cycles", cycle_digest(run.frames))
+    return table
+
+
+def _mhz(hz: float) -> str:
+    return f"{hz / 1e6:.6g} MHz"

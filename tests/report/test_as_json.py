@@ -1,0 +1,42 @@
+"""The machine-readable form of a run."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from types import MappingProxyType
+
+from bfsim.report.as_json import SCHEMA, as_json, json_text
+from bfsim.report.digest import cycle_digest
+from bfsim.trace import LineCost, StallReason
+from tests.report.records import core_frame, cost, edge_run, frame, kernel, run_of, traffic
+
+
+def test_json_keeps_every_record_and_adds_the_budget() -> None:
+    """Frames, kernels and traffic are there as recorded; budget and digests beside them."""
+    line = LineCost(line=10, executions=4, issue_cclk=40)
+    run = replace(
+        edge_run(100, 200),
+        kernels=(kernel("Edge detection", "sobel_row", line, accesses={"L1_DATA_A": (3, 1)}),),
+        traffic=(traffic("SDRAM", "MDMA1", 5),),
+        missed=(2,),
+    )
+    plain = json.loads(json_text(run))
+    assert plain["schema"] == SCHEMA
+    assert plain["digests"]["cycles"] == cycle_digest(run.frames)
+    assert [each["index"] for each in plain["frames"]] == [0, 1]
+    assert plain["frames"][1]["cores"][0]["stages"][0]["issue_cclk"] == 200
+    assert plain["budget"]["cores"][0]["frame"]["elapsed_cclk"]["total"] == 400
+    assert plain["kernels"][0]["lines"] == [{"line": 10, "executions": 4, "issue_cclk": 40}]
+    assert plain["kernels"][0]["accesses"] == {"L1_DATA_A": [3, 1]}
+    assert plain["traffic"][0]["master"] == "MDMA1"
+    assert plain["missed"] == [2]
+    assert plain["identity"]["cclk_hz"] == 1_000_000.0
+
+
+def test_json_is_plain_whatever_mapping_the_machine_used() -> None:
+    """Reasons become strings, tuples lists, and a read-only mapping a dictionary."""
+    stalls = MappingProxyType({StallReason.RING_EMPTY: 3})
+    plain = as_json(run_of([frame(0, core_frame("A", 0, cost("Edge detection", 1, stalls)))]))
+    assert plain == json.loads(json.dumps(plain))
+    assert plain["frames"][0]["cores"][0]["stages"][0]["stall_cclk"] == {"ring empty": 3}

@@ -1,0 +1,44 @@
+"""Files are written whole or not at all."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from bfsim.errors import ConfigError
+from bfsim.report.save import write_text
+
+
+def test_file_is_replaced_and_nothing_is_left_beside_it(tmp_path: Path) -> None:
+    """The old text goes, permissions stay, no temporary file remains."""
+    path = tmp_path / "report.json"
+    path.write_text("old and longer")
+    path.chmod(0o640)
+    write_text(path, "new")
+    assert path.read_text() == "new"
+    assert path.stat().st_mode & 0o777 == 0o640
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_link_is_followed(tmp_path: Path) -> None:
+    """A link to the file stays a link."""
+    target, link = tmp_path / "target", tmp_path / "link"
+    target.write_text("old")
+    link.symlink_to(target)
+    write_text(link, "new")
+    assert link.is_symlink()
+    assert target.read_text() == "new"
+
+
+def test_missing_folder_is_refused(tmp_path: Path) -> None:
+    """Folders are not made up on the way."""
+    with pytest.raises(ConfigError, match=r"the folder .*reports must exist"):
+        write_text(tmp_path / "reports" / "run.json", "new")
+
+
+def test_folder_and_device_are_refused(tmp_path: Path) -> None:
+    """Replacing a device node by a file would break the system for everyone."""
+    for path in (tmp_path, Path("/dev/null")):
+        with pytest.raises(ConfigError, match="must be an ordinary file"):
+            write_text(path, "new")

@@ -1,0 +1,185 @@
+"""What the printed reports say, and that they fit."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from rich.console import Console, RenderableType
+
+from bfsim.report.baseline import read_baseline, write_baseline
+from bfsim.report.budget import budget_of
+from bfsim.report.check import check
+from bfsim.report.check_tables import check_report
+from bfsim.report.digest import cycle_digest
+from bfsim.report.profile_tables import profile_report
+from bfsim.report.tables import run_report
+from bfsim.trace import REST, BudgetRow, LineCost, RunRecord, StallReason
+from tests.report.records import core_frame, cost, edge_run, frame, kernel, run_of, traffic
+
+
+def printed(report: RenderableType, width: int = 100) -> list[str]:
+    """The lines of a report as a file or a pipe gets them, without the blanks at their ends."""
+    console = Console(file=io.StringIO(), width=width, markup=False, emoji=False, highlight=False)
+    console.print(report)
+    assert isinstance(console.file, io.StringIO)
+    return [line.rstrip() for line in console.file.getvalue().splitlines()]
+
+
+def row_of(lines: list[str], begin: str) -> str:
+    """The first line that begins so."""
+    return next(line for line in lines if line.startswith(begin))
+
+
+def squeezed(line: str) -> str:
+    """A line of a table with single blanks, so that tests do not depend on column widths."""
+    return " ".join(line.split())
+
+
+def busy_run() -> RunRecord:
+    """A frame with stalls, then one without; results, and numbers as long as they get at 600 MHz."""
+    stalls = {StallReason.RING_EMPTY: 15_000, StallReason.SDRAM_PAGE_MISS: 5_000}
+    edge = cost("Edge detection", 80_000, stalls)
+    cores = [core_frame(name, 0, edge, cost(REST, 0, idle_cclk=60_000)) for name in "AB"]
+    later = [core_frame(core.core, core.end_cclk, cost("Edge detection", 90_000)) for core in cores]
+    frames = [frame(0, *cores), frame(1, *later)]
+    return run_of([replace(each, results={"edges": 4_000 + each.index}) for each in frames])
+
+
+def test_report_begins_with_the_frame_rate() -> None:
+    """The first lines are what the engineer came for."""
+    lines = printed(run_report(replace(edge_run(99_950, 99_950), missed=(1, 4))))
+    assert lines[0] == "10.00 frames/s, 100.00 ms a frame"
+    assert lines[1] == "Latency from last line in to result out: median 0.01 ms, max 0.01 ms"
+    assert lines[2] == "Frames done: 2, missed: 2 (1, 4)"
+
+
+def test_budget_row_has_spread_thesis_share_and_split() -> None:
+    """100 ms and 90 ms of edge detection in 250 ms: 170 issued, 20 stalled, nothing idle."""
+    lines = printed(run_report(busy_run()))
+    assert squeezed(row_of(lines, "Edge")) == (
+        "Edge detection 90.00 90.00 100.00 100.00 87 76.0 89.5 10.5 0.0"
+    )
+    assert squeezed(row_of(lines, "Frame ")) == "Frame 90.00 90.00 160.00 160.00 113 100.0 68.0 8.0 24.0"
+
+
+def test_only_stalls_that_occurred_are_listed() -> None:
+    """Mean over both frames, and share of all frame time, for either core."""
+    lines = printed(run_report(busy_run()))
+    assert "Edge detection SDRAM page miss 2.50 2.0 2.50 2.0" in map(squeezed, lines)
+    assert "ring empty 7.50 6.0 7.50 6.0" in map(squeezed, lines)
+    assert not any("semaphore" in line for line in lines)
+    assert not any("Stalls" in line for line in printed(run_report(edge_run(100))))
+
+
+def test_cycles_are_exact_and_results_are_shown() -> None:
+    """The cycle table sums over all frames; published numbers have their own table."""
+    lines = printed(run_report(busy_run()))
+    assert "Edge detection 90,000 90,000 100,000 100,000 190,000" in map(squeezed, lines)
+    assert "edges 4,000 4,000 4,001 4,001" in map(squeezed, lines)
+
+
+def test_start_up_in_the_first_frame_is_explained() -> None:
+    """Only if it is there."""
+    note = "(the rest) of frame 0 holds the start-up too: the wait for the first picture."
+    assert note in printed(run_report(busy_run()))
+    assert note not in printed(run_report(edge_run(100, 100)))
+
+
+def test_long_run_lists_its_ends() -> None:
+    """Four frames at each end, and where the others are."""
+    lines = printed(run_report(edge_run(*[100] * 10)))
+    frames = lines[lines.index("Frames: ms") :]
+    listed = [line.split()[0] for line in frames if line[:1].isdigit()]
+    assert listed == ["0", "1", "2", "3", "6", "7", "8", "9"]
+    assert "--json has all of them." in lines
+
+
+def test_nine_frames_are_listed_in_full() -> None:
+    """One frame is not left out for the sake of three dots."""
+    assert "…" not in printed(run_report(edge_run(*[100] * 9)))
+
+
+def test_configuration_and_digests_end_the_report() -> None:
+    """Every report says what ran on what, and how to recognise it."""
+    run = edge_run(100)
+    lines = printed(run_report(run))
+    assert row_of(lines, "Board").split(maxsplit=1)[1] == "cm-bf561, CCLK 1 MHz, SCLK 0.2 MHz"
+    assert row_of(lines, "Cycles").split()[1] == cycle_digest(run.frames)
+
+
+def test_interrupted_run_says_so() -> None:
+    """A report of half a recording must not look like that of a whole one."""
+    lines = printed(run_report(replace(edge_run(100), interrupted=True)))
+    assert "Interrupted: this is the report of the frames done until then." in lines
+
+
+@pytest.mark.parametrize("width", [80, 100, 200])
+def test_reports_fit_with_all_seven_rows(width: int) -> None:
+    """No line is wider than the terminal, none is cut inside a number, nothing has escape codes."""
+    stages = ["Edge", "Open &", "Blob", "Line", "Shape", "Object"]
+    names = [f"{stage} detection" for stage in stages]
+    core = core_frame(
+        "A", 0, *(cost(name, 99_990_000, {StallReason.SDRAM_PAGE_CONFLICT: 10}) for name in names)
+    )
+    run = run_of([frame(0, core, replace(core, core="B"))])
+    run = replace(
+        run,
+        identity=replace(run.identity, cclk_hz=600e6),
+        rows=tuple(BudgetRow(stage=name, thesis_ms=87.5) for name in names),
+        kernels=(
+            kernel(
+                names[0], "non_maximum_suppression_row", LineCost(line=11, executions=10**7, issue_cclk=10**9)
+            ),
+        ),
+        traffic=(traffic("SDRAM", "MDMA1 D0", 9),),
+    )
+    lines = [*printed(run_report(run), width), *printed(profile_report(run), width)]
+    assert max(map(len, lines)) <= width
+    assert not any("\x1b" in line for line in lines)
+    assert row_of(lines, "Edge detection").split()[2:6] == ["166.65"] * 4
+
+
+def test_profile_shows_dear_lines_in_their_kernel_and_sums_the_others() -> None:
+    """Of two lines only the dearest is shown; brackets in source text are no markup."""
+    dear, cheap = (
+        LineCost(line=11, executions=4, issue_cclk=75),
+        LineCost(line=10, executions=5, issue_cclk=25),
+    )
+    run = replace(edge_run(100), kernels=(kernel("Edge detection", "sobel_row", cheap, dear, calls=2),))
+    lines = printed(profile_report(run, core="A", top=1))
+    table = lines[lines.index("Core A: issue cycles by stage, kernel and source line") + 3 :]
+    assert [line.split() for line in table[:4]] == [
+        ["Edge", "detection", "100", "100.0"],
+        ["sobel_row", "(edges.py:10)", "2", "100", "50.0", "100.0"],
+        ["11", "total", "+=", "row[x]", "4", "75", "18.8", "75.0"],
+        ["(its", "other", "lines)", "25", "25.0"],
+    ]
+
+
+def test_profile_shows_memories() -> None:
+    """Who moved how much, how often the page was the right one, and how long the bus was held."""
+    run = replace(edge_run(950), traffic=(traffic("SDRAM", "MDMA1", 250),))
+    assert "SDRAM MDMA1 2.0 kB 1.0 kB 90 4 6 25.0" in map(squeezed, printed(profile_report(run)))
+
+
+def test_check_report_lists_broken_limits_and_gains(tmp_path: Path) -> None:
+    """Limit, measured, by how much; what became better stands apart."""
+    path = tmp_path / "bfsim.toml"
+    write_baseline(path, edge_run(950, 1050), budget_of(edge_run(950, 1050)))
+    run = edge_run(900, 1155)
+    lines = printed(check_report(check(run, budget_of(run), read_baseline(path), path)))
+    assert lines[0].startswith("FAILED: ")
+    assert "better than the baseline; --update makes them the new limits." in lines[1]
+    assert "A Edge detection max 1,050 1,155 +105 +10.00" in map(squeezed, lines)
+    assert "A Edge detection median 950 900 -50 -5.26" in map(squeezed, lines)
+
+
+def test_check_report_of_a_pass_is_one_line(tmp_path: Path) -> None:
+    """Silence is what a passing check owes its reader."""
+    path, run = tmp_path / "bfsim.toml", edge_run(950)
+    write_baseline(path, run, budget_of(run))
+    lines = printed(check_report(check(run, budget_of(run), read_baseline(path), path)))
+    assert [line for line in lines if line] == ["Passed: all 18 limits kept."]

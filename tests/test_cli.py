@@ -1,0 +1,81 @@
+"""The command line as far as it goes without a simulation."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from bfsim import __version__
+from bfsim.cli import main
+
+
+def call(*arguments: str) -> Result:
+    """Call the command line in this process; unexpected exceptions come through."""
+    return CliRunner().invoke(main, arguments, catch_exceptions=False, prog_name="bfsim")
+
+
+def test_version() -> None:
+    """The version is the package's."""
+    assert call("--version").output == f"bfsim, version {__version__}\n"
+
+
+def test_help_lists_the_commands() -> None:
+    """Every command has a line, and no line is cut short."""
+    output = call("--help").output
+    assert all(f"\n  {name}" in output for name in ("run", "profile", "check", "record"))
+    assert "..." not in output.partition("Commands:")[2]
+
+
+@pytest.mark.parametrize("command", ["run", "profile", "check"])
+def test_help_of_a_command_teaches_by_example(command: str) -> None:
+    """Examples stand one per line, and defaults are told."""
+    output = call(command, "--help").output
+    assert f"Examples:\n    bfsim {command}" in output
+    assert "[default: cm-bf561]" in output
+
+
+def test_help_is_quick() -> None:
+    """Help must not wait for the simulator's libraries."""
+    heavy = "{'numba', 'llvmlite', 'simpy', 'pydantic', 'tomlkit'}"
+    program = f"import sys, bfsim.cli; print(sorted({heavy} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["run", "--frames", "0"], "'--frames'"),
+        (["run", "--feed", "sometimes"], "'sometimes' is not one of 'demand', 'recorded'"),
+        (["profile", "--core", "C"], "'C' is not one of 'A', 'B'"),
+        (["check"], "Missing option '--baseline'"),
+        (["fly"], "No such command 'fly'"),
+    ],
+)
+def test_wrong_usage_ends_with_2(arguments: list[str], message: str) -> None:
+    """A slip in the arguments is told by name."""
+    result = call(*arguments)
+    assert result.exit_code == 2
+    assert message in result.stderr
+
+
+def test_error_is_one_paragraph_on_stderr(tmp_path: Path) -> None:
+    """A mistake that bfsim knows ends with 2, its message and nothing else; before anything is simulated."""
+    path = tmp_path / "bfsim.toml"
+    result = call("check", "--baseline", str(path))
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert result.stderr == (
+        f"bfsim: error: {path} must be a baseline file, but there is none: make it with --update\n"
+    )
+
+
+def test_place_of_the_json_is_tried_before_the_run(tmp_path: Path) -> None:
+    """Nobody waits for a run whose result cannot be written."""
+    result = call("run", "--json", str(tmp_path / "missing" / "run.json"))
+    assert result.exit_code == 2
+    assert "missing must exist to write a file there" in result.stderr
