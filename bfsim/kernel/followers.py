@@ -7,8 +7,10 @@ table, so DMA bursts between two calls are seen; those during a call are not: th
 
 from __future__ import annotations
 
+import importlib
 from enum import IntEnum
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,12 +72,13 @@ class Follower:
 @cache
 def _function_address() -> int:
     """Compile the follower. numba is imported here: a run with every buffer in L1 does without it."""
-    from numba import carray, cfunc, types
+    numba: Any = importlib.import_module("numba")
+    carray, cfunc, types = numba.carray, numba.cfunc, numba.types
 
     word = types.int64
 
     @cfunc(types.void(types.CPointer(word), word, word), cache=True)  # type: ignore[untyped-decorator]
-    def follow(at, address, access):  # type: ignore[no-untyped-def]
+    def follow(at: Any, address: int, access: int) -> None:
         state = carray(at, WORDS)
         write = access >= WRITE
         if state[SDRAM_FIRST] <= address < state[SDRAM_END]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 from numpy.typing import NDArray
@@ -49,7 +49,7 @@ def _report(function: tree.Function, line: int, number: int, position: int, inde
     )
 
 
-@lru_cache(maxsize=None)
+@cache
 def _checked(function: tree.Function) -> tuple[Any, Any]:
     """Compile the checked build: its entry point and the words of its trap."""
     name = f"checked_{function.symbol}_{id(function):x}"

@@ -218,17 +218,17 @@ class Function:
     def callees(self) -> tuple[Function, ...]:
         """Kernels that this one calls, directly or not, each once, callees first."""
         found: dict[str, Function] = {}
-        for call in _calls(self.body):
+        for call in calls_in(self.body):
             for each in (*call.callee.callees(), call.callee):
                 found.setdefault(each.symbol, each)
         return tuple(found.values())
 
 
-def _calls(node: object) -> list[Call]:
+def calls_in(node: object) -> list[Call]:
     """Every call below `node`, in source order."""
     if isinstance(node, tuple):
-        return [call for each in node for call in _calls(each)]
+        return [call for each in node for call in calls_in(each)]
     if isinstance(node, Function) or not hasattr(node, "line"):
         return []
-    inner = [call for field in node.__slots__ for call in _calls(getattr(node, field))]  # type: ignore[attr-defined]
+    inner = [call for field in node.__slots__ for call in calls_in(getattr(node, field))]  # type: ignore[attr-defined]
     return [*inner, node] if isinstance(node, Call) else inner

@@ -65,8 +65,8 @@ class PreparedCall:
 
     def run(self, integers: Sequence[int] = ()) -> Work:
         """Run the kernel now and say what it cost."""
-        for slot, value in zip(self._integers, integers, strict=True):
-            self._arguments[slot] = value
+        for slot, integer in zip(self._integers, integers, strict=True):
+            self._arguments[slot] = integer
         issue_cclk = self._entry(self._at, self._totals_at)
         self.calls += 1
         value = self._arguments[self._value_slot] if self._has_value else None

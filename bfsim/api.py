@@ -1,0 +1,15 @@
+"""All that firmware needs, and the only module of bfsim that it imports."""
+
+from __future__ import annotations
+
+from bfsim.kernel import Kernel, Work, i8, i16, i32, kernel, u8, u16, u32
+from bfsim.machine.core import Core, Frame
+from bfsim.machine.memories import Row
+from bfsim.machine.program import Buffer, Firmware, FrameSize
+from bfsim.machine.ring import InputRing, OutputRing
+from bfsim.trace import BudgetRow
+
+__all__ = [
+    "BudgetRow", "Buffer", "Core", "Firmware", "Frame", "FrameSize", "InputRing", "Kernel", "OutputRing", "Row", "Work",
+    "i8", "i16", "i32", "kernel", "u8", "u16", "u32",
+]  # fmt: skip

@@ -1,0 +1,79 @@
+"""Finding firmware by its name. Firmware is code, so nothing is imported that the user did not name."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import sys
+import traceback
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+from bfsim.errors import BfsimError, FirmwareError
+from bfsim.machine.program import Firmware
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedFirmware:
+    """Firmware with the name it was asked for by, and the digest of its sources."""
+
+    name: str
+    digest: str
+    firmware: Firmware
+
+
+def load_firmware(name: str) -> LoadedFirmware:
+    """Import `name`, written PACKAGE:NAME, from the installed packages or else the current folder.
+
+    Raises FirmwareError when it cannot be imported or is not a `Firmware`; refused kernels raise KernelError.
+    """
+    package, _, attribute = name.partition(":")
+    if not package or not attribute:
+        raise FirmwareError(f"--firmware must be PACKAGE:NAME, such as firmware:tinyphoon, not {name!r}")
+    module = _import(package)
+    firmware = getattr(module, attribute, None)
+    if not isinstance(firmware, Firmware):
+        found = f"a {type(firmware).__name__}" if hasattr(module, attribute) else "missing"
+        raise FirmwareError(f"--firmware {name}: {attribute} must be a bfsim.api.Firmware, but is {found} ({module.__file__})")
+    return LoadedFirmware(name, _digest(package), firmware)
+
+
+def _import(package: str) -> ModuleType:
+    here = str(Path.cwd())
+    if here not in sys.path:
+        sys.path.append(here)
+    try:
+        return importlib.import_module(package)
+    except BfsimError:
+        raise
+    except ModuleNotFoundError as error:
+        if error.name and package.split(".")[0] == error.name.split(".")[0]:
+            raise FirmwareError(
+                f"--firmware: the package {package!r} must be installed or in the folder {here}, but there is none"
+            ) from error
+        raise _failed(package, error) from error
+    except Exception as error:
+        raise _failed(package, error) from error
+
+
+def _failed(package: str, error: Exception) -> FirmwareError:
+    """Say what went wrong while `package` was imported, and on which of its lines."""
+    if isinstance(error, SyntaxError):
+        place = f"{error.filename}:{error.lineno}"
+    else:
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        place = f"{last.filename}:{last.lineno}"
+    return FirmwareError(f"--firmware: importing {package} failed with {type(error).__name__}: {error} ({place})")
+
+
+def _digest(package: str) -> str:
+    """Digest of every module of `package` that is loaded, by name: the same wherever it is installed."""
+    top = package.split(".")[0]
+    digest = hashlib.sha256()
+    for name in sorted(sys.modules):
+        file = getattr(sys.modules[name], "__file__", None)
+        if file and (name == top or name.startswith(f"{top}.")):
+            digest.update(f"{name}\n".encode())
+            digest.update(Path(file).read_bytes())
+    return digest.hexdigest()

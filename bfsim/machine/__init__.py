@@ -1,0 +1,1 @@
+"""The simulated machine: one file per block of the chip's diagram; `board` wires them. Only here is SimPy used."""

@@ -1,0 +1,188 @@
+"""The board: builds every device, wires them, loads the firmware's buffers and plays a recording through it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from bfsim.chip.spec import BoardSpec
+from bfsim.errors import DeadlockError, FirmwareError
+from bfsim.kernel import VDSP_O2, CompilerProfile
+from bfsim.kernel.followers import Follower
+from bfsim.linker import LinkMap, Symbol
+from bfsim.machine.calls import CallBook
+from bfsim.machine.capture import Capture, Feed, Pair, StereoPictures
+from bfsim.machine.core import Core
+from bfsim.machine.direct import DirectAccess
+from bfsim.machine.ebiu import Ebiu
+from bfsim.machine.mdma import MdmaStream
+from bfsim.machine.memories import Memories, Row
+from bfsim.machine.ppi import Ppi
+from bfsim.machine.program import Buffer, Firmware, FrameSize
+from bfsim.machine.records import kernel_records
+from bfsim.machine.sdram import Sdram
+from bfsim.machine.semaphore import Semaphore
+from bfsim.machine.simulation import Simulation
+from bfsim.machine.traffic import Traffic
+from bfsim.trace import FrameRecord, KernelRecord, TrafficRecord
+
+PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """What a board reports when the recording is over, or the user stopped it."""
+
+    frames: tuple[FrameRecord, ...]
+    missed: tuple[int, ...]
+    interrupted: bool
+    kernels: tuple[KernelRecord, ...]
+    traffic: tuple[TrafficRecord, ...]
+    events: int
+
+
+def symbols_of(firmware: Firmware, size: FrameSize) -> list[Symbol]:
+    """Return what the linker must place for pictures of `size`."""
+    found = []
+    for owner, buffers in firmware.buffers(size).items():
+        if owner not in PROCESSORS:
+            raise FirmwareError(f"buffers must belong to {', '.join(PROCESSORS)}, not {owner!r}")
+        for each in buffers:
+            found.append(
+                Symbol(name=each.name, section=each.section, nbytes=each.nbytes, processor=PROCESSORS[owner])
+            )
+    return found
+
+
+@dataclass
+class Board:
+    """A board with firmware in it, ready to run once."""
+
+    spec: BoardSpec
+    firmware: Firmware
+    size: FrameSize
+    link_map: LinkMap
+    feed: Feed = Feed.DEMAND
+    profile: CompilerProfile = VDSP_O2
+    sanitize: bool = False
+    cores: dict[str, Core] = field(init=False, default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._env = Simulation()
+        self._memories = Memories(self.spec)
+        self._traffic = Traffic()
+        self._sdram = Sdram(self.spec.sdram)
+        self._ebiu = Ebiu(self.spec.clocks, self._sdram, self._traffic)
+        self._follower = self._new_follower()
+        self._semaphores: dict[str, Semaphore] = {}
+        self._calls: dict[str, CallBook] = {}
+        self._frames: list[FrameRecord] = []
+        self._buffers = self._load()
+
+    def _new_follower(self) -> Follower:
+        sdram = self.spec.sdram
+        page_bits, bank_bits = sdram.page_bytes.bit_length() - 1, sdram.bank_bytes.bit_length() - 1
+        return Follower(self._memories.host("L2"), self._memories.host("SDRAM"), page_bits, bank_bits)
+
+    def _load(self) -> dict[str, dict[str, tuple[Row, ...]]]:
+        """Place every buffer in memory; return the rows that each core knows by name."""
+        placed: dict[str, dict[str, tuple[Row, ...]]] = {}
+        for owner, buffers in self.firmware.buffers(self.size).items():
+            placed[owner] = {each.name: self._place(each, PROCESSORS[owner]) for each in buffers}
+        shared = placed.get("shared", {})
+        return {core: shared | placed.get(core, {}) for core in self.spec.chip.cores}
+
+    def _place(self, buffer: Buffer, processor: str | None) -> tuple[Row, ...]:
+        return self._memories.place(buffer, self.link_map.find(processor, buffer.name))
+
+    def run(
+        self, pictures: Iterator[StereoPictures], on_frame: Callable[[FrameRecord], None] | None = None
+    ) -> Outcome:
+        """Play `pictures` until they end or the user interrupts. Raises DeadlockError when the cores block each other."""
+        capture = self._capture(pictures)
+        for index, name in enumerate(self.spec.chip.cores):
+            self.cores[name] = self._core(index, name, capture)
+        mains = [self._env.process(core.play(self.firmware.mains[name])) for name, core in self.cores.items()]
+        done = self._env.all_of(mains)
+        interrupted = False
+        try:
+            while not done.processed and self._env.peek() < float("inf"):
+                self._env.step()
+                if all(core.finished for core in self.cores.values()):
+                    self._finish_frame(on_frame)
+        except KeyboardInterrupt:
+            interrupted = True
+        if not interrupted and not all(core.is_done for core in self.cores.values()):
+            waits = "; ".join(core.describe_wait() for core in self.cores.values())
+            raise DeadlockError(f"nothing can happen any more: {waits}")
+        return self._outcome(capture, interrupted)
+
+    def _capture(self, pictures: Iterator[StereoPictures]) -> Capture:
+        chip, clocks = self.spec.chip, self.spec.clocks
+        mode = self.spec.sensor.mode(self.size.width_px, self.size.height_px)
+        ppis = {
+            name: Ppi(self._env, f"PPI{index}", chip, clocks, mode, self._ebiu) for index, name in enumerate(chip.cores)
+        }
+        return Capture(self._env, clocks, ppis, self._frame_buffers(), pictures, self.feed)
+
+    def _frame_buffers(self) -> list[Pair]:
+        """Split the camera buffer of each core into frames; frame n of every core makes pair n."""
+        height = self.size.height_px
+        split: list[Mapping[str, Sequence[Row]]] = []
+        name = self.firmware.camera
+        rows = {core: self._buffers[core].get(name, ()) for core in self.spec.chip.cores}
+        count = min(len(each) for each in rows.values()) // height
+        if not count or any(each[0].nbytes != 2 * self.size.width_px for each in rows.values()):
+            raise FirmwareError(
+                f"the camera buffer {name!r} of each core must have a multiple of {height} rows "
+                f"of {2 * self.size.width_px} bytes"
+            )
+        for number in range(count):
+            split.append({core: each[number * height : (number + 1) * height] for core, each in rows.items()})
+        return [Pair(each) for each in split]
+
+    def _core(self, index: int, name: str, capture: Capture) -> Core:
+        chip, clocks = self.spec.chip, self.spec.clocks
+        book = self._calls[name] = CallBook(name, self.profile, self._follower, self._sdram, sanitize=self.sanitize)
+        inward, outward = (
+            MdmaStream(self._env, f"MDMA{index + 1} stream {number}", chip, clocks, self._ebiu) for number in range(2)
+        )
+        return Core(
+            self._env,
+            name,
+            self.spec,
+            buffers=self._buffers[name],
+            calls=book,
+            direct=DirectAccess(name, self.spec, self._ebiu, self._traffic),
+            capture=capture,
+            streams=(inward, outward),
+            semaphores=self._semaphores,
+            stages=tuple(each.stage for each in self.firmware.rows),
+        )
+
+    def _finish_frame(self, on_frame: Callable[[FrameRecord], None] | None) -> None:
+        """Make one record of the frame that every core has finished."""
+        parts = [core.finished.pop(0) for core in self.cores.values()]
+        if len({each.index for each in parts}) > 1:
+            numbers = ", ".join(f"{core} finished frame {each.index}" for core, each in zip(self.cores, parts, strict=True))
+            raise FirmwareError(f"the cores must work on the same frame: {numbers}")
+        record = FrameRecord(
+            index=parts[0].index,
+            last_line_cclk=parts[0].full_at_cclk,
+            result_cclk=max(each.cycles.end_cclk for each in parts),
+            cores=tuple(each.cycles for each in parts),
+            results={name: value for each in parts for name, value in each.results.items()},
+        )
+        self._frames.append(record)
+        if on_frame:
+            on_frame(record)
+
+    def _outcome(self, capture: Capture, interrupted: bool) -> Outcome:
+        return Outcome(
+            frames=tuple(self._frames),
+            missed=tuple(sorted(capture.missed)),
+            interrupted=interrupted,
+            kernels=tuple(each for name, book in self._calls.items() for each in kernel_records(name, book)),
+            traffic=self._traffic.records(self.spec.clocks.cclk_ticks),
+            events=self._env.count_events(),
+        )

@@ -1,0 +1,207 @@
+"""Stereo capture: which pictures are taken, into which frame buffers, and which pair the firmware gets.
+
+Both cores see the interrupts of both PPIs and agree on a pair through a shared variable; here that is one
+object. A pair that is overwritten, or comes when no buffer is free, is missed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any, Protocol
+
+import numpy as np
+import simpy
+from numpy.typing import NDArray
+
+from bfsim.clocks import Clocks
+from bfsim.machine.memories import Row
+from bfsim.machine.ppi import Ppi
+from bfsim.machine.simulation import Simulation
+
+
+class Feed(StrEnum):
+    """When pictures come: as fast as the firmware asks, or at the time stamps of the recording."""
+
+    DEMAND = "demand"
+    RECORDED = "recorded"
+
+
+class StereoPictures(Protocol):
+    """One stereo frame of a recording."""
+
+    @property
+    def index(self) -> int:
+        """Number in the recording."""
+
+    @property
+    def left(self) -> NDArray[np.uint8]:
+        """UYVY bytes, (height, 2 · width)."""
+
+    @property
+    def right(self) -> NDArray[np.uint8]:
+        """UYVY bytes, (height, 2 · width)."""
+
+    @property
+    def left_ns(self) -> int:
+        """Time stamp of the left picture."""
+
+    @property
+    def right_ns(self) -> int:
+        """Time stamp of the right picture."""
+
+
+class State(StrEnum):
+    """Life of a frame buffer."""
+
+    FREE = "free"
+    FILLING = "filling"
+    FULL = "full"
+    IN_USE = "in use"
+
+
+@dataclass(slots=True)
+class Pair:
+    """A pair of frame buffers, one per core. `index` is the recording's frame in it."""
+
+    rows: Mapping[str, Sequence[Row]]
+    state: State = State.FREE
+    index: int = -1
+    full_at_ticks: int = 0
+    users: int = 0
+
+
+class Capture:
+    """Fills pairs of frame buffers from a recording and hands them to the cores, the newest first."""
+
+    def __init__(
+        self,
+        env: Simulation,
+        clocks: Clocks,
+        ppis: Mapping[str, Ppi],
+        pairs: Sequence[Pair],
+        pictures: Iterator[StereoPictures],
+        feed: Feed,
+    ) -> None:
+        """`ppis`: PPI of each core; the first core has the left camera."""
+        self._env = env
+        self._clocks = clocks
+        self._ppis = ppis
+        self._pairs = pairs
+        self._pictures = pictures
+        self._feed = feed
+        self._claimed: list[Pair] = []
+        self._claims = dict.fromkeys(ppis, 0)
+        self._changed = env.event()
+        self._wanted = 1
+        self._taken = 0
+        self._last_start = dict.fromkeys(ppis, -1)
+        self._ended = False
+        self.missed: list[int] = []
+        """Frames of the recording that the firmware never got."""
+        env.process(self._take())
+
+    def claim(self, core: str) -> Generator[simpy.Event, Any, Pair | None]:
+        """Give back the pair that `core` had, and wait for the next one; None after the last."""
+        position = self._claims[core]
+        self._claims[core] += 1
+        if position:
+            self._release(self._claimed[position - 1])
+        while len(self._claimed) <= position:
+            full = [each for each in self._pairs if each.state is State.FULL]
+            if full:
+                self._hand_out(full)
+            elif self._ended and all(each.state is not State.FILLING for each in self._pairs):
+                return None
+            else:
+                yield self._changed
+        return self._claimed[position]
+
+    def _hand_out(self, full: list[Pair]) -> None:
+        newest = max(full, key=lambda each: each.index)
+        for each in full:
+            if each is not newest:
+                self._miss(each)
+        newest.state, newest.users = State.IN_USE, len(self._ppis)
+        self._claimed.append(newest)
+        self._wanted += 1
+        self._notify()
+
+    def _release(self, pair: Pair) -> None:
+        pair.users -= 1
+        if not pair.users:
+            pair.state = State.FREE
+            self._notify()
+
+    def _miss(self, pair: Pair) -> None:
+        self.missed.append(pair.index)
+        pair.state = State.FREE
+
+    def _notify(self) -> None:
+        event, self._changed = self._changed, self._env.event()
+        event.succeed()
+
+    def _take(self) -> Generator[simpy.Event, Any, None]:
+        """Take every picture of the recording at its time."""
+        origin_ns: int | None = None
+        for pictures in self._pictures:
+            if self._feed is Feed.DEMAND:
+                starts = yield from self._when_wanted()
+            else:
+                origin_ns = min(pictures.left_ns, pictures.right_ns) if origin_ns is None else origin_ns
+                stamps = (pictures.left_ns - origin_ns, pictures.right_ns - origin_ns)
+                starts = [self._clocks.ticks_of_ns(each) for each in stamps]
+                yield self._env.timeout(max(0, min(starts) - self._env.tick))
+            self._begin(pictures, dict(zip(self._ppis, starts, strict=True)))
+        self._ended = True
+        self._notify()
+
+    def _when_wanted(self) -> Generator[simpy.Event, Any, list[int]]:
+        """Wait until the firmware has taken the picture before, a buffer is free and the sensors are through."""
+        while self._taken >= self._wanted or not any(each.state is State.FREE for each in self._pairs):
+            yield self._changed
+        self._taken += 1
+        ready = max(self._last_start[core] + ppi.frame_ticks for core, ppi in self._ppis.items())
+        start = max(self._env.tick, ready) if self._taken > 1 else self._env.tick
+        yield self._env.timeout(start - self._env.tick)
+        return [start] * len(self._ppis)
+
+    def _begin(self, pictures: StereoPictures, starts: Mapping[str, int]) -> None:
+        """Receive a pair of pictures, unless a sensor is still busy or no buffer can be had."""
+        busy = any(
+            0 <= self._last_start[core] and start < self._last_start[core] + self._ppis[core].frame_ticks
+            for core, start in starts.items()
+        )
+        pair = None if busy else self._empty_pair()
+        if pair is None:
+            self.missed.append(pictures.index)
+            return
+        pair.state, pair.index = State.FILLING, pictures.index
+        self._last_start.update(starts)
+        images = dict(zip(self._ppis, (pictures.left, pictures.right), strict=True))
+        self._env.process(self._fill(pair, images, starts))
+
+    def _empty_pair(self) -> Pair | None:
+        """A free pair, or else the oldest full one, whose frame is missed then."""
+        free = [each for each in self._pairs if each.state is State.FREE]
+        if free:
+            return free[0]
+        full = [each for each in self._pairs if each.state is State.FULL]
+        if not full:
+            return None
+        oldest = min(full, key=lambda each: each.index)
+        self._miss(oldest)
+        return oldest
+
+    def _fill(
+        self, pair: Pair, images: Mapping[str, NDArray[np.uint8]], starts: Mapping[str, int]
+    ) -> Generator[simpy.Event, Any, None]:
+        sides = [
+            self._env.process(ppi.receive(images[core], pair.rows[core], starts[core]))
+            for core, ppi in self._ppis.items()
+        ]
+        yield self._env.all_of(sides)
+        pair.state = State.FULL
+        pair.full_at_ticks = self._env.tick
+        self._notify()

@@ -1,0 +1,304 @@
+"""A core: plays the firmware's main loop, charges what its kernels cost, and waits for the rest of the machine.
+
+The core runs ahead of the simulated time: kernel work only adds to its own clock, and it catches up with
+the simulated time where it meets another device. Every cycle of its clock goes to one account, so that
+issue + stall + idle = elapsed holds by construction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import simpy
+
+from bfsim.chip.spec import BoardSpec
+from bfsim.errors import FirmwareError
+from bfsim.kernel import Kernel, Work
+from bfsim.machine.accounts import FrameAccounts
+from bfsim.machine.calls import CallBook
+from bfsim.machine.capture import Capture
+from bfsim.machine.direct import DirectAccess
+from bfsim.machine.mdma import MdmaStream, Transfer
+from bfsim.machine.memories import Row
+from bfsim.machine.program import Main
+from bfsim.machine.ring import InputRing, OutputRing
+from bfsim.machine.semaphore import Semaphore
+from bfsim.machine.simulation import Simulation
+from bfsim.trace import CoreFrame, StallReason
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """One picture of this core's camera. `rows`: its lines in memory, 2 · `width` bytes of UYVY each."""
+
+    index: int
+    rows: Sequence[Row]
+    width: int
+    height: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FinishedFrame:
+    """What one core reports at the end of a frame."""
+
+    index: int
+    full_at_cclk: int
+    cycles: CoreFrame
+    results: Mapping[str, int]
+
+
+class Core:
+    """One core. Firmware gets it as the argument of its main loop."""
+
+    def __init__(
+        self,
+        env: Simulation,
+        name: str,
+        board: BoardSpec,
+        *,
+        buffers: Mapping[str, tuple[Row, ...]],
+        calls: CallBook,
+        direct: DirectAccess,
+        capture: Capture,
+        streams: tuple[MdmaStream, MdmaStream],
+        semaphores: dict[str, Semaphore],
+        stages: tuple[str, ...],
+    ) -> None:
+        """`streams`: the MDMA streams of its input and of its output rings."""
+        self.name = name
+        self.finished: list[FinishedFrame] = []
+        """Frames that are done, until the board takes them."""
+        self.waiting_for: str | None = None
+        """What the core waits for, in words, while only another device can let it go on."""
+        self._env = env
+        self._board = board
+        self._cclk_ticks = board.clocks.cclk_ticks
+        self._cclk = 0
+        self._accounts = FrameAccounts(name, stages)
+        self._account = self._accounts.now
+        self._stages = stages
+        self._buffers = buffers
+        self._calls = calls
+        self._direct = direct
+        self._capture = capture
+        self._streams = streams
+        self._semaphores = semaphores
+        self._frame: Frame | None = None
+        self._full_at_cclk = 0
+        self._results: dict[str, int] = {}
+        self._unclaimed: Work | None = None
+        self._main: Generator[Any, Any, None] | None = None
+
+    # What firmware uses
+
+    def rows(self, name: str) -> tuple[Row, ...]:
+        """Return the rows of the buffer called `name`."""
+        try:
+            return self._buffers[name]
+        except KeyError:
+            known = ", ".join(sorted(self._buffers))
+            raise FirmwareError(f"core {self.name} has no buffer {name!r}; it has {known}") from None
+
+    def array(self, name: str) -> Row:
+        """Return the only row of the buffer called `name`."""
+        rows = self.rows(name)
+        if len(rows) != 1:
+            raise FirmwareError(f"buffer {name} has {len(rows)} rows; use core.rows({name!r})")
+        return rows[0]
+
+    def input_ring(self, image: Sequence[Row], ring: str) -> InputRing:
+        """Return a ring that fetches the lines of `image` into the rows of buffer `ring`, one line ahead."""
+        return InputRing(self, self._streams[0], image, self.rows(ring))
+
+    def output_ring(self, ring: str, image: Sequence[Row]) -> OutputRing:
+        """Return a ring that takes finished lines from the rows of buffer `ring` to `image`."""
+        return OutputRing(self, self._streams[1], self.rows(ring), image)
+
+    def run(self, kernel: Kernel, *arguments: Row | int) -> Work:
+        """Run a kernel on rows and ints. Yield the result: the cycles are charged then, and you get its value."""
+        if self._unclaimed is not None:
+            raise FirmwareError(f"core {self.name}: core.run(...) must be yielded, or its cycles are lost{self._place()}")
+        work = self._unclaimed = self._calls.run(kernel, arguments)
+        return work
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Charge everything inside to the row `name` of the budget."""
+        if name not in self._stages:
+            raise FirmwareError(f"stage must be one of {', '.join(self._stages)}, not {name!r}")
+        before = self._calls.stage
+        self._accounts.enter(name)
+        self._account, self._calls.stage = self._accounts.now, name
+        yield
+        self._accounts.enter(before)
+        self._account, self._calls.stage = self._accounts.now, before
+
+    def next_frame(self) -> Generator[Any, Any, Frame | None]:
+        """Finish the current frame and wait for the next picture; None when the recording is over."""
+        yield from self._sync()
+        self._close_frame()
+        pair = yield from self._blocked(self._capture.claim(self.name), "the next picture")
+        self._wake(None)
+        if pair is None:
+            return None
+        self._full_at_cclk = -(-pair.full_at_ticks // self._cclk_ticks)
+        rows = pair.rows[self.name]
+        width = rows[0].nbytes // 2
+        self._frame = Frame(pair.index, rows, width, len(rows))
+        return self._frame
+
+    def publish(self, **results: int) -> None:
+        """Add numbers to the record of the current frame."""
+        self._results.update({f"{name}_{self.name}": int(value) for name, value in results.items()})
+
+    def post(self, name: str) -> Generator[Any, Any, None]:
+        """Add one to the semaphore `name`, in L2."""
+        yield from self._test_and_set()
+        self._semaphore(name).post()
+
+    def wait(self, name: str) -> Generator[Any, Any, None]:
+        """Take one from the semaphore `name`, waiting until another core has posted it."""
+        yield from self._test_and_set()
+        turn = self._semaphore(name).take()
+        if turn is not None:
+            yield from self._blocked(iter([turn]), f"semaphore {name!r}")
+            self._wake(StallReason.SEMAPHORE)
+
+    # What rings use
+
+    @property
+    def now_ticks(self) -> int:
+        """The core's own clock, in ticks: the simulated time or later."""
+        return self._cclk * self._cclk_ticks
+
+    @property
+    def is_ahead(self) -> bool:
+        """Whether the core's clock is ahead of the simulated time."""
+        return self._cclk * self._cclk_ticks > self._env.tick
+
+    def catch_up(self) -> simpy.Event:
+        """Return the event at which the simulated time reaches the core's clock."""
+        return self._env.timeout(self._cclk * self._cclk_ticks - self._env.tick)
+
+    def wait_transfer(self, transfer: Transfer, reason: StallReason) -> Generator[Any, Any, None]:
+        """Stall for `reason` until `transfer` is done."""
+        if transfer.end is None:
+            yield from self._sync()
+            if transfer.end is None:
+                transfer.started = self._env.event()
+                yield transfer.started
+                self._wake(reason)
+            assert transfer.end is not None
+        late_ticks = transfer.end - self._cclk * self._cclk_ticks
+        if late_ticks > 0:
+            self._stall(reason, -(-late_ticks // self._cclk_ticks))
+
+    # What the board uses
+
+    def play(self, main: Main) -> Generator[Any, Any, None]:
+        """Run the firmware's main loop: the process of this core."""
+        self._main = task = main(self)
+        value = None
+        while True:
+            try:
+                item = task.send(value)
+            except StopIteration:
+                break
+            if type(item) is Work:
+                self._unclaimed = None
+                self._cclk += item.issue_cclk
+                self._account.issue_cclk += item.issue_cclk
+                if item.accesses is not None:
+                    yield from self._outside_l1(item.accesses)
+                value = item.value
+            elif isinstance(item, simpy.Event):
+                value = yield item
+            else:
+                raise FirmwareError(
+                    f"core {self.name}: firmware must yield core.run(...) or `yield from` a wait, not {item!r}{self._place()}"
+                )
+        yield from self._sync()
+        self._close_frame()
+        self._main = None
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the main loop has ended."""
+        return self._main is None
+
+    def describe_wait(self) -> str:
+        """Say what the core waits for and where in the firmware."""
+        if self.is_done:
+            return f"core {self.name} has ended"
+        return f"core {self.name} waits for {self.waiting_for or 'a device'}{self._place()}"
+
+    # Inside
+
+    def _place(self) -> str:
+        """Innermost line of the firmware that is being played, as ` (file:line)`."""
+        place = ""
+        generator: Any = self._main
+        while generator is not None and getattr(generator, "gi_frame", None) is not None:
+            code = generator.gi_frame.f_code
+            if "bfsim/machine" not in code.co_filename.replace("\\", "/"):
+                place = f" ({code.co_filename}:{generator.gi_frame.f_lineno})"
+            generator = generator.gi_yieldfrom
+        return place
+
+    def _sync(self) -> Generator[Any, Any, None]:
+        if self.is_ahead:
+            yield self.catch_up()
+
+    def _stall(self, reason: StallReason, cclk: int) -> None:
+        self._cclk += cclk
+        stalls = self._account.stall_cclk
+        stalls[reason] = stalls.get(reason, 0) + cclk
+
+    def _wake(self, reason: StallReason | None) -> None:
+        """Go on at the first CCLK edge from now; the time since the core's clock was a stall, or idle without a reason."""
+        waited_cclk = -(-self._env.tick // self._cclk_ticks) - self._cclk
+        if waited_cclk <= 0:
+            return
+        if reason is None:
+            self._cclk += waited_cclk
+            self._account.idle_cclk += waited_cclk
+        else:
+            self._stall(reason, waited_cclk)
+
+    def _blocked(self, wait: Any, what: str) -> Generator[Any, Any, Any]:
+        """Play `wait`, a generator of events, saying meanwhile what the core waits for."""
+        self.waiting_for = f"{what}, since cycle {self._cclk:,}"
+        result = yield from wait
+        self.waiting_for = None
+        return result
+
+    def _outside_l1(self, accesses: list[int]) -> Generator[Any, Any, None]:
+        for reason, cclk in self._direct.stalls(accesses):
+            self._stall(reason, cclk)
+        if self._direct.uses_bus(accesses):
+            yield from self._sync()
+            self._stall(StallReason.EBIU_ARBITRATION, self._direct.arbitrate(accesses, self.now_ticks))
+
+    def _test_and_set(self) -> Generator[Any, Any, None]:
+        chip = self._board.chip
+        self._cclk += chip.semaphore_issue_cclk
+        self._account.issue_cclk += chip.semaphore_issue_cclk
+        self._stall(StallReason.L2_LATENCY, chip.l2_read_cclk)
+        yield from self._sync()
+
+    def _semaphore(self, name: str) -> Semaphore:
+        return self._semaphores.setdefault(name, Semaphore(self._env, name))
+
+    def _close_frame(self) -> None:
+        """Turn the cycles since the last frame's end into a record, if there was a frame."""
+        if self._frame is None:
+            return
+        cycles = self._accounts.close(self._cclk)
+        self._account = self._accounts.now
+        self.finished.append(
+            FinishedFrame(index=self._frame.index, full_at_cclk=self._full_at_cclk, cycles=cycles, results=self._results)
+        )
+        self._frame, self._results = None, {}

@@ -1,0 +1,87 @@
+"""MDMA: a memory DMA stream copies rows between memories while the cores compute, one after the other.
+
+A copy's end is known as soon as it starts, so the end needs no event: whoever waits for it reads `end`.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from fractions import Fraction
+
+import simpy
+
+from bfsim.chip.spec import ChipSpec
+from bfsim.clocks import Clocks
+from bfsim.machine.ebiu import Ebiu
+from bfsim.machine.memories import Row
+from bfsim.machine.simulation import Simulation
+
+
+class Transfer:
+    """One copy of a row. `end` is the tick at which it is done, or None as long as it has not started."""
+
+    __slots__ = ("at", "destination", "end", "source", "started")
+
+    def __init__(self, source: Row, destination: Row, at: int) -> None:
+        self.source = source
+        self.destination = destination
+        self.at = at
+        self.end: int | None = None
+        self.started: simpy.Event | None = None
+        """Set by whoever has to wait for the start."""
+
+
+class MdmaStream:
+    """One memory DMA stream with its queue of copies."""
+
+    def __init__(self, env: Simulation, name: str, chip: ChipSpec, clocks: Clocks, ebiu: Ebiu) -> None:
+        self._env = env
+        self.name = name
+        self._chip = chip
+        self._startup_ticks = chip.mdma_startup_sclk * clocks.sclk_ticks
+        self._clocks = clocks
+        self._ebiu = ebiu
+        self._queue: deque[Transfer] = deque()
+        self._free_at = 0
+        self._asleep = False
+
+    def copy(self, source: Row, destination: Row, at: int) -> Transfer:
+        """Copy `source` to `destination`, not before tick `at`, after all copies asked for before."""
+        transfer = Transfer(source, destination, at)
+        self._queue.append(transfer)
+        if not self._asleep:
+            self._advance()
+        return transfer
+
+    def _advance(self, _event: simpy.Event | None = None) -> None:
+        """Start what can start now; sleep until the next one can."""
+        self._asleep = False
+        while self._queue:
+            transfer = self._queue[0]
+            begin = max(transfer.at, self._free_at)
+            now = self._env.tick
+            if begin > now:
+                self._asleep = True
+                self._env.call_at(begin, self._advance)
+                return
+            self._queue.popleft()
+            self._start(transfer, now)
+
+    def _start(self, transfer: Transfer, now: int) -> None:
+        source, destination = transfer.source, transfer.destination
+        destination.array[:] = source.array
+        ready = now + self._startup_ticks
+        if source.pages:
+            ready = self._ebiu.burst(self.name, ready, source, self._chip.mdma_read_sclk, write=False)
+        if destination.pages:
+            ready = self._ebiu.burst(self.name, ready, destination, self._chip.mdma_write_sclk, write=True)
+        if not source.pages and not destination.pages:
+            ready += self._on_chip_ticks(source)
+        self._free_at = transfer.end = ready
+        if transfer.started is not None:
+            transfer.started.succeed()
+
+    def _on_chip_ticks(self, row: Row) -> int:
+        """Between L1 and L2 the stream moves a 32-bit word per SCLK, without the EBIU."""
+        words = -(-row.nbytes // 4)
+        return int(words * Fraction(self._chip.mdma_write_sclk)) * self._clocks.sclk_ticks

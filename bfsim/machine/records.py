@@ -1,0 +1,82 @@
+"""Counters of the kernels → records per kernel and source line, the kernels that were called by others included."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from bfsim.kernel import Kernel, tree
+from bfsim.machine.calls import CallBook, CallGroup
+from bfsim.trace import KernelRecord, LineCost
+
+
+@dataclass(slots=True)
+class _Tally:
+    """Sums of one kernel in one stage."""
+
+    function: tree.Function
+    calls: int = 0
+    executions: dict[int, int] = field(default_factory=lambda: defaultdict(int))
+    issue_cclk: dict[int, int] = field(default_factory=lambda: defaultdict(int))
+    accesses: dict[str, list[int]] = field(default_factory=lambda: defaultdict(lambda: [0, 0]))
+
+
+def kernel_records(core: str, book: CallBook) -> Iterator[KernelRecord]:
+    """Return one record per stage and kernel of one core."""
+    tallies: dict[tuple[str, str], _Tally] = {}
+    for group in book.groups():
+        _add(group, tallies)
+    for (stage, _), tally in tallies.items():
+        function = tally.function
+        yield KernelRecord(
+            core=core,
+            stage=stage,
+            kernel=function.name,
+            file=function.file,
+            first_line=function.first_line,
+            text=tuple(function.source.splitlines()),
+            calls=tally.calls,
+            issue_cclk=sum(tally.issue_cclk.values()),
+            lines=tuple(
+                LineCost(line=function.first_line + line - 1, executions=tally.executions[line], issue_cclk=cclk)
+                for line, cclk in sorted(tally.issue_cclk.items())
+            ),
+            accesses={memory: (reads, writes) for memory, (reads, writes) in sorted(tally.accesses.items())},
+        )
+
+
+def _add(group: CallGroup, tallies: dict[tuple[str, str], _Tally]) -> None:
+    top = group.kernel.function
+    functions = {each.symbol: each for each in (*top.callees(), top)}
+    memory_of = _memories_of_arrays(group.kernel, group.memories)
+    entries: set[str] = set()
+    for counter, events in zip(group.code.counters, group.totals.tolist(), strict=False):
+        key = (group.stage, counter.routine)
+        tally = tallies.setdefault(key, _Tally(functions[counter.routine]))
+        if counter.value is None and counter.routine not in entries:
+            entries.add(counter.routine)  # a routine's first block runs once per call
+            tally.calls += events
+        for line, cclk in counter.line_cclk:
+            tally.issue_cclk[line] += events * cclk
+            if counter.value is None:
+                tally.executions[line] = max(tally.executions[line], events)
+        for array, reads, writes in counter.accesses:
+            sums = tally.accesses[memory_of[counter.routine, array]]
+            sums[0] += events * reads
+            sums[1] += events * writes
+
+
+def _memories_of_arrays(kernel: Kernel, memories: tuple[str, ...]) -> dict[tuple[str, str], str]:
+    """Memory of each array parameter, by (routine, parameter): what a callee gets comes from its first call."""
+    names = [kernel.function.parameters[each].name for each in kernel.array_positions]
+    found = {(kernel.function.symbol, name): memory for name, memory in zip(names, memories, strict=True)}
+    waiting = [kernel.function]
+    while waiting:
+        caller = waiting.pop()
+        for call in tree.calls_in(caller.body):
+            for parameter, argument in zip(call.callee.parameters, call.arguments, strict=True):
+                if isinstance(argument, str):
+                    found.setdefault((call.callee.symbol, parameter.name), found[caller.symbol, argument])
+            waiting.append(call.callee)
+    return found

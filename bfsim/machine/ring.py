@@ -1,0 +1,102 @@
+"""Line rings in L1: an MDMA stream fetches lines from a picture ahead of the core, or takes finished ones back.
+
+A ring of n rows holds n - 1 lines that the core may use and one that the DMA is working on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from bfsim.errors import FirmwareError
+from bfsim.machine.mdma import MdmaStream, Transfer
+from bfsim.machine.memories import Row
+from bfsim.trace import StallReason
+
+if TYPE_CHECKING:
+    from bfsim.machine.core import Core
+
+
+def _check(rows: Sequence[Row], image: Sequence[Row]) -> None:
+    if len(rows) < 2:
+        raise FirmwareError(f"a ring needs at least 2 rows, not the {len(rows)} of {rows[0].buffer}")
+    for each in (rows[0], image[0]):
+        if "SCRATCH" in each.memory:
+            raise FirmwareError(f"{each.buffer} must be where DMA can reach it, not in {each.memory}")
+    if rows[0].nbytes != image[0].nbytes:
+        raise FirmwareError(
+            f"the rows of ring {rows[0].buffer} must be as long as those of {image[0].buffer} "
+            f"({image[0].nbytes} bytes), not {rows[0].nbytes} bytes"
+        )
+
+
+class InputRing:
+    """Lines of a picture, first to last, one line ahead of the core."""
+
+    def __init__(self, core: Core, stream: MdmaStream, image: Sequence[Row], rows: Sequence[Row]) -> None:
+        _check(rows, image)
+        self._core = core
+        self._stream = stream
+        self._image = image
+        self._rows = rows
+        self._transfers: list[Transfer] = []
+        self._taken = 0
+
+    def line(self) -> Generator[Any, Any, Row]:
+        """Wait for the next line and return its row. It stays valid for as many calls as the ring has rows, less one."""
+        core = self._core
+        if core.is_ahead:
+            yield core.catch_up()
+        number = self._taken
+        if number >= len(self._image):
+            raise FirmwareError(f"the ring of {self._rows[0].buffer} has no line {number}: the picture has {len(self._image)}")
+        self._taken += 1
+        # one line ahead: its row is the one that the core gave up with this call
+        for ahead in range(len(self._transfers), min(len(self._image), number + 2)):
+            self._transfers.append(self._stream.copy(self._image[ahead], self._row(ahead), core.now_ticks))
+        yield from core.wait_transfer(self._transfers[number], StallReason.RING_EMPTY)
+        return self._row(number)
+
+    def __getitem__(self, number: int) -> Row:
+        """Return the row of line `number`, which must still be in the ring."""
+        if not max(0, self._taken - len(self._rows) + 1) <= number < self._taken:
+            raise FirmwareError(
+                f"line {number} is not in ring {self._rows[0].buffer}, which has {len(self._rows)} rows "
+                f"and is at line {self._taken - 1}"
+            )
+        return self._row(number)
+
+    def _row(self, number: int) -> Row:
+        return self._rows[number % len(self._rows)]
+
+
+class OutputRing:
+    """Finished lines on their way to a picture in memory."""
+
+    def __init__(self, core: Core, stream: MdmaStream, rows: Sequence[Row], image: Sequence[Row]) -> None:
+        _check(rows, image)
+        self._core = core
+        self._stream = stream
+        self._image = image
+        self._rows = rows
+        self._transfers: list[Transfer] = []
+
+    def row(self) -> Generator[Any, Any, Row]:
+        """Wait until a row is free and return it, to be written and then sent."""
+        number = len(self._transfers)
+        if number >= len(self._rows):
+            yield from self._core.wait_transfer(self._transfers[number - len(self._rows)], StallReason.RING_FULL)
+        return self._rows[number % len(self._rows)]
+
+    def send(self) -> None:
+        """Start the DMA of the row that was written, to the next line of the picture."""
+        number = len(self._transfers)
+        if number >= len(self._image):
+            raise FirmwareError(f"the picture {self._image[0].buffer} has {len(self._image)} lines; one more was sent")
+        row = self._rows[number % len(self._rows)]
+        self._transfers.append(self._stream.copy(row, self._image[number], self._core.now_ticks))
+
+    def flush(self) -> Generator[Any, Any, None]:
+        """Wait until every line that was sent has arrived."""
+        if self._transfers:
+            yield from self._core.wait_transfer(self._transfers[-1], StallReason.RING_FULL)

@@ -1,0 +1,40 @@
+"""SDRAM: which page each bank has open, and what that means for the next access.
+
+Not modelled yet: refresh, tRAS and tWR, bus turn-round.
+"""
+
+from __future__ import annotations
+
+from bfsim.chip.spec import SdramSpec
+
+
+class Sdram:
+    """State is the open page of each bank. Time is not known here; the EBIU asks and does the waiting."""
+
+    def __init__(self, spec: SdramSpec) -> None:
+        self.spec = spec
+        self.open_pages: list[int] = [-1] * spec.banks
+        """Page number that each bank has open, -1 when closed."""
+
+    def access(self, pages: tuple[tuple[int, int, int], ...]) -> tuple[int, int, int]:
+        """Open `pages` ((bank, page, words) each), one after the other; return (hits, misses, conflicts).
+
+        Each word of a page after its first is a hit.
+        """
+        hits = misses = conflicts = 0
+        open_pages = self.open_pages
+        for bank, page, words in pages:
+            before = open_pages[bank]
+            hits += words
+            if before != page:
+                hits -= 1
+                if before < 0:
+                    misses += 1
+                else:
+                    conflicts += 1
+                open_pages[bank] = page
+        return hits, misses, conflicts
+
+    def extra_sclk(self, misses: int, conflicts: int) -> int:
+        """Cycles that opening pages adds to a burst."""
+        return misses * self.spec.miss_sclk + conflicts * self.spec.conflict_sclk

@@ -1,0 +1,35 @@
+"""Shared variables in L2 by which the cores wait for each other: counting semaphores made of TESTSET."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import simpy
+
+from bfsim.machine.simulation import Simulation
+
+
+class Semaphore:
+    """A counter that never falls below zero; waiters are served in the order in which they came."""
+
+    def __init__(self, env: Simulation, name: str) -> None:
+        self.name = name
+        self._env = env
+        self._count = 0
+        self._waiters: deque[simpy.Event] = deque()
+
+    def post(self) -> None:
+        """Add one, or let the first waiter go on."""
+        if self._waiters:
+            self._waiters.popleft().succeed()
+        else:
+            self._count += 1
+
+    def take(self) -> simpy.Event | None:
+        """Take one and return None, or return the event that happens when this waiter's turn comes."""
+        if self._count:
+            self._count -= 1
+            return None
+        event = self._env.event()
+        self._waiters.append(event)
+        return event

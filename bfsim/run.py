@@ -1,0 +1,130 @@
+"""One run: recording + firmware + board + LDF → the records of what every frame cost."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import llvmlite.binding as llvm
+
+from bfsim import __version__
+from bfsim.chip.boards import board_named
+from bfsim.chip.spec import BoardSpec
+from bfsim.errors import RecordingError
+from bfsim.kernel import VDSP_O2
+from bfsim.linker import link, parse_ldf
+from bfsim.loading import LoadedFirmware, load_firmware
+from bfsim.machine.board import Board, Outcome, symbols_of
+from bfsim.machine.capture import Feed
+from bfsim.machine.program import FrameSize
+from bfsim.recording import RecordingReader, StereoFrame
+from bfsim.trace import Identity, RunRecord
+
+# Both stand beside the installed package: in a checkout and in site-packages alike.
+BUILT_IN_RECORDING = Path(__file__).parent / "recording" / "builtin" / "soccer.mcap"
+THESIS_LDF = Path(__file__).parent.parent / "ldf" / "thesis.ldf"
+
+
+def simulate(
+    recording: Path | None = None,
+    *,
+    firmware: str = "firmware:tinyphoon",
+    board: str = "cm-bf561",
+    ldf: Path | None = None,
+    frames: int | None = None,
+    feed: Feed = Feed.DEMAND,
+    sanitize: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> RunRecord:
+    """Run `firmware` ("PACKAGE:NAME") on a recording and return the records.
+
+    Without `recording` and `ldf` the built-in ones are taken; `frames` stops early. `progress` is called with
+    (frames done, frames in all). Ctrl-C ends the run with the frames done. Raises a BfsimError for anything
+    that is wrong with what was given.
+    """
+    spec = board_named(board)
+    loaded = load_firmware(firmware)
+    script = ldf or THESIS_LDF
+    with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
+        size = FrameSize(reader.width, reader.height)
+        link_map = link(parse_ldf(script), symbols_of(loaded.firmware, size), spec.chip.regions)
+        machine = Board(spec, loaded.firmware, size, link_map, feed=feed, sanitize=sanitize)
+        total = min(frames or reader.frame_count, reader.frame_count)
+        if not total:
+            raise RecordingError(f"{reader.path}: a recording must have at least one stereo frame, not none")
+        source = _DigestedFrames(reader, total)
+        done = 0
+
+        def count(_frame: object) -> None:
+            nonlocal done
+            done += 1
+            if progress:
+                progress(done, total)
+
+        outcome = machine.run(iter(source), count)
+    return _record(outcome, spec, loaded, script, feed, size, source)
+
+
+class _DigestedFrames:
+    """The frames of a recording as they are read, and the digest of those that were."""
+
+    def __init__(self, reader: RecordingReader, total: int) -> None:
+        self.name = Path(reader.path).name
+        self._reader = reader
+        self._total = total
+        self._digest = hashlib.sha256()
+
+    def __iter__(self) -> Iterator[StereoFrame]:
+        for frame in self._reader.frames(self._total):
+            self._digest.update(f"{frame.left.shape} {frame.left_ns} {frame.right_ns}\n".encode())
+            self._digest.update(frame.left.tobytes())
+            self._digest.update(frame.right.tobytes())
+            yield frame
+
+    @property
+    def digest(self) -> str:
+        """Digest of the pixels and time stamps read so far."""
+        return self._digest.hexdigest()
+
+
+def _record(
+    outcome: Outcome,
+    spec: BoardSpec,
+    loaded: LoadedFirmware,
+    ldf: Path,
+    feed: Feed,
+    size: FrameSize,
+    source: _DigestedFrames,
+) -> RunRecord:
+    identity = Identity(
+        recording=source.name,
+        recording_digest=source.digest,
+        firmware=loaded.name,
+        firmware_digest=loaded.digest,
+        board=spec.name,
+        board_digest=hashlib.sha256(repr(spec).encode()).hexdigest(),
+        ldf=ldf.name,
+        ldf_digest=hashlib.sha256(ldf.read_bytes()).hexdigest(),
+        compiler=VDSP_O2.name,
+        feed=feed.value,
+        bfsim_version=__version__,
+        llvm_version=".".join(map(str, llvm.llvm_version_info)),
+        cclk_hz=float(spec.clocks.cclk_hz),
+        sclk_hz=float(spec.clocks.sclk_hz),
+        width_px=size.width_px,
+        height_px=size.height_px,
+    )
+    return RunRecord(
+        identity=identity,
+        rows=loaded.firmware.rows,
+        frames=outcome.frames,
+        missed=outcome.missed,
+        interrupted=outcome.interrupted,
+        kernels=outcome.kernels,
+        traffic=outcome.traffic,
+        events=outcome.events,
+    )
+
+
+__all__ = ["BUILT_IN_RECORDING", "THESIS_LDF", "Feed", "simulate"]
