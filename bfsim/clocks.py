@@ -7,34 +7,30 @@ happens between core and bus. PPI_CLK and recorded time stamps are asynchronous;
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import lcm
 
 
 @dataclass(frozen=True, slots=True)
 class Clocks:
-    """The two synchronous clocks of the chip, in Hz (exact fractions: 133⅓ MHz is 400_000_000 / 3)."""
+    """The two synchronous clocks of the chip, in Hz (exact fractions: 133⅓ MHz is 400_000_000 / 3).
+
+    `tick_hz` is the least common multiple of both; `cclk_ticks` and `sclk_ticks` are the ticks of one cycle.
+    """
 
     cclk_hz: Fraction
     sclk_hz: Fraction
+    tick_hz: Fraction = field(init=False)
+    cclk_ticks: int = field(init=False)
+    sclk_ticks: int = field(init=False)
 
-    @property
-    def tick_hz(self) -> Fraction:
-        """Ticks per second: the least common multiple of both clocks."""
+    def __post_init__(self) -> None:
         common = lcm(self.cclk_hz.denominator, self.sclk_hz.denominator)
-        scaled = [int(each * common) for each in (self.cclk_hz, self.sclk_hz)]
-        return Fraction(lcm(*scaled), common)
-
-    @property
-    def cclk_ticks(self) -> int:
-        """Ticks of one CCLK cycle."""
-        return int(self.tick_hz / self.cclk_hz)
-
-    @property
-    def sclk_ticks(self) -> int:
-        """Ticks of one SCLK cycle."""
-        return int(self.tick_hz / self.sclk_hz)
+        tick_hz = Fraction(lcm(int(self.cclk_hz * common), int(self.sclk_hz * common)), common)
+        object.__setattr__(self, "tick_hz", tick_hz)
+        object.__setattr__(self, "cclk_ticks", int(tick_hz / self.cclk_hz))
+        object.__setattr__(self, "sclk_ticks", int(tick_hz / self.sclk_hz))
 
     def ticks_of_ns(self, time_ns: int) -> int:
         """Return the first tick at or after `time_ns`."""

@@ -1,11 +1,8 @@
-"""Counters, written into the very text of the optimised IR that was costed, and the entry that Python calls.
+"""Counters, written into the very text of the optimised IR that was costed.
 
 Each counter is a local of its function until the function returns: LLVM keeps it in a register or folds it
-to the trip count, so that counting costs next to nothing. The entry point runs the kernel once, adds the
-counts to the caller's totals (one word per counter, at least one) and returns the issue cycles of the call.
-
-The entry's argument block is an array of 64-bit words: pointer and length of each array, each integer, the
-follower's state (followed kernels only), and last the kernel's result.
+to the trip count, so that counting costs next to nothing. The kernel itself then adds its counts to the
+caller's totals; those of its callees wait in a table of the module until the entry point adds them.
 """
 
 from __future__ import annotations
@@ -15,9 +12,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from bfsim.kernel import tree
+from bfsim.kernel.entry import entry_point, globals_of, settle
 from bfsim.kernel.ir_text import DEFINE, LABEL
 from bfsim.kernel.schedule import Counter
-from bfsim.kernel.types import ArrayType
 
 DIVISION = re.compile(r"^(  %[\w.$]+ = )(sdiv|udiv|srem|urem)(?: exact)? i32 ([^,]+), (.+)$")
 ACCESS = re.compile(r"^  (?:%[\w.$]+ = load|store) (i\d+)(?: [^,]+)?, ptr (%[\w.$]+)")
@@ -63,23 +60,23 @@ def instrument(text: str, function: tree.Function, counters: Sequence[Counter], 
 
     With `followed`, every access to an array also calls the memory follower that the argument block names.
     """
-    body = "\n".join(_rows(text.splitlines(), counters, followed))
     division = "".join(
         SAFE_DIVISION.format(op=op, signed=str(op[0] == "s").lower(), by_zero=-1 if op.endswith("div") else "%a")
         for op in ("sdiv", "udiv", "srem", "urem")
     )
-    state = "@bfsim.state = internal global ptr null\n" if followed else ""
-    cycles = [each.cclk for each in counters] or [0]
-    count = len(cycles)
-    tables = (
-        f"@bfsim.counts = internal global [{count} x i64] zeroinitializer\n"
-        f"@bfsim.cclk = internal constant [{count} x i64] [{', '.join(f'i64 {each}' for each in cycles)}]\n"
+    return "\n".join(
+        [
+            globals_of(counters, entry, followed=followed),
+            "\n".join(_rows(text.splitlines(), function.symbol, counters, followed)),
+            division,
+            FOLLOW if followed else "",
+            entry_point(function, counters, entry, followed=followed),
+        ]
     )
-    return "\n".join([state + tables, body, division, FOLLOW if followed else "", _entry(function, count, entry, followed)])
 
 
-def _rows(rows: Iterable[str], counters: Sequence[Counter], followed: bool) -> list[str]:
-    """Rewrite the functions of a module row by row."""
+def _rows(rows: Iterable[str], top: str, counters: Sequence[Counter], followed: bool) -> list[str]:
+    """Rewrite the functions of a module row by row; `top` is the one that the entry point calls."""
     places: dict[tuple[str, str], list[_Place]] = {}
     for number, counter in enumerate(counters):
         places.setdefault((counter.routine, counter.label), []).append(_Place(number, counter))
@@ -104,7 +101,8 @@ def _rows(rows: Iterable[str], counters: Sequence[Counter], followed: bool) -> l
             if row.startswith(TERMINATORS):
                 out.extend(_tests(here, row))
                 if row.startswith("  ret "):
-                    out.extend(_flush(routine, counters, exit_number := exit_number + 1))
+                    exit_number += 1
+                    out.extend(_leave(routine, counters, f"exit{exit_number}", is_top=routine == top))
             out.extend(_access(row) if followed else ())
             out.append(DIVISION.sub(r"\1call i32 @bfsim.\2(i32 \3, i32 \4)", row))
         else:
@@ -141,19 +139,20 @@ def _tests(here: list[_Place], terminator: str) -> list[str]:
     return rows
 
 
-def _flush(routine: str, counters: Sequence[Counter], exit_number: int) -> list[str]:
-    """Move the counts of one run of `routine` into the module's table, at one of its exits."""
-    rows = []
-    for number, each in enumerate(counters):
-        if each.routine == routine:
-            name = f"%bf.{number}.exit{exit_number}"
-            rows += [
-                f"  {name}.mine = load i64, ptr %bf.{number}",
-                f"  {name}.slot = getelementptr i64, ptr @bfsim.counts, i64 {number}",
-                f"  {name}.sum = load i64, ptr {name}.slot",
-                f"  {name}.total = add i64 {name}.sum, {name}.mine",
-                f"  store i64 {name}.total, ptr {name}.slot",
-            ]
+def _leave(routine: str, counters: Sequence[Counter], place: str, *, is_top: bool) -> list[str]:
+    """Hand over the counts of one run of `routine`, at one of its exits."""
+    mine = [(number, each, f"%{place}.mine.{number}") for number, each in enumerate(counters) if each.routine == routine]
+    rows = [f"  {events} = load i64, ptr %bf.{number}" for number, _, events in mine]
+    if is_top:
+        return rows + settle(mine, place)
+    for number, _, events in mine:
+        name = f"%{place}.{number}"
+        rows += [
+            f"  {name}.slot = getelementptr i64, ptr @bfsim.counts, i64 {number}",
+            f"  {name}.old = load i64, ptr {name}.slot",
+            f"  {name}.new = add i64 {name}.old, {events}",
+            f"  store i64 {name}.new, ptr {name}.slot",
+        ]
     return rows
 
 
@@ -165,57 +164,3 @@ def _access(row: str) -> list[str]:
     nbytes = int(found.group(1)[1:]) // 8
     write = 256 if row.startswith("  store") else 0
     return [f"  call void @bfsim.follow(ptr {found.group(2)}, i64 {nbytes + write})"]
-
-
-def _entry(function: tree.Function, count: int, entry: str, followed: bool) -> str:
-    """The function that Python calls: `i64 entry(ptr arguments, ptr totals)` → issue cycles."""
-    rows, values, slot = [], [], 0
-
-    def take(kind: str) -> str:
-        nonlocal slot
-        rows.append(f"  %p{slot} = getelementptr i64, ptr %arguments, i64 {slot}")
-        rows.append(f"  %a{slot} = load {kind}, ptr %p{slot}")
-        slot += 1
-        return f"%a{slot - 1}"
-
-    for parameter in function.parameters:
-        if isinstance(parameter.type, ArrayType):
-            values.append(f"ptr {take('ptr')}")
-        values.append(f"i32 {take('i32')}")
-    if followed:
-        rows.append(f"  store ptr {take('ptr')}, ptr @bfsim.state")
-    call = f"@{function.symbol}({', '.join(values)})"
-    if function.result:
-        rows.append(f"  %value = call i32 {call}")
-        rows.append(f"  %wide = {'sext' if function.result.signed else 'zext'} i32 %value to i64")
-        rows.append(f"  %result = getelementptr i64, ptr %arguments, i64 {slot}")
-        rows.append("  store i64 %wide, ptr %result")
-    else:
-        rows.append(f"  call void {call}")
-    body = "\n".join(rows)
-    return f"""
-define i64 @{entry}(ptr %arguments, ptr %totals) {{
-start:
-{body}
-  br label %turn
-turn:
-  %i = phi i64 [ 0, %start ], [ %i.next, %turn ]
-  %cclk = phi i64 [ 0, %start ], [ %cclk.next, %turn ]
-  %slot = getelementptr i64, ptr @bfsim.counts, i64 %i
-  %events = load i64, ptr %slot
-  store i64 0, ptr %slot
-  %total.slot = getelementptr i64, ptr %totals, i64 %i
-  %total = load i64, ptr %total.slot
-  %total.next = add i64 %total, %events
-  store i64 %total.next, ptr %total.slot
-  %each.slot = getelementptr i64, ptr @bfsim.cclk, i64 %i
-  %each = load i64, ptr %each.slot
-  %product = mul i64 %each, %events
-  %cclk.next = add i64 %cclk, %product
-  %i.next = add i64 %i, 1
-  %more = icmp ult i64 %i.next, {count}
-  br i1 %more, label %turn, label %done
-done:
-  ret i64 %cclk.next
-}}
-"""

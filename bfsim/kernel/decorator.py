@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
 from bfsim.kernel import sanitizer, tree
+from bfsim.kernel.entry import FIRST_ARGUMENT
 from bfsim.kernel.followers import Follower
 from bfsim.kernel.jit import Compiled, compiled
 from bfsim.kernel.language import read_kernel
@@ -70,7 +71,7 @@ class Kernel:
 
     def _slots(self) -> list[int]:
         """First word of each parameter in the argument block: two words an array, one an integer."""
-        slots, slot = [], 0
+        slots, slot = [], FIRST_ARGUMENT
         for each in self.function.parameters:
             slots.append(slot)
             slot += 2 if isinstance(each.type, ArrayType) else 1

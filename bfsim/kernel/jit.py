@@ -17,23 +17,25 @@ from numpy.typing import NDArray
 from bfsim.kernel import store, tree
 from bfsim.kernel.counters import instrument
 from bfsim.kernel.emit import emit
+from bfsim.kernel.entry import cell_name
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.profile import GENERIC_FEATURES, GENERIC_TRIPLE, CompilerProfile
 from bfsim.kernel.schedule import Counter, cost
 
-ENTRY = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p)
+ENTRY = ctypes.CFUNCTYPE(ctypes.c_int64)
 HOST_SPEED_LEVEL = 3
 
 
 @dataclass(frozen=True, slots=True)
 class Compiled:
-    """A kernel ready to run. `entry(arguments, totals)`: see `counters`; it returns issue cycles of the call."""
+    """A kernel ready to run. `entry()` returns the issue cycles of a call; `cell` holds the address of its arguments."""
 
     entry: ctypes._CFunctionType
+    cell: ctypes.c_int64
     counters: tuple[Counter, ...]
 
     def new_totals(self) -> NDArray[np.int64]:
-        """Return zeros for `entry` to add the events of each counter to (one word at least)."""
+        """Return zeros for the events of each counter (one word at least, to have an address)."""
         return np.zeros(max(1, len(self.counters)), np.int64)
 
 
@@ -49,8 +51,7 @@ def compiled(function: tree.Function, profile: CompilerProfile, *, followed: boo
     if binary is None:
         binary = _compile(function, profile, _entry_name(name), followed=followed, counted=counted)
         store.save(name, binary)
-    load(binary.code)
-    return Compiled(ENTRY(address_of(_entry_name(name))), binary.counters)
+    return load(binary.code, _entry_name(name), binary.counters)
 
 
 def optimised(function: tree.Function, profile: CompilerProfile, *, checked: bool = False) -> str:
@@ -114,11 +115,12 @@ def _engine() -> llvm.ExecutionEngine:
     return llvm.create_mcjit_compiler(llvm.parse_assembly(""), _host_machine())
 
 
-def load(code: bytes) -> None:
-    """Add an object file to this process."""
+def load(code: bytes, entry: str, counters: tuple[Counter, ...]) -> Compiled:
+    """Add an object file to this process and return the kernel in it."""
     engine = _engine()
     engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
+    return Compiled(ENTRY(address_of(entry)), ctypes.c_int64.from_address(address_of(cell_name(entry))), counters)
 
 
 def address_of(name: str) -> int:

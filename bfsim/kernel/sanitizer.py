@@ -22,19 +22,19 @@ from bfsim.kernel.types import ArrayType
 
 def check(function: tree.Function, arrays: Mapping[int, NDArray[Any]], integers: Sequence[int]) -> None:
     """Run the checked build on copies of `arrays` (by parameter position). Raise KernelError at a bad index."""
-    entry, trap = _checked(function)
+    code, trap = _checked(function)
     copies = {position: array.copy() for position, array in arrays.items()}
     numbers = iter(integers)
-    words: list[int] = []
+    words = [0]  # no counters, no totals
     for position, parameter in enumerate(function.parameters):
         if isinstance(parameter.type, ArrayType):
             words += [copies[position].ctypes.data, len(copies[position])]
         else:
             words.append(next(numbers))
     arguments = (ctypes.c_int64 * (len(words) + 1))(*words)
-    totals = (ctypes.c_int64 * 1)()
     trap[0] = 0
-    entry(ctypes.addressof(arguments), ctypes.addressof(totals))
+    code.cell.value = ctypes.addressof(arguments)
+    code.entry()
     if trap[0]:
         _report(function, *trap)
 
@@ -50,10 +50,9 @@ def _report(function: tree.Function, line: int, number: int, position: int, inde
 
 
 @cache
-def _checked(function: tree.Function) -> tuple[Any, Any]:
-    """Compile the checked build: its entry point and the words of its trap."""
+def _checked(function: tree.Function) -> tuple[jit.Compiled, Any]:
+    """Compile the checked build; return it and the words of its trap."""
     name = f"checked_{function.symbol}_{id(function):x}"
     text = jit.optimised(function, VDSP_O2, checked=True).replace(f"@{TRAP}", f"@trap_{name}")
-    jit.load(jit.host_code(instrument(text, function, (), name, followed=False)))
-    trap = (ctypes.c_int32 * TRAP_WORDS).from_address(jit.address_of(f"trap_{name}"))
-    return jit.ENTRY(jit.address_of(name)), trap
+    code = jit.load(jit.host_code(instrument(text, function, (), name, followed=False)), name, ())
+    return code, (ctypes.c_int32 * TRAP_WORDS).from_address(jit.address_of(f"trap_{name}"))

@@ -101,15 +101,12 @@ class Board:
         """Play `pictures` until they end or the user interrupts. Raises DeadlockError when the cores block each other."""
         capture = self._capture(pictures)
         for index, name in enumerate(self.spec.chip.cores):
-            self.cores[name] = self._core(index, name, capture)
-        mains = [self._env.process(core.play(self.firmware.mains[name])) for name, core in self.cores.items()]
-        done = self._env.all_of(mains)
+            self.cores[name] = self._core(index, name, capture, lambda: self._finish_frame(on_frame))
+        for name, core in self.cores.items():
+            self._env.process(core.play(self.firmware.mains[name]))
         interrupted = False
         try:
-            while not done.processed and self._env.peek() < float("inf"):
-                self._env.step()
-                if all(core.finished for core in self.cores.values()):
-                    self._finish_frame(on_frame)
+            self._env.run()
         except KeyboardInterrupt:
             interrupted = True
         if not interrupted and not all(core.is_done for core in self.cores.values()):
@@ -141,7 +138,7 @@ class Board:
             split.append({core: each[number * height : (number + 1) * height] for core, each in rows.items()})
         return [Pair(each) for each in split]
 
-    def _core(self, index: int, name: str, capture: Capture) -> Core:
+    def _core(self, index: int, name: str, capture: Capture, on_finished: Callable[[], None]) -> Core:
         chip, clocks = self.spec.chip, self.spec.clocks
         book = self._calls[name] = CallBook(name, self.profile, self._follower, self._sdram, sanitize=self.sanitize)
         inward, outward = (
@@ -158,10 +155,13 @@ class Board:
             streams=(inward, outward),
             semaphores=self._semaphores,
             stages=tuple(each.stage for each in self.firmware.rows),
+            on_finished=on_finished,
         )
 
     def _finish_frame(self, on_frame: Callable[[FrameRecord], None] | None) -> None:
-        """Make one record of the frame that every core has finished."""
+        """Make one record of a frame as soon as every core has finished it."""
+        if not all(core.finished for core in self.cores.values()):
+            return
         parts = [core.finished.pop(0) for core in self.cores.values()]
         if len({each.index for each in parts}) > 1:
             numbers = ", ".join(f"{core} finished frame {each.index}" for core, each in zip(self.cores, parts, strict=True))

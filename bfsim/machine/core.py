@@ -7,7 +7,7 @@ issue + stall + idle = elapsed holds by construction.
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -66,8 +66,9 @@ class Core:
         streams: tuple[MdmaStream, MdmaStream],
         semaphores: dict[str, Semaphore],
         stages: tuple[str, ...],
+        on_finished: Callable[[], None],
     ) -> None:
-        """`streams`: the MDMA streams of its input and of its output rings."""
+        """`streams`: the MDMA streams of its input and of its output rings. `on_finished`: called at a frame's end."""
         self.name = name
         self.finished: list[FinishedFrame] = []
         """Frames that are done, until the board takes them."""
@@ -80,6 +81,7 @@ class Core:
         self._accounts = FrameAccounts(name, stages)
         self._account = self._accounts.now
         self._stages = stages
+        self._on_finished = on_finished
         self._buffers = buffers
         self._calls = calls
         self._direct = direct
@@ -302,3 +304,4 @@ class Core:
             FinishedFrame(index=self._frame.index, full_at_cclk=self._full_at_cclk, cycles=cycles, results=self._results)
         )
         self._frame, self._results = None, {}
+        self._on_finished()

@@ -15,21 +15,34 @@ from bfsim.machine.sdram import Sdram
 from bfsim.machine.traffic import Traffic
 
 
+class BurstRate:
+    """Cycles of a stream of 32-bit words on an open page, `word_sclk` each; kept per length, rows being few."""
+
+    def __init__(self, word_sclk: Fraction) -> None:
+        self._word_sclk = word_sclk
+        self._known: dict[int, int] = {}
+
+    def sclk(self, words: int) -> int:
+        """Return the SCLK cycles of `words` words."""
+        known = self._known.get(words)
+        if known is None:
+            known = self._known[words] = ceil(words * self._word_sclk)
+        return known
+
+
 class Ebiu:
     """The external bus of one board."""
 
     def __init__(self, clocks: Clocks, sdram: Sdram, traffic: Traffic) -> None:
-        self._clocks = clocks
         self._sclk_ticks = clocks.sclk_ticks
         self._sdram = sdram
         self._traffic = traffic
         self._free_at = 0
-        self._streams: dict[tuple[Row, Fraction], int] = {}
 
-    def burst(self, master: str, now: int, row: Row, word_sclk: Fraction, *, write: bool) -> int:
-        """Move a row to or from SDRAM at `word_sclk` cycles a word; return the tick at which it is done."""
+    def burst(self, master: str, now: int, row: Row, rate: BurstRate, *, write: bool) -> int:
+        """Move a row to or from SDRAM at `rate`; return the tick at which it is done."""
         hits, misses, conflicts = self._sdram.access(row.pages)
-        sclk = self._stream_sclk(row, word_sclk) + self._sdram.extra_sclk(misses, conflicts)
+        sclk = rate.sclk(row.words) + self._sdram.extra_sclk(misses, conflicts)
         if not write:
             sclk += self._sdram.spec.nCL
         done = self._occupy(now, sclk) + sclk * self._sclk_ticks
@@ -41,14 +54,7 @@ class Ebiu:
         return self._occupy(now, sclk)
 
     def _occupy(self, now: int, sclk: int) -> int:
-        start = self._clocks.next_sclk(max(now, self._free_at))
+        ticks = self._sclk_ticks
+        start = -(-max(now, self._free_at) // ticks) * ticks  # the next SCLK edge
         self._free_at = start + sclk * self._sclk_ticks
         return start
-
-    def _stream_sclk(self, row: Row, word_sclk: Fraction) -> int:
-        """Cycles of the words alone; kept per row, since rows move again every frame."""
-        key = (row, word_sclk)
-        known = self._streams.get(key)
-        if known is None:
-            known = self._streams[key] = ceil(sum(words for _, _, words in row.pages) * word_sclk)
-        return known

@@ -6,13 +6,12 @@ A copy's end is known as soon as it starts, so the end needs no event: whoever w
 from __future__ import annotations
 
 from collections import deque
-from fractions import Fraction
 
 import simpy
 
 from bfsim.chip.spec import ChipSpec
 from bfsim.clocks import Clocks
-from bfsim.machine.ebiu import Ebiu
+from bfsim.machine.ebiu import BurstRate, Ebiu
 from bfsim.machine.memories import Row
 from bfsim.machine.simulation import Simulation
 
@@ -37,7 +36,7 @@ class MdmaStream:
     def __init__(self, env: Simulation, name: str, chip: ChipSpec, clocks: Clocks, ebiu: Ebiu) -> None:
         self._env = env
         self.name = name
-        self._chip = chip
+        self._read, self._write = BurstRate(chip.mdma_read_sclk), BurstRate(chip.mdma_write_sclk)
         self._startup_ticks = chip.mdma_startup_sclk * clocks.sclk_ticks
         self._clocks = clocks
         self._ebiu = ebiu
@@ -72,9 +71,9 @@ class MdmaStream:
         destination.array[:] = source.array
         ready = now + self._startup_ticks
         if source.pages:
-            ready = self._ebiu.burst(self.name, ready, source, self._chip.mdma_read_sclk, write=False)
+            ready = self._ebiu.burst(self.name, ready, source, self._read, write=False)
         if destination.pages:
-            ready = self._ebiu.burst(self.name, ready, destination, self._chip.mdma_write_sclk, write=True)
+            ready = self._ebiu.burst(self.name, ready, destination, self._write, write=True)
         if not source.pages and not destination.pages:
             ready += self._on_chip_ticks(source)
         self._free_at = transfer.end = ready
@@ -83,5 +82,4 @@ class MdmaStream:
 
     def _on_chip_ticks(self, row: Row) -> int:
         """Between L1 and L2 the stream moves a 32-bit word per SCLK, without the EBIU."""
-        words = -(-row.nbytes // 4)
-        return int(words * Fraction(self._chip.mdma_write_sclk)) * self._clocks.sclk_ticks
+        return self._write.sclk(row.words) * self._clocks.sclk_ticks

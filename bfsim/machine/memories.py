@@ -13,13 +13,17 @@ from bfsim.linker import Placement
 from bfsim.machine.program import Buffer
 
 
+WORD_BYTES = 4  # DMA moves 32-bit words between memories
+
+
 class Row:
     """One row of a buffer where the linker put it. A row is the unit of DMA and the argument of kernels.
 
     `pages` splits it at SDRAM page borders: (bank, page, words) of each piece; empty outside SDRAM.
+    `words` are the 32-bit words that a DMA moves.
     """
 
-    __slots__ = ("address", "array", "buffer", "memory", "nbytes", "pages")
+    __slots__ = ("address", "array", "buffer", "memory", "nbytes", "pages", "words")
 
     def __init__(
         self, buffer: str, memory: str, address: int, array: NDArray[Any], pages: tuple[tuple[int, int, int], ...]
@@ -30,6 +34,7 @@ class Row:
         self.array = array
         self.nbytes: int = array.nbytes
         self.pages = pages
+        self.words = sum(words for _, _, words in pages) or -(-self.nbytes // WORD_BYTES)
 
     def __repr__(self) -> str:
         return f"<row of {self.buffer} at 0x{self.address:08X} in {self.memory}>"

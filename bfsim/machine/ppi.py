@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from bfsim.chip.spec import ChipSpec, SensorMode
 from bfsim.clocks import Clocks, PeriodicEdges
-from bfsim.machine.ebiu import Ebiu
+from bfsim.machine.ebiu import BurstRate, Ebiu
 from bfsim.machine.memories import Row
 from bfsim.machine.simulation import Simulation
 
@@ -24,7 +24,7 @@ class Ppi:
     ) -> None:
         self.name = name
         self._env = env
-        self._word_sclk = chip.ppi_word_sclk
+        self._rate = BurstRate(chip.ppi_word_sclk)
         self._ebiu = ebiu
         self._lines = PeriodicEdges.of(clocks, mode.ppi_clk_hz, every=mode.line_clocks)
         self.frame_ticks = self._lines.after(mode.frame_lines)
@@ -39,4 +39,4 @@ class Ppi:
             yield env.timeout(start + self._lines.after(number + 1) - env.tick)
             row.array[:] = picture[number]
             if row.pages:
-                self._ebiu.burst(self.name, env.tick, row, self._word_sclk, write=True)
+                self._ebiu.burst(self.name, env.tick, row, self._rate, write=True)

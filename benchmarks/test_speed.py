@@ -1,0 +1,76 @@
+"""How fast the simulator is. Run with `pytest benchmarks/test_speed.py --benchmark-columns=median,min,max`.
+
+Compare within one run only: `simulated` against `floor` (the same kernels on the same pixels, without counters and
+SimPy), and cold against warm start. Timings are not asserted; the number of events is.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from itertools import cycle, islice
+from pathlib import Path
+
+import pytest
+from benchmarks.bare import run_bare
+from pytest_benchmark.fixture import BenchmarkFixture
+
+from bfsim.api import FrameSize
+from bfsim.chip.boards import CM_BF561
+from bfsim.linker import link, parse_ldf
+from bfsim.machine.board import Board, Outcome, symbols_of
+from bfsim.recording import RecordingReader, StereoFrame
+from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
+from firmware import tinyphoon
+
+STEREO_FRAMES = 40
+MOST_EVENTS_PER_FRAME = 50_000  # issue: at most so many SimPy events per stereo frame
+
+
+@pytest.fixture(scope="module")
+def frames() -> list[StereoFrame]:
+    """The built-in recording over and over, in memory."""
+    with RecordingReader(BUILT_IN_RECORDING) as reader:
+        return list(islice(cycle(list(reader.frames())), STEREO_FRAMES))
+
+
+def run_simulated(frames: list[StereoFrame]) -> Outcome:
+    """Run the firmware on the simulated board, as `bfsim run` does."""
+    size = FrameSize(320, 240)
+    places = link(parse_ldf(THESIS_LDF), symbols_of(tinyphoon, size))
+    return Board(CM_BF561, tinyphoon, size, places).run(iter(frames))
+
+
+@pytest.mark.benchmark(group=f"{STEREO_FRAMES} stereo frames")
+def test_simulated(benchmark: BenchmarkFixture, frames: list[StereoFrame]) -> None:
+    """Both stages on both cores with counters and the whole machine; stereo frames per second in `extra_info`."""
+    outcome = benchmark.pedantic(run_simulated, (frames,), warmup_rounds=1, rounds=7)
+    benchmark.extra_info["stereo frames per second"] = STEREO_FRAMES / benchmark.stats.stats.median
+    assert len(outcome.frames) == STEREO_FRAMES
+    assert outcome.events <= MOST_EVENTS_PER_FRAME * STEREO_FRAMES
+
+
+@pytest.mark.benchmark(group=f"{STEREO_FRAMES} stereo frames")
+def test_floor(benchmark: BenchmarkFixture, frames: list[StereoFrame]) -> None:
+    """The same kernels on the same pixels without counters and SimPy."""
+    benchmark.pedantic(run_bare, (tinyphoon, frames), warmup_rounds=1, rounds=7)
+
+
+def start(cache: Path) -> None:
+    """Run `bfsim run` on one frame in a new process."""
+    environment = {**os.environ, "BFSIM_CACHE_DIR": str(cache)}
+    command = [sys.executable, "-c", "from bfsim.cli import main; main()", "run", "--frames", "1"]
+    subprocess.run(command, env=environment, check=True, capture_output=True)
+
+
+@pytest.mark.benchmark(group="start of `bfsim run`")
+def test_warm_start(benchmark: BenchmarkFixture, tmp_path: Path) -> None:
+    """A new process with every kernel in the cache."""
+    benchmark.pedantic(start, (tmp_path,), warmup_rounds=1, rounds=5)
+
+
+@pytest.mark.benchmark(group="start of `bfsim run`")
+def test_cold_start(benchmark: BenchmarkFixture, tmp_path_factory: pytest.TempPathFactory) -> None:
+    """A new process with an empty cache."""
+    benchmark.pedantic(start, setup=lambda: ((tmp_path_factory.mktemp("kernels"),), {}), rounds=3)

@@ -1,0 +1,98 @@
+"""The entry point of a compiled kernel: what Python calls, and how events become totals and cycles.
+
+An entry takes nothing and returns the issue cycles of one call, because a C call without arguments is the
+cheapest that Python has. It finds its argument block through the cell `cell_name(entry)`, a pointer: an array of
+64-bit words with the address of the totals (one word per counter), then pointer and length of each array,
+each integer, the follower's state (followed kernels only), and last a word for the kernel's result.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from bfsim.kernel import tree
+from bfsim.kernel.schedule import Counter
+from bfsim.kernel.types import ArrayType
+
+FIRST_ARGUMENT = 1  # word 0 of the block is the address of the totals
+
+
+def cell_name(entry: str) -> str:
+    """Return the name of the variable that holds the address of the argument block."""
+    return f"{entry}_arguments"
+
+
+def globals_of(counters: Sequence[Counter], entry: str, *, followed: bool) -> str:
+    """Return the variables of a counted module: the cell, the totals, the counts of callees and the cycles."""
+    rows = [
+        f"@{cell_name(entry)} = global ptr null",
+        "@bfsim.totals = internal global ptr null",
+        "@bfsim.cclk = internal global i64 0",
+        f"@bfsim.counts = internal global [{max(1, len(counters))} x i64] zeroinitializer",
+    ]
+    return "\n".join([*rows, "@bfsim.state = internal global ptr null"] if followed else rows)
+
+
+def settle(counters: Sequence[tuple[int, Counter, str]], place: str) -> list[str]:
+    """Add events to the caller's totals and their cycles to the call's; `counters`: (number, counter, events)."""
+    rows = [f"  %{place}.totals = load ptr, ptr @bfsim.totals", f"  %{place}.cclk.0 = load i64, ptr @bfsim.cclk"]
+    for step, (number, counter, events) in enumerate(counters):
+        name = f"%{place}.{number}"
+        rows += [
+            f"  {name}.slot = getelementptr i64, ptr %{place}.totals, i64 {number}",
+            f"  {name}.old = load i64, ptr {name}.slot",
+            f"  {name}.new = add i64 {name}.old, {events}",
+            f"  store i64 {name}.new, ptr {name}.slot",
+            f"  {name}.cost = mul i64 {events}, {counter.cclk}",
+            f"  %{place}.cclk.{step + 1} = add i64 %{place}.cclk.{step}, {name}.cost",
+        ]
+    return [*rows, f"  store i64 %{place}.cclk.{len(counters)}, ptr @bfsim.cclk"]
+
+
+def entry_point(function: tree.Function, counters: Sequence[Counter], entry: str, *, followed: bool) -> str:
+    """Return the entry point of `function`: call it, settle what its callees counted, return the cycles."""
+    rows = [
+        f"  %arguments = load ptr, ptr @{cell_name(entry)}",
+        "  %totals = load ptr, ptr %arguments",
+        "  store ptr %totals, ptr @bfsim.totals",
+        "  store i64 0, ptr @bfsim.cclk",
+    ]
+    values, slot = [], FIRST_ARGUMENT
+
+    def take(kind: str) -> str:
+        nonlocal slot
+        rows.append(f"  %p{slot} = getelementptr i64, ptr %arguments, i64 {slot}")
+        rows.append(f"  %a{slot} = load {kind}, ptr %p{slot}")
+        slot += 1
+        return f"%a{slot - 1}"
+
+    for parameter in function.parameters:
+        if isinstance(parameter.type, ArrayType):
+            values.append(f"ptr {take('ptr')}")
+        values.append(f"i32 {take('i32')}")
+    if followed:
+        rows.append(f"  store ptr {take('ptr')}, ptr @bfsim.state")
+    call = f"@{function.symbol}({', '.join(values)})"
+    if function.result:
+        rows.append(f"  %value = call i32 {call}")
+        rows.append(f"  %wide = {'sext' if function.result.signed else 'zext'} i32 %value to i64")
+        rows.append(f"  %result = getelementptr i64, ptr %arguments, i64 {slot}")
+        rows.append("  store i64 %wide, ptr %result")
+    else:
+        rows.append(f"  call void {call}")
+    body = "\n".join([*rows, *_callees(function, counters)])
+    return f"define i64 @{entry}() {{\n{body}\n  %cclk = load i64, ptr @bfsim.cclk\n  ret i64 %cclk\n}}\n"
+
+
+def _callees(function: tree.Function, counters: Sequence[Counter]) -> list[str]:
+    """Settle and clear the counts that callees left in the module's table."""
+    rows, settled = [], []
+    for number, counter in enumerate(counters):
+        if counter.routine != function.symbol:
+            rows += [
+                f"  %count.{number} = getelementptr i64, ptr @bfsim.counts, i64 {number}",
+                f"  %events.{number} = load i64, ptr %count.{number}",
+                f"  store i64 0, ptr %count.{number}",
+            ]
+            settled.append((number, counter, f"%events.{number}"))
+    return [*rows, *settle(settled, "callees")]

@@ -1,0 +1,50 @@
+"""The buffers of the firmware and where they go: line rings and the edge store in L1, pictures in SDRAM.
+
+Each core's camera and each core's working images have an SDRAM bank of their own. For pictures of w x h
+pixels L1 bank A holds 46 w bytes and bank B 11 w + 6 h + 17 KB: 640x480 fits, beside heap and stack.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from bfsim.api import Buffer, FrameSize, i16, u8, u16, u32
+from firmware.edge_store import EDGE_CAPACITY
+from firmware.tables import arctangent_table
+
+CAMERA_FRAMES = 3  # one that is worked on, one that waits, one that is filled
+
+
+def buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
+    """Return the buffers of each core for pictures of `size`."""
+    return {
+        "A": _core_buffers(size, camera="sdram_bank0", images="sdram_bank2"),
+        "B": _core_buffers(size, camera="sdram_bank1", images="sdram_bank3"),
+    }
+
+
+def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buffer]:
+    width, height = size.width_px, size.height_px
+    return (
+        Buffer("camera", u8, 2 * width, camera, rows=CAMERA_FRAMES * height),
+        Buffer("colour_image", u32, width, images, rows=height),
+        Buffer("edge_image", u8, width, images, rows=height),
+        Buffer("opened_image", u32, width, images, rows=height),
+        # rings of DMA lines: one row more than the stage uses at a time
+        Buffer("camera_ring", u8, 2 * width, "L1_data_a", rows=2),
+        Buffer("colour_ring", u32, width, "L1_data_a", rows=4),
+        Buffer("opened_ring", u32, width, "L1_data_a", rows=2),
+        Buffer("edge_ring", u8, width, "L1_data_b", rows=2),
+        # rings between kernels
+        Buffer("grey_ring", u8, width, "L1_data_a", rows=3),
+        Buffer("smooth_ring", u8, width, "L1_data_a", rows=3),
+        Buffer("eroded_ring", u32, width, "L1_data_a", rows=3),
+        Buffer("magnitude_ring", u8, width, "L1_data_b", rows=3),
+        Buffer("direction_ring", u8, width, "L1_data_b", rows=2),
+        Buffer("gx", i16, width, "L1_data_b"),
+        Buffer("gy", i16, width, "L1_data_b"),
+        Buffer("atan", u8, 257, "L1_data_b", values=arctangent_table()),
+        Buffer("edge_data", u32, EDGE_CAPACITY, "L1_data_b"),
+        Buffer("edge_index", u32, height, "L1_data_b"),
+        Buffer("edge_counts", u16, height, "L1_data_b"),
+    )

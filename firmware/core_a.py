@@ -1,0 +1,22 @@
+"""Core A: the left camera."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import Any
+
+from bfsim.api import Core
+from firmware.modes import INDOOR_FIELD
+from firmware.stages.edge_detection import edge_detection
+from firmware.stages.open_closing import open_closing
+
+
+def core_a(core: Core) -> Generator[Any, Any, None]:
+    """See every picture of the left camera. The cores end a frame together, to take the same next pair."""
+    while (frame := (yield from core.next_frame())) is not None:
+        with core.stage("Edge detection"):
+            yield from edge_detection(core, frame, INDOOR_FIELD)
+        with core.stage("Open & closing"):
+            yield from open_closing(core, frame)
+        yield from core.post("core A is done")
+        yield from core.wait("core B is done")

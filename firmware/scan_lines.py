@@ -1,0 +1,26 @@
+"""Picture lines on their way through L1: rings keep the latest, and a window of three moves down them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import cycle, islice
+from typing import Protocol
+
+from bfsim.api import Row
+
+
+class Lines(Protocol):
+    """Rows in L1 by the number of the line that they hold."""
+
+    def __getitem__(self, number: int, /) -> Row:
+        """Return the row of line `number`, which is lost when the ring has come round to it again."""
+
+
+def line_ring(rows: Sequence[Row], height: int) -> Lines:
+    """Return `rows` as a ring for the lines of a picture: line y lies in row y modulo their number."""
+    return tuple(islice(cycle(rows), height))
+
+
+def window(lines: Lines, y: int, height: int) -> tuple[Row, Row, Row]:
+    """Return the lines above, at and below `y`; the first and the last line of the picture repeat."""
+    return lines[y - 1 if y else y], lines[y], lines[y + 1 if y + 1 < height else y]
