@@ -97,13 +97,13 @@ class BareCore:
 
     def run(self, kernel: Kernel, *arguments: Any) -> Work:
         """Run the build of `kernel` that has no counters."""
-        rows = tuple([arguments[each] for each in kernel.array_positions])
-        call = self._calls.get((kernel, rows))
+        key = (kernel, kernel.arrays_of(arguments))
+        call = self._calls.get(key)
         if call is None:
             code = kernel.compiled(VDSP_O2, counted=False)
-            call = kernel.prepare(code, [each.array for each in rows], code.new_totals())
-            self._calls[kernel, rows] = call
-        return call.run([arguments[each] for each in kernel.integer_positions])
+            rows = [arguments[each].array for each in kernel.array_positions]
+            call = self._calls[key] = kernel.prepare(code, rows, code.new_totals())
+        return call.run(arguments)
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:

@@ -60,7 +60,7 @@ def test_floor(benchmark: BenchmarkFixture, frames: list[StereoFrame]) -> None:
 def start(cache: Path) -> None:
     """Run `bfsim run` on one frame in a new process."""
     environment = {**os.environ, "BFSIM_CACHE_DIR": str(cache)}
-    command = [sys.executable, "-c", "from bfsim.cli import main; main()", "run", "--frames", "1"]
+    command = [sys.executable, "-m", "bfsim", "run", "--frames", "1"]
     subprocess.run(command, env=environment, check=True, capture_output=True)
 
 

@@ -1,0 +1,246 @@
+"""The real command line in its own process, from the terminal's side: output, exit codes, files and errors."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bfsim.recording import RecordingWriter
+from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
+
+
+def bfsim(*arguments: object, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run the command line and return what came out."""
+    command = [sys.executable, "-m", "bfsim", *map(str, arguments)]
+    return subprocess.run(
+        command, cwd=cwd, env={**os.environ, **environment}, capture_output=True, text=True, timeout=120, check=False
+    )
+
+
+def refused(*arguments: object, cwd: Path | None = None) -> str:
+    """Run a command that must fail as a mistake: one paragraph on stderr, exit code 2, no traceback."""
+    result = bfsim(*arguments, cwd=cwd)
+    assert result.returncode == 2, result.stdout + result.stderr
+    assert result.stderr.startswith("bfsim: error: ")
+    assert "Traceback" not in result.stderr
+    assert "\n\n" not in result.stderr.strip()
+    return result.stderr
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """The JSON report of the built-in recording."""
+    path = tmp_path_factory.mktemp("report") / "run.json"
+    result = bfsim("run", "--json", path)
+    assert result.returncode == 0, result.stderr
+    loaded: dict[str, Any] = json.loads(path.read_text())
+    return loaded
+
+
+def test_run_prints_the_budget() -> None:
+    """`bfsim run` needs nothing and prints rate, budget per core, configuration and digests."""
+    result = bfsim("run", "--frames", 2)
+    assert result.returncode == 0, result.stderr
+    assert not result.stderr
+    for words in ("frames/s", "Core A", "Core B", "Edge detection", "Open & closing", "(the rest)", "thesis", "cm-bf561",
+                  "thesis.ldf", "vdsp-O2", "Cycles"):  # fmt: skip
+        assert words in result.stdout
+
+
+def test_the_rows_of_every_frame_sum_to_the_frame(report: dict[str, Any]) -> None:
+    """issue + stall + idle over all rows is the time from the end of one frame to the end of the next."""
+    frames = report["frames"]
+    assert len(frames) == 8
+    for core in range(2):
+        ends = [0]
+        for frame in frames:
+            cycles = frame["cores"][core]
+            assert cycles["begin_cclk"] == ends[-1]
+            spent = sum(
+                each["issue_cclk"] + each["idle_cclk"] + sum(each["stall_cclk"].values()) for each in cycles["stages"]
+            )
+            assert spent == cycles["end_cclk"] - cycles["begin_cclk"]
+            ends.append(cycles["end_cclk"])
+
+
+def test_the_cycles_of_the_kernels_are_the_issue_cycles_of_the_stages(report: dict[str, Any]) -> None:
+    """What `bfsim profile` breaks down is what `bfsim run` charged."""
+    for core in range(2):
+        for stage in ("Edge detection", "Open & closing"):
+            charged = sum(
+                each["issue_cclk"]
+                for frame in report["frames"]
+                for each in frame["cores"][core]["stages"]
+                if each["stage"] == stage
+            )
+            counted = sum(
+                each["issue_cclk"] for each in report["kernels"] if each["core"] == "AB"[core] and each["stage"] == stage
+            )
+            assert charged == counted
+
+
+def test_at_most_50_000_events_per_stereo_frame(report: dict[str, Any]) -> None:
+    """SimPy carries only what must be an event."""
+    assert 0 < report["events"] <= 50_000 * len(report["frames"])
+
+
+def test_the_same_command_gives_the_same_cycles_everywhere(tmp_path: Path) -> None:
+    """Another process, hash seed, folder and an empty kernel cache change no cycle."""
+    first = bfsim("run", "--frames", 2, "--json", "-", PYTHONHASHSEED="1")
+    second = bfsim(
+        "run", "--frames", 2, "--json", "-", cwd=tmp_path, PYTHONHASHSEED="2", BFSIM_CACHE_DIR=str(tmp_path / "empty")
+    )
+    assert first.returncode == second.returncode == 0
+    assert first.stdout == second.stdout
+
+
+def test_both_boards_and_both_feeds_run(report: dict[str, Any]) -> None:
+    """The other clock preset and the recorded time stamps give other cycles; at 30 frames/s frames are missed."""
+    ratings = json.loads(bfsim("run", "--frames", 2, "--board", "cm-bf561-ratings", "--json", "-").stdout)
+    assert ratings["digests"] != report["digests"]
+    recorded = json.loads(bfsim("run", "--feed", "recorded", "--json", "-").stdout)
+    done = [frame["index"] for frame in recorded["frames"]]
+    assert recorded["missed"]
+    assert sorted(done + recorded["missed"]) == list(range(8))
+
+
+def test_sanitize_changes_no_cycle(report: dict[str, Any]) -> None:
+    """`--sanitize` checks and reports the same."""
+    sanitized = json.loads(bfsim("run", "--frames", 1, "--sanitize", "--json", "-").stdout)
+    assert sanitized["frames"][0] == report["frames"][0]
+
+
+def test_profile_shows_stage_kernel_and_line() -> None:
+    """`bfsim profile` names the hottest kernels with their source."""
+    result = bfsim("profile", "--frames", 1)
+    assert result.returncode == 0, result.stderr
+    for words in ("Edge detection", "isqrt32", "direction_row", "SDRAM", "L1_DATA_A"):
+        assert words in result.stdout
+
+
+def test_check_guards_a_baseline(tmp_path: Path) -> None:
+    """--update writes limits that the same run meets; a tighter limit breaks and names its row."""
+    baseline = tmp_path / "bfsim.toml"
+    assert bfsim("check", "--frames", 2, "--baseline", baseline, "--update").returncode == 0
+    assert bfsim("check", "--frames", 2, "--baseline", baseline).returncode == 0
+    lines = baseline.read_text().splitlines()
+    number = next(i for i, line in enumerate(lines) if line.startswith("median_cclk") and "Edge" in "".join(lines[:i][-3:]))
+    lines[number] = "median_cclk = 1000"
+    baseline.write_text("\n".join(lines))
+    broken = bfsim("check", "--frames", 2, "--baseline", baseline)
+    assert broken.returncode == 1
+    assert "Edge detection" in broken.stdout
+
+
+def test_ctrl_c_ends_with_the_report_of_the_frames_done(tmp_path: Path) -> None:
+    """An interrupted run prints what it has and exits with 130."""
+    recording = tmp_path / "long.mcap"
+    picture = np.full((240, 640), 128, np.uint8)
+    with RecordingWriter(recording, width=320, height=240) as writer:
+        for number in range(400):
+            writer.add(picture, picture, number * 10_000_000, number * 10_000_000)
+    command = [sys.executable, "-m", "bfsim", "run", str(recording)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(4)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "frames/s" in out
+    assert "interrupted after" in err
+    assert "Traceback" not in err
+
+
+def write_recording(path: Path, width: int = 16, height: int = 8) -> Path:
+    """Write a recording of two grey stereo frames."""
+    picture = np.full((height, 2 * width), 128, np.uint8)
+    with RecordingWriter(path, width=width, height=height) as writer:
+        for number in range(2):
+            writer.add(picture, picture, number * 33_000_000, number * 33_000_000)
+    return path
+
+
+def test_broken_recordings_are_refused(tmp_path: Path) -> None:
+    """A missing, foreign, cut or damaged recording is named."""
+    assert "nothing.mcap" in refused("run", tmp_path / "nothing.mcap")
+    data = BUILT_IN_RECORDING.read_bytes()
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(data[: len(data) // 2])
+    assert "cut.mcap" in refused("run", cut)
+    damaged = tmp_path / "damaged.mcap"
+    damaged.write_bytes(data[:300_000] + bytes([data[300_000] ^ 64]) + data[300_001:])
+    assert "damaged.mcap" in refused("run", damaged)
+    text = tmp_path / "text.mcap"
+    text.write_text("not a recording")
+    assert "text.mcap" in refused("run", text)
+
+
+def test_unknown_names_are_refused(tmp_path: Path) -> None:
+    """A board or firmware that does not exist is refused with what there is."""
+    assert "cm-bf561" in refused("run", "--board", "cm-bf562")
+    assert "no_such_package" in refused("run", "--firmware", "no_such_package:tinyphoon")
+    assert "no_such_name" in refused("run", "--firmware", "firmware:no_such_name")
+    (tmp_path / "broken_firmware.py").write_text("import bfsim.api\n\nraise ValueError('not today')\n")
+    message = refused("run", "--firmware", "broken_firmware:main", cwd=tmp_path)
+    assert "broken_firmware.py:3" in message
+    assert "not today" in message
+
+
+def test_an_ldf_that_cannot_be_is_refused(tmp_path: Path) -> None:
+    """A syntax error has line and caret; a picture too wide for L1 names section, memory, sizes and line."""
+    text = THESIS_LDF.read_text()
+    broken = tmp_path / "broken.ldf"
+    broken.write_text(text.replace("SECTIONS", "SECTION", 1))
+    message = refused("run", "--ldf", broken)
+    assert "broken.ldf:" in message
+    assert "^" in message
+    wide = write_recording(tmp_path / "wide.mcap", width=1600, height=8)
+    message = refused("run", wide)
+    for words in ("thesis.ldf:", "L1_data_a", "MEM_A_L1_DATA_A", "bytes"):
+        assert words in message
+
+
+BAD_FIRMWARE = """
+from bfsim.api import BudgetRow, Buffer, Firmware, i32, kernel, u8
+
+@kernel
+def outside(row: u8[:], n: i32):
+    for x in range(n):
+        row[x] = row[x + 1]
+
+def main(core):
+    while (yield from core.next_frame()) is not None:
+        yield core.run(outside, core.array("row"), 16)
+
+def waits(core):
+    while (yield from core.next_frame()) is not None:
+        yield from core.wait(f"never posted for {core.name}")
+
+def buffers(size):
+    return {core: [Buffer("camera", u8, 2 * size.width_px, f"sdram_bank{n}", rows=size.height_px),
+                   Buffer("row", u8, 16, "L1_data_a")] for n, core in enumerate("AB")}
+
+bad_index = Firmware(mains={"A": main, "B": main}, buffers=buffers, camera="camera", rows=())
+deadlock = Firmware(mains={"A": waits, "B": waits}, buffers=buffers, camera="camera", rows=())
+"""
+
+
+def test_mistakes_of_the_firmware_are_named(tmp_path: Path) -> None:
+    """An index outside its array (with --sanitize) and two cores waiting for ever have file and line."""
+    (tmp_path / "mine.py").write_text(BAD_FIRMWARE)
+    recording = write_recording(tmp_path / "small.mcap")
+    message = refused("run", recording, "--firmware", "mine:bad_index", "--sanitize", cwd=tmp_path)
+    assert "mine.py:7" in message
+    assert "index 16 is outside of row" in message
+    message = refused("run", recording, "--firmware", "mine:deadlock", cwd=tmp_path)
+    for words in ("core A waits for semaphore 'never posted for A'", "core B waits for semaphore 'never posted for B'",
+                  "mine.py:15"):  # fmt: skip
+        assert words in message

@@ -1,0 +1,86 @@
+"""Who may import whom (the rooms of the house), read from the sources themselves."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+
+# Each room and what it may import of bfsim besides itself, from the bottom of the house to the top.
+MAY_IMPORT = {
+    "errors": set(),
+    "clocks": {"errors"},
+    "trace": {"errors"},
+    "chip": {"errors", "clocks"},
+    "kernel": {"errors"},
+    "linker": {"errors", "chip"},
+    "machine": {"errors", "clocks", "trace", "chip", "kernel", "linker"},
+    "api": {"kernel", "machine", "trace"},
+    "recording": {"errors"},
+    "report": {"errors", "clocks", "trace"},
+    "loading": {"errors", "machine"},
+    "run": {"errors", "trace", "chip", "kernel", "linker", "machine", "recording", "loading"},
+    "cli_record": {"errors", "recording"},
+    "cli": {"errors", "trace", "report", "run", "cli_record"},
+    "__main__": {"cli"},
+}
+READ_VERSION = {"recording", "run", "cli"}  # these also read `bfsim.__version__`
+
+
+def imported_modules(path: Path) -> Iterator[str]:
+    """Every module that a file imports, at its top, inside functions and for type checking alike."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (each.name for each in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}:{node.lineno}: imports are absolute"
+            assert node.module
+            if node.module == "bfsim":
+                yield from (f"bfsim.{each.name}" for each in node.names)
+            else:
+                yield node.module
+
+
+def room_of(path: Path) -> str:
+    """The folder or file of bfsim/ that a source belongs to."""
+    return path.relative_to(ROOT / "bfsim").parts[0].removesuffix(".py")
+
+
+SOURCES = sorted(path for path in (ROOT / "bfsim").rglob("*.py") if path.parent != ROOT / "bfsim" or path.stem != "__init__")
+
+
+def test_every_room_is_listed() -> None:
+    """A new room must be given its place in the house."""
+    assert {room_of(each) for each in SOURCES} == set(MAY_IMPORT)
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_file_imports_only_the_rooms_below_it(path: Path) -> None:
+    """Imports point downwards, and nothing in bfsim imports firmware."""
+    room = room_of(path)
+    for module in imported_modules(path):
+        parts = module.split(".")
+        assert parts[0] != "firmware", f"{path} imports {module}"
+        if module == "bfsim.__version__":
+            assert room in READ_VERSION, f"{path} imports {module}"
+        elif parts[0] == "bfsim":
+            assert parts[1] == room or parts[1] in MAY_IMPORT[room], f"{path} imports {module}"
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_simpy_stays_in_the_machine(path: Path) -> None:
+    """Only bfsim/machine knows the simulation kernel."""
+    assert room_of(path) == "machine" or "simpy" not in {each.split(".")[0] for each in imported_modules(path)}
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "firmware").rglob("*.py")), ids=lambda path: str(path.relative_to(ROOT)))
+def test_firmware_imports_only_the_api(path: Path) -> None:
+    """Firmware imports bfsim.api, numpy, itself and the standard library."""
+    allowed = {"numpy", "firmware", *sys.stdlib_module_names}
+    for module in imported_modules(path):
+        assert module == "bfsim.api" or module.split(".")[0] in allowed, f"{path} imports {module}"
