@@ -36,14 +36,6 @@ class Clocks:
         """Return the first tick at or after `time_ns`."""
         return -int(-(time_ns * self.tick_hz) // 1_000_000_000)
 
-    def next_cclk(self, tick: int) -> int:
-        """Return the first tick at or after `tick` that is a CCLK edge."""
-        return -(-tick // self.cclk_ticks) * self.cclk_ticks
-
-    def next_sclk(self, tick: int) -> int:
-        """Return the first tick at or after `tick` that is an SCLK edge."""
-        return -(-tick // self.sclk_ticks) * self.sclk_ticks
-
 
 @dataclass(frozen=True, slots=True)
 class PeriodicEdges:

@@ -29,13 +29,14 @@ def load_firmware(name: str) -> LoadedFirmware:
     Raises FirmwareError when it cannot be imported or is not a `Firmware`; refused kernels raise KernelError.
     """
     package, _, attribute = name.partition(":")
-    if not package or not attribute:
+    if not all(each.isidentifier() for each in (*package.split("."), attribute)):
         raise FirmwareError(f"--firmware must be PACKAGE:NAME, such as firmware:tinyphoon, not {name!r}")
     module = _import(package)
     firmware = getattr(module, attribute, None)
     if not isinstance(firmware, Firmware):
         found = f"a {type(firmware).__name__}" if hasattr(module, attribute) else "missing"
-        raise FirmwareError(f"--firmware {name}: {attribute} must be a bfsim.api.Firmware, but is {found} ({module.__file__})")
+        place = module.__spec__.origin if module.__spec__ and module.__spec__.has_location else package
+        raise FirmwareError(f"--firmware: {attribute} must be a bfsim.api.Firmware, but is {found} ({place})")
     return LoadedFirmware(name, _digest(package), firmware)
 
 
@@ -47,24 +48,24 @@ def _import(package: str) -> ModuleType:
         return importlib.import_module(package)
     except BfsimError:
         raise
-    except ModuleNotFoundError as error:
-        if error.name and package.split(".")[0] == error.name.split(".")[0]:
+    except (Exception, SystemExit) as error:
+        if isinstance(error, ModuleNotFoundError) and f"{package}.".startswith(f"{error.name}."):
             raise FirmwareError(
-                f"--firmware: the package {package!r} must be installed or in the folder {here}, but there is none"
-            ) from error
-        raise _failed(package, error) from error
-    except Exception as error:
+                f"--firmware: the package {package!r} must be installed or in the folder {here}, "
+                "but there is none"
+            ) from None
         raise _failed(package, error) from error
 
 
-def _failed(package: str, error: Exception) -> FirmwareError:
+def _failed(package: str, error: BaseException) -> FirmwareError:
     """Say what went wrong while `package` was imported, and on which of its lines."""
     if isinstance(error, SyntaxError):
         place = f"{error.filename}:{error.lineno}"
     else:
         last = traceback.extract_tb(error.__traceback__)[-1]
         place = f"{last.filename}:{last.lineno}"
-    return FirmwareError(f"--firmware: importing {package} failed with {type(error).__name__}: {error} ({place})")
+    message = f"importing {package} failed with {type(error).__name__}: {error} ({place})"
+    return FirmwareError(f"--firmware: {message}")
 
 
 def _digest(package: str) -> str:

@@ -11,7 +11,7 @@ import llvmlite.binding as llvm
 from bfsim import __version__
 from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
-from bfsim.errors import RecordingError
+from bfsim.errors import ConfigError, RecordingError
 from bfsim.kernel import VDSP_O2
 from bfsim.linker import link, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
@@ -43,6 +43,8 @@ def simulate(
     (frames done, frames in all). Ctrl-C ends the run with the frames done. Raises a BfsimError for anything
     that is wrong with what was given.
     """
+    if frames is not None and frames < 1:
+        raise ConfigError(f"frames must be at least 1, not {frames}")
     spec = board_named(board)
     loaded = load_firmware(firmware)
     script = ldf or THESIS_LDF

@@ -24,7 +24,6 @@ class StallReason(StrEnum):
     EBIU_ARBITRATION = "EBIU arbitration"
     RING_EMPTY = "ring empty"
     RING_FULL = "ring full"
-    DMA_SETUP = "DMA set-up"
     SEMAPHORE = "semaphore"
 
 

@@ -17,7 +17,6 @@ BF561 = ChipSpec(
     mdma_startup_sclk=15,               # [assumed] start-up and turn-round of a work unit, range 10..20
     mdma_read_sclk=Fraction(11, 10),    # [assumed] HRM table as recalled: MDMA read 1.1 SCLK a word
     mdma_write_sclk=Fraction(1),        # [assumed] HRM table as recalled: MDMA write 1 SCLK a word
-    ppi_word_sclk=Fraction(1),          # derived: one 32-bit word per SCLK on an open page
-    ppi_word_bytes=4,                   # PPI_CONTROL PACK_EN | DMA32
+    ppi_word_sclk=Fraction(1),          # derived: PPI_CONTROL PACK_EN | DMA32, one 32-bit word per SCLK on an open page
     semaphore_issue_cclk=2,             # TESTSET, GNU sim; its L2 read comes on top
 )  # fmt: skip

@@ -56,7 +56,6 @@ class ChipSpec:
     mdma_read_sclk: Fraction
     mdma_write_sclk: Fraction
     ppi_word_sclk: Fraction
-    ppi_word_bytes: int
     semaphore_issue_cclk: int
 
 

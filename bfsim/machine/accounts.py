@@ -5,7 +5,7 @@ from __future__ import annotations
 from bfsim.trace import REST, CoreFrame, StageCost, StallReason
 
 
-class Account:
+class StageAccount:
     """Cycles of one stage in one frame."""
 
     __slots__ = ("idle_cclk", "issue_cclk", "stall_cclk")
@@ -14,6 +14,13 @@ class Account:
         self.issue_cclk = 0
         self.idle_cclk = 0
         self.stall_cclk: dict[StallReason, int] = {}
+
+    def cost(self, stage: str) -> StageCost:
+        """Return the record of `stage`."""
+        stalls = {reason: cclk for reason, cclk in sorted(self.stall_cclk.items()) if cclk}
+        return StageCost(
+            stage=stage, issue_cclk=self.issue_cclk, stall_cclk=stalls, idle_cclk=self.idle_cclk
+        )
 
 
 class FrameAccounts:
@@ -26,32 +33,18 @@ class FrameAccounts:
         self._open()
 
     def _open(self) -> None:
-        self._accounts = {REST: Account()}
+        self._accounts = {REST: StageAccount()}
         self.now = self._accounts[REST]
 
-    def enter(self, stage: str) -> Account:
-        """Let cycles go to `stage`, or to the rest; return the account they went to before."""
-        before = self.now
-        self.now = self._accounts.setdefault(stage, Account())
-        return before
+    def enter(self, stage: str) -> None:
+        """Let cycles go to `stage`, or to the rest."""
+        self.now = self._accounts.setdefault(stage, StageAccount())
 
     def close(self, end_cclk: int) -> CoreFrame:
         """End the frame at `end_cclk`, begin the next one, and return the record: stages in the budget's order."""
         order = [each for each in (*self._stages, REST) if each in self._accounts]
-        frame = CoreFrame(
-            core=self._core,
-            begin_cclk=self._begin_cclk,
-            end_cclk=end_cclk,
-            stages=tuple(
-                StageCost(
-                    stage=each,
-                    issue_cclk=self._accounts[each].issue_cclk,
-                    stall_cclk=dict(sorted(self._accounts[each].stall_cclk.items())),
-                    idle_cclk=self._accounts[each].idle_cclk,
-                )
-                for each in order
-            ),
-        )
+        stages = tuple(self._accounts[each].cost(each) for each in order)
+        frame = CoreFrame(core=self._core, begin_cclk=self._begin_cclk, end_cclk=end_cclk, stages=stages)
         self._begin_cclk = end_cclk
         self._open()
         return frame

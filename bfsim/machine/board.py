@@ -72,7 +72,7 @@ class Board:
         self._memories = Memories(self.spec)
         self._traffic = Traffic()
         self._sdram = Sdram(self.spec.sdram)
-        self._ebiu = Ebiu(self.spec.clocks, self._sdram, self._traffic)
+        self._ebiu = Ebiu(self.spec.clocks, self._sdram)
         self._follower = self._new_follower()
         self._semaphores: dict[str, Semaphore] = {}
         self._calls: dict[str, CallBook] = {}
@@ -86,6 +86,11 @@ class Board:
 
     def _load(self) -> dict[str, dict[str, tuple[Row, ...]]]:
         """Place every buffer in memory; return the rows that each core knows by name."""
+        if set(self.firmware.mains) != set(self.spec.chip.cores):
+            known = ", ".join(sorted(self.firmware.mains))
+            raise FirmwareError(
+                f"firmware must have main loops for {', '.join(self.spec.chip.cores)}, not for {known}"
+            )
         placed: dict[str, dict[str, tuple[Row, ...]]] = {}
         for owner, buffers in self.firmware.buffers(self.size).items():
             placed[owner] = {each.name: self._place(each, PROCESSORS[owner]) for each in buffers}
@@ -109,16 +114,29 @@ class Board:
             self._env.run()
         except KeyboardInterrupt:
             interrupted = True
-        if not interrupted and not all(core.is_done for core in self.cores.values()):
+        if not interrupted:
+            self._check_end()
+        return self._outcome(capture, interrupted)
+
+    def _check_end(self) -> None:
+        """Raise an error unless both main loops have ended, with the same frames."""
+        if not all(core.is_done for core in self.cores.values()):
             waits = "; ".join(core.describe_wait() for core in self.cores.values())
             raise DeadlockError(f"nothing can happen any more: {waits}")
-        return self._outcome(capture, interrupted)
+        for name, core in self.cores.items():
+            if core.finished:
+                raise FirmwareError(
+                    f"every core must take every frame, but only core {name} took frame {core.finished[0].index}"
+                )
 
     def _capture(self, pictures: Iterator[StereoPictures]) -> Capture:
         chip, clocks = self.spec.chip, self.spec.clocks
         mode = self.spec.sensor.mode(self.size.width_px, self.size.height_px)
         ppis = {
-            name: Ppi(self._env, f"PPI{index}", chip, clocks, mode, self._ebiu) for index, name in enumerate(chip.cores)
+            name: Ppi(
+                self._env, chip, clocks, mode, self._ebiu, self._traffic.account("SDRAM", f"PPI{index}")
+            )
+            for index, name in enumerate(chip.cores)
         }
         return Capture(self._env, clocks, ppis, self._frame_buffers(), pictures, self.feed)
 
@@ -128,21 +146,35 @@ class Board:
         split: list[Mapping[str, Sequence[Row]]] = []
         name = self.firmware.camera
         rows = {core: self._buffers[core].get(name, ()) for core in self.spec.chip.cores}
-        count = min(len(each) for each in rows.values()) // height
-        if not count or any(each[0].nbytes != 2 * self.size.width_px for each in rows.values()):
+        lengths = {len(each) for each in rows.values()}
+        count = min(lengths) // height
+        wrong_row = any(each[0].nbytes != 2 * self.size.width_px for each in rows.values() if each)
+        if not count or lengths != {count * height} or wrong_row:
             raise FirmwareError(
                 f"the camera buffer {name!r} of each core must have a multiple of {height} rows "
                 f"of {2 * self.size.width_px} bytes"
             )
+        for each in rows.values():
+            if "SCRATCH" in each[0].memory:
+                raise FirmwareError(f"{name} must be where DMA can reach it, not in {each[0].memory}")
         for number in range(count):
             split.append({core: each[number * height : (number + 1) * height] for core, each in rows.items()})
         return [Pair(each) for each in split]
 
     def _core(self, index: int, name: str, capture: Capture, on_finished: Callable[[], None]) -> Core:
         chip, clocks = self.spec.chip, self.spec.clocks
-        book = self._calls[name] = CallBook(name, self.profile, self._follower, self._sdram, sanitize=self.sanitize)
+        book = self._calls[name] = CallBook(
+            name, self.profile, self._follower, self._sdram, sanitize=self.sanitize
+        )
         inward, outward = (
-            MdmaStream(self._env, f"MDMA{index + 1} stream {number}", chip, clocks, self._ebiu) for number in range(2)
+            MdmaStream(
+                self._env,
+                chip,
+                clocks,
+                self._ebiu,
+                self._traffic.account("SDRAM", f"MDMA{index + 1} stream {number}"),
+            )
+            for number in range(2)
         )
         return Core(
             self._env,
@@ -163,9 +195,6 @@ class Board:
         if not all(core.finished for core in self.cores.values()):
             return
         parts = [core.finished.pop(0) for core in self.cores.values()]
-        if len({each.index for each in parts}) > 1:
-            numbers = ", ".join(f"{core} finished frame {each.index}" for core, each in zip(self.cores, parts, strict=True))
-            raise FirmwareError(f"the cores must work on the same frame: {numbers}")
         record = FrameRecord(
             index=parts[0].index,
             last_line_cclk=parts[0].full_at_cclk,

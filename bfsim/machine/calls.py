@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,74 +26,91 @@ class CallGroup:
     memories: tuple[str, ...]
     code: Compiled
     totals: NDArray[np.int64]
-    calls: list[PreparedCall] = field(default_factory=list)
 
 
 class CallBook:
-    """Runs kernels for one core. `stage` is the row of the budget that calls are counted under."""
+    """Runs kernels for one core, and counts them under the stage that was entered last."""
 
     def __init__(
         self, core: str, profile: CompilerProfile, follower: Follower, sdram: Sdram, *, sanitize: bool
     ) -> None:
-        self.stage = REST
         self._core = core
         self._profile = profile
         self._follower = follower
         self._sdram = sdram
         self._sanitize = sanitize
-        self._prepared: dict[tuple[object, ...], tuple[PreparedCall, bool]] = {}
         self._groups: dict[tuple[str, Kernel, tuple[str, ...]], CallGroup] = {}
+        self._prepared: dict[tuple[str, Kernel, object], PreparedCall] = {}
+        self._repeated: dict[str, dict[tuple[Kernel, object], PreparedCall]] = {}
+        self.enter(REST)
+
+    def enter(self, stage: str) -> None:
+        """Count the calls from now on under `stage`."""
+        self.stage = stage
+        # calls without integers on rows in L1, as most are: known by their arguments, checked at the first time
+        self._known = self._repeated.setdefault(stage, {})
 
     def run(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> Work:
         """Run `kernel` now. Rows outside of this core's L1 are followed access by access."""
-        integers: Sequence[int] = ()
-        rows: tuple[Row | int, ...] = arguments
-        if kernel.integer_positions:
-            kernel.check_count(arguments)
-            integers = [kernel.check_integer(each, arguments[each]) for each in kernel.integer_positions]
-            rows = tuple([arguments[each] for each in kernel.array_positions])
-        found = self._prepared.get((self.stage, kernel, rows))
-        if found is None:
-            found = self._prepared[self.stage, kernel, rows] = self._prepare(kernel, arguments, rows)
-        call, followed = found
+        try:
+            call = self._known.get((kernel, arguments))
+        except TypeError:  # an array of the firmware's own, which nothing can be known by
+            self._prepare(kernel, arguments)
+            raise
+        return call.run(arguments) if call else self._run_checked(kernel, arguments)
+
+    def _run_checked(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> Work:
+        kernel.check(arguments)
+        key = (self.stage, kernel, kernel.arrays_of(arguments))
+        call = self._prepared.get(key)
+        if call is None:
+            call = self._prepared[key] = self._prepare(kernel, arguments)
         if self._sanitize:
-            kernel.sanitize([each.array for each in rows if isinstance(each, Row)], integers)
-        if not followed:
-            return call.run(integers)
-        self._follower.open_pages[: len(self._sdram.open_pages)] = self._sdram.open_pages
-        work = call.run(integers)
-        self._sdram.open_pages[:] = self._follower.open_pages[: len(self._sdram.open_pages)].tolist()
+            kernel.sanitize([each.array if isinstance(each, Row) else each for each in arguments])
+        if call.is_followed:
+            return self._followed(call, arguments)
+        if not kernel.integer_positions and not self._sanitize:
+            self._known[kernel, arguments] = call
+        return call.run(arguments)
+
+    def _followed(self, call: PreparedCall, arguments: tuple[Row | int, ...]) -> Work:
+        """Run a call that sees and changes the open pages of the SDRAM."""
+        pages = self._sdram.open_pages
+        self._follower.open_pages[: len(pages)] = pages
+        work = call.run(arguments)
+        pages[:] = self._follower.open_pages[: len(pages)].tolist()
         return work
 
     def groups(self) -> Iterable[CallGroup]:
         """Return every group of calls, in the order of their first call."""
         return self._groups.values()
 
-    def _prepare(
-        self, kernel: Kernel, arguments: tuple[Row | int, ...], rows: tuple[Row | int, ...]
-    ) -> tuple[PreparedCall, bool]:
-        kernel.check_count(arguments)
-        placed = []
-        for position, row in zip(kernel.array_positions, rows, strict=True):
+    def _prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> PreparedCall:
+        rows = []
+        for position in kernel.array_positions:
+            row = arguments[position]
             if not isinstance(row, Row):
                 name = kernel.function.parameters[position].name
                 raise KernelError(
                     f"{name} must be a row of a placed buffer, not {row!r} (kernel {kernel.name}, {kernel.place})"
                 )
-            placed.append(row)
-        followed = [self._is_followed(each) for each in placed]
-        group = self._group(kernel, tuple(each.memory for each in placed), any(followed))
-        follower = self._follower if any(followed) else None
-        call = kernel.prepare(group.code, [each.array for each in placed], group.totals, follower)
-        group.calls.append(call)
-        return call, any(followed)
+            rows.append(row)
+        followed = any([self._is_followed(each) for each in rows])
+        group = self._group(kernel, tuple(each.memory for each in rows), followed)
+        arrays = [each.array for each in rows]
+        return kernel.prepare(group.code, arrays, group.totals, self._follower if followed else None)
 
     def _is_followed(self, row: Row) -> bool:
         """Whether accesses to `row` take longer than one cycle. Another core's L1 cannot be reached at all."""
         if not row.memory.startswith("CORE"):
             return True
-        if not row.memory.startswith(f"CORE{self._core}_L1_DATA") and row.memory != f"CORE{self._core}_SCRATCH":
-            raise FirmwareError(f"core {self._core} cannot load or store {row.buffer}, which is in {row.memory}")
+        if (
+            not row.memory.startswith(f"CORE{self._core}_L1_DATA")
+            and row.memory != f"CORE{self._core}_SCRATCH"
+        ):
+            raise FirmwareError(
+                f"core {self._core} cannot load or store {row.buffer}, which is in {row.memory}"
+            )
         return False
 
     def _group(self, kernel: Kernel, memories: tuple[str, ...], followed: bool) -> CallGroup:

@@ -6,6 +6,7 @@ object. A pair that is overwritten, or comes when no buffer is free, is missed.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -91,12 +92,11 @@ class Capture:
         self._pairs = pairs
         self._pictures = pictures
         self._feed = feed
-        self._claimed: list[Pair] = []
-        self._claims = dict.fromkeys(ppis, 0)
+        self._handed_out: dict[str, deque[Pair]] = {core: deque() for core in ppis}
+        self._held: dict[str, Pair] = {}
         self._changed = env.event()
-        self._wanted = 1
-        self._taken = 0
-        self._last_start = dict.fromkeys(ppis, -1)
+        self._receiving_until = dict.fromkeys(ppis, 0)
+        self._sensors_ready_at = 0
         self._ended = False
         self.missed: list[int] = []
         """Frames of the recording that the firmware never got."""
@@ -104,11 +104,10 @@ class Capture:
 
     def claim(self, core: str) -> Generator[simpy.Event, Any, Pair | None]:
         """Give back the pair that `core` had, and wait for the next one; None after the last."""
-        position = self._claims[core]
-        self._claims[core] += 1
-        if position:
-            self._release(self._claimed[position - 1])
-        while len(self._claimed) <= position:
+        if core in self._held:
+            self._release(self._held.pop(core))
+        mine = self._handed_out[core]
+        while not mine:
             full = [each for each in self._pairs if each.state is State.FULL]
             if full:
                 self._hand_out(full)
@@ -116,7 +115,8 @@ class Capture:
                 return None
             else:
                 yield self._changed
-        return self._claimed[position]
+        self._held[core] = mine.popleft()
+        return self._held[core]
 
     def _hand_out(self, full: list[Pair]) -> None:
         newest = max(full, key=lambda each: each.index)
@@ -124,8 +124,8 @@ class Capture:
             if each is not newest:
                 self._miss(each)
         newest.state, newest.users = State.IN_USE, len(self._ppis)
-        self._claimed.append(newest)
-        self._wanted += 1
+        for queue in self._handed_out.values():
+            queue.append(newest)
         self._notify()
 
     def _release(self, pair: Pair) -> None:
@@ -152,33 +152,37 @@ class Capture:
                 origin_ns = min(pictures.left_ns, pictures.right_ns) if origin_ns is None else origin_ns
                 stamps = (pictures.left_ns - origin_ns, pictures.right_ns - origin_ns)
                 starts = [self._clocks.ticks_of_ns(each) for each in stamps]
-                yield self._env.timeout(max(0, min(starts) - self._env.tick))
+                yield self._env.after(max(0, min(starts) - self._env.tick))
             self._begin(pictures, dict(zip(self._ppis, starts, strict=True)))
         self._ended = True
         self._notify()
 
     def _when_wanted(self) -> Generator[simpy.Event, Any, list[int]]:
         """Wait until the firmware has taken the picture before, a buffer is free and the sensors are through."""
-        while self._taken >= self._wanted or not any(each.state is State.FREE for each in self._pairs):
+        while not self._is_picture_wanted():
             yield self._changed
-        self._taken += 1
-        ready = max(self._last_start[core] + ppi.frame_ticks for core, ppi in self._ppis.items())
-        start = max(self._env.tick, ready) if self._taken > 1 else self._env.tick
-        yield self._env.timeout(start - self._env.tick)
+        start = max(self._env.tick, self._sensors_ready_at)
+        yield self._env.after(start - self._env.tick)
         return [start] * len(self._ppis)
 
+    def _is_picture_wanted(self) -> bool:
+        states = {each.state for each in self._pairs}
+        return State.FREE in states and states.isdisjoint({State.FILLING, State.FULL})
+
     def _begin(self, pictures: StereoPictures, starts: Mapping[str, int]) -> None:
-        """Receive a pair of pictures, unless a sensor is still busy or no buffer can be had."""
-        busy = any(
-            0 <= self._last_start[core] and start < self._last_start[core] + self._ppis[core].frame_ticks
-            for core, start in starts.items()
-        )
-        pair = None if busy else self._empty_pair()
+        """Receive a pair of pictures, unless a PPI still receives the one before or no buffer can be had.
+
+        Recorded time stamps jitter; a picture may come as early as in the vertical blanking of the one before.
+        """
+        receiving = any(start < self._receiving_until[core] for core, start in starts.items())
+        pair = None if receiving else self._empty_pair()
         if pair is None:
             self.missed.append(pictures.index)
             return
         pair.state, pair.index = State.FILLING, pictures.index
-        self._last_start.update(starts)
+        for core, start in starts.items():
+            self._receiving_until[core] = start + self._ppis[core].picture_ticks
+            self._sensors_ready_at = max(self._sensors_ready_at, start + self._ppis[core].frame_ticks)
         images = dict(zip(self._ppis, (pictures.left, pictures.right), strict=True))
         self._env.process(self._fill(pair, images, starts))
 

@@ -7,15 +7,19 @@ issue + stall + idle = elapsed holds by construction.
 
 from __future__ import annotations
 
+import contextlib
+import os
+import traceback
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
+from operator import index
+from pathlib import Path
 from typing import Any
 
 import simpy
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.errors import FirmwareError
+from bfsim.errors import BfsimError, FirmwareError
 from bfsim.kernel import Kernel, Work
 from bfsim.machine.accounts import FrameAccounts
 from bfsim.machine.calls import CallBook
@@ -27,7 +31,10 @@ from bfsim.machine.program import Main
 from bfsim.machine.ring import InputRing, OutputRing
 from bfsim.machine.semaphore import Semaphore
 from bfsim.machine.simulation import Simulation
-from bfsim.trace import CoreFrame, StallReason
+from bfsim.trace import REST, CoreFrame, StallReason
+
+NOT_FIRMWARE = (str(Path(__file__).parent.parent) + os.sep, contextlib.__file__)
+"""Where the code lies that firmware calls; a mistake is told with the line of the firmware itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,25 +128,29 @@ class Core:
 
     def run(self, kernel: Kernel, *arguments: Row | int) -> Work:
         """Run a kernel on rows and ints. Yield the result: the cycles are charged then, and you get its value."""
-        if self._unclaimed is not None:
-            raise FirmwareError(f"core {self.name}: core.run(...) must be yielded, or its cycles are lost{self._place()}")
+        self._check_claimed()
         work = self._unclaimed = self._calls.run(kernel, arguments)
         return work
 
-    @contextmanager
+    @contextlib.contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Charge everything inside to the row `name` of the budget."""
         if name not in self._stages:
             raise FirmwareError(f"stage must be one of {', '.join(self._stages)}, not {name!r}")
         before = self._calls.stage
         self._accounts.enter(name)
-        self._account, self._calls.stage = self._accounts.now, name
+        self._account = self._accounts.now
+        self._calls.enter(name)
         yield
         self._accounts.enter(before)
-        self._account, self._calls.stage = self._accounts.now, before
+        self._account = self._accounts.now
+        self._calls.enter(before)
 
     def next_frame(self) -> Generator[Any, Any, Frame | None]:
         """Finish the current frame and wait for the next picture; None when the recording is over."""
+        if self._calls.stage != REST:
+            raise FirmwareError(f"next_frame must be called outside of stages, not in {self._calls.stage!r}")
+        self._check_claimed()
         yield from self._sync()
         self._close_frame()
         pair = yield from self._blocked(self._capture.claim(self.name), "the next picture")
@@ -154,7 +165,7 @@ class Core:
 
     def publish(self, **results: int) -> None:
         """Add numbers to the record of the current frame."""
-        self._results.update({f"{name}_{self.name}": int(value) for name, value in results.items()})
+        self._results.update({f"{name}_{self.name}": index(value) for name, value in results.items()})
 
     def post(self, name: str) -> Generator[Any, Any, None]:
         """Add one to the semaphore `name`, in L2."""
@@ -176,14 +187,14 @@ class Core:
         """The core's own clock, in ticks: the simulated time or later."""
         return self._cclk * self._cclk_ticks
 
-    @property
-    def is_ahead(self) -> bool:
-        """Whether the core's clock is ahead of the simulated time."""
-        return self._cclk * self._cclk_ticks > self._env.tick
+    def catch_up(self) -> simpy.Event | None:
+        """Return the event at which the simulated time reaches the core's clock; None when it has."""
+        ahead_ticks = self._cclk * self._cclk_ticks - self._env.tick
+        return self._env.after(ahead_ticks) if ahead_ticks > 0 else None
 
-    def catch_up(self) -> simpy.Event:
-        """Return the event at which the simulated time reaches the core's clock."""
-        return self._env.timeout(self._cclk * self._cclk_ticks - self._env.tick)
+    def has(self, transfer: Transfer) -> bool:
+        """Whether `transfer` is done by the core's clock."""
+        return transfer.end is not None and transfer.end <= self._cclk * self._cclk_ticks
 
     def wait_transfer(self, transfer: Transfer, reason: StallReason) -> Generator[Any, Any, None]:
         """Stall for `reason` until `transfer` is done."""
@@ -203,13 +214,17 @@ class Core:
     def play(self, main: Main) -> Generator[Any, Any, None]:
         """Run the firmware's main loop: the process of this core."""
         self._main = task = main(self)
+        if not isinstance(task, Generator):
+            raise FirmwareError(f"core {self.name}: the main loop must be a generator function, not {main!r}")
         value = None
         while True:
             try:
                 item = task.send(value)
             except StopIteration:
                 break
-            if type(item) is Work:
+            except Exception as error:
+                raise self._told(error) from error
+            if type(item) is Work and item is self._unclaimed:
                 self._unclaimed = None
                 self._cclk += item.issue_cclk
                 self._account.issue_cclk += item.issue_cclk
@@ -220,8 +235,10 @@ class Core:
                 value = yield item
             else:
                 raise FirmwareError(
-                    f"core {self.name}: firmware must yield core.run(...) or `yield from` a wait, not {item!r}{self._place()}"
+                    f"core {self.name}: firmware must yield each core.run(...) once, or `yield from` a wait, "
+                    f"not {item!r}{self._place()}"
                 )
+        self._check_claimed()
         yield from self._sync()
         self._close_frame()
         self._main = None
@@ -245,14 +262,29 @@ class Core:
         generator: Any = self._main
         while generator is not None and getattr(generator, "gi_frame", None) is not None:
             code = generator.gi_frame.f_code
-            if "bfsim/machine" not in code.co_filename.replace("\\", "/"):
+            if not code.co_filename.startswith(NOT_FIRMWARE):
                 place = f" ({code.co_filename}:{generator.gi_frame.f_lineno})"
             generator = generator.gi_yieldfrom
         return place
 
+    def _told(self, error: Exception) -> BfsimError:
+        """Return what went wrong in the firmware, with its line there."""
+        calls = traceback.extract_tb(error.__traceback__)
+        places = [
+            f"{each.filename}:{each.lineno}" for each in calls if not each.filename.startswith(NOT_FIRMWARE)
+        ]
+        place = f" ({places[-1]})" if places else ""
+        if isinstance(error, BfsimError):
+            return type(error)(f"{error}{place}")
+        return FirmwareError(f"core {self.name}: firmware failed with {type(error).__name__}: {error}{place}")
+
+    def _check_claimed(self) -> None:
+        if self._unclaimed is not None:
+            raise FirmwareError(f"core {self.name}: core.run(...) must be yielded, or its cycles are lost")
+
     def _sync(self) -> Generator[Any, Any, None]:
-        if self.is_ahead:
-            yield self.catch_up()
+        if late := self.catch_up():
+            yield late
 
     def _stall(self, reason: StallReason, cclk: int) -> None:
         self._cclk += cclk
@@ -301,7 +333,9 @@ class Core:
         cycles = self._accounts.close(self._cclk)
         self._account = self._accounts.now
         self.finished.append(
-            FinishedFrame(index=self._frame.index, full_at_cclk=self._full_at_cclk, cycles=cycles, results=self._results)
+            FinishedFrame(
+                index=self._frame.index, full_at_cclk=self._full_at_cclk, cycles=cycles, results=self._results
+            )
         )
         self._frame, self._results = None, {}
         self._on_finished()

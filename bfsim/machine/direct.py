@@ -9,19 +9,18 @@ from __future__ import annotations
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel.followers import Access
 from bfsim.machine.ebiu import Ebiu
+from bfsim.machine.memories import WORD_BYTES
 from bfsim.machine.traffic import Traffic
 from bfsim.trace import StallReason
 
-WORD_BYTES = 4  # an uncached access occupies a 32-bit bus cycle, whatever its width
-
 
 class DirectAccess:
-    """Costs of one core's accesses outside L1."""
+    """Costs of one core's accesses outside L1. Each occupies a 32-bit bus cycle, whatever its width."""
 
     def __init__(self, core: str, board: BoardSpec, ebiu: Ebiu, traffic: Traffic) -> None:
-        self._master = f"core {core}"
         self._ebiu = ebiu
-        self._traffic = traffic
+        self._l2 = traffic.account("L2", f"core {core}")
+        self._sdram = traffic.account("SDRAM", f"core {core}")
         self._ticks = board.clocks.cclk_ticks, board.clocks.sclk_ticks
         chip, sdram = board.chip, board.sdram
         self._l2_stall_cclk = chip.l2_read_cclk - 1  # the access's own issue cycle is counted already
@@ -42,12 +41,12 @@ class DirectAccess:
             found.append((StallReason.L2_LATENCY, accesses[Access.L2_READ] * self._l2_stall_cclk))
         reasons = (StallReason.SDRAM_PAGE_HIT, StallReason.SDRAM_PAGE_MISS, StallReason.SDRAM_PAGE_CONFLICT)
         reads = accesses[Access.PAGE_HIT_READ : Access.PAGE_HIT_WRITE]
-        found += [(reason, n * each) for reason, n, each in zip(reasons, reads, self._read_cclk, strict=True) if n]
-        l2_reads, l2_writes = accesses[Access.L2_READ], accesses[Access.L2_WRITE]
-        for count, write in ((l2_reads, False), (l2_writes, True)):
-            if count:
-                busy_ticks = count * self._ticks[0]
-                self._traffic.add("L2", self._master, count * WORD_BYTES, write, (0, 0, 0), busy_ticks)
+        found += [
+            (reason, n * each) for reason, n, each in zip(reasons, reads, self._read_cclk, strict=True) if n
+        ]
+        for access, write in ((Access.L2_READ, False), (Access.L2_WRITE, True)):
+            count = accesses[access]
+            self._l2.add(count * WORD_BYTES, write, 0, 0, 0, count * self._ticks[0])
         return found
 
     def uses_bus(self, accesses: list[int]) -> bool:
@@ -65,10 +64,10 @@ class DirectAccess:
             hits, misses, conflicts = accesses[first : first + 3]
             sclk = sum(n * each for n, each in zip((hits, misses, conflicts), bus_sclk, strict=True))
             nbytes = (hits + misses + conflicts) * WORD_BYTES
-            if nbytes:
-                self._traffic.add("SDRAM", self._master, nbytes, write, (hits, misses, conflicts), sclk * sclk_ticks)
+            self._sdram.add(nbytes, write, hits, misses, conflicts, sclk * sclk_ticks)
             total_sclk += sclk
         # the call held the bus while it ran, so only what other masters still had to do then delays it
-        start = self._ebiu.hold(now - total_sclk * sclk_ticks, total_sclk)
+        begin = (now // sclk_ticks - total_sclk) * sclk_ticks
+        start = self._ebiu.hold(begin, total_sclk)
         waited = max(0, start + total_sclk * sclk_ticks - now)
         return -(-waited // cclk_ticks)

@@ -1,6 +1,7 @@
 """MDMA: a memory DMA stream copies rows between memories while the cores compute, one after the other.
 
-A copy's end is known as soon as it starts, so the end needs no event: whoever waits for it reads `end`.
+A copy's end is known as soon as it starts, so the end needs no event: whoever waits for it reads `end`. For that
+it asks for the bus when it starts, for the time after its start-up; who asks in between comes after it.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from bfsim.clocks import Clocks
 from bfsim.machine.ebiu import BurstRate, Ebiu
 from bfsim.machine.memories import Row
 from bfsim.machine.simulation import Simulation
+from bfsim.machine.traffic import Account
 
 
 class Transfer:
@@ -33,12 +35,13 @@ class Transfer:
 class MdmaStream:
     """One memory DMA stream with its queue of copies."""
 
-    def __init__(self, env: Simulation, name: str, chip: ChipSpec, clocks: Clocks, ebiu: Ebiu) -> None:
+    def __init__(self, env: Simulation, chip: ChipSpec, clocks: Clocks, ebiu: Ebiu, account: Account) -> None:
+        """`account`: what the stream moves to and from SDRAM."""
         self._env = env
-        self.name = name
+        self._account = account
         self._read, self._write = BurstRate(chip.mdma_read_sclk), BurstRate(chip.mdma_write_sclk)
+        self._sclk_ticks = clocks.sclk_ticks
         self._startup_ticks = chip.mdma_startup_sclk * clocks.sclk_ticks
-        self._clocks = clocks
         self._ebiu = ebiu
         self._queue: deque[Transfer] = deque()
         self._free_at = 0
@@ -68,12 +71,12 @@ class MdmaStream:
 
     def _start(self, transfer: Transfer, now: int) -> None:
         source, destination = transfer.source, transfer.destination
-        destination.array[:] = source.array
+        destination.octets[:] = source.octets
         ready = now + self._startup_ticks
         if source.pages:
-            ready = self._ebiu.burst(self.name, ready, source, self._read, write=False)
+            ready = self._ebiu.burst(self._account, ready, source, self._read, write=False)
         if destination.pages:
-            ready = self._ebiu.burst(self.name, ready, destination, self._write, write=True)
+            ready = self._ebiu.burst(self._account, ready, destination, self._write, write=True)
         if not source.pages and not destination.pages:
             ready += self._on_chip_ticks(source)
         self._free_at = transfer.end = ready
@@ -82,4 +85,4 @@ class MdmaStream:
 
     def _on_chip_ticks(self, row: Row) -> int:
         """Between L1 and L2 the stream moves a 32-bit word per SCLK, without the EBIU."""
-        return self._write.sclk(row.words) * self._clocks.sclk_ticks
+        return self._write[row.words] * self._sclk_ticks

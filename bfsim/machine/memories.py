@@ -12,7 +12,6 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.linker import Placement
 from bfsim.machine.program import Buffer
 
-
 WORD_BYTES = 4  # DMA moves 32-bit words between memories
 
 
@@ -20,18 +19,24 @@ class Row:
     """One row of a buffer where the linker put it. A row is the unit of DMA and the argument of kernels.
 
     `pages` splits it at SDRAM page borders: (bank, page, words) of each piece; empty outside SDRAM.
-    `words` are the 32-bit words that a DMA moves.
+    Kernels see its elements in `array`, DMA its bytes in `octets`; `words` are the 32-bit words that a DMA moves.
     """
 
-    __slots__ = ("address", "array", "buffer", "memory", "nbytes", "pages", "words")
+    __slots__ = ("address", "array", "buffer", "memory", "nbytes", "octets", "pages", "words")
 
     def __init__(
-        self, buffer: str, memory: str, address: int, array: NDArray[Any], pages: tuple[tuple[int, int, int], ...]
+        self,
+        buffer: str,
+        memory: str,
+        address: int,
+        array: NDArray[Any],
+        pages: tuple[tuple[int, int, int], ...],
     ) -> None:
         self.buffer = buffer
         self.memory = memory
         self.address = address
         self.array = array
+        self.octets = array.view(np.uint8)
         self.nbytes: int = array.nbytes
         self.pages = pages
         self.words = sum(words for _, _, words in pages) or -(-self.nbytes // WORD_BYTES)
@@ -45,19 +50,23 @@ class Memories:
 
     def __init__(self, board: BoardSpec) -> None:
         self._board = board
-        self._bytes = {each.name: np.zeros(each.nbytes, np.uint8) for each in board.chip.regions}
+        self._sizes = {each.name: each.nbytes for each in board.chip.regions}
+        self._bytes: dict[str, NDArray[np.uint8]] = {}
 
     def host(self, memory: str) -> NDArray[np.uint8]:
-        """Return the bytes that stand for `memory`."""
+        """Return the bytes that stand for `memory`, zeros at the first time."""
+        if memory not in self._bytes:
+            self._bytes[memory] = np.zeros(self._sizes[memory], np.uint8)
         return self._bytes[memory]
 
     def place(self, buffer: Buffer, placement: Placement) -> tuple[Row, ...]:
         """Lay `buffer` out where the linker placed it, with its initial contents, and return its rows."""
         region = region_of(placement.address, buffer.nbytes, self._board.chip.regions)
         offset = placement.address - region.start
-        view = self._bytes[region.name][offset : offset + buffer.nbytes].view(buffer.element.dtype)
+        view = self.host(region.name)[offset : offset + buffer.nbytes].view(buffer.element.dtype)
         grid = view.reshape(buffer.rows, buffer.columns)
-        grid[:] = buffer.contents()
+        if buffer.values is not None:
+            grid[:] = np.reshape(buffer.values, grid.shape)
         stride = buffer.columns * buffer.element.nbytes
         return tuple(
             Row(

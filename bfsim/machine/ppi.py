@@ -14,20 +14,25 @@ from bfsim.clocks import Clocks, PeriodicEdges
 from bfsim.machine.ebiu import BurstRate, Ebiu
 from bfsim.machine.memories import Row
 from bfsim.machine.simulation import Simulation
+from bfsim.machine.traffic import Account
 
 
 class Ppi:
     """One parallel peripheral interface with the camera on it."""
 
     def __init__(
-        self, env: Simulation, name: str, chip: ChipSpec, clocks: Clocks, mode: SensorMode, ebiu: Ebiu
+        self, env: Simulation, chip: ChipSpec, clocks: Clocks, mode: SensorMode, ebiu: Ebiu, account: Account
     ) -> None:
-        self.name = name
+        """`account`: what it writes to SDRAM."""
+        self._account = account
         self._env = env
         self._rate = BurstRate(chip.ppi_word_sclk)
         self._ebiu = ebiu
-        self._lines = PeriodicEdges.of(clocks, mode.ppi_clk_hz, every=mode.line_clocks)
-        self.frame_ticks = self._lines.after(mode.frame_lines)
+        lines = PeriodicEdges.of(clocks, mode.ppi_clk_hz, every=mode.line_clocks)
+        self._line_ends = [lines.after(number + 1) for number in range(mode.height_px)]
+        self.picture_ticks = self._line_ends[-1]
+        """Ticks from the start of a picture to the end of its last line."""
+        self.frame_ticks = lines.after(mode.frame_lines)
         """Ticks from one picture's first line to the next one's, vertical blanking included."""
 
     def receive(
@@ -35,8 +40,8 @@ class Ppi:
     ) -> Generator[simpy.Event, Any, None]:
         """Write `picture` (height, 2 · width) to `rows`, line n at the end of its time; its first line begins at `start`."""
         env = self._env
-        for number, row in enumerate(rows):
-            yield env.timeout(start + self._lines.after(number + 1) - env.tick)
-            row.array[:] = picture[number]
+        for row, line, end in zip(rows, picture, self._line_ends, strict=True):
+            yield env.after(start + end - env.tick)
+            row.octets[:] = line
             if row.pages:
-                self._ebiu.burst(self.name, env.tick, row, self._rate, write=True)
+                self._ebiu.burst(self._account, env.tick, row, self._rate, write=True)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bfsim.errors import FirmwareError
 from bfsim.kernel.types import IntType
 from bfsim.trace import BudgetRow
 
@@ -40,17 +41,30 @@ class Buffer:
     rows: int = 1
     values: NDArray[Any] | None = field(default=None, compare=False)
 
+    def __post_init__(self) -> None:
+        if self.rows < 1 or self.columns < 1:
+            raise FirmwareError(
+                f"buffer {self.name} must have at least one row and one column, not {self.rows} and {self.columns}"
+            )
+        if self.values is not None:
+            self._check_values(np.asarray(self.values))
+
+    def _check_values(self, values: NDArray[Any]) -> None:
+        low, high = self.element.bounds
+        if values.size != self.rows * self.columns:
+            raise FirmwareError(
+                f"buffer {self.name} must have {self.rows * self.columns} values, not {values.size}"
+            )
+        if values.dtype.kind not in "iu" or values.min() < low or values.max() > high:
+            raise FirmwareError(
+                f"values of buffer {self.name} must be integers in {low}..{high}, "
+                f"not {values.dtype} in {values.min()}..{values.max()}"
+            )
+
     @property
     def nbytes(self) -> int:
         """Size in bytes."""
         return self.rows * self.columns * self.element.nbytes
-
-    def contents(self) -> NDArray[Any]:
-        """Return the initial values, of shape (rows, columns)."""
-        shape = (self.rows, self.columns)
-        if self.values is None:
-            return np.zeros(shape, self.element.dtype)
-        return np.asarray(self.values, self.element.dtype).reshape(shape)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

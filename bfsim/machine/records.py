@@ -50,21 +50,24 @@ def _add(group: CallGroup, tallies: dict[tuple[str, str], _Tally]) -> None:
     top = group.kernel.function
     functions = {each.symbol: each for each in (*top.callees(), top)}
     memory_of = _memories_of_arrays(group.kernel, group.memories)
-    entries: set[str] = set()
+    entered: set[str] = set()
+    executions: dict[tuple[str, int], int] = {}
     for counter, events in zip(group.code.counters, group.totals.tolist(), strict=False):
-        key = (group.stage, counter.routine)
-        tally = tallies.setdefault(key, _Tally(functions[counter.routine]))
-        if counter.value is None and counter.routine not in entries:
-            entries.add(counter.routine)  # a routine's first block runs once per call
+        tally = tallies.setdefault((group.stage, counter.routine), _Tally(functions[counter.routine]))
+        if counter.value is None and counter.routine not in entered:
+            entered.add(counter.routine)  # a routine's first block runs once per call
             tally.calls += events
         for line, cclk in counter.line_cclk:
             tally.issue_cclk[line] += events * cclk
             if counter.value is None:
-                tally.executions[line] = max(tally.executions[line], events)
+                place = (counter.routine, line)
+                executions[place] = max(executions.get(place, 0), events)
         for array, reads, writes in counter.accesses:
             sums = tally.accesses[memory_of[counter.routine, array]]
             sums[0] += events * reads
             sums[1] += events * writes
+    for (routine, line), events in executions.items():
+        tallies[group.stage, routine].executions[line] += events
 
 
 def _memories_of_arrays(kernel: Kernel, memories: tuple[str, ...]) -> dict[tuple[str, str], str]:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 
 def _check(rows: Sequence[Row], image: Sequence[Row]) -> None:
+    if not image:
+        raise FirmwareError(f"the picture for ring {rows[0].buffer} must have at least one line, not none")
     if len(rows) < 2:
         raise FirmwareError(f"a ring needs at least 2 rows, not the {len(rows)} of {rows[0].buffer}")
     for each in (rows[0], image[0]):
@@ -44,17 +46,20 @@ class InputRing:
 
     def line(self) -> Generator[Any, Any, Row]:
         """Wait for the next line and return its row. It stays valid for as many calls as the ring has rows, less one."""
-        core = self._core
-        if core.is_ahead:
-            yield core.catch_up()
-        number = self._taken
+        core, transfers, number = self._core, self._transfers, self._taken
+        if late := core.catch_up():
+            yield late
         if number >= len(self._image):
-            raise FirmwareError(f"the ring of {self._rows[0].buffer} has no line {number}: the picture has {len(self._image)}")
+            raise FirmwareError(
+                f"the ring of {self._rows[0].buffer} has no line {number}: the picture has {len(self._image)}"
+            )
         self._taken += 1
         # one line ahead: its row is the one that the core gave up with this call
-        for ahead in range(len(self._transfers), min(len(self._image), number + 2)):
-            self._transfers.append(self._stream.copy(self._image[ahead], self._row(ahead), core.now_ticks))
-        yield from core.wait_transfer(self._transfers[number], StallReason.RING_EMPTY)
+        while len(transfers) < min(len(self._image), number + 2):
+            ahead = len(transfers)
+            transfers.append(self._stream.copy(self._image[ahead], self._row(ahead), core.now_ticks))
+        if not core.has(transfer := transfers[number]):
+            yield from core.wait_transfer(transfer, StallReason.RING_EMPTY)
         return self._row(number)
 
     def __getitem__(self, number: int) -> Row:
@@ -83,16 +88,18 @@ class OutputRing:
 
     def row(self) -> Generator[Any, Any, Row]:
         """Wait until a row is free and return it, to be written and then sent."""
-        number = len(self._transfers)
-        if number >= len(self._rows):
-            yield from self._core.wait_transfer(self._transfers[number - len(self._rows)], StallReason.RING_FULL)
+        number, depth = len(self._transfers), len(self._rows)
+        if number >= depth and not self._core.has(transfer := self._transfers[number - depth]):
+            yield from self._core.wait_transfer(transfer, StallReason.RING_FULL)
         return self._rows[number % len(self._rows)]
 
     def send(self) -> None:
         """Start the DMA of the row that was written, to the next line of the picture."""
         number = len(self._transfers)
         if number >= len(self._image):
-            raise FirmwareError(f"the picture {self._image[0].buffer} has {len(self._image)} lines; one more was sent")
+            raise FirmwareError(
+                f"the picture {self._image[0].buffer} has {len(self._image)} lines; one more was sent"
+            )
         row = self._rows[number % len(self._rows)]
         self._transfers.append(self._stream.copy(row, self._image[number], self._core.now_ticks))
 

@@ -16,24 +16,22 @@ class Sdram:
         self.open_pages: list[int] = [-1] * spec.banks
         """Page number that each bank has open, -1 when closed."""
 
-    def access(self, pages: tuple[tuple[int, int, int], ...]) -> tuple[int, int, int]:
-        """Open `pages` ((bank, page, words) each), one after the other; return (hits, misses, conflicts).
+    def open(self, pages: tuple[tuple[int, int, int], ...]) -> tuple[int, int]:
+        """Open `pages` ((bank, page, words) each), one after the other; return (misses, conflicts).
 
-        Each word of a page after its first is a hit.
+        The first word of a page that was not open meets a miss or a conflict; every other word is a hit.
         """
-        hits = misses = conflicts = 0
+        misses = conflicts = 0
         open_pages = self.open_pages
-        for bank, page, words in pages:
+        for bank, page, _ in pages:
             before = open_pages[bank]
-            hits += words
             if before != page:
-                hits -= 1
+                open_pages[bank] = page
                 if before < 0:
                     misses += 1
                 else:
                     conflicts += 1
-                open_pages[bank] = page
-        return hits, misses, conflicts
+        return misses, conflicts
 
     def extra_sclk(self, misses: int, conflicts: int) -> int:
         """Cycles that opening pages adds to a burst."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import cast
 
 import simpy
 
@@ -14,11 +13,15 @@ class Simulation(simpy.Environment):
     @property
     def tick(self) -> int:
         """Current time in ticks."""
-        return cast(int, self._now)
+        return self._now  # type: ignore[return-value]  # only whole delays are ever scheduled
+
+    def after(self, ticks: int) -> simpy.Timeout:
+        """Return the event that happens in so many ticks (as `timeout`, without its detour through a descriptor)."""
+        return simpy.Timeout(self, ticks)
 
     def call_at(self, tick: int, function: Callable[[simpy.Event], None]) -> None:
         """Call `function` at `tick`, which must not have passed."""
-        callbacks = self.timeout(tick - self.tick).callbacks
+        callbacks = simpy.Timeout(self, tick - self.tick).callbacks
         assert callbacks is not None
         callbacks.append(function)
 

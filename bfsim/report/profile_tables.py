@@ -39,6 +39,8 @@ def _code_table(profile: Profile, top: int) -> Table:
         for kernel in stage.kernels:
             _add_kernel(table, kernel, dearest, profile.issue_cclk)
         table.add_section()
+    # where room is short the source text gives way, never a number
+    table.expand, table.columns[0].ratio = True, 1
     return table
 
 

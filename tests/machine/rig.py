@@ -1,0 +1,184 @@
+"""A test rig: firmware of a few lines on a whole board with small pictures, or single devices on a bench."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.api import BudgetRow, Buffer, Core, Firmware, Frame, FrameSize, i32, u8, u16
+from bfsim.chip.boards import board_named
+from bfsim.kernel import Kernel
+from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
+from bfsim.machine.board import Board, Outcome, symbols_of
+from bfsim.machine.capture import Feed
+from bfsim.machine.ebiu import Ebiu
+from bfsim.machine.mdma import MdmaStream
+from bfsim.machine.memories import Memories, Row
+from bfsim.machine.program import Main
+from bfsim.machine.sdram import Sdram
+from bfsim.machine.simulation import Simulation
+from bfsim.machine.traffic import Traffic
+from bfsim.run import THESIS_LDF
+from bfsim.trace import CoreFrame, FrameRecord, StageCost
+
+SIZE = FrameSize(16, 8)
+STAGES = ("Work", "More work")
+WORDS = 1024  # of the buffers in L2 and SDRAM
+PERIOD_NS = 100_000_000
+
+Play = Generator[Any, Any, None]
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A stereo frame as the machine wants it."""
+
+    index: int
+    left: NDArray[np.uint8]
+    right: NDArray[np.uint8]
+    left_ns: int
+    right_ns: int
+
+
+def noise(count: int, size: FrameSize = SIZE, period_ns: int = PERIOD_NS) -> Iterator[Picture]:
+    """Return `count` stereo frames of random bytes, the same every time."""
+    rng = np.random.default_rng(561)
+    for index in range(count):
+        left, right = rng.integers(0, 256, (2, size.height_px, 2 * size.width_px), np.uint8)
+        yield Picture(index, left, right, index * period_ns, index * period_ns)
+
+
+def buffers(size: FrameSize) -> dict[str, Sequence[Buffer]]:
+    """Return one buffer of every kind for each core, and two that the cores share."""
+    shared = (
+        Buffer("in_l2", i32, WORDS, "l2_shared"),
+        Buffer("shared_image", u8, 2 * size.width_px, "l2_shared", rows=size.height_px),
+    )
+    return {"A": _core_buffers(size, 0), "B": _core_buffers(size, 1), "shared": shared}
+
+
+def _core_buffers(size: FrameSize, number: int) -> Sequence[Buffer]:
+    line, height = 2 * size.width_px, size.height_px
+    camera_bank, bank = f"sdram_bank{number}", f"sdram_bank{number + 2}"
+    return (
+        Buffer("camera", u8, line, camera_bank, rows=3 * height),
+        Buffer("image", u8, line, bank, rows=height),
+        Buffer("wide_image", u16, size.width_px, bank, rows=height),
+        Buffer("in_sdram", i32, WORDS, bank),
+        Buffer("in_ring", u8, line, "L1_data_a", rows=3),
+        Buffer("wide_ring", u16, size.width_px, "L1_data_a", rows=3),
+        Buffer("short_ring", u8, size.width_px, "L1_data_a", rows=3),
+        Buffer("single_row", u8, line, "L1_data_a"),
+        Buffer("words", i32, 16, "L1_data_a"),
+        Buffer("out_ring", u8, line, "L1_data_b", rows=2),
+        Buffer("scratch_ring", u8, line, "L1_scratch", rows=3),
+    )
+
+
+@cache
+def thesis_ldf() -> LinkerScript:
+    """Return the thesis's placement, read once."""
+    return parse_ldf(THESIS_LDF)
+
+
+def see_all(core: Core) -> Play:
+    """The shortest main loop: take every picture and do nothing with it."""
+    while (yield from core.next_frame()) is not None:
+        pass
+
+
+def every_frame(body: Callable[..., Generator[Any, Any, Any]]) -> Main:
+    """Make a main loop of what it does with each frame: `body(core, frame)`."""
+
+    def main(core: Core) -> Play:
+        while (frame := (yield from core.next_frame())) is not None:
+            yield from body(core, frame)
+
+    return main
+
+
+def board_of(
+    program: Firmware, size: FrameSize = SIZE, *, board: str = "cm-bf561", feed: Feed = Feed.DEMAND
+) -> Board:
+    """Link `program` with the thesis's LDF and put it on a board."""
+    spec = board_named(board)
+    link_map = link(thesis_ldf(), symbols_of(program, size), spec.chip.regions)
+    return Board(spec, program, size, link_map, feed=feed)
+
+
+def load(main_a: Main, main_b: Main = see_all, size: FrameSize = SIZE, **how: Any) -> Board:
+    """Put firmware with these main loops on a board."""
+    firmware = Firmware(
+        mains={"A": main_a, "B": main_b},
+        buffers=buffers,
+        camera="camera",
+        rows=tuple(BudgetRow(stage=each, thesis_ms=None) for each in STAGES),
+    )
+    return board_of(firmware, size, **how)
+
+
+def run(main_a: Main, main_b: Main = see_all, *, frames: int | Iterable[Picture] = 1, **how: Any) -> Outcome:
+    """Run firmware with these main loops on `frames`, or on so many of them."""
+    board = load(main_a, main_b, **how)
+    pictures = noise(frames, board.size) if isinstance(frames, int) else frames
+    return board.run(iter(pictures))
+
+
+def cycles_of(kernel: Kernel, *arguments: int) -> int:
+    """Return the issue cycles of a kernel that needs no memory, as a board charges them."""
+    costs = []
+
+    def call(core: Core, _frame: Frame) -> Play:
+        work = core.run(kernel, *arguments)
+        costs.append(work.issue_cclk)
+        yield work
+
+    run(every_frame(call))
+    return costs[0]
+
+
+def of_core(frame: FrameRecord, core: str) -> CoreFrame:
+    """Return one core's record of a frame."""
+    (found,) = [each for each in frame.cores if each.core == core]
+    return found
+
+
+def stage_of(frame: FrameRecord, stage: str, core: str = "A") -> StageCost:
+    """Return what `stage` cost one core."""
+    (found,) = [each for each in of_core(frame, core).stages if each.stage == stage]
+    return found
+
+
+class Bench:
+    """The bus, the SDRAM and one MDMA stream of a board, without cores."""
+
+    def __init__(self, board: str = "cm-bf561") -> None:
+        self.spec = board_named(board)
+        self.env = Simulation()
+        self.sdram = Sdram(self.spec.sdram)
+        self.traffic = Traffic()
+        self.account = self.traffic.account("SDRAM", "bench")
+        self.ebiu = Ebiu(self.spec.clocks, self.sdram)
+        self.stream = self.new_stream()
+        self._memories = Memories(self.spec)
+
+    def new_stream(self) -> MdmaStream:
+        """Return another MDMA stream."""
+        return MdmaStream(self.env, self.spec.chip, self.spec.clocks, self.ebiu, self.account)
+
+    def sclk(self, cycles: int) -> int:
+        """Return SCLK cycles in ticks."""
+        return cycles * self.spec.clocks.sclk_ticks
+
+    def row(self, address: int, nbytes: int) -> Row:
+        """Return a row of `nbytes` at any address of the chip's memory map, full of its own noise."""
+        symbol = Symbol("row", "anywhere", nbytes)
+        place = Placement(symbol=symbol, segment="", output_section="", address=address, line=0)
+        (row,) = self._memories.place(Buffer("row", u8, nbytes, "anywhere"), place)
+        row.octets[:] = np.random.default_rng(address).integers(0, 256, nbytes, np.uint8)
+        return row

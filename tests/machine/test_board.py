@@ -1,0 +1,276 @@
+"""A whole board: what a run reports, how it ends, and how much the simulation has to do for it."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Generator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bfsim.api import Buffer, Core, Firmware, Frame, FrameSize, i16, u8
+from bfsim.chip.boards import BOARDS, board_named
+from bfsim.errors import ConfigError, FirmwareError, LinkError
+from bfsim.linker import LinkMap
+from bfsim.machine.board import Board, Outcome
+from bfsim.machine.capture import Feed
+from bfsim.trace import FrameRecord
+from tests.machine.kernels import copy, spin
+from tests.machine.rig import (
+    SIZE,
+    STAGES,
+    Picture,
+    Play,
+    board_of,
+    buffers,
+    cycles_of,
+    every_frame,
+    load,
+    noise,
+    of_core,
+    run,
+    see_all,
+)
+
+
+def in_and_out(core: Core, frame: Frame) -> Play:
+    """A stage as firmware has them: lines in, a kernel a line, lines out."""
+    with core.stage(STAGES[0]):
+        ring, out = core.input_ring(frame.rows, "in_ring"), core.output_ring("out_ring", core.rows("image"))
+        for _ in range(frame.height):
+            source, target = (yield from ring.line()), (yield from out.row())
+            yield core.run(copy, source, target)
+            out.send()
+        yield from out.flush()
+
+
+def test_frames_are_reported_as_soon_as_both_cores_are_done() -> None:
+    """Core A is fast; a frame is handed out when B has finished it, in order, and all are in the outcome."""
+    heard: list[FrameRecord] = []
+
+    def slow(core: Core, frame: Frame) -> Play:
+        yield core.run(spin, 3_000_000)
+
+    board = load(see_all, every_frame(slow))
+    outcome = board.run(iter(noise(5)), heard.append)
+    assert tuple(heard) == outcome.frames
+    assert [each.index for each in heard] == [0, 1, 2, 3, 4]
+    assert [each.core for frame in heard for each in frame.cores] == ["A", "B"] * 5
+    assert all(of_core(each, "B").end_cclk == each.result_cclk for each in heard)
+
+
+def test_the_slower_core_makes_the_frame_late_and_the_faster_one_runs_ahead() -> None:
+    """A takes the next picture while B is still at this one: their frames overlap in time."""
+
+    def slow(core: Core, frame: Frame) -> Play:
+        yield core.run(spin, 3_000_000)
+
+    frames = run(see_all, every_frame(slow), frames=3).frames
+    assert of_core(frames[1], "A").end_cclk < of_core(frames[0], "B").end_cclk + cycles_of(spin, 3_000_000)
+
+
+def test_a_recording_at_its_own_pace_tells_what_was_missed() -> None:
+    """Work of more than 60 ms against a picture each 40: every frame is in one of the lists, in none twice."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        yield core.run(spin, 8_000_000)
+
+    assert cycles_of(spin, 8_000_000) > 36_000_000
+    outcome = run(every_frame(work), frames=noise(12, period_ns=40_000_000), feed=Feed.RECORDED)
+    delivered = [each.index for each in outcome.frames]
+    assert outcome.missed
+    assert sorted([*delivered, *outcome.missed]) == list(range(12))
+    assert delivered == sorted(delivered)
+
+
+@pytest.mark.parametrize("board", BOARDS)
+def test_traffic_adds_up(board: str) -> None:
+    """Both cameras, both streams of both cores: bytes in are bytes out, three frames long."""
+    outcome = run(every_frame(in_and_out), every_frame(in_and_out), frames=3, board=board)
+    nbytes = 3 * SIZE.height_px * 2 * SIZE.width_px
+    moved = {
+        each.master: (each.read_bytes, each.written_bytes)
+        for each in outcome.traffic
+        if each.memory == "SDRAM"
+    }
+    assert moved == {
+        "PPI0": (0, nbytes),
+        "PPI1": (0, nbytes),
+        "MDMA1 stream 0": (nbytes, 0),
+        "MDMA1 stream 1": (0, nbytes),
+        "MDMA2 stream 0": (nbytes, 0),
+        "MDMA2 stream 1": (0, nbytes),
+    }
+    last_cclk = outcome.frames[-1].result_cclk
+    assert sum(each.busy_cclk for each in outcome.traffic) <= last_cclk
+
+
+def test_events_are_a_few_per_line() -> None:
+    """SimPy carries lines, never pixels: per core and line the camera's, the DMA's and the core's own events."""
+    size = FrameSize(64, 48)
+    few, many = (
+        run(every_frame(in_and_out), every_frame(in_and_out), frames=n, size=size).events for n in (2, 12)
+    )
+    assert (many - few) / 10 <= 2 * (48 * 6 + 20)
+
+
+def test_events_do_not_grow_with_the_width() -> None:
+    """Twice the pixels in a line are no more events."""
+    narrow, wide = (run(every_frame(in_and_out), size=FrameSize(width, 24)).events for width in (32, 64))
+    assert wide <= narrow * 1.1
+
+
+class Interrupting:
+    """Firmware that is interrupted in a given frame, as if Ctrl-C was pressed then."""
+
+    def __init__(self, frame: int, how: Any) -> None:
+        self.frame = frame
+        self.how = how
+
+    def __call__(self, core: Core, frame: Frame) -> Generator[Any, Any, None]:
+        yield core.run(spin, 10)
+        if frame.index == self.frame:
+            self.how()
+        yield core.run(spin, 10)
+
+
+def raise_it() -> None:
+    """The exception that a kernel call or a generator sees."""
+    raise KeyboardInterrupt
+
+
+def press_it() -> None:
+    """The signal itself."""
+    signal.raise_signal(signal.SIGINT)
+
+
+@pytest.mark.parametrize("how", [raise_it, press_it])
+@pytest.mark.parametrize("core", ["A", "B"])
+def test_ctrl_c_reports_the_frames_done(core: str, how: Any) -> None:
+    """Interrupted in the middle of frame 3: frames 0 to 2 are there, complete, and the outcome says so."""
+    mains = [every_frame(Interrupting(3, how)), see_all]
+    outcome = run(*(mains if core == "A" else mains[::-1]), frames=10)
+    assert outcome.interrupted
+    assert [each.index for each in outcome.frames] == [0, 1, 2]
+
+
+def test_ctrl_c_while_the_recording_is_read_reports_the_frames_done() -> None:
+    """Reading takes most of a long run's time; it is interrupted there as well."""
+
+    def pressed() -> Any:
+        yield from noise(3)
+        raise KeyboardInterrupt
+
+    outcome = run(every_frame(in_and_out), frames=pressed())
+    assert outcome.interrupted
+    assert [each.index for each in outcome.frames] in ([0], [0, 1], [0, 1, 2])
+
+
+def test_a_run_to_the_end_is_not_interrupted() -> None:
+    """Nothing missed, nothing interrupted."""
+    outcome = run(see_all, frames=2)
+    assert not outcome.interrupted
+    assert outcome.missed == ()
+
+
+def test_two_boards_in_one_process_know_nothing_of_each_other() -> None:
+    """The second run has the numbers of the first: no state stays behind."""
+
+    def outcome() -> Outcome:
+        return replace(run(every_frame(in_and_out), every_frame(in_and_out), frames=2), kernels=())
+
+    assert outcome() == outcome()
+
+
+def firmware(**changes: Any) -> Firmware:
+    """Return firmware that sees every picture, changed as said."""
+    return replace(
+        Firmware(mains={"A": see_all, "B": see_all}, buffers=buffers, camera="camera", rows=()), **changes
+    )
+
+
+def camera_of(*camera: Buffer) -> Any:
+    """Make the buffers of firmware whose cores have this camera buffer only."""
+    return lambda size: {"A": camera, "B": camera}
+
+
+@pytest.mark.parametrize(
+    ("program", "message"),
+    [
+        (
+            firmware(camera="kamera"),
+            "camera buffer 'kamera' of each core must have a multiple of 8 rows of 32 bytes",
+        ),
+        (
+            firmware(buffers=camera_of(Buffer("camera", u8, 32, "L1_data_a", rows=7))),
+            "must have a multiple of 8 rows",
+        ),
+        (firmware(buffers=camera_of(Buffer("camera", u8, 30, "L1_data_a", rows=8))), "rows of 32 bytes"),
+        (firmware(buffers=lambda size: {"C": ()}), "buffers must belong to A, B, shared, not 'C'"),
+    ],
+)
+def test_firmware_that_does_not_fit_the_board_is_refused(program: Firmware, message: str) -> None:
+    """Before the first picture, with the name of what is wrong."""
+    with pytest.raises(FirmwareError, match=message):
+        board_of(program).run(iter(noise(1)))
+
+
+def test_a_camera_buffer_of_16_bit_elements_holds_the_same_bytes() -> None:
+    """DMA fills bytes: 16 elements of 16 bits are a line of 16 pixels."""
+    seen = []
+
+    def look(core: Core, frame: Frame) -> Play:
+        seen.append(np.stack([row.array for row in frame.rows]))
+        yield from ()
+
+    program = firmware(
+        buffers=camera_of(Buffer("camera", i16, 16, "L1_data_a", rows=8)),
+        mains={"A": every_frame(look), "B": see_all},
+    )
+    board_of(program).run(iter(noise(1)))
+    assert np.array_equal(seen[0], next(noise(1)).left.view(np.int16))
+
+
+def test_a_board_needs_every_buffer_placed() -> None:
+    """A link map of other firmware is told by the name of the symbol that it does not have."""
+    with pytest.raises(LinkError, match="linked for p0, not 'camera'"):
+        Board(board_named("cm-bf561"), firmware(), SIZE, LinkMap([], []))
+
+
+def test_values_of_a_buffer_are_there_at_the_start() -> None:
+    """Tables are part of the program's image; everything else is zero."""
+    table = np.arange(6, dtype=np.int16) - 3
+    seen = []
+
+    def look(core: Core, frame: Frame) -> Play:
+        seen.append([row.array.tolist() for row in core.rows("table")])
+        yield from ()
+
+    camera = Buffer("camera", u8, 32, "L1_data_a", rows=8)
+    program = firmware(
+        buffers=camera_of(camera, Buffer("table", i16, 3, "L1_data_b", rows=2, values=table)),
+        mains={"A": every_frame(look), "B": see_all},
+    )
+    board_of(program).run(iter(noise(1)))
+    assert seen == [[[-3, -2, -1], [0, 1, 2]]]
+
+
+def test_errors_of_the_recording_come_through() -> None:
+    """A frame that cannot be read ends the run with the reader's own words, not with an outcome."""
+
+    def torn() -> Any:
+        yield next(noise(1))
+        raise ConfigError("drive.mcap: chunk 3 must be whole, not torn")
+
+    with pytest.raises(ConfigError, match="chunk 3 must be whole"):
+        run(every_frame(in_and_out), frames=torn())
+
+
+def test_frames_keep_the_recording_s_own_numbers() -> None:
+    """A recording may be cut: what starts at frame 40 is reported as frame 40."""
+    frames = [
+        Picture(each.index + 40, each.left, each.right, each.left_ns, each.right_ns) for each in noise(2)
+    ]
+    assert [each.index for each in run(see_all, frames=frames).frames] == [40, 41]

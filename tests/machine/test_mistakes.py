@@ -1,0 +1,197 @@
+"""Mistakes in firmware: each ends the run with a message that names the line of the firmware."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bfsim.api import Buffer, Core, Frame, i8, u8
+from bfsim.errors import BfsimError, ConfigError, FirmwareError, KernelError
+from bfsim.run import simulate
+from tests.machine.kernels import first, spin
+from tests.machine.rig import Play, board_of, every_frame, load, noise, run, see_all
+
+
+def work_in_the_dark(core: Core, frame: Frame) -> Play:
+    """Forget one `yield`, after which other work comes."""
+    core.run(spin, 10)
+    yield core.run(spin, 10)
+
+
+def last_work_in_the_dark(core: Core, frame: Frame) -> Play:
+    """Forget the last `yield` of a frame."""
+    yield core.run(spin, 10)
+    core.run(spin, 10)
+
+
+def work_twice(core: Core, frame: Frame) -> Play:
+    """Charge the same work twice."""
+    work = core.run(spin, 10)
+    yield work
+    yield work
+
+
+def an_array_of_its_own(core: Core, frame: Frame) -> Play:
+    """Call a kernel with memory that no linker placed."""
+    yield core.run(first, np.zeros(4, np.uint8))  # type: ignore[arg-type]
+
+
+def a_list_of_rows(core: Core, frame: Frame) -> Play:
+    """Call a kernel with many rows where it takes one."""
+    yield core.run(first, list(frame.rows))  # type: ignore[arg-type]
+
+
+def unknown_buffer(core: Core, frame: Frame) -> Play:
+    """Mistype a buffer."""
+    yield core.run(first, core.array("camara"))
+
+
+def unknown_stage(core: Core, frame: Frame) -> Play:
+    """Mistype a stage."""
+    with core.stage("Wrok"):
+        yield core.run(spin, 1)
+
+
+def gone_line(core: Core, frame: Frame) -> Play:
+    """Use a line of a ring that is not there yet."""
+    ring = core.input_ring(frame.rows, "in_ring")
+    yield core.run(first, ring[0])
+
+
+def division(core: Core, frame: Frame) -> Play:
+    """Make an ordinary mistake in Python."""
+    yield core.run(spin, 1 // frame.index)
+
+
+def float_result(core: Core, frame: Frame) -> Play:
+    """Publish what is no integer."""
+    core.publish(share=0.5)
+    yield core.run(spin, 1)
+
+
+@pytest.mark.parametrize(
+    ("body", "kind", "message", "line"),
+    [
+        (
+            work_in_the_dark,
+            FirmwareError,
+            r"core A: core\.run\(\.\.\.\) must be yielded, or its cycles are lost",
+            3,
+        ),
+        (work_twice, FirmwareError, r"core A: firmware must yield each core\.run\(\.\.\.\) once", 4),
+        (an_array_of_its_own, KernelError, r"source must be a row of a placed buffer, not array\(", 2),
+        (a_list_of_rows, KernelError, r"source must be a row of a placed buffer, not \[<row of camera", 2),
+        (unknown_buffer, FirmwareError, "core A has no buffer 'camara'", 2),
+        (unknown_stage, FirmwareError, "stage must be one of Work, More work, not 'Wrok'", 2),
+        (gone_line, FirmwareError, "line 0 is not in ring in_ring", 3),
+        (division, FirmwareError, "core A: firmware failed with ZeroDivisionError: integer division", 2),
+        (float_result, FirmwareError, "core A: firmware failed with TypeError: 'float' object cannot be", 2),
+    ],
+)
+def test_the_message_ends_with_the_line_of_the_mistake(
+    body: Any, kind: type[BfsimError], message: str, line: int
+) -> None:
+    """What is wrong first, then file and line: of the innermost firmware, not of bfsim or a main loop around it."""
+    with pytest.raises(kind, match=message) as caught:
+        run(every_frame(body))
+    assert str(caught.value).endswith(f" ({__file__}:{body.__code__.co_firstlineno + line})")
+
+
+def test_the_last_work_of_a_frame_must_be_yielded_as_well() -> None:
+    """Nothing comes after it in the frame, so it is found when the next one is asked for."""
+    with pytest.raises(FirmwareError, match=r"core\.run\(\.\.\.\) must be yielded"):
+        run(every_frame(last_work_in_the_dark))
+
+
+def test_the_last_work_of_all_must_be_yielded_as_well() -> None:
+    """Nothing comes after it at all."""
+
+    def main(core: Core) -> Play:
+        yield from see_all(core)
+        core.run(spin, 10)
+
+    with pytest.raises(FirmwareError, match=r"core\.run\(\.\.\.\) must be yielded"):
+        run(main)
+
+
+def test_next_frame_in_a_stage_is_refused() -> None:
+    """The wait for a picture belongs to no stage, and a frame ends in none."""
+
+    def main(core: Core) -> Play:
+        with core.stage("Work"):
+            yield from see_all(core)
+
+    with pytest.raises(FirmwareError, match="next_frame must be called outside of stages, not in 'Work'"):
+        run(main)
+
+
+def test_a_core_that_leaves_early_is_told() -> None:
+    """B takes one of two frames and ends: A's second frame can never be whole, and that is no result."""
+
+    def once(core: Core) -> Play:
+        yield from core.next_frame()
+
+    with pytest.raises(FirmwareError, match="every core must take every frame, but only core A took frame 1"):
+        run(see_all, once, frames=2)
+
+
+def test_a_main_loop_without_a_yield_is_refused() -> None:
+    """A plain function is called and over."""
+    with pytest.raises(
+        FirmwareError, match="core A: the main loop must be a generator function, not <function"
+    ):
+        run(lambda core: None)  # type: ignore[arg-type,return-value]
+
+
+def test_a_core_without_a_main_loop_is_told() -> None:
+    """The chip has two cores; one that has nothing to do says so."""
+    board = load(see_all)
+    with pytest.raises(FirmwareError, match="firmware must have main loops for A, B, not for A"):
+        replace(board, firmware=replace(board.firmware, mains={"A": see_all}))
+
+
+def test_a_camera_in_the_scratchpad_is_refused() -> None:
+    """No DMA reaches the scratchpad."""
+    board = load(see_all)
+    program = replace(
+        board.firmware,
+        camera="scratch_ring",
+        buffers=lambda size: {
+            core: [Buffer("scratch_ring", u8, 32, "L1_scratch", rows=8)] for core in ("A", "B")
+        },
+    )
+    with pytest.raises(
+        FirmwareError, match="scratch_ring must be where DMA can reach it, not in COREA_SCRATCH"
+    ):
+        board_of(program).run(iter(noise(1)))
+
+
+@pytest.mark.parametrize(
+    ("what", "message"),
+    [
+        ({"columns": 0}, "buffer table must have at least one row and one column, not 1 and 0"),
+        ({"rows": -1}, "buffer table must have at least one row and one column, not -1 and 3"),
+        ({"values": np.arange(4)}, "buffer table must have 3 values, not 4"),
+        (
+            {"values": np.array([0, 1, 128])},
+            r"values of buffer table must be integers in -128\.\.127, not int64 in 0\.\.128",
+        ),
+        ({"values": np.array([0, -129, 0])}, r"not int64 in -129\.\.0"),
+        ({"values": np.array([0.5, 1, 2])}, r"not float64 in 0\.5\.\.2\.0"),
+    ],
+)
+def test_buffers_that_cannot_be_are_refused_where_they_are_made(what: dict[str, Any], message: str) -> None:
+    """A table that would be cut or wrapped is a mistake, not a table."""
+    with pytest.raises(FirmwareError, match=message):
+        Buffer(**{"name": "table", "element": i8, "columns": 3, "section": "L1_data_a"} | what)
+
+
+@pytest.mark.parametrize("frames", [0, -3])
+def test_a_run_of_no_frames_is_refused(frames: int) -> None:
+    """Nothing to run is a slip, not a wish for everything."""
+    with pytest.raises(ConfigError, match=f"frames must be at least 1, not {frames}"):
+        simulate(Path("any.mcap"), frames=frames)

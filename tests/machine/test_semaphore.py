@@ -1,0 +1,149 @@
+"""Semaphores: how the cores wait for each other, and what happens when that can never end."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from bfsim.api import Core, Frame
+from bfsim.chip.boards import board_named
+from bfsim.errors import DeadlockError
+from bfsim.machine.semaphore import Semaphore
+from bfsim.machine.simulation import Simulation
+from bfsim.trace import REST, StallReason
+from tests.machine.kernels import spin
+from tests.machine.rig import Play, cycles_of, every_frame, run, stage_of
+
+CHIP = board_named("cm-bf561").chip
+ACCESS_CCLK = CHIP.semaphore_issue_cclk + CHIP.l2_read_cclk
+
+
+def test_counts_and_serves_in_order() -> None:
+    """Posts are kept for those who come later; waiters go on in the order in which they came."""
+    env = Simulation()
+    semaphore = Semaphore(env, "lines")
+    semaphore.post()
+    semaphore.post()
+    assert semaphore.take() is None
+    assert semaphore.take() is None
+    first, second = semaphore.take(), semaphore.take()
+    assert first is not None
+    assert second is not None
+    semaphore.post()
+    assert (first.triggered, second.triggered) == (True, False)
+    semaphore.post()
+    assert second.triggered
+    third = semaphore.take()
+    assert third is not None
+    assert not third.triggered
+
+
+def test_the_wait_is_a_stall_from_the_call_to_the_other_core_s_post() -> None:
+    """A works for so long and posts; B waits from its first access on until A's store has reached L2."""
+
+    def post(core: Core, frame: Frame) -> Play:
+        with core.stage("Work"):
+            yield core.run(spin, 1000)
+            yield from core.post("go")
+
+    def wait(core: Core, frame: Frame) -> Play:
+        with core.stage("Work"):
+            yield from core.wait("go")
+
+    (frame,) = run(every_frame(post), every_frame(wait)).frames
+    posting, waiting = (stage_of(frame, "Work", core) for core in ("A", "B"))
+    work_cclk = cycles_of(spin, 1000)
+    assert posting.elapsed_cclk == work_cclk + ACCESS_CCLK
+    assert posting.stall_cclk == {StallReason.L2_LATENCY: CHIP.l2_read_cclk}
+    assert waiting.stall_cclk == {StallReason.L2_LATENCY: CHIP.l2_read_cclk, StallReason.SEMAPHORE: work_cclk}
+
+
+def test_what_was_posted_before_needs_no_wait() -> None:
+    """Only the access itself: two issue cycles and the way to L2."""
+
+    def post(core: Core, frame: Frame) -> Play:
+        yield from core.post("go")
+
+    def wait(core: Core, frame: Frame) -> Play:
+        yield core.run(spin, 1000)
+        with core.stage("Work"):
+            yield from core.wait("go")
+
+    (frame,) = run(every_frame(post), every_frame(wait)).frames
+    assert stage_of(frame, "Work", "B").elapsed_cclk == ACCESS_CCLK
+    assert stage_of(frame, "Work", "B").stall_cclk == {StallReason.L2_LATENCY: CHIP.l2_read_cclk}
+
+
+@pytest.mark.parametrize("turns", range(0, 60, 7))
+def test_it_does_not_matter_who_comes_first(turns: int) -> None:
+    """Work before the post from nothing to longer than an access: at the equal tick, too, the sum is the same."""
+
+    def post(core: Core, frame: Frame) -> Play:
+        yield core.run(spin, turns)
+        yield from core.post("go")
+
+    def wait(core: Core, frame: Frame) -> Play:
+        yield core.run(spin, 28)
+        yield from core.wait("go")
+
+    early, late = cycles_of(spin, turns), cycles_of(spin, 28)
+    for mains, waiter in (((post, wait), "B"), ((wait, post), "A")):
+        (frame,) = run(*map(every_frame, mains)).frames
+        assert stage_of(frame, REST, waiter).stall_cclk.get(StallReason.SEMAPHORE, 0) == max(0, early - late)
+
+
+def test_a_core_may_be_posted_ahead() -> None:
+    """A posts three times at once; B takes them one a frame and never waits."""
+
+    def post(core: Core, frame: Frame) -> Play:
+        for _ in range(3 if frame.index == 0 else 0):
+            yield from core.post("lines")
+
+    def wait(core: Core, frame: Frame) -> Play:
+        yield core.run(spin, 100)
+        yield from core.wait("lines")
+
+    outcome = run(every_frame(post), every_frame(wait), frames=3)
+    assert all(StallReason.SEMAPHORE not in stage_of(each, REST, "B").stall_cclk for each in outcome.frames)
+
+
+def waiting_for(name: str) -> Any:
+    """Make a main loop that waits for one semaphore in each frame."""
+
+    def body(core: Core, frame: Frame) -> Play:
+        yield from core.wait(name)
+
+    return every_frame(body)
+
+
+def test_two_cores_waiting_for_each_other_are_told_both_waits() -> None:
+    """Who waits for what, since when, and on which line of the firmware: for both cores."""
+    with pytest.raises(
+        DeadlockError,
+        match=r"core A waits for semaphore 'B is done', since cycle [\d,]+ \(.*test_semaphore\.py:\d+\); "
+        r"core B waits for semaphore 'A is done', since cycle [\d,]+ \(.*test_semaphore\.py:\d+\)",
+    ) as caught:
+        run(waiting_for("B is done"), waiting_for("A is done"))
+    line = waiting_for.__code__.co_firstlineno + 4
+    assert str(caught.value).count(f"{__file__}:{line}") == 2
+
+
+def test_a_core_that_waits_for_one_that_has_ended_is_told() -> None:
+    """Core B's main loop returns at once; what A waits for can never come."""
+
+    def end(core: Core) -> Play:
+        yield from ()
+
+    with pytest.raises(DeadlockError, match="core A waits for semaphore 'go', .*; core B has ended"):
+        run(waiting_for("go"), end)
+
+
+def test_a_core_that_ends_early_keeps_its_pair_of_pictures() -> None:
+    """Core B never gives its pictures back, so the frame buffers run out and A waits for ever."""
+
+    def once(core: Core) -> Play:
+        yield from core.next_frame()
+
+    with pytest.raises(DeadlockError, match="core A waits for the next picture, since .*; core B has ended"):
+        run(every_frame(lambda core, frame: iter(())), once, frames=5)

@@ -1,0 +1,237 @@
+"""`simulate`, from a recording and the name of a firmware to records: determinism, memory, and bad input."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tracemalloc
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bfsim.errors import BfsimError, ConfigError, FirmwareError, LinkError, RecordingError
+from bfsim.recording import RecordingWriter
+from bfsim.report.digest import cycle_digest, identity_digest
+from bfsim.run import Feed, simulate
+from bfsim.trace import RunRecord
+
+FIRMWARE = '''\
+"""Firmware of one stage: lines in, a kernel with branches and an access to L2, lines out; the cores end together."""
+from bfsim.api import *
+
+@kernel
+def threshold(line: u8[:], counts: i32[:], out: u8[:]) -> i32:
+    found = 0
+    for x in range(len(out)):
+        out[x] = 0
+        if line[x] > 100:
+            out[x] = 255
+            found += 1
+    counts[0] += found
+    return found
+
+def main(core):
+    while (frame := (yield from core.next_frame())) is not None:
+        bright = 0
+        with core.stage("Threshold"):
+            ring, out = core.input_ring(frame.rows, "ring"), core.output_ring("out", core.rows("image"))
+            for _ in range(frame.height):
+                source, target = (yield from ring.line()), (yield from out.row())
+                bright += yield core.run(threshold, source, core.array(f"counts_{core.name}"), target)
+                out.send()
+            yield from out.flush()
+        core.publish(bright=bright)
+        other = "B" if core.name == "A" else "A"
+        yield from core.post(core.name)
+        yield from core.wait(other)
+
+def buffers(size):
+    def of_core(n):
+        line = 2 * size.width_px
+        return [
+            Buffer("camera", u8, line, f"sdram_bank{n}", rows=3 * size.height_px),
+            Buffer("image", u8, line, f"sdram_bank{n + 2}", rows=size.height_px),
+            Buffer("ring", u8, line, "L1_data_a", rows=2),
+            Buffer("out", u8, line, "L1_data_b", rows=2),
+        ]
+    shared = [Buffer("counts_A", i32, 1, "l2_shared"), Buffer("counts_B", i32, 1, "l2_shared")]
+    return {"A": of_core(0), "B": of_core(1), "shared": shared}
+
+eyes = Firmware(mains={"A": main, "B": main}, buffers=buffers, camera="camera", rows=(BudgetRow("Threshold", None),))
+'''.replace('BudgetRow("Threshold", None)', 'BudgetRow(stage="Threshold", thesis_ms=None)')
+
+DIGESTS = """\
+import json, sys
+from pathlib import Path
+from bfsim.report.digest import cycle_digest, identity_digest
+from bfsim.run import Feed, simulate
+runs = [simulate(Path(sys.argv[1]), firmware="fw_eyes:eyes", feed=feed) for feed in Feed]
+print(json.dumps([[identity_digest(run.identity), cycle_digest(run.frames)] for run in runs]))
+"""
+
+
+def record(path: Path, count: int, *, width: int = 32, height: int = 16, period_ns: int = 40_000_000) -> Path:
+    """Write a recording of noise."""
+    rng = np.random.default_rng(561)
+    with RecordingWriter(path, width=width, height=height) as writer:
+        for number in range(count):
+            left, right = rng.integers(0, 256, (2, height, 2 * width), np.uint8)
+            writer.add(left, right, number * period_ns, number * period_ns + 1000)
+    return path
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A folder with firmware in it, the current one."""
+    (tmp_path / "fw_eyes.py").write_text(FIRMWARE)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", sys.path[:])
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    yield tmp_path
+    sys.modules.pop("fw_eyes", None)
+
+
+def run_eyes(recording: Path, **how: object) -> RunRecord:
+    """Run the firmware above."""
+    return simulate(recording, firmware="fw_eyes:eyes", **how)  # type: ignore[arg-type]
+
+
+def start(folder: Path, recording: Path, **environment: str) -> subprocess.Popen[str]:
+    """Start a process that runs the firmware in `folder` with both feeds and prints its digests."""
+    command = [sys.executable, "-c", DIGESTS, str(recording)]
+    return subprocess.Popen(
+        command, cwd=folder, env=os.environ | environment, stdout=subprocess.PIPE, text=True
+    )
+
+
+def test_the_same_run_has_the_same_digests_everywhere(home: Path, tmp_path: Path) -> None:
+    """In other processes, under other hash seeds, from another folder, with an empty and with a full kernel cache."""
+    recording = record(home / "drive.mcap", 4)
+    elsewhere = tmp_path / "else" / "where"
+    elsewhere.mkdir(parents=True)
+    for name in ("fw_eyes.py", "drive.mcap"):
+        shutil.copy(home / name, elsewhere / name)
+    cold = tmp_path / "cold"
+    processes = [
+        start(home, recording, PYTHONHASHSEED="1"),
+        start(elsewhere, elsewhere / "drive.mcap", PYTHONHASHSEED="2", BFSIM_CACHE_DIR=str(cold)),
+    ]
+    here = [run_eyes(recording, feed=feed) for feed in Feed]
+    outputs = [each.communicate()[0] for each in processes]
+    assert any(cold.rglob("*"))
+    warm = start(elsewhere, Path("drive.mcap"), PYTHONHASHSEED="3", BFSIM_CACHE_DIR=str(cold))
+    outputs.append(warm.communicate()[0])
+    expected = [[identity_digest(each.identity), cycle_digest(each.frames)] for each in here]
+    assert [json.loads(each) for each in outputs] == [expected] * 3
+
+
+def test_what_the_result_depends_on_changes_the_identity(home: Path) -> None:
+    """Another recording, board, feed or firmware: each is another identity."""
+    first, second = record(home / "drive.mcap", 2), record(home / "other.mcap", 3)
+    runs = [
+        run_eyes(first),
+        run_eyes(second),
+        run_eyes(second, frames=2),
+        run_eyes(first, feed=Feed.RECORDED),
+        run_eyes(first, board="cm-bf561-ratings"),
+    ]
+    (home / "fw_eyes.py").write_text(FIRMWARE + "\n# another version\n")
+    del sys.modules["fw_eyes"]
+    runs.append(run_eyes(first))
+    assert len({identity_digest(each.identity) for each in runs}) == len(runs)
+
+
+def test_a_cut_run_is_the_beginning_of_the_whole(home: Path) -> None:
+    """Frame n does not depend on what comes after it: the first frames have the same cycles."""
+    recording = record(home / "drive.mcap", 5)
+    whole, cut = run_eyes(recording), run_eyes(recording, frames=3)
+    assert [each.index for each in cut.frames] == [0, 1, 2]
+    assert cut.frames == whole.frames[:3]
+
+
+def test_results_and_identity_say_what_ran(home: Path) -> None:
+    """Numbers that the firmware published, bit-exact; names without folders; sizes and clocks."""
+    run = run_eyes(record(home / "drive.mcap", 2))
+    rng = np.random.default_rng(561)
+    for frame in run.frames:
+        left, right = rng.integers(0, 256, (2, 16, 64), np.uint8)
+        assert dict(frame.results) == {"bright_A": np.sum(left > 100), "bright_B": np.sum(right > 100)}
+    identity = run.identity
+    assert (identity.recording, identity.firmware, identity.ldf) == (
+        "drive.mcap",
+        "fw_eyes:eyes",
+        "thesis.ldf",
+    )
+    assert (identity.width_px, identity.height_px, identity.cclk_hz, identity.sclk_hz) == (
+        32,
+        16,
+        600e6,
+        120e6,
+    )
+
+
+def test_progress_counts_frames_up_to_the_total(home: Path) -> None:
+    """As many calls as frames, each with the number that will be done in all."""
+    calls: list[tuple[int, int]] = []
+    run_eyes(
+        record(home / "drive.mcap", 5), frames=3, progress=lambda done, total: calls.append((done, total))
+    )
+    assert calls == [(1, 3), (2, 3), (3, 3)]
+
+
+def peak_bytes(recording: Path, frames: int) -> int:
+    """Most memory that Python and numpy held during a run, in bytes."""
+    tracemalloc.start()
+    run = run_eyes(recording, frames=frames)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(run.frames) == frames
+    return peak
+
+
+def test_memory_does_not_grow_with_the_pictures(home: Path) -> None:
+    """Ten times as many frames need no more memory than their records: a few kB each, where a pair of pictures has 20."""
+    recording = record(home / "drive.mcap", 400, width=640, height=8)
+    peak_bytes(recording, 2)  # what is imported or compiled once
+    growth = peak_bytes(recording, 400) - peak_bytes(recording, 40)
+    assert growth < 360 * 4_000
+
+
+@pytest.mark.parametrize(
+    ("how", "kind", "message"),
+    [
+        ({"board": "cm-bf562"}, ConfigError, "--board must be one of"),
+        ({"firmware": "fw_missing:fw"}, FirmwareError, "'fw_missing' must be installed or in the folder"),
+        ({"recording": Path("missing.mcap")}, RecordingError, "missing.mcap"),
+        ({"recording": Path("fw_eyes.py")}, RecordingError, "fw_eyes.py"),
+        ({"ldf": Path("missing.ldf")}, LinkError, "missing.ldf"),
+        ({"ldf": Path("fw_eyes.py")}, LinkError, r"fw_eyes.py:\d+"),
+    ],
+)
+def test_bad_input_is_told_by_its_name(
+    home: Path, how: dict[str, object], kind: type[BfsimError], message: str
+) -> None:
+    """Board, firmware, recording and LDF: whatever is wrong is the subject of the error."""
+    good: dict[str, object] = {"recording": record(home / "drive.mcap", 1), "firmware": "fw_eyes:eyes"}
+    with pytest.raises(kind, match=message):
+        simulate(**good | how)  # type: ignore[arg-type]
+
+
+def test_a_recording_that_breaks_off_is_told_with_its_name(home: Path) -> None:
+    """Half a file: the error is the recording's, and nothing was reported before it."""
+    recording = record(home / "drive.mcap", 20)
+    recording.write_bytes(recording.read_bytes()[: recording.stat().st_size // 2])
+    with pytest.raises(RecordingError, match="drive.mcap"):
+        run_eyes(recording)
+
+
+def test_pictures_too_large_for_the_rings_are_a_link_error(home: Path) -> None:
+    """Lines of 12 000 pixels do not fit twice into 32 KB: the section and the memory are named."""
+    recording = record(home / "drive.mcap", 1, width=12_000, height=2)
+    with pytest.raises(LinkError, match="ring.*L1_data_a|L1_data_a.*ring"):
+        run_eyes(recording)
