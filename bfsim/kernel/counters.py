@@ -3,6 +3,7 @@
 Each counter is a local of its function until the function returns: LLVM keeps it in a register or folds it
 to the trip count, so that counting costs next to nothing. The kernel itself then adds its counts to the
 caller's totals; those of its callees wait in a table of the module until the entry point adds them.
+Names that are added begin with a dot, which a name of the kernel cannot.
 """
 
 from __future__ import annotations
@@ -16,25 +17,24 @@ from bfsim.kernel.entry import entry_point, globals_of, settle
 from bfsim.kernel.ir_text import DEFINE, LABEL
 from bfsim.kernel.schedule import Counter
 
-DIVISION = re.compile(r"^(  %[\w.$]+ = )(sdiv|udiv|srem|urem)(?: exact)? i32 ([^,]+), (.+)$")
-ACCESS = re.compile(r"^  (?:%[\w.$]+ = load|store) (i\d+)(?: [^,]+)?, ptr (%[\w.$]+)")
+DIVISION = re.compile(r"^(  %[\w.$-]+ = )(sdiv|udiv|srem|urem)(?: exact)? (i\d+) ([^,]+), (.+)$")
+ACCESS = re.compile(r"^  (?:%[\w.$-]+ = load|store) (i\d+)(?: [^,]+)?, ptr (%[\w.$-]+)")
 SWITCH = re.compile(r"^  switch (i\d+) ")
 NOISE = re.compile(r" local_unnamed_addr| #\d+| !dbg !\d+")
 TERMINATORS = ("  br ", "  ret ", "  switch ", "  unreachable")
 
-# A division by zero must not stop the host. The chip's library gives all ones; INT_MIN // -1 wraps.
+# A division by zero must not stop the host; its result means nothing, as in C. The lowest integer // -1 wraps.
 SAFE_DIVISION = """
-define internal i32 @bfsim.{op}(i32 %a, i32 %b) alwaysinline {{
-  %zero = icmp eq i32 %b, 0
-  %low = icmp eq i32 %a, -2147483648
-  %minus = icmp eq i32 %b, -1
+define internal {kind} @bfsim.{op}.{kind}({kind} %a, {kind} %b) alwaysinline {{
+  %zero = icmp eq {kind} %b, 0
+  %low = icmp eq {kind} %a, {lowest}
+  %minus = icmp eq {kind} %b, -1
   %both = and i1 %low, %minus
   %wraps = and i1 %both, {signed}
   %unsafe = or i1 %zero, %wraps
-  %divisor = select i1 %unsafe, i32 1, i32 %b
-  %good = {op} i32 %a, %divisor
-  %result = select i1 %zero, i32 {by_zero}, i32 %good
-  ret i32 %result
+  %divisor = select i1 %unsafe, {kind} 1, {kind} %b
+  %result = {op} {kind} %a, %divisor
+  ret {kind} %result
 }}
 """
 FOLLOW = """
@@ -60,19 +60,22 @@ def instrument(text: str, function: tree.Function, counters: Sequence[Counter], 
 
     With `followed`, every access to an array also calls the memory follower that the argument block names.
     """
-    division = "".join(
-        SAFE_DIVISION.format(op=op, signed=str(op[0] == "s").lower(), by_zero=-1 if op.endswith("div") else "%a")
-        for op in ("sdiv", "udiv", "srem", "urem")
-    )
+    # LLVM divides narrow values in their own width, so there may be i8 and i16 divisions
+    divisions = sorted({(found[2], found[3]) for found in map(DIVISION.match, text.splitlines()) if found})
     return "\n".join(
         [
             globals_of(counters, entry, followed=followed),
             "\n".join(_rows(text.splitlines(), function.symbol, counters, followed)),
-            division,
+            *(_safe_division(op, kind) for op, kind in divisions),
             FOLLOW if followed else "",
             entry_point(function, counters, entry, followed=followed),
         ]
     )
+
+
+def _safe_division(op: str, kind: str) -> str:
+    lowest = -1 << int(kind[1:]) - 1
+    return SAFE_DIVISION.format(op=op, kind=kind, lowest=lowest, signed=str(op[0] == "s").lower())
 
 
 def _rows(rows: Iterable[str], top: str, counters: Sequence[Counter], followed: bool) -> list[str]:
@@ -102,9 +105,9 @@ def _rows(rows: Iterable[str], top: str, counters: Sequence[Counter], followed: 
                 out.extend(_tests(here, row))
                 if row.startswith("  ret "):
                     exit_number += 1
-                    out.extend(_leave(routine, counters, f"exit{exit_number}", is_top=routine == top))
+                    out.extend(_leave(routine, counters, f".exit{exit_number}", is_top=routine == top))
             out.extend(_access(row) if followed else ())
-            out.append(DIVISION.sub(r"\1call i32 @bfsim.\2(i32 \3, i32 \4)", row))
+            out.append(DIVISION.sub(r"\1call \3 @bfsim.\2.\3(\3 \4, \3 \5)", row))
         else:
             out.append(row)
     return out
@@ -112,15 +115,15 @@ def _rows(rows: Iterable[str], top: str, counters: Sequence[Counter], followed: 
 
 def _allocations(routine: str, counters: Sequence[Counter]) -> list[str]:
     mine = [number for number, each in enumerate(counters) if each.routine == routine]
-    slots = [f"  %bf.{number} = alloca i64" for number in mine]
-    return slots + [f"  store i64 0, ptr %bf.{number}" for number in mine]
+    slots = [f"  %.bf.{number} = alloca i64" for number in mine]
+    return slots + [f"  store i64 0, ptr %.bf.{number}" for number in mine]
 
 
 def _add(number: int, amount: str) -> list[str]:
     return [
-        f"  %bf.{number}.old = load i64, ptr %bf.{number}",
-        f"  %bf.{number}.new = add i64 %bf.{number}.old, {amount}",
-        f"  store i64 %bf.{number}.new, ptr %bf.{number}",
+        f"  %.bf.{number}.old = load i64, ptr %.bf.{number}",
+        f"  %.bf.{number}.new = add i64 %.bf.{number}.old, {amount}",
+        f"  store i64 %.bf.{number}.new, ptr %.bf.{number}",
     ]
 
 
@@ -132,17 +135,17 @@ def _tests(here: list[_Place], terminator: str) -> list[str]:
             continue
         truth = value
         if equals is not None and (kind := SWITCH.match(terminator)):
-            truth = f"%bf.{number}.is"
+            truth = f"%.bf.{number}.is"
             rows.append(f"  {truth} = icmp eq {kind.group(1)} {value}, {equals}")
-        rows.append(f"  %bf.{number}.true = zext i1 {truth} to i64")
-        rows.extend(_add(number, f"%bf.{number}.true"))
+        rows.append(f"  %.bf.{number}.true = zext i1 {truth} to i64")
+        rows.extend(_add(number, f"%.bf.{number}.true"))
     return rows
 
 
 def _leave(routine: str, counters: Sequence[Counter], place: str, *, is_top: bool) -> list[str]:
     """Hand over the counts of one run of `routine`, at one of its exits."""
     mine = [(number, each, f"%{place}.mine.{number}") for number, each in enumerate(counters) if each.routine == routine]
-    rows = [f"  {events} = load i64, ptr %bf.{number}" for number, _, events in mine]
+    rows = [f"  {events} = load i64, ptr %.bf.{number}" for number, _, events in mine]
     if is_top:
         return rows + settle(mine, place)
     for number, _, events in mine:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -64,8 +65,8 @@ class Kernel:
         bound = []
         for position, array in zip(self.array_positions, arrays, strict=True):
             self.check_array(position, array)
-            bound.append((slots[position], array.ctypes.data, len(array)))
-        integers = [slots[each] for each in self.integer_positions]
+            bound.append((slots[position], array))
+        integers = [(slots[each], each) for each in self.integer_positions]
         has_value = self.function.result is not None
         return PreparedCall(code, bound, integers, has_value=has_value, follower=follower, totals=totals)
 
@@ -77,11 +78,31 @@ class Kernel:
             slot += 2 if isinstance(each.type, ArrayType) else 1
         return slots
 
-    def check_count(self, arguments: Sequence[object]) -> None:
-        """Raise KernelError unless there is one argument per parameter."""
+    @cached_property
+    def arrays_of(self) -> Callable[[Sequence[Any]], Any]:
+        """Picks the array arguments out of all: a tuple, or the argument itself when there is one."""
+        return itemgetter(*self.array_positions) if self.array_positions else lambda _arguments: ()
+
+    @cached_property
+    def _ranges(self) -> tuple[tuple[int, int, int], ...]:
+        """(position, smallest, largest) of each integer parameter."""
+        kinds = [(each, self.function.parameters[each].type) for each in self.integer_positions]
+        return tuple((position, *kind.bounds) for position, kind in kinds if isinstance(kind, IntType))
+
+    def check(self, arguments: Sequence[object]) -> None:
+        """Raise KernelError unless there is one argument per parameter and every integer fits its type."""
         if len(arguments) != len(self.function.parameters):
             names = ", ".join(each.name for each in self.function.parameters)
             raise KernelError(f"{self.name} must get {names}, not {len(arguments)} arguments ({self.place})")
+        for position, low, high in self._ranges:
+            value = arguments[position]
+            if not isinstance(value, (int, np.integer)) or not low <= value <= high:
+                name = self.function.parameters[position].name
+                raise KernelError(f"{name} must be an int in {low}..{high}, not {value!r} ({self.name}, {self.place})")
+
+    @cached_property
+    def _written(self) -> frozenset[str]:
+        return tree.written_arrays(self.function)
 
     def check_array(self, position: int, array: object) -> None:
         """Raise KernelError unless `array` is what parameter number `position` takes."""
@@ -96,29 +117,21 @@ class Kernel:
             raise KernelError(
                 f"{parameter.name} must be one contiguous row of {wanted}, not {array.dtype} of shape {shape} {where}"
             )
+        if not array.flags.aligned:
+            raise KernelError(f"{parameter.name} must lie at a multiple of {wanted.itemsize} bytes {where}")
+        if parameter.name in self._written and not array.flags.writeable:
+            raise KernelError(f"{parameter.name} must be writeable, because the kernel stores into it {where}")
 
-    def check_integer(self, position: int, value: object) -> int:
-        """Return `value` as the int that parameter number `position` takes, or raise KernelError."""
-        parameter = self.function.parameters[position]
-        assert isinstance(parameter.type, IntType)
-        low, high = parameter.type.bounds
-        if not isinstance(value, (int, np.integer)) or not low <= value <= high:
-            raise KernelError(
-                f"{parameter.name} must be an int in {low}..{high}, not {value!r} ({self.name}, {self.place})"
-            )
-        return int(value)
-
-    def sanitize(self, arrays: Sequence[NDArray[Any]], integers: Sequence[int]) -> None:
-        """Run on copies of the arrays with every index checked; raise KernelError at the first one outside."""
-        sanitizer.check(self.function, dict(zip(self.array_positions, arrays, strict=True)), integers)
+    def sanitize(self, arguments: Sequence[Any]) -> None:
+        """Run with every index checked and undo it; raise KernelError at the first index outside its array."""
+        sanitizer.check(self.function, arguments)
 
     def __call__(self, *arguments: Any) -> int | None:
         """Run on numpy arrays and ints, as the firmware would, but without a machine around it."""
-        self.check_count(arguments)
+        self.check(arguments)
         arrays = [arguments[each] for each in self.array_positions]
-        integers = [self.check_integer(each, arguments[each]) for each in self.integer_positions]
         code = self.compiled(VDSP_O2)
-        return self.prepare(code, arrays, code.new_totals()).run(integers).value
+        return self.prepare(code, arrays, code.new_totals()).run(arguments).value
 
 
 def kernel(python: Callable[..., Any]) -> Kernel:

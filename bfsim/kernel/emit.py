@@ -15,7 +15,7 @@ from llvmlite import ir
 from bfsim.kernel import tree
 from bfsim.kernel.types import ArrayType, IntType, u32
 
-I1, I32, POINTER = ir.IntType(1), ir.IntType(32), ir.PointerType()
+I1, I32, I64, POINTER = ir.IntType(1), ir.IntType(32), ir.IntType(64), ir.PointerType()
 SIMPLE = {"+": "add", "-": "sub", "*": "mul", "&": "and_", "|": "or_", "^": "xor"}
 SHIFT_MASK = 31  # a shift count uses its low five bits; the language refuses constants outside 0..31
 
@@ -33,7 +33,7 @@ def emit(function: tree.Function, *, checked: bool = False) -> ir.Module:
     module.add_named_metadata("llvm.module.flags", module.add_metadata([I32(2), "Debug Info Version", I32(3)]))
     trap = None
     if checked:
-        trap = ir.GlobalVariable(module, ir.ArrayType(I32, TRAP_WORDS), TRAP)
+        trap = ir.GlobalVariable(module, ir.ArrayType(I64, TRAP_WORDS), TRAP)
         trap.initializer = ir.Constant(trap.value_type, [0] * TRAP_WORDS)
     family = (*function.callees(), function)
     for each in family:
@@ -69,11 +69,23 @@ class _Emitter:
     def run(self) -> None:
         target = self.module.get_global(self.function.symbol)
         self.scope = self._debug_scope(target)
+        integers = self._name_arguments(target)
         self.builder = ir.IRBuilder(target.append_basic_block("entry"))
         self._at(1)
         for name, kind in self.function.locals:
-            slot = self.builder.alloca(I32 if isinstance(kind, IntType) else I1, name=name)
-            self.slots[name] = slot
+            self.slots[name] = self.builder.alloca(I32 if isinstance(kind, IntType) else I1, name=name)
+        for name, value in integers.items():
+            self.builder.store(value, self.slots[name])
+        self._block(self.function.body)
+        if not self.builder.block.is_terminated:
+            if self.function.result:
+                self.builder.unreachable()
+            else:
+                self.builder.ret_void()
+
+    def _name_arguments(self, target: ir.Function) -> dict[str, ir.Value]:
+        """Name the arguments as the parameters, before anything else takes a name. Returns the integers."""
+        integers: dict[str, ir.Value] = {}
         arguments = iter(target.args)
         for parameter in self.function.parameters:
             value = next(arguments)
@@ -83,13 +95,8 @@ class _Emitter:
                 length.name = f"{parameter.name}.len"
                 self.arrays[parameter.name] = (value, length)
             else:
-                self.builder.store(value, self.slots[parameter.name])
-        self._block(self.function.body)
-        if not self.builder.block.is_terminated:
-            if self.function.result:
-                self.builder.unreachable()
-            else:
-                self.builder.ret_void()
+                integers[parameter.name] = value
+        return integers
 
     def _debug_scope(self, target: ir.Function) -> ir.values.MDValue:
         file = self.module.add_debug_info("DIFile", {"filename": self.function.name, "directory": ""})
@@ -227,7 +234,8 @@ class _Emitter:
             inside = self.builder.icmp_unsigned("<", offset, length)
             with self.builder.if_then(self.builder.not_(inside)):
                 position = list(self.arrays).index(array)
-                self._note([I32(index.line), I32(self.number), I32(position), offset])
+                wide = self.builder.zext(offset, I64) if index.type is u32 else self.builder.sext(offset, I64)
+                self._note([I64(index.line), I64(self.number), I64(position), wide])
                 self._leave()
         return self.builder.gep(pointer, [offset], source_etype=ir.IntType(element.bits))
 
@@ -280,6 +288,8 @@ class _Emitter:
             return self._intrinsic(f"llvm.{'u' if unsigned else 's'}{node.op}.i32", [I32, I32], [left, right])
         if unsigned:
             return (self.builder.udiv if node.op == "//" else self.builder.urem)(left, right)
+        if isinstance(node.right, tree.Const) and node.right.value.bit_count() == 1 and node.right.value > 0:
+            return self._power_of_two_division(node.op, left, node.right.value)
         return self._floor_division(node.op, left, right)
 
     def _shift(self, node: tree.Binary, left: ir.Value, right: ir.Value) -> ir.Value:
@@ -289,11 +299,19 @@ class _Emitter:
             return self.builder.shl(left, right)
         return (self.builder.lshr if node.type is u32 else self.builder.ashr)(left, right)
 
+    def _power_of_two_division(self, op: str, left: ir.Value, divisor: int) -> ir.Value:
+        """Rounding down is what a shift does, so no compiler calls the library here."""
+        if op == "//":
+            return self.builder.ashr(left, I32(divisor.bit_length() - 1))
+        return self.builder.and_(left, I32(divisor - 1))
+
     def _floor_division(self, op: str, left: ir.Value, right: ir.Value) -> ir.Value:
-        """Python rounds down, the chip towards zero; LLVM drops the correction where the signs are known."""
+        """Python rounds down, the chip towards zero; LLVM drops the correction where the signs are known.
+
+        Where both are left, LLVM makes the rest from the quotient: there is one division.
+        """
         builder = self.builder
-        quotient = builder.sdiv(left, right)
-        rest = builder.sub(left, builder.mul(quotient, right))
+        quotient, rest = builder.sdiv(left, right), builder.srem(left, right)
         signs_differ = builder.icmp_signed("<", builder.xor(rest, right), I32(0))
         down = builder.and_(signs_differ, builder.icmp_signed("!=", rest, I32(0)))
         if op == "//":
@@ -347,6 +365,6 @@ class _Emitter:
         result = self.builder.call(self.module.get_global(node.callee.symbol), arguments)
         if self.trap:
             line = self.builder.load(self.builder.gep(self.trap, [I32(0), I32(0)]))
-            with self.builder.if_then(self.builder.icmp_signed("!=", line, I32(0))):
+            with self.builder.if_then(self.builder.icmp_signed("!=", line, I64(0))):
                 self._leave()
         return result

@@ -30,10 +30,15 @@ FOLD: dict[str, Callable[[int, int], int]] = {
 
 @dataclass(slots=True)
 class Scope:
-    """What names mean inside one kernel: parameters, locals seen so far, and the module's constants and kernels."""
+    """What names mean inside one kernel: parameters, locals seen so far, and the module's constants and kernels.
+
+    `own` are all names that Python keeps for the function `kernel` itself, wherever it assigns them.
+    """
 
     source: Source
     outer: Mapping[str, object]
+    kernel: str
+    own: tuple[str, ...]
     arrays: dict[str, ArrayType] = field(default_factory=dict)
     locals: dict[str, Value] = field(default_factory=dict)
     assigned: set[str] = field(default_factory=set)
@@ -56,6 +61,7 @@ class Scope:
         result = self.expression(node)
         if isinstance(result.type, IntType):
             return self._as_type(node, result, wanted)
+        self._refuse_nothing(node, result)
         self.source.refuse(node, "a number is needed here, not a truth value", "write `1 if test else 0`")
 
     def condition(self, node: ast.expr) -> tree.Expr:
@@ -64,7 +70,16 @@ class Scope:
         if isinstance(result.type, IntType):
             zero = tree.Const(0, result.type, result.line)
             return tree.Compare("!=", result, zero, BOOL, result.line)
+        self._refuse_nothing(node, result)
         return result
+
+    def _refuse_nothing(self, node: ast.expr, value: tree.Expr) -> None:
+        if value.type is None:
+            self.source.refuse(node, "this kernel returns nothing", "call it on a line of its own")
+
+    def is_builtin(self, node: ast.Name, function: object) -> bool:
+        """Whether a name means this function of Python, and nothing of the kernel's or the module's own."""
+        return node.id not in self.own and self.outer.get(node.id) is function
 
     def _as_type(self, node: ast.expr, value: tree.Expr, wanted: IntType | None) -> tree.Expr:
         if wanted is None or value.type is wanted:
@@ -99,12 +114,12 @@ class Scope:
         name = node.id
         if name in self.arrays:
             self.source.refuse(node, f"the array {name} is used like a number", f"write {name}[i] or len({name})")
-        if name in self.locals:
-            if name not in self.assigned:
-                self.source.refuse(
-                    node, f"{name} may be used before it has a value", f"give {name} a value on every way to this line"
-                )
+        if name in self.assigned:
             return tree.Local(name, self.locals[name], node.lineno)
+        if name in self.own:
+            self.source.refuse(
+                node, f"{name} may be used before it has a value", f"give {name} a value on every way to this line"
+            )
         constant = self.outer.get(name)
         if type(constant) is int:
             return self._literal(node, constant)
@@ -135,28 +150,34 @@ class Scope:
         return tree.Binary(op, left, right, left.type, node.lineno)
 
     def _arithmetic(self, node: ast.expr, op: str, left_node: ast.expr, right_node: ast.expr) -> tree.Expr:
-        left, right, kind = self._pair(left_node, right_node)
+        left, right = self.integer(left_node), self.integer(right_node)
         if op in ("//", "%") and isinstance(right, tree.Const) and right.value == 0:
             self.source.refuse(right_node, "the division is by zero", "divide by something else")
         if isinstance(left, tree.Const) and isinstance(right, tree.Const):
             return self._literal(node, FOLD[op](left.value, right.value))
+        kind = self._common_type(right_node, left, right)
+        left, right = self._as_type(left_node, left, kind), self._as_type(right_node, right, kind)
         return tree.Binary(op, left, right, kind, node.lineno)
 
     def _pair(self, left_node: ast.expr, right_node: ast.expr) -> tuple[tree.Expr, tree.Expr, IntType]:
-        """Both sides of an operation in one type."""
+        """Both sides of a comparison or a choice in one type."""
         left, right = self.integer(left_node), self.integer(right_node)
+        kind = self._common_type(right_node, left, right)
+        return self._as_type(left_node, left, kind), self._as_type(right_node, right, kind), kind
+
+    def _common_type(self, right_node: ast.expr, left: tree.Expr, right: tree.Expr) -> IntType:
         assert isinstance(left.type, IntType) and isinstance(right.type, IntType)
-        if isinstance(left, tree.Const) and not isinstance(right, tree.Const):
-            return self._as_type(left_node, left, right.type), right, right.type
+        if isinstance(left, tree.Const) and isinstance(right, tree.Const):
+            return u32 if u32 in (left.type, right.type) else i32
+        if isinstance(left, tree.Const):
+            return right.type
         if not isinstance(right, tree.Const) and left.type is not right.type:
             self.source.refuse(
                 right_node,
                 f"the two sides are {left.type} and {right.type}",
                 "write i32(...) or u32(...) round one of them",
             )
-        if isinstance(right, tree.Const) and isinstance(left, tree.Const):
-            return left, right, i32
-        return left, self._as_type(right_node, right, left.type), left.type
+        return left.type
 
     def _unaryop(self, node: ast.UnaryOp) -> tree.Expr:
         if isinstance(node.op, ast.Not):
@@ -179,6 +200,8 @@ class Scope:
             if op is None:
                 self.source.refuse(node, f"a kernel cannot use {_plain(operator)}", "write < <= > >= == !=")
             left, right, _ = self._pair(left_node, right_node)
+            if right_node is not node.comparators[-1] and tree.calls_in(right):
+                self.source.refuse(right_node, "this call would run twice", "put its result in a local name first")
             link = tree.Compare(op, left, right, BOOL, node.lineno)
             result = link if result is None else tree.Logic("and", result, link, BOOL, node.lineno)
         assert result is not None
@@ -189,6 +212,7 @@ class Scope:
         parts = [self.expression(each) for each in node.values]
         for part_node, part in zip(node.values, parts, strict=True):
             if part.type is not BOOL:
+                self._refuse_nothing(part_node, part)
                 self.source.refuse(part_node, f"`{op}` needs truth values, not numbers", "write a comparison, `x != 0`")
         result = parts[0]
         for part in parts[1:]:
@@ -228,31 +252,32 @@ class Scope:
                 node, "a kernel can only call kernels, len, min, max, abs and casts", "call by name, without keywords"
             )
         name = node.func.id
+        if name == self.kernel:
+            self.source.refuse(node, "a kernel cannot call itself", "write a loop, or give the other kernel another name")
+        if name in self.own:
+            self.source.refuse(node, f"{name} is a variable here, not a function", "give the variable another name")
         target = self.outer.get(name)
         if isinstance(target, IntType):
             return self._cast(node, target)
         callee = getattr(target, "function", None)
         if isinstance(callee, tree.Function):
             return self._kernel_call(node, callee)
-        if name == "len":
+        if target is len:
             return self._length(node)
-        if name in ("min", "max") and len(node.args) == 2:
+        if (target is min or target is max) and len(node.args) == 2:
             return self._arithmetic(node, name, node.args[0], node.args[1])
-        if name == "abs" and len(node.args) == 1:
+        if target is abs and len(node.args) == 1:
             operand = self.integer(node.args[0], i32)
             if isinstance(operand, tree.Const):
                 return self._literal(node, abs(operand.value))
             return tree.Unary("abs", operand, i32, node.lineno)
-        advice = "give min and max two arguments" if name in ("min", "max") else f"make {name} a @kernel, or inline it"
+        advice = f"give {name} two arguments" if target is min or target is max else f"make {name} a @kernel, or inline it"
         self.source.refuse(node, f"a kernel cannot call {name} like this", advice)
 
     def _cast(self, node: ast.Call, to: IntType) -> tree.Expr:
         if len(node.args) != 1:
             self.source.refuse(node, f"{to}(...) takes one number", f"write {to}(x)")
-        operand = self.integer(node.args[0])
-        if isinstance(operand, tree.Const):
-            return tree.Const(to(operand.value), promoted(to), node.lineno)
-        return tree.Cast(operand, to, promoted(to), node.lineno)
+        return tree.Cast(self.integer(node.args[0]), to, promoted(to), node.lineno)
 
     def _length(self, node: ast.Call) -> tree.Expr:
         if len(node.args) == 1 and isinstance(node.args[0], ast.Name) and node.args[0].id in self.arrays:

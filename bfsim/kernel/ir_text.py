@@ -9,15 +9,15 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-DEFINE = re.compile(r"^define .*?@([\w.$]+)\((.*)\)")
-LABEL = re.compile(r"^([\w.$]+):")
-RESULT = re.compile(r"^  (%[\w.$]+) = (.*)$")
-NAME = re.compile(r"%[\w.$]+")
-TARGET = re.compile(r"label (%[\w.$]+)")
+DEFINE = re.compile(r"^define .*?@([\w.$-]+)\((.*)\)")
+LABEL = re.compile(r"^([\w.$-]+):")
+RESULT = re.compile(r"^  (%[\w.$-]+) = (.*)$")
+NAME = re.compile(r"%[\w.$-]+")
+TARGET = re.compile(r"label (%[\w.$-]+)")
 DEBUG = re.compile(r", !dbg !(\d+)")
 LOCATION = re.compile(r"^!(\d+) = !DILocation\(line: (\d+)")
-PHI_ARM = re.compile(r"\[ ([^,\]]+), (%[\w.$]+) \]")
-CASE = re.compile(r"i(?:8|16|32) (-?\d+), label (%[\w.$]+)")
+PHI_ARM = re.compile(r"\[ ([^,\]]+), (%[\w.$-]+) \]")
+CASE = re.compile(r"i\d+ (-?\d+), label (%[\w.$-]+)")
 OPCODE_NOISE = {"tail", "musttail", "notail"}
 
 
@@ -128,10 +128,10 @@ def _operands(opcode: str, body: str) -> tuple[str, ...]:
         inside = body[body.index("(", body.index("@")) + 1 : body.rindex(")")]
         return tuple(part.split()[-1] for part in inside.split(",") if part.strip())
     if opcode in ("br", "switch"):
-        return tuple(NAME.findall(body.split("label")[0]))
+        return tuple(NAME.findall(body.split("label %")[0]))
     body = re.sub(r", align \d+$", "", body)
     return tuple(part.split()[-1] for part in re.split(r",(?![^(]*\))", body.replace(" to ", ", "))
-                 if part.split() and (part.split()[-1].startswith("%") or _is_constant(part.split()[-1])))  # fmt: skip
+                 if part.split() and (part.split()[-1].startswith(("%", "@")) or _is_constant(part.split()[-1])))  # fmt: skip
 
 
 def _is_constant(word: str) -> bool:

@@ -39,8 +39,9 @@ class Compiled:
         return np.zeros(max(1, len(self.counters)), np.int64)
 
 
+@cache
 def compiled(function: tree.Function, profile: CompilerProfile, *, followed: bool = False, counted: bool = True) -> Compiled:
-    """Compile `function`, or take it from the cache on disk.
+    """Compile `function`, or take it from the cache on disk; once per process.
 
     `followed` kernels report every access to the memory followers; without `counted` there are no counters
     (the floor that benchmarks compare with) and every call costs 0 cycles.

@@ -11,8 +11,8 @@ import ast
 import builtins
 import inspect
 import re
-import textwrap
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -22,24 +22,25 @@ from bfsim.kernel.expressions import BINARY, Scope
 from bfsim.kernel.refusal import Source
 from bfsim.kernel.types import ArrayType, IntType, i32, u32
 
-STATEMENTS = {"for": "for x in range(...)", "try": "tests with if", "with": "plain statements"}
+STATEMENTS = {"try": "tests with if", "with": "plain statements"}
 
 
 def read_kernel(python: Callable[..., Any]) -> tree.Function:
     """Read the source of `python` as a kernel. Raises KernelError where it leaves the language."""
     source, definition = _definition(python)
-    if python.__closure__:
-        names = ", ".join(python.__code__.co_freevars)
-        source.refuse(definition, f"a kernel cannot close over {names}", "pass it as a parameter or make it a module constant")
-    scope = Scope(source, {**vars(builtins), **python.__globals__})
+    _check_names(source, definition, python)
+    scope = Scope(source, {**vars(builtins), **python.__globals__}, definition.name, python.__code__.co_varnames)
     parameters = _parameters(scope, definition)
     reader = _Reader(scope, _result_type(scope, definition))
-    body = reader.block(_without_docstring(definition.body))
+    try:
+        body = reader.block(_without_docstring(definition.body))
+    except RecursionError:
+        source.refuse(definition, "this kernel is nested too deeply", "split its longest expression or `elif` chain")
     if reader.result is not None and not reader.ended:
         source.refuse(definition, f"{definition.name} can end without a value", f"return an {reader.result} on every way")
-    return tree.Function(
+    function = tree.Function(
         name=definition.name,
-        symbol=re.sub(r"\W", "_", f"{python.__module__}.{python.__qualname__}"),
+        symbol=re.sub(r"\W", "_", f"{python.__module__}.{python.__qualname__}", flags=re.ASCII),
         file=source.file,
         first_line=source.first_line,
         source=source.text,
@@ -48,21 +49,57 @@ def read_kernel(python: Callable[..., Any]) -> tree.Function:
         locals=tuple(scope.locals.items()),
         body=body,
     )
+    _check_callees(source, definition, function)
+    return function
 
 
 def _definition(python: Callable[..., Any]) -> tuple[Source, ast.FunctionDef]:
+    if not inspect.isfunction(python) or hasattr(python, "__wrapped__"):
+        raise KernelError(f"@kernel must stand directly above a plain `def`, not on {python!r}")
     try:
         lines, first_line = inspect.getsourcelines(python)
-    except (OSError, TypeError) as reason:
+    except OSError as reason:
         raise KernelError(f"{python!r} must be a function in a file, so that its source can be read") from reason
     text = "".join(lines)
-    dedented = textwrap.dedent(text)
-    indent = len(text) - len(text.lstrip())
-    source = Source(inspect.getsourcefile(python) or "?", first_line, indent, dedented)
-    node = ast.parse(dedented).body[0]
-    if not isinstance(node, ast.FunctionDef):
-        source.refuse(node, "a kernel must be a plain `def`", "write def, not lambda, class or async def")
+    source = Source(inspect.getsourcefile(python) or "?", first_line, text)
+    if not isinstance(node := _parsed(text), ast.FunctionDef) or node.name != python.__name__:
+        source.refuse(node, "a kernel must be a plain `def`", "write def, not lambda or async def")
     return source, node
+
+
+def _parsed(text: str) -> ast.AST:
+    """Parse one definition, which may be indented. What cannot be parsed alone, as a lambda's line, is no node."""
+    try:
+        if not text[0].isspace():
+            return ast.parse(text).body[0]
+        within = ast.increment_lineno(ast.parse("if True:\n" + text), -1).body[0]
+    except SyntaxError:
+        return ast.Pass()
+    return within.body[0] if isinstance(within, ast.If) else within
+
+
+def _check_names(source: Source, definition: ast.FunctionDef, python: Callable[..., Any]) -> None:
+    """Refuse names that the machine code cannot have: those of an outer function, and non-ASCII ones."""
+    code = python.__code__
+    if code.co_freevars:
+        names = ", ".join(code.co_freevars)
+        source.refuse(definition, f"a kernel cannot close over {names}", "pass it as a parameter or make it a module constant")
+    for name in code.co_varnames:
+        if not name.isascii():
+            source.refuse(definition, f"the name {name} is not ASCII", "use the letters a to z, as a C compiler wants them")
+
+
+def _check_callees(source: Source, definition: ast.FunctionDef, function: tree.Function) -> None:
+    """Refuse two kernels of one name in one program: their machine code could not be told apart."""
+    known = {function.symbol: function}
+    for each in function.callees():
+        if known.setdefault(each.symbol, each) is not each:
+            source.refuse(
+                definition,
+                f"it needs two different kernels named {each.name}, {each.file}:{each.first_line} "
+                f"and {known[each.symbol].file}:{known[each.symbol].first_line}",
+                "rename one",
+            )
 
 
 def _parameters(scope: Scope, definition: ast.FunctionDef) -> tuple[tree.Parameter, ...]:
@@ -88,7 +125,8 @@ def _parameters(scope: Scope, definition: ast.FunctionDef) -> tuple[tree.Paramet
 def _annotation(outer: Mapping[str, object], node: ast.expr | None) -> IntType | ArrayType | None:
     """Type named by an annotation, or None when it names none."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
-        node = ast.parse(node.value, mode="eval").body
+        with suppress(SyntaxError):
+            node = ast.parse(node.value, mode="eval").body
     if isinstance(node, ast.Subscript) and ast.unparse(node.slice) == ":":
         element = _annotation(outer, node.value)
         return ArrayType(element) if isinstance(element, IntType) else None
@@ -120,8 +158,8 @@ class _Reader:
     scope: Scope
     result: IntType | None
     ended: bool = False
-    loops: int = 0
-    breaks: list[set[str]] = field(default_factory=list)
+    breaks: list[bool] = field(default_factory=list)
+    """Of each open loop: whether a `break` leaves it."""
 
     def block(self, body: list[ast.stmt]) -> tuple[tree.Stmt, ...]:
         self.ended = False
@@ -135,7 +173,7 @@ class _Reader:
     def statement(self, node: ast.stmt) -> list[tree.Stmt]:
         method = getattr(self, f"_{type(node).__name__.lower()}", None)
         if method is None:
-            name = type(node).__name__.lower()
+            name = ast.unparse(node).split()[0].rstrip(":")
             instead = STATEMENTS.get(name, "use assignments, if, while, for, break, continue and return")
             self.scope.source.refuse(node, f"a kernel cannot use `{name}` statements", instead)
         result: list[tree.Stmt] = method(node)
@@ -159,6 +197,8 @@ class _Reader:
     def _augassign(self, node: ast.AugAssign) -> list[tree.Stmt]:
         if type(node.op) not in BINARY:
             self.scope.source.refuse(node, "a kernel cannot use this operator", "use + - * // % << >> & | ^")
+        if isinstance(node.target, ast.Subscript) and tree.calls_in(self.scope.index(node.target)):
+            self.scope.source.refuse(node.target, "this call would run twice", "put its result in a local name first")
         old = ast.copy_location(ast.parse(ast.unparse(node.target), mode="eval").body, node.target)
         for each in ast.walk(old):
             ast.copy_location(each, node.target)
@@ -183,7 +223,7 @@ class _Reader:
         return [tree.Assign(target.id, result, target.lineno)]
 
     def _expr(self, node: ast.Expr) -> list[tree.Stmt]:
-        if isinstance(node.value, ast.Call) and isinstance(call := self.scope.expression(node.value), tree.Call):
+        if isinstance(call := self.scope.expression(node.value), tree.Call):
             return [tree.Evaluate(call, node.lineno)]
         self.scope.source.refuse(node, "this line does nothing", "assign the result, or remove the line")
 
@@ -215,7 +255,7 @@ class _Reader:
         self._no_else(node)
         source = self.scope.source
         call = node.iter
-        if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "range"):
+        if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and self.scope.is_builtin(call.func, range)):
             source.refuse(call, "a kernel loops over range(...) only", "write for i in range(len(a)) and use a[i]")
         if not isinstance(node.target, ast.Name) or node.target.id in self.scope.arrays or call.keywords:
             source.refuse(node, "a loop counts one plain name", "write for i in range(...)")
@@ -242,14 +282,11 @@ class _Reader:
             self.scope.source.refuse(node.orelse[0], "a loop cannot have an else", "use a flag")
 
     def _loop_body(self, body: list[ast.stmt]) -> tuple[tree.Stmt, ...]:
-        self.loops += 1
-        self.breaks.append(set())
-        result = self.block(body)
-        self.loops -= 1
-        return result
+        self.breaks.append(False)
+        return self.block(body)
 
     def _break(self, node: ast.Break) -> list[tree.Stmt]:
-        self.breaks[-1].add("break")
+        self.breaks[-1] = True
         self.ended = True
         return [tree.Break(node.lineno)]
 

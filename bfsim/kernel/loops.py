@@ -6,6 +6,7 @@ constant per turn into a post-incremented pointer; this file finds both.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -135,7 +136,8 @@ class Flow:
 
     def is_counted(self, loop: Loop) -> bool:
         """Whether the number of turns is known when the loop starts: its only exit compares a stepping value."""
-        exits = [label for label in loop.blocks if set(self.blocks[label].successors) - loop.blocks]
+        around = loop.blocks | {label for label, block in self.blocks.items() if block.terminator.opcode == "unreachable"}
+        exits = [label for label in loop.blocks if set(self.blocks[label].successors) - around]
         if exits != [loop.latch]:
             return False
         condition = self.defined.get(next(iter(self.blocks[loop.latch].terminator.operands), ""))
@@ -143,14 +145,8 @@ class Flow:
             return False
         left, right = condition[1].operands[:2]
         return any(
-            self._steps(moving, loop) and self.is_invariant(fixed, loop) for moving, fixed in ((left, right), (right, left))
+            self.slope(moving, loop) and self.is_invariant(fixed, loop) for moving, fixed in ((left, right), (right, left))
         )
-
-    def _steps(self, value: str, loop: Loop) -> bool:
-        if self.step(value, loop) is not None:
-            return True
-        place = self.defined.get(value)
-        return place is not None and any(self.step(each, loop) is not None for each in place[1].operands)
 
     def slope(self, value: str, loop: Loop, depth: int = 8) -> int | None:
         """Bytes (or units) by which `value` moves per turn of `loop`: 0 when invariant, None when not constant."""
@@ -172,7 +168,9 @@ def _combined(instruction: Instruction, parts: list[int]) -> int | None:
     match instruction.opcode:
         case "getelementptr":
             return parts[0] + parts[-1] * pointee_nbytes(instruction)
-        case "add" | "or":
+        case "add":
+            return sum(parts)
+        case "or" if " disjoint " in instruction.text:
             return sum(parts)
         case "sub":
             return parts[0] - parts[1]
@@ -189,5 +187,5 @@ def pointee_nbytes(instruction: Instruction) -> int:
     """Bytes that an index of 1 moves a `getelementptr`; 1 for anything else."""
     if instruction.opcode != "getelementptr":
         return 1
-    kind = instruction.text.split(",")[0].split()[-1]
-    return int(kind[1:]) // 8
+    element = re.search(r"i(\d+)\]*,", instruction.text)  # of an array type, its element: the last index counts
+    return int(element.group(1)) // 8 if element else 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from dataclasses import dataclass
 from typing import NoReturn
 
@@ -11,18 +12,17 @@ from bfsim.errors import KernelError
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """The text of one kernel. `first_line` is its line in `file`, `indent` the columns it was dedented by."""
+    """The text of one kernel, as it stands in `file` from line `first_line` on."""
 
     file: str
     first_line: int
-    indent: int
     text: str
 
     def refuse(self, node: ast.AST, what: str, instead: str) -> NoReturn:
         """Raise a KernelError that points at `node`."""
         line: int = getattr(node, "lineno", 1)
-        column: int = getattr(node, "col_offset", 0)
-        lines = self.text.splitlines()
-        shown = lines[line - 1] if line <= len(lines) else ""
-        place = f"{self.file}:{self.first_line + line - 1}:{self.indent + column + 1}"
-        raise KernelError(f"{place}: {what}; {instead}\n    {shown}\n    {' ' * column}^")
+        shown = self.text.splitlines()[line - 1]
+        before = shown.encode()[: getattr(node, "col_offset", 0)].decode()  # `ast` counts columns in bytes
+        place = f"{self.file}:{self.first_line + line - 1}:{len(before) + 1}"
+        margin = re.sub(r"\S", " ", before)
+        raise KernelError(f"{place}: {what}; {instead}\n    {shown}\n    {margin}^")

@@ -1,4 +1,4 @@
-"""`--sanitize`: a second build of a kernel that checks every index, run on copies before the real one.
+"""`--sanitize`: a second build of a kernel that checks every index, run and undone before the real one.
 
 The counted build stays untouched, so a sanitized run reports the very same cycles; it only takes longer.
 """
@@ -6,7 +6,7 @@ The counted build stays untouched, so a sanitized run reports the very same cycl
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -20,21 +20,24 @@ from bfsim.kernel.profile import VDSP_O2
 from bfsim.kernel.types import ArrayType
 
 
-def check(function: tree.Function, arrays: Mapping[int, NDArray[Any]], integers: Sequence[int]) -> None:
-    """Run the checked build on copies of `arrays` (by parameter position). Raise KernelError at a bad index."""
+def check(function: tree.Function, arguments: Sequence[Any]) -> None:
+    """Run the checked build, then put the arrays back as they were. Raise KernelError at a bad index."""
     code, trap = _checked(function)
-    copies = {position: array.copy() for position, array in arrays.items()}
-    numbers = iter(integers)
+    before: list[tuple[NDArray[Any], NDArray[Any]]] = []
     words = [0]  # no counters, no totals
-    for position, parameter in enumerate(function.parameters):
+    for parameter, argument in zip(function.parameters, arguments, strict=True):
         if isinstance(parameter.type, ArrayType):
-            words += [copies[position].ctypes.data, len(copies[position])]
+            before.append((argument, argument.copy()))
+            words += [argument.ctypes.data, len(argument)]
         else:
-            words.append(next(numbers))
-    arguments = (ctypes.c_int64 * (len(words) + 1))(*words)
+            words.append(int(argument))
+    block = (ctypes.c_int64 * (len(words) + 1))(*words)
     trap[0] = 0
-    code.cell.value = ctypes.addressof(arguments)
+    code.cell.value = ctypes.addressof(block)
     code.entry()
+    for array, contents in before:
+        if array.flags.writeable:
+            array[:] = contents
     if trap[0]:
         _report(function, *trap)
 
@@ -55,4 +58,4 @@ def _checked(function: tree.Function) -> tuple[jit.Compiled, Any]:
     name = f"checked_{function.symbol}_{id(function):x}"
     text = jit.optimised(function, VDSP_O2, checked=True).replace(f"@{TRAP}", f"@trap_{name}")
     code = jit.load(jit.host_code(instrument(text, function, (), name, followed=False)), name, ())
-    return code, (ctypes.c_int32 * TRAP_WORDS).from_address(jit.address_of(f"trap_{name}"))
+    return code, (ctypes.c_int64 * TRAP_WORDS).from_address(jit.address_of(f"trap_{name}"))

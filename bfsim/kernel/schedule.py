@@ -18,7 +18,7 @@ from bfsim.kernel.isa import (
     TAKEN_CCLK,
     Op,
 )
-from bfsim.kernel.loops import Flow, Loop
+from bfsim.kernel.loops import Flow
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.select import Operation, Selection, Selector, Test
 
@@ -169,25 +169,27 @@ class _Scheduler:
 
 def _layout(flow: Flow) -> dict[str, int]:
     """Position of each block in the code: as the source has it, `then` before `else`, a loop's body before its exit."""
-    order: list[str] = []
-    seen: set[str] = set()
-
-    def visit(label: str) -> None:
-        seen.add(label)
-        loop = flow.innermost(label)
-        successors = list(flow.blocks[label].successors)
-        if flow.blocks[label].terminator.opcode == "switch":
-            successors = [*successors[1:], successors[0]]
-        leaving = [each for each in successors if _leaves(loop, each)]
-        staying = [each for each in successors if each not in leaving]
-        for each in [*reversed(leaving), *reversed(staying)]:
-            if each not in seen:
-                visit(each)
-        order.append(label)
-
-    visit(flow.routine.blocks[0].label)
+    order: list[str] = []  # what has been visited with all that follows it: last in the code first
+    entry = flow.routine.blocks[0].label
+    seen, open_visits = {entry}, [(entry, iter(_last_first(flow, entry)))]
+    while open_visits:
+        label, successors = open_visits[-1]
+        following = next((each for each in successors if each not in seen), None)
+        if following is None:
+            order.append(label)
+            open_visits.pop()
+        else:
+            seen.add(following)
+            open_visits.append((following, iter(_last_first(flow, following))))
     return {label: index for index, label in enumerate(reversed(order))}
 
 
-def _leaves(loop: Loop | None, label: str) -> bool:
-    return loop is not None and label not in loop.blocks
+def _last_first(flow: Flow, label: str) -> list[str]:
+    """Successors of a block, the one that should come last in the code first: exits of its loop, then from the end."""
+    successors = list(flow.blocks[label].successors)
+    if flow.blocks[label].terminator.opcode == "switch":
+        successors = [*successors[1:], successors[0]]
+    loop = flow.innermost(label)
+    leaving = [each for each in successors if loop is not None and each not in loop.blocks]
+    staying = [each for each in successors if each not in leaving]
+    return [*reversed(leaving), *reversed(staying)]

@@ -121,7 +121,7 @@ class Selector:
             instruction = self.flow.defined[pointer][1]
             if instruction.opcode not in ("getelementptr", "phi", "select"):
                 break
-            candidates = [each for each in instruction.operands if each not in seen and each.startswith("%")]
+            candidates = [each for each in instruction.operands if each not in seen and each.startswith(("%", "@"))]
             pointer = candidates[1 if instruction.opcode == "select" else 0] if candidates else pointer
         return pointer
 
@@ -240,7 +240,7 @@ def _is_16_bit(selector: Selector, operand: str) -> bool:
 
 
 def _extend(selector: Selector, instruction: Instruction, loop: Loop | None) -> tuple[Op, ...]:
-    if instruction.text.split()[-4].startswith("i1 ") or " i1 " in instruction.text:
+    if " i1 " in instruction.text:
         return (Op.MOVE,)  # CC to a register
     place = selector.flow.defined.get(instruction.operands[0])
     return () if place and place[1].opcode in ("load", "phi") else (Op.EXTEND,)

@@ -11,6 +11,7 @@ import json
 import os
 import tempfile
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
@@ -76,15 +77,17 @@ def save(name: str, binary: Binary) -> None:
     """Keep `binary` under `name`. A cache that cannot be written is no error; the next start compiles again."""
     header = json.dumps([asdict(each) for each in binary.counters], separators=(",", ":")).encode()
     body = header + b"\n" + binary.code
-    try:
+    with suppress(OSError):
         place = folder() / name[:2]
         place.mkdir(parents=True, exist_ok=True)
         handle, aside = tempfile.mkstemp(dir=place)
-        with os.fdopen(handle, "wb") as file:
-            file.write(hashlib.sha256(body).digest() + body)
-        os.replace(aside, place / name)
-    except OSError:
-        return
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(hashlib.sha256(body).digest() + body)
+            os.replace(aside, place / name)
+        except BaseException:
+            os.unlink(aside)
+            raise
 
 
 def _counter(row: dict[str, object]) -> Counter:

@@ -5,7 +5,8 @@ Every node carries `line`, counted from the first line of the kernel's source (i
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 from bfsim.kernel.types import ArrayType, IntType, Value
 
@@ -200,16 +201,18 @@ class Parameter:
     type: IntType | ArrayType
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Function:
-    """A whole kernel. `locals` gives the type of every local name; `file` and `first_line` say where it
-    stands; `symbol` is its name in the machine code, with the module in front."""
+    """A whole kernel. `locals` gives the type of every local name; `symbol` is its name in the machine code.
+
+    `file`, `first_line` and `source` say where it stands; the code does not depend on them, nor does `repr`.
+    """
 
     name: str
     symbol: str
-    file: str
-    first_line: int
-    source: str
+    file: str = field(repr=False)
+    first_line: int = field(repr=False)
+    source: str = field(repr=False)
     parameters: tuple[Parameter, ...]
     result: IntType | None
     locals: tuple[tuple[str, Value], ...]
@@ -217,18 +220,36 @@ class Function:
 
     def callees(self) -> tuple[Function, ...]:
         """Kernels that this one calls, directly or not, each once, callees first."""
-        found: dict[str, Function] = {}
+        found: dict[Function, None] = {}
         for call in calls_in(self.body):
-            for each in (*call.callee.callees(), call.callee):
-                found.setdefault(each.symbol, each)
-        return tuple(found.values())
+            found.update(dict.fromkeys((*call.callee.callees(), call.callee)))
+        return tuple(found)
 
 
 def calls_in(node: object) -> list[Call]:
-    """Every call below `node`, in source order."""
-    if isinstance(node, tuple):
-        return [call for each in node for call in calls_in(each)]
-    if isinstance(node, Function) or not hasattr(node, "line"):
-        return []
-    inner = [call for field in node.__slots__ for call in calls_in(getattr(node, field))]  # type: ignore[attr-defined]
-    return [*inner, node] if isinstance(node, Call) else inner
+    """Every call of a kernel in `node`, a part of a tree; the outer one of `f(g(x))` first."""
+    return [each for each in _parts(node) if isinstance(each, Call)]
+
+
+def written_arrays(function: Function) -> frozenset[str]:
+    """Array parameters that `function` or a kernel called by it stores into."""
+    parts = list(_parts(function.body))
+    written = {each.array for each in parts if isinstance(each, Store)}
+    for call in parts:
+        if isinstance(call, Call):
+            inner = written_arrays(call.callee)
+            pairs = zip(call.callee.parameters, call.arguments, strict=True)
+            written |= {each for parameter, each in pairs if isinstance(each, str) and parameter.name in inner}
+    return frozenset(written)
+
+
+def _parts(node: object) -> Iterator[object]:
+    """Walk over `node` and everything below it, in source order, without recursion: trees may be deep."""
+    waiting = [node]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, tuple):
+            waiting.extend(reversed(node))
+        elif hasattr(node, "line"):
+            yield node
+            waiting.extend(getattr(node, each) for each in reversed(node.__slots__))  # type: ignore[attr-defined]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,25 +35,26 @@ class PreparedCall:
     Binding once and calling often keeps the cost of a call from Python below a microsecond.
     """
 
-    __slots__ = ("_at", "_block", "_cell", "_entry", "_follower", "_integers", "_is_plain", "_value_word", "totals")
+    __slots__ = ("_at", "_block", "_cell", "_entry", "_follower", "_integers", "_is_plain", "_kept", "_value_word")
 
     def __init__(
         self,
         compiled: Compiled,
-        arrays: Sequence[tuple[int, int, int]],
-        integers: Sequence[int],
+        arrays: Sequence[tuple[int, NDArray[Any]]],
+        integers: Sequence[tuple[int, int]],
         *,
         has_value: bool,
         follower: Follower | None,
         totals: NDArray[np.int64],
     ) -> None:
-        """`arrays`: (word, host address, length); `integers`: words; `totals`: one word per counter, added to."""
+        """`arrays`: (word, array); `integers`: (word, position); `totals`: one word per counter."""
         words = FIRST_ARGUMENT + 2 * len(arrays) + len(integers)
         self._value_word = words + (follower is not None) if has_value else 0
         self._block = (ctypes.c_int64 * (words + 2))()
         self._block[0] = totals.ctypes.data
-        for word, address, length in arrays:
-            self._block[word], self._block[word + 1] = address, length
+        for word, array in arrays:
+            self._block[word], self._block[word + 1] = array.ctypes.data, len(array)
+        self._kept = (arrays, totals)  # the block has their addresses only
         if follower:
             self._block[words] = follower.address()
         self._at = ctypes.addressof(self._block)
@@ -61,13 +63,16 @@ class PreparedCall:
         self._integers = tuple(integers)
         self._follower = follower
         self._is_plain = not has_value and follower is None
-        self.totals = totals
 
-    def run(self, integers: Sequence[int] = ()) -> Work:
-        """Run the kernel now and say what it cost."""
-        if integers:
-            for word, integer in zip(self._integers, integers, strict=True):
-                self._block[word] = integer
+    @property
+    def is_followed(self) -> bool:
+        """Whether accesses are followed one by one."""
+        return self._follower is not None
+
+    def run(self, arguments: Sequence[Any]) -> Work:
+        """Run the kernel now and say what it cost. Of `arguments`, only the integers are read."""
+        for word, position in self._integers:
+            self._block[word] = arguments[position]
         self._cell.value = self._at
         issue_cclk: int = self._entry()
         if self._is_plain:

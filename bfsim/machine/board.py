@@ -116,6 +116,7 @@ class Board:
             interrupted = True
         if not interrupted:
             self._check_end()
+        self._env.settle()
         return self._outcome(capture, interrupted)
 
     def _check_end(self) -> None:

@@ -201,11 +201,10 @@ class Capture:
     def _fill(
         self, pair: Pair, images: Mapping[str, NDArray[np.uint8]], starts: Mapping[str, int]
     ) -> Generator[simpy.Event, Any, None]:
-        sides = [
-            self._env.process(ppi.receive(images[core], pair.rows[core], starts[core]))
-            for core, ppi in self._ppis.items()
-        ]
-        yield self._env.all_of(sides)
+        yield self._env.all_of(
+            [ppi.receive(images[core], pair.rows[core], starts[core]) for core, ppi in self._ppis.items()]
+        )
+        self._env.settle()
         pair.state = State.FULL
         pair.full_at_ticks = self._env.tick
         self._notify()

@@ -192,6 +192,10 @@ class Core:
         ahead_ticks = self._cclk * self._cclk_ticks - self._env.tick
         return self._env.after(ahead_ticks) if ahead_ticks > 0 else None
 
+    def settle(self) -> None:
+        """Let everything happen that is due; the core's clock must have been caught up with."""
+        self._env.settle()
+
     def has(self, transfer: Transfer) -> bool:
         """Whether `transfer` is done by the core's clock."""
         return transfer.end is not None and transfer.end <= self._cclk * self._cclk_ticks
@@ -200,11 +204,10 @@ class Core:
         """Stall for `reason` until `transfer` is done."""
         if transfer.end is None:
             yield from self._sync()
-            if transfer.end is None:
-                transfer.started = self._env.event()
-                yield transfer.started
-                self._wake(reason)
-            assert transfer.end is not None
+            self._env.settle()
+            while transfer.end is None:
+                yield self._env.until_next_note()
+                self._env.settle()
         late_ticks = transfer.end - self._cclk * self._cclk_ticks
         if late_ticks > 0:
             self._stall(reason, -(-late_ticks // self._cclk_ticks))
@@ -314,6 +317,7 @@ class Core:
             self._stall(reason, cclk)
         if self._direct.uses_bus(accesses):
             yield from self._sync()
+            self._env.settle()
             self._stall(StallReason.EBIU_ARBITRATION, self._direct.arbitrate(accesses, self.now_ticks))
 
     def _test_and_set(self) -> Generator[Any, Any, None]:

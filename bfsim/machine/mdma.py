@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from collections import deque
 
-import simpy
-
 from bfsim.chip.spec import ChipSpec
 from bfsim.clocks import Clocks
 from bfsim.machine.ebiu import BurstRate, Ebiu
@@ -21,15 +19,13 @@ from bfsim.machine.traffic import Account
 class Transfer:
     """One copy of a row. `end` is the tick at which it is done, or None as long as it has not started."""
 
-    __slots__ = ("at", "destination", "end", "source", "started")
+    __slots__ = ("at", "destination", "end", "source")
 
     def __init__(self, source: Row, destination: Row, at: int) -> None:
         self.source = source
         self.destination = destination
         self.at = at
         self.end: int | None = None
-        self.started: simpy.Event | None = None
-        """Set by whoever has to wait for the start."""
 
 
 class MdmaStream:
@@ -45,29 +41,20 @@ class MdmaStream:
         self._ebiu = ebiu
         self._queue: deque[Transfer] = deque()
         self._free_at = 0
-        self._asleep = False
 
     def copy(self, source: Row, destination: Row, at: int) -> Transfer:
         """Copy `source` to `destination`, not before tick `at`, after all copies asked for before."""
-        transfer = Transfer(source, destination, at)
+        transfer = Transfer(source, destination, max(at, self._env.tick))
         self._queue.append(transfer)
-        if not self._asleep:
-            self._advance()
+        if len(self._queue) == 1:
+            self._env.note(max(transfer.at, self._free_at), self._begin)
         return transfer
 
-    def _advance(self, _event: simpy.Event | None = None) -> None:
-        """Start what can start now; sleep until the next one can."""
-        self._asleep = False
-        while self._queue:
-            transfer = self._queue[0]
-            begin = max(transfer.at, self._free_at)
-            now = self._env.tick
-            if begin > now:
-                self._asleep = True
-                self._env.call_at(begin, self._advance)
-                return
-            self._queue.popleft()
-            self._start(transfer, now)
+    def _begin(self, now: int) -> None:
+        """Start the first copy of the queue, and note when the one after it begins."""
+        self._start(self._queue.popleft(), now)
+        if self._queue:
+            self._env.note(max(self._queue[0].at, self._free_at), self._begin)
 
     def _start(self, transfer: Transfer, now: int) -> None:
         source, destination = transfer.source, transfer.destination
@@ -80,8 +67,6 @@ class MdmaStream:
         if not source.pages and not destination.pages:
             ready += self._on_chip_ticks(source)
         self._free_at = transfer.end = ready
-        if transfer.started is not None:
-            transfer.started.succeed()
 
     def _on_chip_ticks(self, row: Row) -> int:
         """Between L1 and L2 the stream moves a 32-bit word per SCLK, without the EBIU."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
-from typing import Any
+from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import simpy
@@ -35,13 +35,19 @@ class Ppi:
         self.frame_ticks = lines.after(mode.frame_lines)
         """Ticks from one picture's first line to the next one's, vertical blanking included."""
 
-    def receive(
-        self, picture: NDArray[np.uint8], rows: Sequence[Row], start: int
-    ) -> Generator[simpy.Event, Any, None]:
-        """Write `picture` (height, 2 · width) to `rows`, line n at the end of its time; its first line begins at `start`."""
-        env = self._env
-        for row, line, end in zip(rows, picture, self._line_ends, strict=True):
-            yield env.after(start + end - env.tick)
-            row.octets[:] = line
+    def receive(self, picture: NDArray[np.uint8], rows: Sequence[Row], start: int) -> simpy.Event:
+        """Write `picture` (height, 2 · width) to `rows`, line n at the end of its time; its first line begins at `start`.
+
+        Return the event at the end of the last line.
+        """
+
+        def line(number: int, now: int) -> None:
+            row = rows[number]
+            row.octets[:] = picture[number]
             if row.pages:
-                self._ebiu.burst(self._account, env.tick, row, self._rate, write=True)
+                self._ebiu.burst(self._account, now, row, self._rate, write=True)
+            if number + 1 < len(rows):
+                self._env.note(start + self._line_ends[number + 1], partial(line, number + 1))
+
+        self._env.note(start + self._line_ends[0], partial(line, 0))
+        return self._env.after(start + self.picture_ticks - self._env.tick)

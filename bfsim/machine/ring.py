@@ -58,6 +58,7 @@ class InputRing:
         while len(transfers) < min(len(self._image), number + 2):
             ahead = len(transfers)
             transfers.append(self._stream.copy(self._image[ahead], self._row(ahead), core.now_ticks))
+        core.settle()
         if not core.has(transfer := transfers[number]):
             yield from core.wait_transfer(transfer, StallReason.RING_EMPTY)
         return self._row(number)

@@ -171,6 +171,11 @@ class Bench:
         """Return another MDMA stream."""
         return MdmaStream(self.env, self.spec.chip, self.spec.clocks, self.ebiu, self.account)
 
+    def advance(self, tick: int = 1_000_000_000) -> None:
+        """Let time pass until `tick`, or for as long as anything here can take, and everything happen that is due."""
+        self.env.run(until=tick)
+        self.env.settle()
+
     def sclk(self, cycles: int) -> int:
         """Return SCLK cycles in ticks."""
         return cycles * self.spec.clocks.sclk_ticks

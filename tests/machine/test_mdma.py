@@ -25,7 +25,7 @@ def read_sclk(bench: Bench, words: int) -> int:
 
 def ends(bench: Bench, *transfers: Transfer) -> list[int]:
     """Run the simulation to its end and return when each transfer was done."""
-    bench.env.run()
+    bench.advance()
     return [each.end for each in transfers if each.end is not None]
 
 
@@ -95,7 +95,7 @@ def test_a_later_copy_does_not_overtake() -> None:
 def test_a_copy_starts_at_its_time_and_never_in_the_past(at: int) -> None:
     """Asked for at tick 1000: earlier means now, later means then, and the bus takes it at the next SCLK edge."""
     bench = Bench()
-    bench.env.run(until=1000)
+    bench.advance(1000)
     copy = bench.stream.copy(bench.row(SDRAM, 640), bench.row(L1, 640), at)
     begin = -(-max(at, 1000) // 5) * 5
     assert ends(bench, copy) == [begin + bench.sclk(read_sclk(bench, 160))]
@@ -107,8 +107,9 @@ def test_bytes_are_read_when_the_copy_starts() -> None:
     source, target = bench.row(SDRAM, 4), bench.row(L1, 4)
     bench.stream.copy(source, target, 100)
     source.array[:] = 1
-    bench.env.call_at(101, lambda _: source.array.fill(2))
-    bench.env.run()
+    bench.advance(100)
+    source.array[:] = 2
+    bench.advance()
     assert target.array.tolist() == [1, 1, 1, 1]
 
 

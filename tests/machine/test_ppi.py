@@ -32,13 +32,15 @@ def test_line_n_is_in_memory_at_the_end_of_its_time(board: str, start: int) -> N
     rows = [bench.row(number * 2048, 2 * WIDTH) for number in range(HEIGHT)]
     for row in rows:
         row.array[:] = 0
-    bench.env.process(new_ppi(bench).receive(picture, rows, start))
+    end = new_ppi(bench).receive(picture, rows, start)
     for number, row in enumerate(rows):
         due = start + ceil((number + 1) * line_ticks)
-        bench.env.run(until=due)  # up to, but without, the events of tick `due`
+        bench.advance(due - 1)
         assert not row.array.any()
-        bench.env.run(until=due + 1)
+        bench.advance(due)
         assert np.array_equal(row.array, picture[number])
+    bench.advance(due + 1)
+    assert end.processed
 
 
 def test_a_picture_is_shorter_than_a_frame_by_the_vertical_blanking() -> None:
@@ -54,8 +56,8 @@ def test_lines_use_the_bus_and_are_counted() -> None:
     """Every byte of the picture is written once, a word a cycle, with the bank opened once per page."""
     bench = Bench()
     rows = [bench.row(number * 2 * WIDTH, 2 * WIDTH) for number in range(HEIGHT)]
-    bench.env.process(new_ppi(bench).receive(np.zeros((HEIGHT, 2 * WIDTH), np.uint8), rows, 0))
-    bench.env.run()
+    new_ppi(bench).receive(np.zeros((HEIGHT, 2 * WIDTH), np.uint8), rows, 0)
+    bench.advance()
     assert bench.account.written_bytes == HEIGHT * 2 * WIDTH
     assert bench.account.page_misses == 1
     assert bench.account.busy_ticks == bench.sclk(HEIGHT * 2 * WIDTH // 4 + bench.spec.sdram.nRCD)

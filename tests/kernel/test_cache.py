@@ -1,0 +1,172 @@
+"""The cache of compiled kernels: found again, never stale, never in the way."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bfsim.kernel import VDSP_O2, Kernel, jit, store
+from tests.kernel.modules import HEADER, import_text
+from tests.kernel.running import cclk
+
+TEXT = "@kernel\ndef f(a: u8[:], b: u8[:]):\n    for i in range(len(a)):\n        b[i] = a[i] // 3\n"
+RUN = """
+import numpy as np
+from bfsim.kernel import VDSP_O2, jit
+from program import f
+compiles = []
+compile_it = jit._compile
+jit._compile = lambda *a, **k: compiles.append(1) or compile_it(*a, **k)
+a = np.arange(64, dtype=np.uint8); b = a.copy()
+code = f.compiled(VDSP_O2)
+work = f.prepare(code, [a, b], code.new_totals()).run((a, b))
+assert (b == a // 3).all()
+print(work.issue_cclk, len(compiles))
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Use an empty cache."""
+    monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+@pytest.fixture
+def compiles(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """List the kernels that are really compiled from now on."""
+    found: list[str] = []
+    compile_it = jit._compile
+
+    def noted(function: jit.tree.Function, *rest: object, **options: object) -> store.Binary:
+        found.append(function.name)
+        return compile_it(function, *rest, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(jit, "_compile", noted)
+    return found
+
+
+def entries(folder: Path) -> list[Path]:
+    """Return the files of the cache."""
+    return [each for each in folder.rglob("*") if each.is_file()]
+
+
+def cost_of(kernel: Kernel) -> int:
+    """Run a kernel of TEXT and return its cycles, after checking its pixels."""
+    a = np.arange(64, dtype=np.uint8)
+    b = np.zeros_like(a)
+    cycles = cclk(kernel, a, b)
+    np.testing.assert_array_equal(b, a // 3)
+    return cycles
+
+
+def start(tmp_path: Path, cache: Path, **environment: str) -> subprocess.Popen[str]:
+    """Run the kernel of TEXT in a process of its own; it prints its cycles and how often it compiled."""
+    tmp_path.mkdir(exist_ok=True)
+    (tmp_path / "program.py").write_text(HEADER + TEXT)
+    return subprocess.Popen(
+        [sys.executable, "-W", "error", "-c", RUN],
+        cwd=tmp_path,
+        env=os.environ | {"BFSIM_CACHE_DIR": str(cache)} | environment,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+
+
+def test_a_kernel_is_compiled_once(folder: Path, compiles: list[str], tmp_path: Path) -> None:
+    """The same source, read again in the same process, is taken from the cache with all its counters."""
+    first: Kernel = import_text(TEXT, tmp_path, "same").f
+    second: Kernel = import_text("# moved down\n\n" + TEXT, tmp_path, "same").f
+    assert cost_of(first) == cost_of(second)
+    assert first.compiled(VDSP_O2).counters == second.compiled(VDSP_O2).counters
+    assert compiles == ["f"]
+    assert len(entries(folder)) == 1
+
+
+@pytest.mark.parametrize(("old", "new"), [("// 3", "// 5"), ("a[i]", "b[i]"), ("b: u8[:]", "b: i8[:]")])
+def test_a_changed_source_is_compiled_again(
+    old: str, new: str, folder: Path, compiles: list[str], tmp_path: Path
+) -> None:
+    """A kernel that reads differently never meets the entry of what it was."""
+    for text in (TEXT, TEXT.replace(old, new)):
+        import_text(text, tmp_path, "same").f.compiled(VDSP_O2)
+    assert compiles == ["f", "f"]
+    assert len(entries(folder)) == 2
+
+
+def test_a_changed_callee_profile_or_variant_is_compiled_again(
+    folder: Path, compiles: list[str], tmp_path: Path
+) -> None:
+    """What a kernel calls, the compiler profile and the kind of build belong to the entry's name."""
+    for factor in (2, 3):
+        text = f"@kernel\ndef g(x: i32) -> i32:\n    return x * {factor}\n@kernel\ndef f(x: i32) -> i32:\n    return g(x)\n"
+        module = import_text(text, tmp_path, "same")
+        assert module.f(5) == 5 * factor
+    module.f.compiled(replace(VDSP_O2, divide_cclk=99))
+    module.f.compiled(VDSP_O2, counted=False)
+    module.f.compiled(VDSP_O2, followed=True)
+    assert compiles == ["f"] * 5
+    assert len(entries(folder)) == 5
+
+
+@pytest.mark.parametrize("damage", ["cut", "emptied", "flipped", "swapped"])
+def test_a_damaged_entry_is_compiled_again(
+    damage: str, folder: Path, compiles: list[str], tmp_path: Path
+) -> None:
+    """An entry that was cut short or has a flipped bit is noticed, replaced, and never run."""
+    cycles = cost_of(import_text(TEXT, tmp_path, "same").f)
+    (entry,) = entries(folder)
+    good = entry.read_bytes()
+    flipped = bytearray(good)
+    flipped[len(good) // 2] ^= 4
+    bad = {"cut": good[:-9], "emptied": b"", "flipped": bytes(flipped), "swapped": good[32:] + good[:32]}[
+        damage
+    ]
+    entry.write_bytes(bad)
+    assert cost_of(import_text(TEXT, tmp_path, "same").f) == cycles
+    assert compiles == ["f", "f"]
+    assert entry.read_bytes() != bad
+
+
+def test_a_folder_that_cannot_be_written_is_no_obstacle(
+    folder: Path, compiles: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without a cache every start compiles, and nothing is left half-written."""
+    folder.write_text("a file, not a folder")
+    assert cost_of(import_text(TEXT, tmp_path, "same").f) > 0
+    folder.unlink()
+    monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError("disk full")))
+    assert cost_of(import_text(TEXT, tmp_path, "same").f) > 0
+    assert compiles == ["f", "f"]
+    assert entries(folder) == []
+
+
+def test_an_entry_is_text_and_machine_code(folder: Path, tmp_path: Path) -> None:
+    """An entry is a checksum, one line of JSON and an object file: nothing in it is unpickled."""
+    cost_of(import_text(TEXT, tmp_path, "same").f)
+    (entry,) = entries(folder)
+    header, _, code = entry.read_bytes()[store.CHECKSUM_BYTES :].partition(b"\n")
+    assert header.startswith(b'[{"routine":"same_f"')
+    assert b"ELF" in code[:4] or code[:4] in (b"\xcf\xfa\xed\xfe", b"\x64\x86\x00\x00")
+
+
+def test_processes_share_the_cache_and_agree_on_the_cycles(tmp_path: Path) -> None:
+    """Two processes that start at once, in other folders and with other hash seeds, count the same cycles.
+
+    Both leave a good cache behind: a third one, later, compiles nothing.
+    """
+    cache = tmp_path / "cache"
+    both = [start(tmp_path / seed, cache, PYTHONHASHSEED=seed) for seed in ("1", "2")]
+    results = [each.communicate()[0].split() for each in both]
+    assert [each.returncode for each in both] == [0, 0]
+    later = start(tmp_path / "later", cache, PYTHONHASHSEED="3")
+    cycles, compiled = later.communicate()[0].split()
+    assert compiled == "0"
+    assert {result[0] for result in results} == {cycles}
+    assert len(entries(cache)) == 1

@@ -1,0 +1,182 @@
+"""What kernels cost: closed forms worked out by hand from the table of operations."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from bfsim.kernel import VDSP_O2, Kernel
+from bfsim.kernel.isa import ISSUE_CCLK, NOT_TAKEN_BP_CCLK, NOT_TAKEN_CCLK, TAKEN_BP_CCLK, Op
+from tests.kernel import cost_kernels
+from tests.kernel.conftest import ImportText
+from tests.kernel.running import cclk, line_executions, run
+
+RETURN = ISSUE_CCLK[Op.RETURN]
+GUARD = 1 + NOT_TAKEN_CCLK  # is there a first turn at all: compare, branch not taken
+LSETUP = ISSUE_CCLK[Op.LOOP_SETUP]
+
+
+def words(n: int) -> np.ndarray[tuple[int], np.dtype[np.uint32]]:
+    """Return `n` words."""
+    return np.zeros(n, np.uint32)
+
+
+def test_an_empty_kernel_only_returns() -> None:
+    """A kernel without a body costs its RTS."""
+    assert cclk(cost_kernels.nothing) == RETURN
+
+
+@pytest.mark.parametrize("n", [1, 2, 320])
+def test_a_copy_loop_costs_a_load_and_a_store_per_word(n: int) -> None:
+    """A counted loop without branches is a hardware loop: two cycles a word, nothing per turn."""
+    assert cclk(cost_kernels.copy_words, words(n), words(n)) == GUARD + LSETUP + 2 * n + RETURN
+
+
+def test_two_nested_counted_loops_are_hardware_loops() -> None:
+    """One more turn of the outer loop costs the LSETUP of the inner one and its body; no branch."""
+    row = words(50)
+    base = cclk(cost_kernels.flip_grid, row, 1, 20)
+    per_line = cclk(cost_kernels.flip_grid, row, 2, 20) - base
+    assert per_line == cclk(cost_kernels.flip_grid, row, 9, 20) - cclk(cost_kernels.flip_grid, row, 8, 20)
+    per_word = cclk(cost_kernels.flip_grid, row, 1, 21) - base
+    assert per_word == 3  # load, exclusive or, store
+    assert per_line - 20 * per_word < TAKEN_BP_CCLK + 1
+
+
+def test_the_third_loop_is_not_a_hardware_loop() -> None:
+    """The chip has two sets of loop registers: a third level compares and branches back, predicted taken."""
+    row = words(50)
+    counters = cost_kernels.flip_cube.compiled(VDSP_O2).counters
+    branches = [each for each in counters if each.value is not None]
+    back = [each for each in branches if abs(each.cclk) == NOT_TAKEN_BP_CCLK - TAKEN_BP_CCLK]
+    assert len(back) == 1
+    assert cclk(cost_kernels.flip_cube, row, 4) > 4 * cclk(cost_kernels.flip_grid, row, 4, 4) - 4 * (
+        RETURN + GUARD
+    )
+
+
+def test_a_loop_that_waits_for_data_branches_every_turn() -> None:
+    """A `while` on data is no hardware loop: compare, branch back predicted taken, and at the end 9 cycles."""
+    row = np.arange(40, dtype=np.uint8)
+    cost = [cclk(cost_kernels.find, row, n) for n in range(10)]
+    per_turn = {b - a for a, b in itertools.pairwise(cost)}
+    assert per_turn == {1 + 1 + 1 + TAKEN_BP_CCLK}  # load, compare, increment, branch back
+
+
+def test_a_loop_on_a_square_is_not_counted() -> None:
+    """`root * root < n` has no number of turns before it starts, so every turn pays its branch."""
+    per_turn = cclk(cost_kernels.square_root, 101) - cclk(cost_kernels.square_root, 100)
+    assert (
+        per_turn == ISSUE_CCLK[Op.MUL32] + 1 + TAKEN_BP_CCLK + 1
+    )  # product, compare, branch back, increment
+
+
+def test_a_loop_with_a_call_branches_and_pays_the_call() -> None:
+    """A loop that calls is no hardware loop; a turn costs CALL, the callee with its RTS, and the branch."""
+    row = np.zeros(20, np.uint8)
+    callee = cclk(cost_kernels.store_three, row, 3)
+    per_turn = cclk(cost_kernels.store_each, row, 9) - cclk(cost_kernels.store_each, row, 8)
+    assert per_turn == ISSUE_CCLK[Op.CALL] + callee + 2 + TAKEN_BP_CCLK  # increment and compare
+
+
+def test_a_division_costs_the_run_time_library() -> None:
+    """A division is a call of the profile's library."""
+    assert cclk(cost_kernels.quotient, 7, 2) == VDSP_O2.divide_cclk + RETURN
+
+
+def test_one_division_of_bytes_needs_no_correction() -> None:
+    """Bytes are never negative: rounding down is rounding to zero, one library call per pixel and no more."""
+    a, b, out = (np.full(9, 12, np.uint8) for _ in range(3))
+    per_pixel = cclk(cost_kernels.quotients, a, b, out) - cclk(cost_kernels.quotients, a[1:], b[1:], out[1:])
+    # two loads, store, library, increment, compare, branch back; the loop calls, so it is no hardware loop
+    assert per_pixel == pytest.approx(VDSP_O2.divide_cclk + 2 + 1 + 2 + TAKEN_BP_CCLK, abs=6)
+
+
+def test_dividing_by_a_power_of_two_shifts() -> None:
+    """`// 8` and `% 16` round down, as an arithmetic shift and a mask do; no library is called."""
+    assert cclk(cost_kernels.rounded_down, -5) == 3 + RETURN
+    assert cost_kernels.rounded_down(-5) == -5 // 8 + -5 % 16
+
+
+@pytest.mark.parametrize("above", [0, 1, 7, 32])
+def test_a_branch_costs_what_the_data_makes_it_cost(above: int) -> None:
+    """A pixel that skips the body pays 5 cycles, one that enters it pays 9 and the body."""
+    row = np.array([200] * above + [10] * (32 - above), np.uint8)
+    work = run(cost_kernels.positions_above, row, 100, words(32))
+    assert work.value == above
+    none = cclk(cost_kernels.positions_above, np.full(32, 10, np.uint8), 100, words(32))
+    body = 3 + 1  # index to the address unit, address, store; increment
+    assert work.issue_cclk - none == above * (NOT_TAKEN_BP_CCLK - TAKEN_BP_CCLK + body)
+
+
+def test_cycles_depend_on_the_picture() -> None:
+    """Non-maximum suppression costs more or less with what it sees; equal pictures cost the same."""
+    random = np.random.default_rng(5)
+    pictures = random.integers(0, 256, (2, 4, 64), np.uint8)
+    out = np.zeros(64, np.uint8)
+    costs = [cclk(cost_kernels.suppress, *rows, out) for rows in (*pictures, *pictures)]
+    assert costs[:2] == costs[2:]
+    assert costs[0] != costs[1]
+
+
+def test_a_table_made_by_the_optimiser_is_costed_and_belongs_to_no_array() -> None:
+    """A chain of `elif` that becomes a table in memory runs right, and its loads are not the arrays' loads."""
+    row, out = np.arange(8, dtype=np.uint8), words(8)
+    assert cclk(cost_kernels.translate, row, out) > 0
+    assert out.tolist() == [10, 77, 5, 1234, 99, 33, 0, 0]
+    names = {
+        name for each in cost_kernels.translate.compiled(VDSP_O2).counters for name, _, _ in each.accesses
+    }
+    assert names == {"row", "out"}
+
+
+def test_every_line_is_counted_as_often_as_it_ran() -> None:
+    """Line executions are those of the Python source: the loop's line, the test in it, and the body."""
+    row = np.array([1, 200, 3, 250, 5], np.uint8)
+    ran = line_executions(cost_kernels.positions_above, row, 100, words(9))
+    first = 1
+    assert ran[first + 4] == 5  # the test
+    assert ran[first + 5] == ran[first + 6] == 2  # what it guards
+
+
+def test_accesses_are_counted_per_array() -> None:
+    """A kernel's reads and writes of each array follow from its counts."""
+    code = cost_kernels.copy_words.compiled(VDSP_O2)
+    totals = code.new_totals()
+    cost_kernels.copy_words.prepare(code, [words(17), words(17)], totals).run((words(17), words(17)))
+    found: dict[str, tuple[int, int]] = {}
+    for counter, events in zip(code.counters, totals.tolist(), strict=True):
+        for name, reads, writes in counter.accesses:
+            found[name] = (events * reads, events * writes)
+    assert found == {"source": (17, 0), "target": (0, 17)}
+
+
+def test_the_same_kernel_costs_the_same_wherever_it_stands(import_kernels: ImportText) -> None:
+    """Moving a kernel to another file, line and module name does not change its cycles."""
+    text = "@kernel\ndef f(a: u8[:], b: u8[:]):\n    for i in range(len(a)):\n        b[i] = max(a[i] - 3, 0) * 5\n"
+    here: Kernel = import_kernels(text).f
+    there: Kernel = import_kernels("\n\n# moved\n" + text).f
+    row = np.arange(100, dtype=np.uint8)
+    assert cclk(here, row, row.copy()) == cclk(there, row, row.copy())
+
+
+def test_counting_does_not_change_the_pixels() -> None:
+    """The build without counters writes the same pixels and costs nothing."""
+    random = np.random.default_rng(1)
+    rows = list(random.integers(0, 256, (4, 64), np.uint8))
+    counted, bare = np.zeros(64, np.uint8), np.zeros(64, np.uint8)
+    cost_kernels.suppress(*rows, counted)
+    code = cost_kernels.suppress.compiled(VDSP_O2, counted=False)
+    assert code.counters == ()
+    arguments = (*rows, bare)
+    assert cost_kernels.suppress.prepare(code, arguments, code.new_totals()).run(arguments).issue_cclk == 0
+    np.testing.assert_array_equal(counted, bare)
+
+
+def test_dividing_by_zero_does_not_stop_the_host() -> None:
+    """The result of a division by zero means nothing, as in C, but the simulator lives on, at every width."""
+    zeros = np.zeros(4, np.uint8)
+    cost_kernels.quotients(np.full(4, 9, np.uint8), zeros, zeros.copy())
+    assert cost_kernels.quotient(9, 0) is not None

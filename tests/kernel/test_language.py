@@ -1,0 +1,283 @@
+"""What is not the kernel language is refused: with file, line, column, a caret, and what to write instead."""
+
+from __future__ import annotations
+
+import functools
+import re
+import types
+from pathlib import Path
+
+import pytest
+
+from bfsim.errors import KernelError
+from bfsim.kernel import VDSP_O2, Kernel, kernel
+from tests.kernel.conftest import ImportText
+from tests.kernel.modules import HEADER_LINES, import_text
+
+BEFORE = """
+SIZE = 4
+RATIO = 0.5
+NAMES = ["a"]
+
+def plain(x):
+    return x
+
+def max(x, y, z):
+    return x
+
+@kernel
+def other(x: i32, row: u8[:]) -> i32:
+    return x + row[0]
+
+@kernel
+def silent(row: u8[:]):
+    row[0] = 1
+"""
+DEF = "def f(x: i32, w: u32, row: u8[:], col: i16[:]) -> i32:"
+
+
+def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
+    """Return the message, the shown line and what stands above the caret, of a module that must be refused."""
+    with pytest.raises(KernelError) as caught:
+        import_text(text, folder)
+    message, shown, caret = str(caught.value).splitlines()
+    return message, shown, shown[caret.index("^") :]
+
+
+@pytest.mark.parametrize(
+    ("line", "at", "what"),
+    [
+        ("y = x * 0.5", "0.5", "cannot use floats; scale to integers"),
+        ("y = x / 2", "x / 2", "cannot use the float division /; write // (rounds down)"),
+        ("y = x ** 2", "x ** 2", "cannot use **; write it with"),
+        ("y = x @ x", "x @ x", "cannot use @; write it with"),
+        ("y = 'text'", "'text'", "cannot use the constant 'text'; use integers"),
+        ("y = f'{x}'", "f'{x}'", "cannot use strings"),
+        ("y = [x, x]", "[x, x]", "cannot use lists"),
+        ("y = {x: 1}", "{x: 1}", "cannot use dictionaries"),
+        ("y = [i for i in range(3)]", "[i for", "cannot use comprehensions"),
+        ("y = lambda: 1", "lambda: 1", "cannot use lambda"),
+        ("y = row.size", "row.size", "cannot use attributes"),
+        ("y = (z := x)", "z := x", "cannot use `:=`"),
+        ("y = x is x", "x is x", "cannot use `is`; write < <= > >= == !="),
+        ("y = x in row", "x in row", "cannot use `in`; write < <= > >= == !="),
+        ("try:\n        y = x\n    except ValueError:\n        y = 1", "try:", "cannot use `try` statements; tests with if"),
+        ("with x:\n        pass", "with x:", "cannot use `with` statements"),
+        ("del x", "del x", "cannot use `del` statements"),
+        ("assert x", "assert x", "cannot use `assert` statements"),
+        ("global SIZE", "global SIZE", "cannot use `global` statements"),
+        ("import math", "import math", "cannot use `import` statements"),
+        ("raise ValueError", "raise ValueError", "cannot use `raise` statements"),
+        ("def g():\n        pass", "def g():", "cannot use `def` statements"),
+        ("match x:\n        case 1:\n            pass", "match x:", "cannot use `match` statements"),
+        ("yield x", "yield x", "cannot use `yield`"),
+        ("y = z = x", "y = z", "assigns one name at a time; write two lines"),
+        ("y, z = x, x", "y, z", "only a local name or an array element can be assigned"),
+        ("row = col", "row = col", "only a local name or an array element can be assigned"),
+        ("for v in row:\n        pass", "row:", "loops over range(...) only; write for i in range(len(a))"),
+        ("for i, j in range(3):\n        pass", "for i, j", "a loop counts one plain name"),
+        ("for i in range():\n        pass", "range()", "range takes one to three numbers"),
+        ("for i in range(0, 9, 0):\n        pass", "0):", "step of a range must be a constant other than 0"),
+        ("for i in range(0, 9, x):\n        pass", "x):", "step of a range must be a constant other than 0"),
+        ("for w in range(3):\n        pass", "w in", "w is u32, not i32; use another name for the counter"),
+        ("while x:\n        x -= 1\n    else:\n        x = 1", "x = 1", "a loop cannot have an else; use a flag"),
+        ("for i in range(3):\n        break\n        x = 1", "x = 1", "this line is never reached; remove it"),
+        ("return x\n    x = 1", "x = 1", "this line is never reached"),
+        ("return", "return", "this kernel must return a value"),
+        ("return x < 1", "x < 1", "a number is needed here, not a truth value; write `1 if test else 0`"),
+        ("return w", "w", "i32 is needed here, not u32; write i32(...) round it"),
+        ("if x:\n        y = 1\n    x = y", "y", "y may be used before it has a value; give y a value on every way"),
+        ("for i in range(3):\n        pass\n    x = i", "i", "i may be used before it has a value"),
+        ("while True:\n        y = 1\n        if y:\n            break\n    x = y", "y", "y may be used before it has a value"),
+        ("x = SIZE\n    SIZE = 3", "SIZE", "SIZE may be used before it has a value"),
+        ("x = RATIO", "RATIO", "cannot read RATIO, which is a float"),
+        ("x = NAMES[0]", "NAMES[0]", "only array parameters can be indexed; pass the array as a parameter"),
+        ("x = nothing", "nothing", "the name nothing is not defined"),
+        ("x = x + w", "w", "the two sides are i32 and u32; write i32(...) or u32(...) round one of them"),
+        ("x = x + 3000000000", "3000000000", "3000000000 does not fit in i32"),
+        ("w = w & -2", "-2", "-2 does not fit in u32; use a value in 0..4294967295"),
+        ("x = 5000000000", "5000000000", "5000000000 does not fit in 32 bits"),
+        ("x = 2147483647 * 4", "2147483647 * 4", "8589934588 does not fit in 32 bits"),
+        ("x = row[-1]", "-1", "an index cannot be negative; write row[len(row) - 1] for the end"),
+        ("x = row[0:2]", "0:2", "an array has one integer index; loop over the elements"),
+        ("x = row[0, 1]", "0, 1", "an array has one integer index"),
+        ("x = row + 1", "row", "the array row is used like a number; write row[i] or len(row)"),
+        ("x = len(x)", "len(x)", "len is for array parameters"),
+        ("x = x // 0", "0", "the division is by zero"),
+        ("x %= 0", "0", "the division is by zero"),
+        ("x = x << 40", "40", "a shift must be by 0..31, not by 40"),
+        ("x >>= -1", "-1", "a shift must be by 0..31, not by -1"),
+        ("x **= 2", "x **= 2", "cannot use this operator"),
+        ("y = x and x", "x and", "`and` needs truth values, not numbers; write a comparison, `x != 0`"),
+        ("y = x < 1 or x", "x", "`or` needs truth values, not numbers"),
+        ("y = x < 1\n    y = 2", "2", "y holds bool, not i32; use another name"),
+        ("y: u8 = 1", "y: u8", "a local is an i32 or a u32 with a value; write x: u32 = 0"),
+        ("x: u32 = 1", "x: u32", "x is i32 already, not u32; use another name"),
+        ("x = plain(x)", "plain(x)", "cannot call plain like this; make plain a @kernel, or inline it"),
+        ("x = max(x, x, x)", "max(x", "cannot call max like this; make max a @kernel"),
+        ("x = min(x, 1, 2)", "min(x", "cannot call min like this; give min two arguments"),
+        ("x = row.sum()", "row.sum()", "can only call kernels, len, min, max, abs and casts"),
+        ("x = other(x, row=row)", "other(x", "call by name, without keywords"),
+        ("x = other(x)", "other(x)", "other takes 2 arguments, not 1; match its def"),
+        ("x = other(w, row)", "w, row", "i32 is needed here, not u32"),
+        ("x = other(x, col)", "col", "row must be an array u8[:]; pass such a parameter on"),
+        ("x = u8(x, x)", "u8(x, x)", "u8(...) takes one number; write u8(x)"),
+        ("x = silent(row)", "silent(row)", "this kernel returns nothing; call it on a line of its own"),
+        ("if silent(row):\n        pass", "silent(row)", "this kernel returns nothing"),
+        ("y = x < 1 and silent(row)", "silent(row)", "this kernel returns nothing"),
+        ("x = f(x, w, row, col)", "f(x", "a kernel cannot call itself; write a loop"),
+        ("abs = 1\n    x = abs(x)", "abs(x)", "abs is a variable here, not a function"),
+        ("row[other(x, row)] += 1", "row[other", "this call would run twice; put its result in a local name first"),
+        ("x = 1 if 0 < other(x, row) < 9 else 0", "other(x", "this call would run twice"),
+        ("x", "x", "this line does nothing; assign the result, or remove the line"),
+        ("x + 1", "x + 1", "this line does nothing"),
+    ],
+)  # fmt: skip
+def test_what_is_outside_the_language_is_refused_where_it_stands(
+    line: str, at: str, what: str, tmp_path: Path
+) -> None:
+    """A line outside the subset is refused with its place, a caret below the culprit, and what to write."""
+    message, _, above_caret = refusal_of(f"{BEFORE}\n@kernel\n{DEF}\n    {line}\n    return x\n", tmp_path)
+    assert what in message
+    assert above_caret.startswith(at)
+
+
+@pytest.mark.parametrize(
+    ("head", "at", "what"),
+    [
+        ("def f(x):", "x)", "the parameter x needs a type; write i32, u32, or an array such as u8[:]"),
+        ("def f(x: u8):", "x: u8", "the parameter x needs a type"),
+        ("def f(x: float):", "x: float", "the parameter x needs a type"),
+        ("def f(x: 'i32 +'):", "x: 'i32 +'", "the parameter x needs a type"),
+        ("def f(x: u8[4]):", "x: u8[4]", "the parameter x needs a type"),
+        ("def f(x: i32 = 1):", "def f", "takes plain parameters only; remove *, ** and default values"),
+        ("def f(*x: i32):", "def f", "takes plain parameters only"),
+        ("def f(**x: i32):", "def f", "takes plain parameters only"),
+        ("def f(*, x: i32):", "def f", "takes plain parameters only"),
+        ("def f(x: i32) -> u8:", "u8", "returns i32, u32 or nothing; write -> i32"),
+        ("def f(x: i32) -> bool:", "bool", "returns i32, u32 or nothing"),
+        ("def f(x: i32) -> i32:", "def f", "f can end without a value; return an i32 on every way"),
+        ("async def f(x: i32):", "async def", "must be a plain `def`; write def, not lambda or async def"),
+        ("def f(größe: i32):", "def f", "the name größe is not ASCII"),
+    ],
+)
+def test_a_head_outside_the_language_is_refused(head: str, at: str, what: str, tmp_path: Path) -> None:
+    """A kernel's own line is refused when its parameters or its result are not of the language."""
+    message, _, above_caret = refusal_of(f"@kernel\n{head}\n    pass\n", tmp_path)
+    assert what in message
+    assert above_caret.startswith(at)
+
+
+def test_a_refusal_names_file_line_and_column(tmp_path: Path) -> None:
+    """The place of a refusal is one that an editor can jump to, however the kernel is indented."""
+    text = "if True:\n    @kernel\n    def f(x: i32):\n        '''Text\nat the margin.'''\n        y = 0.5\n"
+    message, shown, _ = refusal_of(text, tmp_path)
+    place = re.match(r"(.*\.py):(\d+):(\d+): ", message)
+    assert place
+    line = Path(place[1]).read_text().splitlines()[int(place[2]) - 1]
+    assert int(place[2]) == HEADER_LINES + 6
+    assert line[int(place[3]) - 1 :] == "0.5"
+    assert shown.strip() == line.strip()
+
+
+def test_the_caret_stands_right_behind_wide_letters_and_tabs(tmp_path: Path) -> None:
+    """Letters of several bytes and tabs before the culprit do not move the caret away from it."""
+    text = "@kernel\ndef f(x: i32):\n\tx = 1; y = 'äöü' + 'é'\n"
+    with pytest.raises(KernelError) as caught:
+        import_text(text, tmp_path)
+    _, shown, caret = str(caught.value).splitlines()
+    assert shown[caret.index("^") :] == "'äöü' + 'é'"
+    assert caret.startswith("    \t")
+
+
+ODD = {
+    "lambda": kernel.__class__,
+    "class": type("Thing", (), {}),
+    "builtin": len,
+    "partial": functools.partial(len),
+    "number": 3,
+    "method": Path("x").exists,
+    "exec": types.FunctionType(compile("def g(): pass", "<made>", "exec").co_consts[0], {}),
+    "wrapper": functools.wraps(len)(lambda: None),
+}
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_what_has_no_source_of_its_own_is_refused(name: str) -> None:
+    """Anything that is not a plain function with a source is refused, never another exception."""
+    with pytest.raises(
+        KernelError, match="must (stand directly above a plain `def`|be a function in a file)"
+    ):
+        kernel(ODD[name])  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "f = kernel(lambda x: x)",
+        "f = [\n    kernel(\n        lambda x: x\n    ),\n]",
+        "class C:\n    @kernel\n    def f(self, x: i32):\n        pass",
+        "class C:\n    @kernel\n    @staticmethod\n    def f(x: i32):\n        pass",
+        "def outer():\n    size = 3\n    @kernel\n    def f(x: i32) -> i32:\n        return x + size\nouter()",
+        "import functools\n@kernel\n@functools.cache\ndef f(x: i32):\n    pass",
+        "@kernel\n@kernel\ndef f(x: i32):\n    pass",
+        "@kernel\nasync def f(x: i32):\n    await x",
+        "@kernel\ndef f(x: i32) -> i32:\n    return " + " + ".join(["x"] * 900),
+        "@kernel\ndef f(x: i32) -> i32:\n    return " + "-" * 90 + "(x, x)",
+        "@kernel\ndef f(x: i32):\n    print(x, *x, **x)",
+        "@kernel\ndef f(x: i32):\n    for i in range(*x):\n        pass",
+        "@kernel\ndef f(x: i32):\n    x = max(*x)",
+        "@kernel\ndef f(x: i32):\n    x = i32[:]",
+        "@kernel\ndef f(x: i32):\n    x[0] = 1",
+        "@kernel\ndef f(x: i32):\n    x.y = 1",
+        "@kernel\ndef f(x: i32):\n    f: i32\n",
+        "@kernel\ndef f(x: i32):\n    return None",
+    ],
+)
+def test_odd_functions_are_refused_and_nothing_else(text: str, tmp_path: Path) -> None:
+    """A function far from the language raises a KernelError, never another exception."""
+    with pytest.raises(KernelError):
+        import_text(text, tmp_path)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "@kernel\ndef f(x: i32):\n    '''Docstring only.'''",
+        "@kernel\ndef f():\n    pass",
+        "@kernel\ndef f(x: i32, /) -> i32:\n    return x",
+        "@kernel\ndef f(x: 'i32', row: 'u8[:]') -> 'i32':\n    return x",
+        "@kernel\ndef f(x: i32) -> None:\n    return",
+        "@kernel\ndef f(x: i32) -> i32:\n    while True:\n        x += 1\n        if x > 9:\n            return x",
+        "@kernel\ndef f(entry: i32, label: i32, bf: i32, then: u8[:]) -> i32:\n    return entry // label + bf + then[0]",
+        "@kernel\ndef f(x: i32) -> i32:\n" + "".join(f"    if x == {i}:\n        x += {i}\n" for i in range(300)) + "    return x",
+        "@kernel\ndef f(x: i32) -> i32:\n    if x < 0:\n        return 0\n"
+        + "".join(f"    elif x == {i}:\n        return {i * i % 7}\n" for i in range(60)) + "    return x",
+    ],
+)  # fmt: skip
+def test_odd_kernels_of_the_language_compile(text: str, tmp_path: Path) -> None:
+    """A function inside the language compiles, whatever its names, its size and the way its types are written."""
+    f: Kernel = import_text(text, tmp_path).f
+    assert f.compiled(VDSP_O2).counters
+
+
+def test_two_kernels_of_one_name_cannot_be_linked(import_kernels: ImportText) -> None:
+    """A kernel that reaches two different kernels of the same name is refused instead of running the wrong one."""
+    text = """
+        @kernel
+        def step(x: i32) -> i32:
+            return x + 1
+        @kernel
+        def twice(x: i32) -> i32:
+            return step(step(x))
+        @kernel
+        def step(x: i32) -> i32:
+            return x + 100
+        @kernel
+        def both(x: i32) -> i32:
+            return step(x) + twice(x)
+    """
+    with pytest.raises(
+        KernelError, match=r"it needs two different kernels named step, .*:\d+ and .*:\d+; rename one"
+    ):
+        import_kernels(text)

@@ -1,0 +1,52 @@
+"""A kernel computes what its text says, with the chip's 32-bit integers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from bfsim.kernel import Kernel
+from tests.kernel.modules import import_text
+from tests.kernel.programs import ARRAYS, ELEMENTS, programs
+from tests.kernel.words import NAMES, Row, Word
+
+
+def _arrays(seed: int) -> dict[str, NDArray[Any]]:
+    random = np.random.default_rng(seed)
+    kinds = {name: np.dtype(f"{kind[0]}{int(kind[1:]) // 8}") for name, kind in ARRAYS.items()}
+    return {
+        name: random.integers(np.iinfo(kind).min, np.iinfo(kind).max, ELEMENTS, kind, endpoint=True)
+        for name, kind in kinds.items()
+    }
+
+
+def _plain_run(text: str, arrays: dict[str, NDArray[Any]], x: int, y: int) -> int:
+    """Run `program` in plain Python on `arrays` and return its value."""
+    names = dict(NAMES)
+    exec(compile("from __future__ import annotations\n" + text, "<plain>", "exec"), names)  # noqa: S102
+    rows = [Row(each) for each in arrays.values()]
+    return int(names["program"](*rows, Word(x, signed=True), Word(y, signed=False)))
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@given(
+    text=programs(),
+    seed=st.integers(0, 1000),
+    x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
+    y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
+)
+def test_random_programs_compute_what_plain_python_computes(
+    text: str, seed: int, x: int, y: int, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """A random kernel leaves the same arrays and value as its text run by Python on wrapping integers."""
+    program: Kernel = import_text(text, tmp_path_factory.mktemp("program")).program
+    expected, found = _arrays(seed), _arrays(seed)
+    value = _plain_run(text, expected, x, y)
+    assert program(*found.values(), x, y) == value
+    for name, array in expected.items():
+        np.testing.assert_array_equal(found[name], array, err_msg=name)

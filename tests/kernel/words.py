@@ -1,0 +1,116 @@
+"""Plain Python with the integers of the chip: what a kernel must compute, without any compiler.
+
+A function of the kernel language runs unchanged when its casts, `range`, `min` and `max` are these, and its
+arrays are `Row`s. Literals stay Python's ints and take the type of the other side.
+"""
+
+from __future__ import annotations
+
+import builtins
+import operator
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def _wrapped(value: int, bits: int, *, signed: bool) -> int:
+    low = value & ((1 << bits) - 1)
+    return low - (1 << bits) if signed and low >> (bits - 1) else low
+
+
+class Word:
+    """A 32-bit integer, signed or not, whose arithmetic wraps."""
+
+    def __init__(self, value: int, *, signed: bool) -> None:
+        self.signed = signed
+        self.value = _wrapped(value, 32, signed=signed)
+
+    def __index__(self) -> int:
+        return self.value
+
+    def __bool__(self) -> bool:
+        return self.value != 0
+
+    def __neg__(self) -> Word:
+        return Word(-self.value, signed=self.signed)
+
+    def __invert__(self) -> Word:
+        return Word(~self.value, signed=self.signed)
+
+    def __abs__(self) -> Word:
+        return Word(abs(self.value), signed=self.signed)
+
+    def __hash__(self) -> int:
+        return hash(self.value)
+
+
+def _install(name: str) -> None:
+    plain: Callable[[int, int], int] = getattr(operator, name)
+    method = f"__{name.rstrip('_')}__"
+
+    def forward(self: Word, other: Any) -> Word:
+        return Word(plain(self.value, int(other)), signed=self.signed)
+
+    def backward(self: Word, other: Any) -> Word:
+        return Word(plain(int(other), self.value), signed=self.signed)
+
+    setattr(Word, method, forward)
+    setattr(Word, method.replace("__", "__r", 1), backward)
+
+
+def _install_comparison(name: str) -> None:
+    plain: Callable[[int, int], bool] = getattr(operator, name)
+    setattr(Word, f"__{name}__", lambda self, other: plain(self.value, int(other)))
+
+
+for _name in ("add", "sub", "mul", "floordiv", "mod", "lshift", "rshift", "and_", "or_", "xor"):
+    _install(_name)
+for _name in ("lt", "le", "gt", "ge", "eq", "ne"):
+    _install_comparison(_name)
+
+
+class Row:
+    """A numpy row that is read as words and keeps what its own width holds."""
+
+    def __init__(self, array: NDArray[Any]) -> None:
+        self.array = array
+
+    def __len__(self) -> int:
+        return len(self.array)
+
+    def __getitem__(self, index: Word) -> Word:
+        assert 0 <= int(index) < len(self.array)
+        return Word(int(self.array[int(index)]), signed=self.array.dtype != np.uint32)
+
+    def __setitem__(self, index: Word, value: Any) -> None:
+        kind = self.array.dtype
+        self.array[int(index)] = _wrapped(int(value), 8 * kind.itemsize, signed=kind.kind == "i")
+
+
+def _cast(bits: int, *, signed: bool) -> Callable[[Any], Word]:
+    register_signed = signed or bits < 32
+    return lambda value: Word(_wrapped(int(value), bits, signed=signed), signed=register_signed)
+
+
+def _range(*bounds: Any) -> Iterator[Word]:
+    return (Word(each, signed=True) for each in builtins.range(*map(int, bounds)))
+
+
+def _chosen(function: Callable[[int, int], int]) -> Callable[[Any, Any], Word]:
+    def choose(left: Any, right: Any) -> Word:
+        signed = left.signed if isinstance(left, Word) else right.signed
+        return Word(function(int(left), int(right)), signed=signed)
+
+    return choose
+
+
+NAMES: dict[str, Any] = {
+    "i8": _cast(8, signed=True), "u8": _cast(8, signed=False), "i16": _cast(16, signed=True),
+    "u16": _cast(16, signed=False), "i32": _cast(32, signed=True), "u32": _cast(32, signed=False),
+    "min": _chosen(min), "max": _chosen(max), "range": _range,
+    "len": lambda row: Word(len(row), signed=True),
+    "kernel": lambda function: function,
+}  # fmt: skip
+"""What the names of the kernel language mean in plain Python."""
