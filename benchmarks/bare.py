@@ -28,7 +28,7 @@ class BareInput:
     def line(self) -> Generator[Any, Any, Row]:
         """Copy the next line."""
         row = self._rows[self._taken % len(self._rows)]
-        row.array[:] = self._image[self._taken].array
+        row.octets[:] = self._image[self._taken].octets
         self._taken += 1
         return row
         yield
@@ -50,7 +50,7 @@ class BareOutput:
 
     def send(self) -> None:
         """Copy the row that was written."""
-        self._image[self._sent].array[:] = self._rows[self._sent % len(self._rows)].array
+        self._image[self._sent].octets[:] = self._rows[self._sent % len(self._rows)].octets
         self._sent += 1
 
     def flush(self) -> Generator[Any, Any, None]:
@@ -116,7 +116,7 @@ class BareCore:
         if frame is None:
             return None
         for row, line in zip(self._camera, frame.left if self.name == "A" else frame.right, strict=True):
-            row.array[:] = line
+            row.octets[:] = line
         return Frame(frame.index, self._camera, self._size.width_px, self._size.height_px)
         yield
 

@@ -131,15 +131,12 @@ class Board:
                 )
 
     def _capture(self, pictures: Iterator[StereoPictures]) -> Capture:
-        chip, clocks = self.spec.chip, self.spec.clocks
         mode = self.spec.sensor.mode(self.size.width_px, self.size.height_px)
         ppis = {
-            name: Ppi(
-                self._env, chip, clocks, mode, self._ebiu, self._traffic.account("SDRAM", f"PPI{index}")
-            )
-            for index, name in enumerate(chip.cores)
+            name: Ppi(self._env, self.spec, mode, self._ebiu, self._traffic.account("SDRAM", f"PPI{index}"))
+            for index, name in enumerate(self.spec.chip.cores)
         }
-        return Capture(self._env, clocks, ppis, self._frame_buffers(), pictures, self.feed)
+        return Capture(self._env, self.spec.clocks, ppis, self._frame_buffers(), pictures, self.feed)
 
     def _frame_buffers(self) -> list[Pair]:
         """Split the camera buffer of each core into frames; frame n of every core makes pair n."""
@@ -163,20 +160,11 @@ class Board:
         return [Pair(each) for each in split]
 
     def _core(self, index: int, name: str, capture: Capture, on_finished: Callable[[], None]) -> Core:
-        chip, clocks = self.spec.chip, self.spec.clocks
         book = self._calls[name] = CallBook(
             name, self.profile, self._follower, self._sdram, sanitize=self.sanitize
         )
-        inward, outward = (
-            MdmaStream(
-                self._env,
-                chip,
-                clocks,
-                self._ebiu,
-                self._traffic.account("SDRAM", f"MDMA{index + 1} stream {number}"),
-            )
-            for number in range(2)
-        )
+        accounts = [self._traffic.account("SDRAM", f"MDMA{index + 1} stream {number}") for number in range(2)]
+        inward, outward = (MdmaStream(self._env, self.spec, self._ebiu, each) for each in accounts)
         return Core(
             self._env,
             name,

@@ -16,14 +16,16 @@ from bfsim.machine.traffic import Account
 
 
 class BurstRate(dict[int, int]):
-    """SCLK cycles of a stream of so many 32-bit words on an open page, at `word_sclk` each. Rows being few, it is kept."""
+    """SCLK cycles of a burst of so many 32-bit words on open pages: `latency_sclk`, then `word_sclk` a word."""
 
-    def __init__(self, word_sclk: Fraction) -> None:
+    def __init__(self, word_sclk: Fraction, latency_sclk: int = 0) -> None:
         super().__init__()
         self._word_sclk = word_sclk
+        self._latency_sclk = latency_sclk
 
     def __missing__(self, words: int) -> int:
-        sclk = self[words] = ceil(words * self._word_sclk)
+        # kept, since rows have few lengths
+        sclk = self[words] = self._latency_sclk + ceil(words * self._word_sclk)
         return sclk
 
 
@@ -41,8 +43,6 @@ class Ebiu:
         sclk = rate[row.words]
         if misses or conflicts:
             sclk += self._sdram.extra_sclk(misses, conflicts)
-        if not write:
-            sclk += self._sdram.spec.nCL
         busy_ticks = sclk * self._sclk_ticks
         account.add(row.nbytes, write, row.words - misses - conflicts, misses, conflicts, busy_ticks)
         return self.hold(now, sclk) + busy_ticks

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from bfsim.chip.spec import ChipSpec
-from bfsim.clocks import Clocks
+from bfsim.chip.spec import BoardSpec
 from bfsim.machine.ebiu import BurstRate, Ebiu
 from bfsim.machine.memories import Row
 from bfsim.machine.simulation import Simulation
@@ -31,13 +30,14 @@ class Transfer:
 class MdmaStream:
     """One memory DMA stream with its queue of copies."""
 
-    def __init__(self, env: Simulation, chip: ChipSpec, clocks: Clocks, ebiu: Ebiu, account: Account) -> None:
+    def __init__(self, env: Simulation, board: BoardSpec, ebiu: Ebiu, account: Account) -> None:
         """`account`: what the stream moves to and from SDRAM."""
         self._env = env
         self._account = account
-        self._read, self._write = BurstRate(chip.mdma_read_sclk), BurstRate(chip.mdma_write_sclk)
-        self._sclk_ticks = clocks.sclk_ticks
-        self._startup_ticks = chip.mdma_startup_sclk * clocks.sclk_ticks
+        self._read = BurstRate(board.chip.mdma_read_sclk, board.sdram.nCL)
+        self._write = BurstRate(board.chip.mdma_write_sclk)
+        self._sclk_ticks = board.clocks.sclk_ticks
+        self._startup_ticks = board.chip.mdma_startup_sclk * self._sclk_ticks
         self._ebiu = ebiu
         self._queue: deque[Transfer] = deque()
         self._free_at = 0

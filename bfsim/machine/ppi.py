@@ -9,8 +9,8 @@ import numpy as np
 import simpy
 from numpy.typing import NDArray
 
-from bfsim.chip.spec import ChipSpec, SensorMode
-from bfsim.clocks import Clocks, PeriodicEdges
+from bfsim.chip.spec import BoardSpec, SensorMode
+from bfsim.clocks import PeriodicEdges
 from bfsim.machine.ebiu import BurstRate, Ebiu
 from bfsim.machine.memories import Row
 from bfsim.machine.simulation import Simulation
@@ -21,14 +21,14 @@ class Ppi:
     """One parallel peripheral interface with the camera on it."""
 
     def __init__(
-        self, env: Simulation, chip: ChipSpec, clocks: Clocks, mode: SensorMode, ebiu: Ebiu, account: Account
+        self, env: Simulation, board: BoardSpec, mode: SensorMode, ebiu: Ebiu, account: Account
     ) -> None:
         """`account`: what it writes to SDRAM."""
         self._account = account
         self._env = env
-        self._rate = BurstRate(chip.ppi_word_sclk)
+        self._rate = BurstRate(board.chip.ppi_word_sclk)
         self._ebiu = ebiu
-        lines = PeriodicEdges.of(clocks, mode.ppi_clk_hz, every=mode.line_clocks)
+        lines = PeriodicEdges.of(board.clocks, mode.ppi_clk_hz, every=mode.line_clocks)
         self._line_ends = [lines.after(number + 1) for number in range(mode.height_px)]
         self.picture_ticks = self._line_ends[-1]
         """Ticks from the start of a picture to the end of its last line."""

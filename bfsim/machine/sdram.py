@@ -12,7 +12,7 @@ class Sdram:
     """State is the open page of each bank. Time is not known here; the EBIU asks and does the waiting."""
 
     def __init__(self, spec: SdramSpec) -> None:
-        self.spec = spec
+        self._miss_sclk, self._conflict_sclk = spec.miss_sclk, spec.conflict_sclk
         self.open_pages: list[int] = [-1] * spec.banks
         """Page number that each bank has open, -1 when closed."""
 
@@ -35,4 +35,4 @@ class Sdram:
 
     def extra_sclk(self, misses: int, conflicts: int) -> int:
         """Cycles that opening pages adds to a burst."""
-        return misses * self.spec.miss_sclk + conflicts * self.spec.conflict_sclk
+        return misses * self._miss_sclk + conflicts * self._conflict_sclk

@@ -169,7 +169,7 @@ class Bench:
 
     def new_stream(self) -> MdmaStream:
         """Return another MDMA stream."""
-        return MdmaStream(self.env, self.spec.chip, self.spec.clocks, self.ebiu, self.account)
+        return MdmaStream(self.env, self.spec, self.ebiu, self.account)
 
     def advance(self, tick: int = 1_000_000_000) -> None:
         """Let time pass until `tick`, or for as long as anything here can take, and everything happen that is due."""

@@ -58,7 +58,7 @@ class Studio:
         bench = Bench()
         self.env = bench.env
         ppis = {
-            core: Ppi(bench.env, bench.spec.chip, CLOCKS, MODE, bench.ebiu, bench.account)
+            core: Ppi(bench.env, bench.spec, MODE, bench.ebiu, bench.account)
             for core in ("A", "B")
         }
         starts = {"A": 0xFF80_0000, "B": 0xFF40_0000}

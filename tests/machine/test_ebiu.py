@@ -20,7 +20,8 @@ each_board = pytest.mark.parametrize("board", BOARDS)
 
 def read(bench: Bench, row: Row, now: int = 0) -> int:
     """Read `row` at the rate of an MDMA; return the tick at which it is done."""
-    return bench.ebiu.burst(bench.account, now, row, BurstRate(bench.spec.chip.mdma_read_sclk), write=False)
+    rate = BurstRate(bench.spec.chip.mdma_read_sclk, bench.spec.sdram.nCL)
+    return bench.ebiu.burst(bench.account, now, row, rate, write=False)
 
 
 def write(bench: Bench, row: Row, now: int = 0) -> int:

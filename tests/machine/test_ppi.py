@@ -18,7 +18,7 @@ HEIGHT, WIDTH = 8, 16
 def new_ppi(bench: Bench) -> Ppi:
     """Return a PPI with a camera of 16x8 pixels on it."""
     mode = bench.spec.sensor.mode(WIDTH, HEIGHT)
-    return Ppi(bench.env, bench.spec.chip, bench.spec.clocks, mode, bench.ebiu, bench.account)
+    return Ppi(bench.env, bench.spec, mode, bench.ebiu, bench.account)
 
 
 @pytest.mark.parametrize("board", BOARDS)
