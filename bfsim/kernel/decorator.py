@@ -68,7 +68,7 @@ class Kernel:
             bound.append((slots[position], array))
         integers = [(slots[each], each) for each in self.integer_positions]
         has_value = self.function.result is not None
-        return PreparedCall(code, bound, integers, has_value=has_value, follower=follower, totals=totals)
+        return PreparedCall(code, bound, integers, self.check, has_value=has_value, follower=follower, totals=totals)
 
     def _slots(self) -> list[int]:
         """First word of each parameter in the argument block: two words an array, one an integer."""

@@ -15,6 +15,7 @@ from bfsim.kernel.schedule import Counter
 from bfsim.kernel.types import ArrayType
 
 FIRST_ARGUMENT = 1  # word 0 of the block is the address of the totals
+REFUSED = -1  # returned instead of cycles when an integer does not fit in its 32 bits; nothing was run then
 
 
 def cell_name(entry: str) -> str:
@@ -66,10 +67,22 @@ def entry_point(function: tree.Function, counters: Sequence[Counter], entry: str
         slot += 1
         return f"%a{slot - 1}"
 
+    refused = "false"
     for parameter in function.parameters:
         if isinstance(parameter.type, ArrayType):
             values.append(f"ptr {take('ptr')}")
-        values.append(f"i32 {take('i32')}")
+            values.append(f"i32 {take('i32')}")
+            continue
+        word = take("i64")
+        rows += [
+            f"  {word}.low = trunc i64 {word} to i32",
+            f"  {word}.wide = {'sext' if parameter.type.signed else 'zext'} i32 {word}.low to i64",
+            f"  {word}.differs = icmp ne i64 {word}, {word}.wide",
+            f"  {word}.refused = or i1 {refused}, {word}.differs",
+        ]
+        values.append(f"i32 {word}.low")
+        refused = f"{word}.refused"
+    rows += [f"  br i1 {refused}, label %refuse, label %run", "refuse:", f"  ret i64 {REFUSED}", "run:"]
     if followed:
         rows.append(f"  store ptr {take('ptr')}, ptr @bfsim.state")
     call = f"@{function.symbol}({', '.join(values)})"

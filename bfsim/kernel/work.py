@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -35,19 +35,27 @@ class PreparedCall:
     Binding once and calling often keeps the cost of a call from Python below a microsecond.
     """
 
-    __slots__ = ("_at", "_block", "_cell", "_entry", "_follower", "_integers", "_is_plain", "_kept", "_value_word")
+    __slots__ = (
+        "_at", "_block", "_cell", "_check", "_count", "_entry", "_follower", "_integers", "_is_plain", "_kept",
+        "_value_word",
+    )  # fmt: skip
 
     def __init__(
         self,
         compiled: Compiled,
         arrays: Sequence[tuple[int, NDArray[Any]]],
         integers: Sequence[tuple[int, int]],
+        check: Callable[[Sequence[object]], None],
         *,
         has_value: bool,
         follower: Follower | None,
         totals: NDArray[np.int64],
     ) -> None:
-        """`arrays`: (word, array); `integers`: (word, position); `totals`: one word per counter."""
+        """`arrays`: (word, array); `integers`: (word, position); `totals`: one word per counter.
+
+        `check` raises the error when the arguments of a call are wrong.
+        """
+        self._count = len(arrays) + len(integers)
         words = FIRST_ARGUMENT + 2 * len(arrays) + len(integers)
         self._value_word = words + (follower is not None) if has_value else 0
         self._block = (ctypes.c_int64 * (words + 2))()
@@ -61,21 +69,29 @@ class PreparedCall:
         self._cell = compiled.cell
         self._entry = compiled.entry
         self._integers = tuple(integers)
+        self._check = check
         self._follower = follower
         self._is_plain = not has_value and follower is None
 
-    @property
-    def is_followed(self) -> bool:
-        """Whether accesses are followed one by one."""
-        return self._follower is not None
-
     def run(self, arguments: Sequence[Any]) -> Work:
         """Run the kernel now and say what it cost. Of `arguments`, only the integers are read."""
-        for word, position in self._integers:
-            self._block[word] = arguments[position]
+        if self._integers:
+            self._put(arguments)
         self._cell.value = self._at
         issue_cclk: int = self._entry()
+        if issue_cclk < 0 or len(arguments) != self._count:
+            self._check(arguments)
         if self._is_plain:
             return Work(issue_cclk)
         value = self._block[self._value_word] if self._value_word else None
         return Work(issue_cclk, value, self._follower.take_counts() if self._follower else None)
+
+    def _put(self, arguments: Sequence[Any]) -> None:
+        """Put the integers where the kernel finds them; it refuses those that do not fit."""
+        try:
+            for word, position in self._integers:
+                self._block[word] = arguments[position]
+        except (TypeError, IndexError):
+            self._check(arguments)
+            for word, position in self._integers:
+                self._block[word] = int(arguments[position])

@@ -28,6 +28,28 @@ class CallGroup:
     totals: NDArray[np.int64]
 
 
+@dataclass(frozen=True, slots=True)
+class SpecialCall:
+    """A call that is checked before it runs (`sanitized`), or that sees and changes the open pages (`follower`)."""
+
+    call: PreparedCall
+    sanitized: Kernel | None
+    follower: Follower | None
+    sdram: Sdram
+
+    def run(self, arguments: tuple[Row | int, ...]) -> Work:
+        """Run the kernel now and say what it cost."""
+        if self.sanitized:
+            self.sanitized.sanitize([each.array if isinstance(each, Row) else each for each in arguments])
+        if not self.follower:
+            return self.call.run(arguments)
+        pages = self.sdram.open_pages
+        self.follower.open_pages[: len(pages)] = pages
+        work = self.call.run(arguments)
+        pages[:] = self.follower.open_pages[: len(pages)].tolist()
+        return work
+
+
 class CallBook:
     """Runs kernels for one core, and counts them under the stage that was entered last."""
 
@@ -40,52 +62,29 @@ class CallBook:
         self._sdram = sdram
         self._sanitize = sanitize
         self._groups: dict[tuple[str, Kernel, tuple[str, ...]], CallGroup] = {}
-        self._prepared: dict[tuple[str, Kernel, object], PreparedCall] = {}
-        self._repeated: dict[str, dict[tuple[Kernel, object], PreparedCall]] = {}
+        self._calls: dict[str, dict[tuple[Kernel, object], PreparedCall | SpecialCall]] = {}
         self.enter(REST)
 
     def enter(self, stage: str) -> None:
         """Count the calls from now on under `stage`."""
         self.stage = stage
-        # calls without integers on rows in L1, as most are: known by their arguments, checked at the first time
-        self._known = self._repeated.setdefault(stage, {})
+        self._known = self._calls.setdefault(stage, {})
 
     def run(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> Work:
         """Run `kernel` now. Rows outside of this core's L1 are followed access by access."""
         try:
-            call = self._known.get((kernel, arguments))
-        except TypeError:  # an array of the firmware's own, which nothing can be known by
-            self._prepare(kernel, arguments)
-            raise
-        return call.run(arguments) if call else self._run_checked(kernel, arguments)
-
-    def _run_checked(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> Work:
-        kernel.check(arguments)
-        key = (self.stage, kernel, kernel.arrays_of(arguments))
-        call = self._prepared.get(key)
-        if call is None:
-            call = self._prepared[key] = self._prepare(kernel, arguments)
-        if self._sanitize:
-            kernel.sanitize([each.array if isinstance(each, Row) else each for each in arguments])
-        if call.is_followed:
-            return self._followed(call, arguments)
-        if not kernel.integer_positions and not self._sanitize:
-            self._known[kernel, arguments] = call
+            call = self._known[kernel, kernel.arrays_of(arguments)]
+        except (KeyError, IndexError, TypeError):  # the first time, or something is wrong
+            call = self._prepare(kernel, arguments)
+            self._known[kernel, kernel.arrays_of(arguments)] = call
         return call.run(arguments)
-
-    def _followed(self, call: PreparedCall, arguments: tuple[Row | int, ...]) -> Work:
-        """Run a call that sees and changes the open pages of the SDRAM."""
-        pages = self._sdram.open_pages
-        self._follower.open_pages[: len(pages)] = pages
-        work = call.run(arguments)
-        pages[:] = self._follower.open_pages[: len(pages)].tolist()
-        return work
 
     def groups(self) -> Iterable[CallGroup]:
         """Return every group of calls, in the order of their first call."""
         return self._groups.values()
 
-    def _prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> PreparedCall:
+    def _prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> PreparedCall | SpecialCall:
+        kernel.check(arguments)
         rows = []
         for position in kernel.array_positions:
             row = arguments[position]
@@ -95,10 +94,13 @@ class CallBook:
                     f"{name} must be a row of a placed buffer, not {row!r} (kernel {kernel.name}, {kernel.place})"
                 )
             rows.append(row)
-        followed = any([self._is_followed(each) for each in rows])
+        followed = sum(map(self._is_followed, rows)) > 0  # of every row, since some cannot be reached at all
         group = self._group(kernel, tuple(each.memory for each in rows), followed)
-        arrays = [each.array for each in rows]
-        return kernel.prepare(group.code, arrays, group.totals, self._follower if followed else None)
+        follower = self._follower if followed else None
+        call = kernel.prepare(group.code, [each.array for each in rows], group.totals, follower)
+        if followed or self._sanitize:
+            return SpecialCall(call, kernel if self._sanitize else None, follower, self._sdram)
+        return call
 
     def _is_followed(self, row: Row) -> bool:
         """Whether accesses to `row` take longer than one cycle. Another core's L1 cannot be reached at all."""

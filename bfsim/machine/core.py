@@ -128,7 +128,8 @@ class Core:
 
     def run(self, kernel: Kernel, *arguments: Row | int) -> Work:
         """Run a kernel on rows and ints. Yield the result: the cycles are charged then, and you get its value."""
-        self._check_claimed()
+        if self._unclaimed is not None:
+            self._check_claimed()
         work = self._unclaimed = self._calls.run(kernel, arguments)
         return work
 
@@ -227,7 +228,7 @@ class Core:
                 break
             except Exception as error:
                 raise self._told(error) from error
-            if type(item) is Work and item is self._unclaimed:
+            if item is self._unclaimed and item is not None:
                 self._unclaimed = None
                 self._cclk += item.issue_cclk
                 self._account.issue_cclk += item.issue_cclk

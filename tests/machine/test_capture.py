@@ -6,7 +6,7 @@ The camera here needs 100 ns a line, 200 for a picture of two lines and 300 for 
 from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import cycle
 from typing import Any
@@ -58,7 +58,7 @@ class Studio:
         bench = Bench()
         self.env = bench.env
         ppis = {
-            core: Ppi(bench.env, bench.spec, MODE, bench.ebiu, bench.account)
+            core: Ppi(bench.env, replace(bench.spec, clocks=CLOCKS), MODE, bench.ebiu, bench.account)
             for core in ("A", "B")
         }
         starts = {"A": 0xFF80_0000, "B": 0xFF40_0000}
