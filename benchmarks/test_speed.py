@@ -13,9 +13,9 @@ from itertools import cycle, islice
 from pathlib import Path
 
 import pytest
-from benchmarks.bare import run_bare
 from pytest_benchmark.fixture import BenchmarkFixture
 
+from benchmarks.bare import run_bare
 from bfsim.api import FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link, parse_ldf

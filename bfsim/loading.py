@@ -70,7 +70,7 @@ def _failed(package: str, error: BaseException) -> FirmwareError:
 
 def _digest(package: str) -> str:
     """Digest of every module of `package` that is loaded, by name: the same wherever it is installed."""
-    top = package.split(".")[0]
+    top = package.split(".", maxsplit=1)[0]
     digest = hashlib.sha256()
     for name in sorted(sys.modules):
         file = getattr(sys.modules[name], "__file__", None)

@@ -18,11 +18,19 @@ from bfsim.recording import RecordingWriter
 from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
 
 
-def bfsim(*arguments: object, cwd: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
+def bfsim(
+    *arguments: object, cwd: Path | None = None, **environment: str
+) -> subprocess.CompletedProcess[str]:
     """Run the command line and return what came out."""
     command = [sys.executable, "-m", "bfsim", *map(str, arguments)]
     return subprocess.run(
-        command, cwd=cwd, env={**os.environ, **environment}, capture_output=True, text=True, timeout=120, check=False
+        command,
+        cwd=cwd,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
     )
 
 
@@ -66,7 +74,8 @@ def test_the_rows_of_every_frame_sum_to_the_frame(report: dict[str, Any]) -> Non
             cycles = frame["cores"][core]
             assert cycles["begin_cclk"] == ends[-1]
             spent = sum(
-                each["issue_cclk"] + each["idle_cclk"] + sum(each["stall_cclk"].values()) for each in cycles["stages"]
+                each["issue_cclk"] + each["idle_cclk"] + sum(each["stall_cclk"].values())
+                for each in cycles["stages"]
             )
             assert spent == cycles["end_cclk"] - cycles["begin_cclk"]
             ends.append(cycles["end_cclk"])
@@ -83,7 +92,9 @@ def test_the_cycles_of_the_kernels_are_the_issue_cycles_of_the_stages(report: di
                 if each["stage"] == stage
             )
             counted = sum(
-                each["issue_cclk"] for each in report["kernels"] if each["core"] == "AB"[core] and each["stage"] == stage
+                each["issue_cclk"]
+                for each in report["kernels"]
+                if each["core"] == "AB"[core] and each["stage"] == stage
             )
             assert charged == counted
 
@@ -97,7 +108,14 @@ def test_the_same_command_gives_the_same_cycles_everywhere(tmp_path: Path) -> No
     """Another process, hash seed, folder and an empty kernel cache change no cycle."""
     first = bfsim("run", "--frames", 2, "--json", "-", PYTHONHASHSEED="1")
     second = bfsim(
-        "run", "--frames", 2, "--json", "-", cwd=tmp_path, PYTHONHASHSEED="2", BFSIM_CACHE_DIR=str(tmp_path / "empty")
+        "run",
+        "--frames",
+        2,
+        "--json",
+        "-",
+        cwd=tmp_path,
+        PYTHONHASHSEED="2",
+        BFSIM_CACHE_DIR=str(tmp_path / "empty"),
     )
     assert first.returncode == second.returncode == 0
     assert first.stdout == second.stdout
@@ -133,7 +151,11 @@ def test_check_guards_a_baseline(tmp_path: Path) -> None:
     assert bfsim("check", "--frames", 2, "--baseline", baseline, "--update").returncode == 0
     assert bfsim("check", "--frames", 2, "--baseline", baseline).returncode == 0
     lines = baseline.read_text().splitlines()
-    number = next(i for i, line in enumerate(lines) if line.startswith("median_cclk") and "Edge" in "".join(lines[:i][-3:]))
+    number = next(
+        i
+        for i, line in enumerate(lines)
+        if line.startswith("median_cclk") and "Edge" in "".join(lines[:i][-3:])
+    )
     lines[number] = "median_cclk = 1000"
     baseline.write_text("\n".join(lines))
     broken = bfsim("check", "--frames", 2, "--baseline", baseline)

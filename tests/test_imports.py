@@ -51,7 +51,11 @@ def room_of(path: Path) -> str:
     return path.relative_to(ROOT / "bfsim").parts[0].removesuffix(".py")
 
 
-SOURCES = sorted(path for path in (ROOT / "bfsim").rglob("*.py") if path.parent != ROOT / "bfsim" or path.stem != "__init__")
+SOURCES = sorted(
+    path
+    for path in (ROOT / "bfsim").rglob("*.py")
+    if path.parent != ROOT / "bfsim" or path.stem != "__init__"
+)
 
 
 def test_every_room_is_listed() -> None:
@@ -75,10 +79,14 @@ def test_a_file_imports_only_the_rooms_below_it(path: Path) -> None:
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_simpy_stays_in_the_machine(path: Path) -> None:
     """Only bfsim/machine knows the simulation kernel."""
-    assert room_of(path) == "machine" or "simpy" not in {each.split(".")[0] for each in imported_modules(path)}
+    assert room_of(path) == "machine" or "simpy" not in {
+        each.split(".")[0] for each in imported_modules(path)
+    }
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "firmware").rglob("*.py")), ids=lambda path: str(path.relative_to(ROOT)))
+@pytest.mark.parametrize(
+    "path", sorted((ROOT / "firmware").rglob("*.py")), ids=lambda path: str(path.relative_to(ROOT))
+)
 def test_firmware_imports_only_the_api(path: Path) -> None:
     """Firmware imports bfsim.api, numpy, itself and the standard library."""
     allowed = {"numpy", "firmware", *sys.stdlib_module_names}

@@ -39,7 +39,10 @@ def test_the_budget_of_the_readme_is_what_run_prints() -> None:
 
 def test_the_commands_of_the_readme_exist() -> None:
     """Every command and option that the README names has a help text with it."""
-    helps = {name: bfsim(*name.split(), "--help") for name in ("run", "profile", "check", "record import", "record info")}
+    helps = {
+        name: bfsim(*name.split(), "--help")
+        for name in ("run", "profile", "check", "record import", "record info")
+    }
     for name in helps:
         assert f"`bfsim {name} " in README
     for option in set(re.findall(r"--[a-z]+", README)) - {"--help"}:

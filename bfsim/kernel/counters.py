@@ -9,8 +9,8 @@ Names that are added begin with a dot, which a name of the kernel cannot.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 
 from bfsim.kernel import tree
 from bfsim.kernel.entry import entry_point, globals_of, settle
@@ -21,6 +21,7 @@ DIVISION = re.compile(r"^(  %[\w.$-]+ = )(sdiv|udiv|srem|urem)(?: exact)? (i\d+)
 ACCESS = re.compile(r"^  (?:%[\w.$-]+ = load|store) (i\d+)(?: [^,]+)?, ptr (%[\w.$-]+)")
 SWITCH = re.compile(r"^  switch (i\d+) ")
 NOISE = re.compile(r" local_unnamed_addr| #\d+| !dbg !\d+")
+LEFT_OUT = ("!", "attributes", "target", "source_filename", ";")
 TERMINATORS = ("  br ", "  ret ", "  switch ", "  unreachable")
 
 # A division by zero must not stop the host; its result means nothing, as in C. The lowest integer // -1 wraps.
@@ -55,7 +56,9 @@ class _Place:
     counter: Counter
 
 
-def instrument(text: str, function: tree.Function, counters: Sequence[Counter], entry: str, *, followed: bool) -> str:
+def instrument(
+    text: str, function: tree.Function, counters: Sequence[Counter], entry: str, *, followed: bool
+) -> str:
     """Return the module `text` with counters, safe divisions and the entry point `entry`.
 
     With `followed`, every access to an array also calls the memory follower that the argument block names.
@@ -65,7 +68,7 @@ def instrument(text: str, function: tree.Function, counters: Sequence[Counter], 
     return "\n".join(
         [
             globals_of(counters, entry, followed=followed),
-            "\n".join(_rows(text.splitlines(), function.symbol, counters, followed)),
+            _Rewriter(function.symbol, counters, followed).rewrite(text),
             *(_safe_division(op, kind) for op, kind in divisions),
             FOLLOW if followed else "",
             entry_point(function, counters, entry, followed=followed),
@@ -78,39 +81,61 @@ def _safe_division(op: str, kind: str) -> str:
     return SAFE_DIVISION.format(op=op, kind=kind, lowest=lowest, signed=str(op[0] == "s").lower())
 
 
-def _rows(rows: Iterable[str], top: str, counters: Sequence[Counter], followed: bool) -> list[str]:
-    """Rewrite the functions of a module row by row; `top` is the one that the entry point calls."""
-    places: dict[tuple[str, str], list[_Place]] = {}
-    for number, counter in enumerate(counters):
-        places.setdefault((counter.routine, counter.label), []).append(_Place(number, counter))
-    out: list[str] = []
-    routine, here, entered, first, exit_number = "", list[_Place](), True, False, 0
-    for row in rows:
-        if row.startswith(("!", "attributes", "target", "source_filename", ";")):
-            continue
-        row = NOISE.sub("", row.split(", !")[0])
+@dataclass(slots=True)
+class _Rewriter:
+    """Rewrites the functions of a module row by row; `top` is the one that the entry point calls."""
+
+    top: str
+    counters: Sequence[Counter]
+    followed: bool
+    places: dict[tuple[str, str], list[_Place]] = field(init=False)
+    routine: str = field(init=False, default="")
+    here: list[_Place] = field(init=False, default_factory=list)
+    """Counters of the block that is being rewritten."""
+    at_first_block: bool = field(init=False, default=False)
+    behind_phis: bool = field(init=False, default=True)
+    exits: int = field(init=False, default=0)
+
+    def __post_init__(self) -> None:
+        self.places = {}
+        for number, counter in enumerate(self.counters):
+            self.places.setdefault((counter.routine, counter.label), []).append(_Place(number, counter))
+
+    def rewrite(self, text: str) -> str:
+        """Return the functions of a module, without what only the first pass of LLVM needed."""
+        kept = [row for row in text.splitlines() if not row.startswith(LEFT_OUT)]
+        return "\n".join(line for row in kept for line in self._row(NOISE.sub("", row.split(", !")[0])))
+
+    def _row(self, row: str) -> Iterator[str]:
         if found := DEFINE.match(row):
-            routine, first = found.group(1), True
-            out.append(re.sub(r"^define ", "define internal ", row))
+            self.routine, self.at_first_block = found.group(1), True
+            yield re.sub(r"^define ", "define internal ", row)
         elif found := LABEL.match(row):
-            out.append(row.split(";")[0])
-            if first:
-                out.extend(_allocations(routine, counters))
-            here, entered, first = places.get((routine, found.group(1)), []), False, False
+            yield row.split(";", maxsplit=1)[0]
+            if self.at_first_block:
+                yield from _allocations(self.routine, self.counters)
+            self.here = self.places.get((self.routine, found.group(1)), [])
+            self.at_first_block = self.behind_phis = False
         elif row.startswith("  "):
-            if not entered and " = phi " not in row:
-                entered = True
-                out.extend(line for each in here if each.counter.value is None for line in _add(each.number, "1"))
-            if row.startswith(TERMINATORS):
-                out.extend(_tests(here, row))
-                if row.startswith("  ret "):
-                    exit_number += 1
-                    out.extend(_leave(routine, counters, f".exit{exit_number}", is_top=routine == top))
-            out.extend(_access(row) if followed else ())
-            out.append(DIVISION.sub(r"\1call \3 @bfsim.\2.\3(\3 \4, \3 \5)", row))
+            yield from self._instruction(row)
         else:
-            out.append(row)
-    return out
+            yield row
+
+    def _instruction(self, row: str) -> Iterator[str]:
+        if not self.behind_phis and " = phi " not in row:
+            self.behind_phis = True
+            for each in self.here:
+                if each.counter.value is None:
+                    yield from _add(each.number, "1")
+        if row.startswith(TERMINATORS):
+            yield from _tests(self.here, row)
+        if row.startswith("  ret "):
+            self.exits += 1
+            is_top = self.routine == self.top
+            yield from _leave(self.routine, self.counters, f".exit{self.exits}", is_top=is_top)
+        if self.followed:
+            yield from _access(row)
+        yield DIVISION.sub(r"\1call \3 @bfsim.\2.\3(\3 \4, \3 \5)", row)
 
 
 def _allocations(routine: str, counters: Sequence[Counter]) -> list[str]:
@@ -144,7 +169,11 @@ def _tests(here: list[_Place], terminator: str) -> list[str]:
 
 def _leave(routine: str, counters: Sequence[Counter], place: str, *, is_top: bool) -> list[str]:
     """Hand over the counts of one run of `routine`, at one of its exits."""
-    mine = [(number, each, f"%{place}.mine.{number}") for number, each in enumerate(counters) if each.routine == routine]
+    mine = [
+        (number, each, f"%{place}.mine.{number}")
+        for number, each in enumerate(counters)
+        if each.routine == routine
+    ]
     rows = [f"  {events} = load i64, ptr %.bf.{number}" for number, _, events in mine]
     if is_top:
         return rows + settle(mine, place)

@@ -68,7 +68,9 @@ class Kernel:
             bound.append((slots[position], array))
         integers = [(slots[each], each) for each in self.integer_positions]
         has_value = self.function.result is not None
-        return PreparedCall(code, bound, integers, self.check, has_value=has_value, follower=follower, totals=totals)
+        return PreparedCall(
+            code, bound, integers, self.check, has_value=has_value, follower=follower, totals=totals
+        )
 
     def _slots(self) -> list[int]:
         """First word of each parameter in the argument block: two words an array, one an integer."""
@@ -98,7 +100,9 @@ class Kernel:
             value = arguments[position]
             if not isinstance(value, (int, np.integer)) or not low <= value <= high:
                 name = self.function.parameters[position].name
-                raise KernelError(f"{name} must be an int in {low}..{high}, not {value!r} ({self.name}, {self.place})")
+                raise KernelError(
+                    f"{name} must be an int in {low}..{high}, not {value!r} ({self.name}, {self.place})"
+                )
 
     @cached_property
     def _written(self) -> frozenset[str]:
@@ -111,7 +115,9 @@ class Kernel:
         wanted = parameter.type.element.dtype
         where = f"({parameter.name} of {self.name}, {self.place})"
         if not isinstance(array, np.ndarray):
-            raise KernelError(f"{parameter.name} must be an array {parameter.type}, not {type(array).__name__} {where}")
+            raise KernelError(
+                f"{parameter.name} must be an array {parameter.type}, not {type(array).__name__} {where}"
+            )
         if array.dtype != wanted or array.ndim != 1 or not array.flags.c_contiguous:
             shape = "x".join(map(str, array.shape))
             raise KernelError(
@@ -120,7 +126,9 @@ class Kernel:
         if not array.flags.aligned:
             raise KernelError(f"{parameter.name} must lie at a multiple of {wanted.itemsize} bytes {where}")
         if parameter.name in self._written and not array.flags.writeable:
-            raise KernelError(f"{parameter.name} must be writeable, because the kernel stores into it {where}")
+            raise KernelError(
+                f"{parameter.name} must be writeable, because the kernel stores into it {where}"
+            )
 
     def sanitize(self, arguments: Sequence[Any]) -> None:
         """Run with every index checked and undo it; raise KernelError at the first index outside its array."""

@@ -30,7 +30,9 @@ def emit(function: tree.Function, *, checked: bool = False) -> ir.Module:
     With `checked`, the first index outside its array is noted in the global `TRAP` and every kernel returns.
     """
     module = ir.Module(name=function.symbol)
-    module.add_named_metadata("llvm.module.flags", module.add_metadata([I32(2), "Debug Info Version", I32(3)]))
+    module.add_named_metadata(
+        "llvm.module.flags", module.add_metadata([I32(2), "Debug Info Version", I32(3)])
+    )
     trap = None
     if checked:
         trap = ir.GlobalVariable(module, ir.ArrayType(I64, TRAP_WORDS), TRAP)
@@ -180,7 +182,9 @@ class _Emitter:
         start, stop = self.value(node.start), self.value(node.stop)
         counter = self._entry_slot(f"{node.name}.turn")
         builder.store(start, counter)
-        test, body, step, after = (builder.append_basic_block(name) for name in ("for", "body", "step", "after"))
+        test, body, step, after = (
+            builder.append_basic_block(name) for name in ("for", "body", "step", "after")
+        )
         builder.branch(test)
         builder.position_at_end(test)
         now = builder.load(counter, typ=I32)

@@ -36,7 +36,10 @@ def globals_of(counters: Sequence[Counter], entry: str, *, followed: bool) -> st
 
 def settle(counters: Sequence[tuple[int, Counter, str]], place: str) -> list[str]:
     """Add events to the caller's totals and their cycles to the call's; `counters`: (number, counter, events)."""
-    rows = [f"  %{place}.totals = load ptr, ptr @bfsim.totals", f"  %{place}.cclk.0 = load i64, ptr @bfsim.cclk"]
+    rows = [
+        f"  %{place}.totals = load ptr, ptr @bfsim.totals",
+        f"  %{place}.cclk.0 = load i64, ptr @bfsim.cclk",
+    ]
     for step, (number, counter, events) in enumerate(counters):
         name = f"%{place}.{number}"
         rows += [

@@ -88,11 +88,15 @@ class Scope:
             low, high = wanted.bounds
             if not low <= value.value <= high:
                 self.source.refuse(
-                    node, f"{value.value} does not fit in {wanted}", f"use a value in {low}..{high} or another type"
+                    node,
+                    f"{value.value} does not fit in {wanted}",
+                    f"use a value in {low}..{high} or another type",
                 )
             return replace(value, type=wanted)
         self.source.refuse(
-            node, f"{wanted} is needed here, not {value.type}", f"write {wanted}(...) round it if that is meant"
+            node,
+            f"{wanted} is needed here, not {value.type}",
+            f"write {wanted}(...) round it if that is meant",
         )
 
     def _constant(self, node: ast.Constant) -> tree.Expr:
@@ -102,29 +106,39 @@ class Scope:
         if type(node.value) is int:
             return self._literal(node, node.value)
         if type(node.value) is float:
-            self.source.refuse(node, "a kernel cannot use floats", "scale to integers, for example 8.8 fixed point")
+            self.source.refuse(
+                node, "a kernel cannot use floats", "scale to integers, for example 8.8 fixed point"
+            )
         self.source.refuse(node, f"a kernel cannot use the constant {node.value!r}", "use integers")
 
     def _literal(self, node: ast.expr, value: int) -> tree.Expr:
         if not i32.bounds[0] <= value <= u32.bounds[1]:
-            self.source.refuse(node, f"{value} does not fit in 32 bits", "use a value in -2147483648..4294967295")
+            self.source.refuse(
+                node, f"{value} does not fit in 32 bits", "use a value in -2147483648..4294967295"
+            )
         return tree.Const(value, i32 if value <= i32.bounds[1] else u32, node.lineno)
 
     def _name(self, node: ast.Name) -> tree.Expr:
         name = node.id
         if name in self.arrays:
-            self.source.refuse(node, f"the array {name} is used like a number", f"write {name}[i] or len({name})")
+            self.source.refuse(
+                node, f"the array {name} is used like a number", f"write {name}[i] or len({name})"
+            )
         if name in self.assigned:
             return tree.Local(name, self.locals[name], node.lineno)
         if name in self.own:
             self.source.refuse(
-                node, f"{name} may be used before it has a value", f"give {name} a value on every way to this line"
+                node,
+                f"{name} may be used before it has a value",
+                f"give {name} a value on every way to this line",
             )
         constant = self.outer.get(name)
         if type(constant) is int:
             return self._literal(node, constant)
         if name not in self.outer:
-            self.source.refuse(node, f"the name {name} is not defined", "assign it first, or make it a parameter")
+            self.source.refuse(
+                node, f"the name {name} is not defined", "assign it first, or make it a parameter"
+            )
         self.source.refuse(
             node,
             f"a kernel cannot read {name}, which is a {type(constant).__name__}",
@@ -134,7 +148,11 @@ class Scope:
     def _binop(self, node: ast.BinOp) -> tree.Expr:
         op = BINARY.get(type(node.op))
         if op is None:
-            instead = "write // (rounds down)" if isinstance(node.op, ast.Div) else "write it with + - * // % << >> & | ^"
+            instead = (
+                "write // (rounds down)"
+                if isinstance(node.op, ast.Div)
+                else "write it with + - * // % << >> & | ^"
+            )
             self.source.refuse(node, f"a kernel cannot use {_plain(node.op)}", instead)
         if op in ("<<", ">>"):
             return self._shift(node, op)
@@ -166,7 +184,8 @@ class Scope:
         return self._as_type(left_node, left, kind), self._as_type(right_node, right, kind), kind
 
     def _common_type(self, right_node: ast.expr, left: tree.Expr, right: tree.Expr) -> IntType:
-        assert isinstance(left.type, IntType) and isinstance(right.type, IntType)
+        assert isinstance(left.type, IntType)
+        assert isinstance(right.type, IntType)
         if isinstance(left, tree.Const) and isinstance(right, tree.Const):
             return u32 if u32 in (left.type, right.type) else i32
         if isinstance(left, tree.Const):
@@ -201,7 +220,9 @@ class Scope:
                 self.source.refuse(node, f"a kernel cannot use {_plain(operator)}", "write < <= > >= == !=")
             left, right, _ = self._pair(left_node, right_node)
             if right_node is not node.comparators[-1] and tree.calls_in(right):
-                self.source.refuse(right_node, "this call would run twice", "put its result in a local name first")
+                self.source.refuse(
+                    right_node, "this call would run twice", "put its result in a local name first"
+                )
             link = tree.Compare(op, left, right, BOOL, node.lineno)
             result = link if result is None else tree.Logic("and", result, link, BOOL, node.lineno)
         assert result is not None
@@ -213,7 +234,9 @@ class Scope:
         for part_node, part in zip(node.values, parts, strict=True):
             if part.type is not BOOL:
                 self._refuse_nothing(part_node, part)
-                self.source.refuse(part_node, f"`{op}` needs truth values, not numbers", "write a comparison, `x != 0`")
+                self.source.refuse(
+                    part_node, f"`{op}` needs truth values, not numbers", "write a comparison, `x != 0`"
+                )
         result = parts[0]
         for part in parts[1:]:
             result = tree.Logic(op, result, part, BOOL, node.lineno)
@@ -242,20 +265,28 @@ class Scope:
         if isinstance(index, tree.Const) and index.value < 0:
             name = ast.unparse(node.value)
             self.source.refuse(
-                node.slice, "an index cannot be negative", f"write {name}[len({name}) - {-index.value}] for the end"
+                node.slice,
+                "an index cannot be negative",
+                f"write {name}[len({name}) - {-index.value}] for the end",
             )
         return index
 
     def _call(self, node: ast.Call) -> tree.Expr:
         if not isinstance(node.func, ast.Name) or node.keywords:
             self.source.refuse(
-                node, "a kernel can only call kernels, len, min, max, abs and casts", "call by name, without keywords"
+                node,
+                "a kernel can only call kernels, len, min, max, abs and casts",
+                "call by name, without keywords",
             )
         name = node.func.id
         if name == self.kernel:
-            self.source.refuse(node, "a kernel cannot call itself", "write a loop, or give the other kernel another name")
+            self.source.refuse(
+                node, "a kernel cannot call itself", "write a loop, or give the other kernel another name"
+            )
         if name in self.own:
-            self.source.refuse(node, f"{name} is a variable here, not a function", "give the variable another name")
+            self.source.refuse(
+                node, f"{name} is a variable here, not a function", "give the variable another name"
+            )
         target = self.outer.get(name)
         if isinstance(target, IntType):
             return self._cast(node, target)
@@ -271,7 +302,11 @@ class Scope:
             if isinstance(operand, tree.Const):
                 return self._literal(node, abs(operand.value))
             return tree.Unary("abs", operand, i32, node.lineno)
-        advice = f"give {name} two arguments" if target is min or target is max else f"make {name} a @kernel, or inline it"
+        advice = (
+            f"give {name} two arguments"
+            if target is min or target is max
+            else f"make {name} a @kernel, or inline it"
+        )
         self.source.refuse(node, f"a kernel cannot call {name} like this", advice)
 
     def _cast(self, node: ast.Call, to: IntType) -> tree.Expr:
@@ -287,10 +322,13 @@ class Scope:
     def _kernel_call(self, node: ast.Call, callee: tree.Function) -> tree.Call:
         if len(node.args) != len(callee.parameters):
             self.source.refuse(
-                node, f"{callee.name} takes {len(callee.parameters)} arguments, not {len(node.args)}", "match its def"
+                node,
+                f"{callee.name} takes {len(callee.parameters)} arguments, not {len(node.args)}",
+                "match its def",
             )
         arguments = tuple(
-            self._argument(each, parameter) for each, parameter in zip(node.args, callee.parameters, strict=True)
+            self._argument(each, parameter)
+            for each, parameter in zip(node.args, callee.parameters, strict=True)
         )
         return tree.Call(callee, arguments, callee.result, node.lineno)
 
@@ -299,7 +337,9 @@ class Scope:
             return self.integer(node, parameter.type)
         if isinstance(node, ast.Name) and self.arrays.get(node.id) == parameter.type:
             return node.id
-        self.source.refuse(node, f"{parameter.name} must be an array {parameter.type}", "pass such a parameter on")
+        self.source.refuse(
+            node, f"{parameter.name} must be an array {parameter.type}", "pass such a parameter on"
+        )
 
 
 def _plain(node: ast.AST) -> str:

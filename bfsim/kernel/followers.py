@@ -42,7 +42,9 @@ WORDS = COUNTS + len(Access)
 class Follower:
     """State of the follower of one board. Compiling it waits until a kernel touches memory outside L1."""
 
-    def __init__(self, l2: NDArray[np.uint8], sdram: NDArray[np.uint8], page_bits: int, bank_bits: int) -> None:
+    def __init__(
+        self, l2: NDArray[np.uint8], sdram: NDArray[np.uint8], page_bits: int, bank_bits: int
+    ) -> None:
         """`l2` and `sdram` are the host arrays that stand for the memories.
 
         A page is `2**page_bits` bytes and an SDRAM bank `2**bank_bits`.

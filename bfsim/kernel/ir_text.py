@@ -128,7 +128,7 @@ def _operands(opcode: str, body: str) -> tuple[str, ...]:
         inside = body[body.index("(", body.index("@")) + 1 : body.rindex(")")]
         return tuple(part.split()[-1] for part in inside.split(",") if part.strip())
     if opcode in ("br", "switch"):
-        return tuple(NAME.findall(body.split("label %")[0]))
+        return tuple(NAME.findall(body.split("label %", maxsplit=1)[0]))
     body = re.sub(r", align \d+$", "", body)
     return tuple(part.split()[-1] for part in re.split(r",(?![^(]*\))", body.replace(" to ", ", "))
                  if part.split() and (part.split()[-1].startswith(("%", "@")) or _is_constant(part.split()[-1])))  # fmt: skip

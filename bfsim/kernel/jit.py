@@ -40,7 +40,9 @@ class Compiled:
 
 
 @cache
-def compiled(function: tree.Function, profile: CompilerProfile, *, followed: bool = False, counted: bool = True) -> Compiled:
+def compiled(
+    function: tree.Function, profile: CompilerProfile, *, followed: bool = False, counted: bool = True
+) -> Compiled:
     """Compile `function`, or take it from the cache on disk; once per process.
 
     `followed` kernels report every access to the memory followers; without `counted` there are no counters
@@ -70,7 +72,9 @@ def _compile(
     function: tree.Function, profile: CompilerProfile, entry: str, *, followed: bool, counted: bool
 ) -> store.Binary:
     text = optimised(function, profile)
-    counters = tuple(each for routine in read_module(text) for each in cost(routine, profile)) if counted else ()
+    counters = (
+        tuple(each for routine in read_module(text) for each in cost(routine, profile)) if counted else ()
+    )
     return store.Binary(host_code(instrument(text, function, counters, entry, followed=followed)), counters)
 
 
@@ -121,7 +125,9 @@ def load(code: bytes, entry: str, counters: tuple[Counter, ...]) -> Compiled:
     engine = _engine()
     engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
-    return Compiled(ENTRY(address_of(entry)), ctypes.c_int64.from_address(address_of(cell_name(entry))), counters)
+    return Compiled(
+        ENTRY(address_of(entry)), ctypes.c_int64.from_address(address_of(cell_name(entry))), counters
+    )
 
 
 def address_of(name: str) -> int:

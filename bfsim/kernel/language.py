@@ -29,15 +29,23 @@ def read_kernel(python: Callable[..., Any]) -> tree.Function:
     """Read the source of `python` as a kernel. Raises KernelError where it leaves the language."""
     source, definition = _definition(python)
     _check_names(source, definition, python)
-    scope = Scope(source, {**vars(builtins), **python.__globals__}, definition.name, python.__code__.co_varnames)
+    scope = Scope(
+        source, {**vars(builtins), **python.__globals__}, definition.name, python.__code__.co_varnames
+    )
     parameters = _parameters(scope, definition)
     reader = _Reader(scope, _result_type(scope, definition))
     try:
         body = reader.block(_without_docstring(definition.body))
     except RecursionError:
-        source.refuse(definition, "this kernel is nested too deeply", "split its longest expression or `elif` chain")
+        source.refuse(
+            definition, "this kernel is nested too deeply", "split its longest expression or `elif` chain"
+        )
     if reader.result is not None and not reader.ended:
-        source.refuse(definition, f"{definition.name} can end without a value", f"return an {reader.result} on every way")
+        source.refuse(
+            definition,
+            f"{definition.name} can end without a value",
+            f"return an {reader.result} on every way",
+        )
     function = tree.Function(
         name=definition.name,
         symbol=re.sub(r"\W", "_", f"{python.__module__}.{python.__qualname__}", flags=re.ASCII),
@@ -59,7 +67,9 @@ def _definition(python: Callable[..., Any]) -> tuple[Source, ast.FunctionDef]:
     try:
         lines, first_line = inspect.getsourcelines(python)
     except OSError as reason:
-        raise KernelError(f"{python!r} must be a function in a file, so that its source can be read") from reason
+        raise KernelError(
+            f"{python!r} must be a function in a file, so that its source can be read"
+        ) from reason
     text = "".join(lines)
     source = Source(inspect.getsourcefile(python) or "?", first_line, text)
     if not isinstance(node := _parsed(text), ast.FunctionDef) or node.name != python.__name__:
@@ -83,10 +93,18 @@ def _check_names(source: Source, definition: ast.FunctionDef, python: Callable[.
     code = python.__code__
     if code.co_freevars:
         names = ", ".join(code.co_freevars)
-        source.refuse(definition, f"a kernel cannot close over {names}", "pass it as a parameter or make it a module constant")
+        source.refuse(
+            definition,
+            f"a kernel cannot close over {names}",
+            "pass it as a parameter or make it a module constant",
+        )
     for name in code.co_varnames:
         if not name.isascii():
-            source.refuse(definition, f"the name {name} is not ASCII", "use the letters a to z, as a C compiler wants them")
+            source.refuse(
+                definition,
+                f"the name {name} is not ASCII",
+                "use the letters a to z, as a C compiler wants them",
+            )
 
 
 def _check_callees(source: Source, definition: ast.FunctionDef, function: tree.Function) -> None:
@@ -105,13 +123,17 @@ def _check_callees(source: Source, definition: ast.FunctionDef, function: tree.F
 def _parameters(scope: Scope, definition: ast.FunctionDef) -> tuple[tree.Parameter, ...]:
     arguments = definition.args
     if arguments.vararg or arguments.kwarg or arguments.kwonlyargs or arguments.defaults:
-        scope.source.refuse(definition, "a kernel takes plain parameters only", "remove *, ** and default values")
+        scope.source.refuse(
+            definition, "a kernel takes plain parameters only", "remove *, ** and default values"
+        )
     parameters = []
     for each in [*arguments.posonlyargs, *arguments.args]:
         kind = _annotation(scope.outer, each.annotation)
         if not isinstance(kind, ArrayType) and kind not in (i32, u32):
             scope.source.refuse(
-                each, f"the parameter {each.arg} needs a type", "write i32, u32, or an array such as u8[:] or i16[:]"
+                each,
+                f"the parameter {each.arg} needs a type",
+                "write i32, u32, or an array such as u8[:] or i16[:]",
             )
         parameters.append(tree.Parameter(each.arg, kind))
         if isinstance(kind, ArrayType):
@@ -147,7 +169,11 @@ def _result_type(scope: Scope, definition: ast.FunctionDef) -> IntType | None:
 
 def _without_docstring(body: list[ast.stmt]) -> list[ast.stmt]:
     first = body[0]
-    documented = isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant) and isinstance(first.value.value, str)
+    documented = (
+        isinstance(first, ast.Expr)
+        and isinstance(first.value, ast.Constant)
+        and isinstance(first.value.value, str)
+    )
     return body[1:] if documented else body
 
 
@@ -198,7 +224,9 @@ class _Reader:
         if type(node.op) not in BINARY:
             self.scope.source.refuse(node, "a kernel cannot use this operator", "use + - * // % << >> & | ^")
         if isinstance(node.target, ast.Subscript) and tree.calls_in(self.scope.index(node.target)):
-            self.scope.source.refuse(node.target, "this call would run twice", "put its result in a local name first")
+            self.scope.source.refuse(
+                node.target, "this call would run twice", "put its result in a local name first"
+            )
         old = ast.copy_location(ast.parse(ast.unparse(node.target), mode="eval").body, node.target)
         for each in ast.walk(old):
             ast.copy_location(each, node.target)
@@ -211,14 +239,18 @@ class _Reader:
             name, element = scope.array_of(target)
             return [tree.Store(name, element, scope.index(target), scope.integer(value), target.lineno)]
         if not isinstance(target, ast.Name) or target.id in scope.arrays:
-            scope.source.refuse(target, "only a local name or an array element can be assigned", "write x = or a[i] =")
+            scope.source.refuse(
+                target, "only a local name or an array element can be assigned", "write x = or a[i] ="
+            )
         known = scope.locals.get(target.id, kind)
         if kind is not None and known is not kind:
             scope.source.refuse(target, f"{target.id} is {known} already, not {kind}", "use another name")
         result = scope.integer(value, known) if isinstance(known, IntType) else scope.expression(value)
         scope.locals.setdefault(target.id, result.type or i32)
         if scope.locals[target.id] != result.type:
-            scope.source.refuse(value, f"{target.id} holds {scope.locals[target.id]}, not {result.type}", "use another name")
+            scope.source.refuse(
+                value, f"{target.id} holds {scope.locals[target.id]}, not {result.type}", "use another name"
+            )
         scope.assigned.add(target.id)
         return [tree.Assign(target.id, result, target.lineno)]
 
@@ -255,20 +287,36 @@ class _Reader:
         self._no_else(node)
         source = self.scope.source
         call = node.iter
-        if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and self.scope.is_builtin(call.func, range)):
-            source.refuse(call, "a kernel loops over range(...) only", "write for i in range(len(a)) and use a[i]")
+        if not (
+            isinstance(call, ast.Call)
+            and isinstance(call.func, ast.Name)
+            and self.scope.is_builtin(call.func, range)
+        ):
+            source.refuse(
+                call, "a kernel loops over range(...) only", "write for i in range(len(a)) and use a[i]"
+            )
         if not isinstance(node.target, ast.Name) or node.target.id in self.scope.arrays or call.keywords:
             source.refuse(node, "a loop counts one plain name", "write for i in range(...)")
         bounds = [self.scope.integer(each, i32) for each in call.args]
         if not 1 <= len(bounds) <= 3:
-            source.refuse(call, "range takes one to three numbers", "write range(stop) or range(start, stop, step)")
+            source.refuse(
+                call, "range takes one to three numbers", "write range(stop) or range(start, stop, step)"
+            )
         step = bounds[2] if len(bounds) == 3 else tree.Const(1, i32, node.lineno)
         if not isinstance(step, tree.Const) or step.value == 0:
-            source.refuse(call.args[-1], "the step of a range must be a constant other than 0", "use a while loop")
-        start, stop = (bounds[0], bounds[1]) if len(bounds) > 1 else (tree.Const(0, i32, node.lineno), bounds[0])
+            source.refuse(
+                call.args[-1], "the step of a range must be a constant other than 0", "use a while loop"
+            )
+        start, stop = (
+            (bounds[0], bounds[1]) if len(bounds) > 1 else (tree.Const(0, i32, node.lineno), bounds[0])
+        )
         name = node.target.id
         if self.scope.locals.setdefault(name, i32) is not i32:
-            source.refuse(node.target, f"{name} is {self.scope.locals[name]}, not i32", "use another name for the counter")
+            source.refuse(
+                node.target,
+                f"{name} is {self.scope.locals[name]}, not i32",
+                "use another name for the counter",
+            )
         before = set(self.scope.assigned)
         self.scope.assigned.add(name)
         body = self._loop_body(node.body)
@@ -297,7 +345,9 @@ class _Reader:
     def _return(self, node: ast.Return) -> list[tree.Stmt]:
         if (node.value is None) != (self.result is None):
             must = "must return a value" if self.result else "has no result type"
-            self.scope.source.refuse(node, f"this kernel {must}", "match the return line and the -> annotation")
+            self.scope.source.refuse(
+                node, f"this kernel {must}", "match the return line and the -> annotation"
+            )
         value = None if node.value is None else self.scope.integer(node.value, self.result)
         self.ended = True
         return [tree.Return(value, node.lineno)]

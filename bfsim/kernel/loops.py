@@ -129,14 +129,20 @@ class Flow:
         arms = PHI_ARM.findall(place[1].text)
         moving = [arm for arm, source in arms if source[1:] in loop.blocks]
         update = self.defined.get(moving[0]) if len(moving) == 1 else None
-        if update is None or update[1].opcode not in ("add", "getelementptr") or update[1].operands[0] != value:
+        if (
+            update is None
+            or update[1].opcode not in ("add", "getelementptr")
+            or update[1].operands[0] != value
+        ):
             return None
         constant = update[1].operands[-1]
         return int(constant) * pointee_nbytes(update[1]) if constant.lstrip("-").isdigit() else None
 
     def is_counted(self, loop: Loop) -> bool:
         """Whether the number of turns is known when the loop starts: its only exit compares a stepping value."""
-        around = loop.blocks | {label for label, block in self.blocks.items() if block.terminator.opcode == "unreachable"}
+        around = loop.blocks | {
+            label for label, block in self.blocks.items() if block.terminator.opcode == "unreachable"
+        }
         exits = [label for label in loop.blocks if set(self.blocks[label].successors) - around]
         if exits != [loop.latch]:
             return False
@@ -145,7 +151,8 @@ class Flow:
             return False
         left, right = condition[1].operands[:2]
         return any(
-            self.slope(moving, loop) and self.is_invariant(fixed, loop) for moving, fixed in ((left, right), (right, left))
+            self.slope(moving, loop) and self.is_invariant(fixed, loop)
+            for moving, fixed in ((left, right), (right, left))
         )
 
     def slope(self, value: str, loop: Loop, depth: int = 8) -> int | None:
@@ -187,5 +194,7 @@ def pointee_nbytes(instruction: Instruction) -> int:
     """Bytes that an index of 1 moves a `getelementptr`; 1 for anything else."""
     if instruction.opcode != "getelementptr":
         return 1
-    element = re.search(r"i(\d+)\]*,", instruction.text)  # of an array type, its element: the last index counts
+    element = re.search(
+        r"i(\d+)\]*,", instruction.text
+    )  # of an array type, its element: the last index counts
     return int(element.group(1)) // 8 if element else 1

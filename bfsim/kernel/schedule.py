@@ -60,7 +60,9 @@ class _Scheduler:
         self.profile = profile
         self.layout = _layout(self.flow)
         self.has_calls = any(
-            each.opcode == "call" and "@llvm." not in each.text for block in routine.blocks for each in block.instructions
+            each.opcode == "call" and "@llvm." not in each.text
+            for block in routine.blocks
+            for each in block.instructions
         )
 
     def block(self, block: Block) -> list[Counter]:
@@ -75,7 +77,9 @@ class _Scheduler:
             self.routine.symbol, block.label, None, None, tuple(sorted(cycles.items())), self._accesses(block)
         )
         tests = [
-            Counter(self.routine.symbol, block.label, each.value, each.equals, ((each.line, each.extra_cclk),), ())
+            Counter(
+                self.routine.symbol, block.label, each.value, each.equals, ((each.line, each.extra_cclk),), ()
+            )
             for each in selection.tests
             if each.extra_cclk
         ]

@@ -121,7 +121,9 @@ class Selector:
             instruction = self.flow.defined[pointer][1]
             if instruction.opcode not in ("getelementptr", "phi", "select"):
                 break
-            candidates = [each for each in instruction.operands if each not in seen and each.startswith(("%", "@"))]
+            candidates = [
+                each for each in instruction.operands if each not in seen and each.startswith(("%", "@"))
+            ]
             pointer = candidates[1 if instruction.opcode == "select" else 0] if candidates else pointer
         return pointer
 
@@ -181,7 +183,9 @@ def _store(selector: Selector, instruction: Instruction, loop: Loop | None) -> t
 def _address(selector: Selector, instruction: Instruction, loop: Loop | None) -> tuple[Op, ...]:
     """Constant offsets and steps are part of the access; any other index is added in the address unit."""
     index = instruction.operands[-1]
-    if not index.startswith("%") or (loop and selector.flow.slope(instruction.result or "", loop) is not None):
+    if not index.startswith("%") or (
+        loop and selector.flow.slope(instruction.result or "", loop) is not None
+    ):
         return ()
     scaled = Op.ALU if pointee_nbytes(instruction) == 1 else Op.ADD_SHIFT
     producer = selector.flow.defined.get(index)
@@ -236,7 +240,11 @@ def _is_16_bit(selector: Selector, operand: str) -> bool:
     if operand.lstrip("-").isdigit():
         return -(1 << 15) <= int(operand) < 1 << 15
     place = selector.flow.defined.get(operand)
-    return place is not None and place[1].opcode in ("sext", "zext") and " i32 " not in place[1].text.split(" to ")[0]
+    return (
+        place is not None
+        and place[1].opcode in ("sext", "zext")
+        and " i32 " not in place[1].text.split(" to ")[0]
+    )
 
 
 def _extend(selector: Selector, instruction: Instruction, loop: Loop | None) -> tuple[Op, ...]:

@@ -56,7 +56,12 @@ def _tools() -> str:
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(path.read_bytes())
-    host = (llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten(), llvmlite.__version__, llvm.llvm_version_info)
+    host = (
+        llvm.get_host_cpu_name(),
+        llvm.get_host_cpu_features().flatten(),
+        llvmlite.__version__,
+        llvm.llvm_version_info,
+    )
     return f"{digest.hexdigest()} {host}"
 
 
@@ -84,9 +89,9 @@ def save(name: str, binary: Binary) -> None:
         try:
             with os.fdopen(handle, "wb") as file:
                 file.write(hashlib.sha256(body).digest() + body)
-            os.replace(aside, place / name)
+            Path(aside).replace(place / name)
         except BaseException:
-            os.unlink(aside)
+            Path(aside).unlink()
             raise
 
 

@@ -239,7 +239,9 @@ def written_arrays(function: Function) -> frozenset[str]:
         if isinstance(call, Call):
             inner = written_arrays(call.callee)
             pairs = zip(call.callee.parameters, call.arguments, strict=True)
-            written |= {each for parameter, each in pairs if isinstance(each, str) and parameter.name in inner}
+            written |= {
+                each for parameter, each in pairs if isinstance(each, str) and parameter.name in inner
+            }
     return frozenset(written)
 
 

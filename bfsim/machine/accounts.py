@@ -18,9 +18,7 @@ class StageAccount:
     def cost(self, stage: str) -> StageCost:
         """Return the record of `stage`."""
         stalls = {reason: cclk for reason, cclk in sorted(self.stall_cclk.items()) if cclk}
-        return StageCost(
-            stage=stage, issue_cclk=self.issue_cclk, stall_cclk=stalls, idle_cclk=self.idle_cclk
-        )
+        return StageCost(stage=stage, issue_cclk=self.issue_cclk, stall_cclk=stalls, idle_cclk=self.idle_cclk)
 
 
 class FrameAccounts:

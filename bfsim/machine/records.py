@@ -39,7 +39,9 @@ def kernel_records(core: str, book: CallBook) -> Iterator[KernelRecord]:
             calls=tally.calls,
             issue_cclk=sum(tally.issue_cclk.values()),
             lines=tuple(
-                LineCost(line=function.first_line + line - 1, executions=tally.executions[line], issue_cclk=cclk)
+                LineCost(
+                    line=function.first_line + line - 1, executions=tally.executions[line], issue_cclk=cclk
+                )
                 for line, cclk in sorted(tally.issue_cclk.items())
             ),
             accesses={memory: (reads, writes) for memory, (reads, writes) in sorted(tally.accesses.items())},

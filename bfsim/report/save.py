@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import tempfile
 from pathlib import Path
@@ -31,6 +30,6 @@ def write_text(path: Path, text: str) -> None:
             draft.write_text(text, encoding="utf-8")
             if target.exists():
                 shutil.copymode(target, draft)
-            os.replace(draft, target)
+            draft.replace(target)
     except OSError as error:
         raise ConfigError(f"{path} must be writable: {error.strerror}") from error

@@ -109,7 +109,7 @@ def test_ball_is_yellow_inside_its_outline_only(pictures: list[Picture]) -> None
     The lower half is left out: there the ball is in its own shade and the floor mirrors it.
     """
     for seen in pictures:
-        upper = ROWS < seen.truth["ball"]["outline_centre_px"][1]
+        upper = seen.truth["ball"]["outline_centre_px"][1] > ROWS
         yellow, distance = seen.has_hue(YELLOW_DEG), seen.ball_distance()
         assert yellow[upper & (distance < 0.9)].mean() > 0.99
         assert yellow[upper & (distance > 1.1) & (distance < 1.5)].mean() < 0.02
@@ -121,7 +121,7 @@ def test_outline_of_the_ball_is_where_its_colour_ends(pictures: list[Picture]) -
         (x, y), (long_px, short_px) = (
             seen.truth["ball"][key] for key in ("outline_centre_px", "outline_half_axes_px")
         )
-        ball = seen.has_hue(YELLOW_DEG) & (seen.ball_distance() < 1.2) & (ROWS < y + short_px / 2)
+        ball = seen.has_hue(YELLOW_DEG) & (seen.ball_distance() < 1.2) & (y + short_px / 2 > ROWS)
         rows, columns = np.nonzero(ball)
         found = [columns.min(), columns.max(), rows.min()]
         assert found == pytest.approx([x - long_px, x + long_px, y - short_px], abs=2.0)
@@ -142,7 +142,7 @@ def test_disparity_of_the_ball_is_focal_length_times_baseline_over_depth(frames:
 
 def _middle_of_yellow(seen: Picture) -> float:
     """Column of the centre of mass of the ball's upper half."""
-    upper = ROWS < seen.truth["ball"]["outline_centre_px"][1]
+    upper = seen.truth["ball"]["outline_centre_px"][1] > ROWS
     return float(COLUMNS[seen.has_hue(YELLOW_DEG) & upper & (seen.ball_distance() < 1.2)].mean())
 
 
@@ -181,7 +181,7 @@ def test_other_robot_wears_a_red_mark(pictures: list[Picture]) -> None:
         (left, top), (right, bottom) = corners_px.min(axis=0), corners_px.max(axis=0)
         red = seen.has_hue(RED_DEG)
         assert red[round(top) + 3 : round(bottom) - 4, round(left) + 4 : round(right) - 4].mean() > 0.97
-        outside = (COLUMNS < left - 3) | (COLUMNS > right + 3) | (ROWS < top - 3)
+        outside = (left - 3 > COLUMNS) | (right + 3 < COLUMNS) | (top - 3 > ROWS)
         assert red[outside].mean() < 0.001
 
 

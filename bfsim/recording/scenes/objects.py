@@ -55,7 +55,7 @@ class Box:
     def matrix(self) -> Vector:
         """Return the 4x4 matrix that carries the cube -1..1 to this box in the world."""
         half_mm = np.array(self.size_mm) / 2
-        return placed(np.array(self.foot_mm) + (0, 0, half_mm[2]), half_mm, self.heading_deg)
+        return placed(np.add(self.foot_mm, (0, 0, half_mm[2])), half_mm, self.heading_deg)
 
     @property
     def corners_mm(self) -> Vector:
