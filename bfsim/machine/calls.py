@@ -68,22 +68,19 @@ class CallBook:
     def enter(self, stage: str) -> None:
         """Count the calls from now on under `stage`."""
         self.stage = stage
-        self._known = self._calls.setdefault(stage, {})
+        self.known = self._calls.setdefault(stage, {})
+        """Calls of this stage by kernel and rows, ready to run."""
 
-    def run(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> Work:
-        """Run `kernel` now. Rows outside of this core's L1 are followed access by access."""
-        try:
-            call = self._known[kernel, kernel.arrays_of(arguments)]
-        except (KeyError, IndexError, TypeError):  # the first time, or something is wrong
-            call = self._prepare(kernel, arguments)
-            self._known[kernel, kernel.arrays_of(arguments)] = call
-        return call.run(arguments)
+    def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> PreparedCall | SpecialCall:
+        """Prepare a call for the first time, and know it from now on. Rows outside of L1 are followed."""
+        call = self.known[kernel, kernel.arrays_of(arguments)] = self._prepared(kernel, arguments)
+        return call
 
     def groups(self) -> Iterable[CallGroup]:
         """Return every group of calls, in the order of their first call."""
         return self._groups.values()
 
-    def _prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> PreparedCall | SpecialCall:
+    def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> PreparedCall | SpecialCall:
         kernel.check(arguments)
         rows = []
         for position in kernel.array_positions:

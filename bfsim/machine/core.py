@@ -130,7 +130,11 @@ class Core:
         """Run a kernel on rows and ints. Yield the result: the cycles are charged then, and you get its value."""
         if self._unclaimed is not None:
             self._check_claimed()
-        work = self._unclaimed = self._calls.run(kernel, arguments)
+        try:
+            call = self._calls.known[kernel, kernel.arrays_of(arguments)]
+        except (LookupError, TypeError):  # the first time, or something is wrong with the arguments
+            call = self._calls.prepare(kernel, arguments)
+        work = self._unclaimed = call.run(arguments)
         return work
 
     @contextlib.contextmanager
