@@ -41,39 +41,40 @@ class InputRing:
         self._stream = stream
         self._image = image
         self._rows = rows
-        self._transfers: list[Transfer] = []
+        self._height, self._depth = len(image), len(rows)
         self._taken = 0
+        self._coming: Transfer | None = None
+        """The next line's transfer."""
 
     def line(self) -> Generator[Any, Any, Row]:
         """Wait for the next line and return its row. It stays valid for as many calls as the ring has rows, less one."""
-        core, transfers, number = self._core, self._transfers, self._taken
+        core, number = self._core, self._taken
         if late := core.catch_up():
             yield late
-        if number >= len(self._image):
+        if number == self._height:
             raise FirmwareError(
-                f"the ring of {self._rows[0].buffer} has no line {number}: the picture has {len(self._image)}"
+                f"the ring of {self._rows[0].buffer} has no line {number}: the picture has {self._height}"
             )
-        self._taken += 1
+        self._taken = number + 1
+        transfer = self._coming or self._fetch(number)
         # one line ahead: its row is the one that the core gave up with this call
-        while len(transfers) < min(len(self._image), number + 2):
-            ahead = len(transfers)
-            transfers.append(self._stream.copy(self._image[ahead], self._row(ahead), core.now_ticks))
+        self._coming = self._fetch(number + 1) if number + 1 < self._height else None
         core.settle()
-        if not core.has(transfer := transfers[number]):
+        if not core.has(transfer):
             yield from core.wait_transfer(transfer, StallReason.RING_EMPTY)
-        return self._row(number)
+        return self._rows[number % self._depth]
+
+    def _fetch(self, number: int) -> Transfer:
+        return self._stream.copy(self._image[number], self._rows[number % self._depth], self._core.now_ticks)
 
     def __getitem__(self, number: int) -> Row:
         """Return the row of line `number`, which must still be in the ring."""
-        if not max(0, self._taken - len(self._rows) + 1) <= number < self._taken:
+        if not self._taken - self._depth < number < self._taken or number < 0:
             raise FirmwareError(
-                f"line {number} is not in ring {self._rows[0].buffer}, which has {len(self._rows)} rows "
+                f"line {number} is not in ring {self._rows[0].buffer}, which has {self._depth} rows "
                 f"and is at line {self._taken - 1}"
             )
-        return self._row(number)
-
-    def _row(self, number: int) -> Row:
-        return self._rows[number % len(self._rows)]
+        return self._rows[number % self._depth]
 
 
 class OutputRing:
@@ -85,23 +86,24 @@ class OutputRing:
         self._stream = stream
         self._image = image
         self._rows = rows
+        self._height, self._depth = len(image), len(rows)
         self._transfers: list[Transfer] = []
 
     def row(self) -> Generator[Any, Any, Row]:
         """Wait until a row is free and return it, to be written and then sent."""
-        number, depth = len(self._transfers), len(self._rows)
+        number, depth = len(self._transfers), self._depth
         if number >= depth and not self._core.has(transfer := self._transfers[number - depth]):
             yield from self._core.wait_transfer(transfer, StallReason.RING_FULL)
-        return self._rows[number % len(self._rows)]
+        return self._rows[number % depth]
 
     def send(self) -> None:
         """Start the DMA of the row that was written, to the next line of the picture."""
         number = len(self._transfers)
-        if number >= len(self._image):
+        if number == self._height:
             raise FirmwareError(
-                f"the picture {self._image[0].buffer} has {len(self._image)} lines; one more was sent"
+                f"the picture {self._image[0].buffer} has {self._height} lines; one more was sent"
             )
-        row = self._rows[number % len(self._rows)]
+        row = self._rows[number % self._depth]
         self._transfers.append(self._stream.copy(row, self._image[number], self._core.now_ticks))
 
     def flush(self) -> Generator[Any, Any, None]:
