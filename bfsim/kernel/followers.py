@@ -73,13 +73,13 @@ class Follower:
 
 @cache
 def _function_address() -> int:
-    """Compile the follower. numba is imported here: a run with every buffer in L1 does without it."""
+    """Compile the follower, in half a second. numba is imported here: a run with every buffer in L1 needs none."""
     numba: Any = importlib.import_module("numba")
     carray, cfunc, types = numba.carray, numba.cfunc, numba.types
 
     word = types.int64
 
-    @cfunc(types.void(types.CPointer(word), word, word), cache=True)  # type: ignore[untyped-decorator]
+    @cfunc(types.void(types.CPointer(word), word, word))  # type: ignore[untyped-decorator]
     def follow(at: Any, address: int, access: int) -> None:
         state = carray(at, WORDS)
         write = access >= WRITE
