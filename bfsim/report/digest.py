@@ -16,12 +16,15 @@ from bfsim.trace import FrameRecord, Identity
 
 def identity_digest(identity: Identity) -> str:
     """Return the sha256, in hex, over recording, firmware, board, LDF, compiler, feed and versions."""
-    return _sha256(identity)
+    return hashlib.sha256(_canonical(identity)).hexdigest()
 
 
 def cycle_digest(frames: Sequence[FrameRecord]) -> str:
     """Return the sha256, in hex, over every cycle number of every frame, in the order of the records."""
-    return _sha256([_cycles(frame) for frame in frames])
+    digest = hashlib.sha256()
+    for frame in frames:
+        digest.update(_canonical(_cycles(frame)) + b"\n")
+    return digest.hexdigest()
 
 
 def _cycles(frame: FrameRecord) -> list[object]:
@@ -29,7 +32,6 @@ def _cycles(frame: FrameRecord) -> list[object]:
     return [frame.index, frame.last_line_cclk, frame.result_cclk, cores]
 
 
-def _sha256(value: object) -> str:
+def _canonical(value: object) -> bytes:
     plain = to_jsonable_python(value, fallback=dict)
-    canonical = json.dumps(plain, sort_keys=True, separators=(",", ":"))
-    return hashlib.sha256(canonical.encode()).hexdigest()
+    return json.dumps(plain, sort_keys=True, separators=(",", ":")).encode()
