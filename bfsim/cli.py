@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import os
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
-from threading import Timer
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -15,19 +11,15 @@ import click
 from bfsim import __version__
 from bfsim.cli_record import record
 from bfsim.errors import BfsimError, ConfigError
+from bfsim.terminal import print_report, progress_bar
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from bfsim.trace import RunRecord
 
 LIMIT_BROKEN, MISTAKE, INTERRUPTED = 1, 2, 130
 """Exit codes other than 0; a run that Ctrl-C cut short is never 0, for it did not do what was asked."""
 
 STDOUT = Path("-")
-WIDTH_WITHOUT_TERMINAL = 100
-PATIENCE_S = 1.0
-"""A run shorter than this shows no progress bar."""
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -124,7 +116,7 @@ def run(json_path: Path | None, **what: Any) -> None:
     if json_path == STDOUT:
         click.echo(json_text(done), nl=False)
     else:
-        _print(run_report(done))
+        print_report(run_report(done))
         if json_path:
             write_text(json_path, json_text(done))
     _exit_if_interrupted(done)
@@ -154,7 +146,7 @@ def profile(core: str | None, top: int, **what: Any) -> None:
     from bfsim.report.profile_tables import profile_report
 
     done = _simulate(**what)
-    _print(profile_report(done, core, top))
+    print_report(profile_report(done, core, top))
     _exit_if_interrupted(done)
 
 
@@ -197,7 +189,7 @@ def check(path: Path, update: bool, **what: Any) -> None:
         click.echo(f"{path} holds the limits now: {budget.frame_rate_hz:.2f} frames/s.")
         return
     outcome = judge(done, budget, limits, path)
-    _print(check_report(outcome))
+    print_report(check_report(outcome))
     if not outcome.passed:
         raise SystemExit(LIMIT_BROKEN)
 
@@ -206,7 +198,7 @@ def _simulate(*, feed: str, **what: Any) -> RunRecord:
     """Run the simulation behind a progress bar and return at least one frame."""
     from bfsim.run import Feed, simulate
 
-    with _progress_bar() as progress:
+    with progress_bar("Simulating frames") as progress:
         done = simulate(feed=Feed(feed), progress=progress, **what)
     if not done.frames:
         if done.interrupted:
@@ -219,30 +211,3 @@ def _exit_if_interrupted(done: RunRecord) -> None:
     if done.interrupted:
         click.echo(f"bfsim: interrupted after {len(done.frames)} frames", err=True)
         raise SystemExit(INTERRUPTED)
-
-
-@contextmanager
-def _progress_bar() -> Iterator[Callable[[int, int], None]]:
-    """Yield what to tell (frames done, frames in all); a bar shows them if a terminal watches for long enough."""
-    from rich.console import Console
-    from rich.progress import Progress
-
-    console = Console(stderr=True)
-    bar = Progress(console=console, transient=True, disable=not console.is_terminal)
-    task = bar.add_task("Simulating frames", total=None)
-    start = Timer(PATIENCE_S, bar.start)
-    start.start()
-    try:
-        yield lambda done, total: bar.update(task, completed=done, total=total)
-    finally:
-        start.cancel()
-        start.join()
-        bar.stop()
-
-
-def _print(report: RenderableType) -> None:
-    """Print a report as wide as the terminal; elsewhere at a fixed width and without escape codes."""
-    from rich.console import Console
-
-    fixed = None if sys.stdout.isatty() or "COLUMNS" in os.environ else WIDTH_WITHOUT_TERMINAL
-    Console(width=fixed, markup=False, emoji=False, highlight=False).print(report)

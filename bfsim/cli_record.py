@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 
 import click
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from bfsim import recording
-from bfsim.recording import importer
+from bfsim.terminal import print_report, progress_bar
 
 
 class _Size(click.ParamType[tuple[int, int]]):
@@ -94,7 +90,7 @@ def import_command(
     bfsim record import run.mcap left.uyvy right.uyvy --size 320x240 --geometry 386 30 60 20
     bfsim record import run.mcap phone.mp4 --mono --resize 320x240
     """
-    with _progress("Importing") as progress:
+    with progress_bar("Importing") as progress:
         summary = recording.import_recording(
             sources,
             output,
@@ -126,12 +122,12 @@ def info_command(path: Path, as_json: bool) -> None:
     bfsim record info run.mcap
     bfsim record info run.mcap --json
     """
-    with recording.RecordingReader(path) as reader, _progress("Reading") as progress:
+    with recording.RecordingReader(path) as reader, progress_bar("Reading") as progress:
         info = recording.describe_recording(reader, progress)
     if as_json:
         click.echo(json.dumps(asdict(info), default=str, indent=2))
     else:
-        Console().print(_info_table(info))
+        print_report(_info_table(info))
 
 
 def _info_table(info: recording.RecordingInfo) -> Table:
@@ -169,13 +165,3 @@ def _geometry_text(geometry: recording.StereoGeometry | None) -> str:
         f"focal length {geometry.focal_px:g} px, baseline {geometry.baseline_mm:g} mm, "
         f"height {geometry.height_mm:g} mm, looking down {geometry.tilt_deg:g}°"
     )
-
-
-@contextmanager
-def _progress(title: str) -> Iterator[importer.Progress]:
-    """Show a bar on a terminal while the block runs; it leaves nothing behind."""
-    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-    console = Console(stderr=True)
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task(title, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)

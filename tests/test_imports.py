@@ -25,8 +25,9 @@ MAY_IMPORT = {
     "report": {"errors", "clocks", "trace"},
     "loading": {"errors", "machine"},
     "run": {"errors", "trace", "chip", "kernel", "linker", "machine", "recording", "loading"},
-    "cli_record": {"errors", "recording"},
-    "cli": {"errors", "trace", "report", "run", "cli_record"},
+    "terminal": set(),
+    "cli_record": {"recording", "terminal"},
+    "cli": {"errors", "trace", "report", "run", "cli_record", "terminal"},
     "__main__": {"cli"},
 }
 READ_VERSION = {"recording", "run", "cli"}  # these also read `bfsim.__version__`
