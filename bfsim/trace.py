@@ -145,7 +145,10 @@ class Identity:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunRecord:
-    """One run. `missed` are the recording's frames that came while the firmware was busy; `interrupted` by Ctrl-C."""
+    """One run. `missed` are the recording's frames that came while the firmware was busy.
+
+    When `interrupted` by Ctrl-C, `kernels` and `traffic` also hold what was done of the frame that was not finished.
+    """
 
     identity: Identity
     rows: tuple[BudgetRow, ...]
