@@ -67,6 +67,13 @@ _RUN_PARAMETERS = (
         type=click.Path(path_type=Path),
         help="Linker description file that places the buffers.  [default: the thesis placement]",
     ),
+    click.option(
+        "--profile",
+        metavar="NAME",
+        default="vdsp-O2",
+        show_default=True,
+        help="Compiler whose code is costed: vdsp-O2, gcc-O2 or gcc-O0.",
+    ),
     click.option("--frames", metavar="N", type=click.IntRange(min=1), help="Stop after N frames."),
     click.option(
         "--feed",
@@ -148,6 +155,34 @@ def profile(core: str | None, top: int, **what: Any) -> None:
     done = _simulate(**what)
     print_report(profile_report(done, core, top))
     _exit_if_interrupted(done)
+
+
+@main.command(short_help="Print a kernel line by line: operations and cycles.")
+@click.argument("kernel")
+@_takes_a_run
+@click.option("--run", "runs", is_flag=True, help="Run the firmware first, and add how often each line ran.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of the table.")
+def explain(kernel: str, runs: bool, as_json: bool, **what: Any) -> None:
+    """Print the source of KERNEL with the operations chosen for each line and their cycles.
+
+    KERNEL is PACKAGE:NAME, or only the NAME of a kernel of the firmware. With --run, or with a RECORDING,
+    the firmware runs and each line shows how often it was executed and its cycles in all.
+
+    \b
+    Examples:
+      bfsim explain sobel
+      bfsim explain sobel --run --frames 2
+      bfsim explain my_kernels:convolve --profile gcc-O2 --json
+    """
+    from bfsim.explain import explain_named
+    from bfsim.report.explain_tables import explain_json, explain_report
+
+    done = _simulate(**what) if runs or what["recording"] else None
+    explanation = explain_named(kernel, what["firmware"], what["profile"], done)
+    if as_json:
+        click.echo(explain_json(explanation), nl=False)
+    else:
+        print_report(explain_report(explanation))
 
 
 @main.command(short_help="Fail if a frame costs more than a baseline allows.")

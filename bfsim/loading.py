@@ -11,6 +11,7 @@ from pathlib import Path
 from types import ModuleType
 
 from bfsim.errors import BfsimError, FirmwareError
+from bfsim.kernel import Kernel
 from bfsim.machine.program import Firmware
 
 
@@ -38,6 +39,33 @@ def load_firmware(name: str) -> LoadedFirmware:
         place = module.__spec__.origin if module.__spec__ and module.__spec__.has_location else package
         raise FirmwareError(f"--firmware: {attribute} must be a bfsim.api.Firmware, but is {found} ({place})")
     return LoadedFirmware(name, _digest(package), firmware)
+
+
+def load_kernel(name: str, firmware: str) -> Kernel:
+    """Find the kernel `name`: PACKAGE:NAME, or the name of one of the kernels of `firmware`.
+
+    Raises FirmwareError when there is no such kernel, or more than one.
+    """
+    package, _, attribute = name.rpartition(":")
+    if package:
+        found = {getattr(_import(package), attribute, None)}
+    else:
+        load_firmware(firmware)
+        found = {each for each in kernels_of(firmware) if each.name == attribute}
+    kernels = [each for each in found if isinstance(each, Kernel)]
+    if len(kernels) != 1:
+        known = ", ".join(sorted({each.name for each in kernels_of(package or firmware)})) or "none"
+        raise FirmwareError(
+            f"{name} must name one kernel, but names {len(kernels) or 'none'}; there are {known}"
+        )
+    return kernels[0]
+
+
+def kernels_of(name: str) -> set[Kernel]:
+    """Return the kernels in the loaded modules of a package."""
+    top = name.partition(":")[0].partition(".")[0]
+    modules = [module for each, module in sys.modules.items() if each == top or each.startswith(f"{top}.")]
+    return {each for module in modules for each in vars(module).values() if isinstance(each, Kernel)}
 
 
 def _import(package: str) -> ModuleType:

@@ -12,7 +12,7 @@ from bfsim import __version__
 from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import ConfigError, RecordingError
-from bfsim.kernel import VDSP_O2
+from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
 from bfsim.linker import link, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Outcome, symbols_of
@@ -35,23 +35,24 @@ def simulate(
     frames: int | None = None,
     feed: Feed = Feed.DEMAND,
     sanitize: bool = False,
+    profile: str = VDSP_O2.name,
     progress: Callable[[int, int], None] | None = None,
 ) -> RunRecord:
     """Run `firmware` ("PACKAGE:NAME") on a recording and return the records.
 
     Without `recording` and `ldf` the built-in ones are taken; `frames` stops early. `progress` is called with
-    (frames done, frames in all). Ctrl-C ends the run with the frames done. Raises a BfsimError for anything
+    (frames done, frames in all); `profile` names the compiler whose code is costed. Ctrl-C ends the run with the frames done. Raises a BfsimError for anything
     that is wrong with what was given.
     """
     if frames is not None and frames < 1:
         raise ConfigError(f"frames must be at least 1, not {frames}")
-    spec = board_named(board)
+    spec, compiler = board_named(board), profile_named(profile)
     loaded = load_firmware(firmware)
     script = ldf or THESIS_LDF
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
         size = FrameSize(reader.width, reader.height)
         link_map = link(parse_ldf(script), symbols_of(loaded.firmware, size), spec.chip.regions)
-        machine = Board(spec, loaded.firmware, size, link_map, feed=feed, sanitize=sanitize)
+        machine = Board(spec, loaded.firmware, size, link_map, feed=feed, sanitize=sanitize, profile=compiler)
         total = min(frames or reader.frame_count, reader.frame_count)
         if not total:
             raise RecordingError(f"{reader.path}: a recording must have at least one stereo frame, not none")
@@ -65,7 +66,7 @@ def simulate(
                 progress(done, total)
 
         outcome = machine.run(iter(source), count)
-    return _record(outcome, spec, loaded, script, feed, size, source)
+    return _record(outcome, spec, loaded, script, feed, size, source, compiler)
 
 
 class _DigestedFrames:
@@ -98,6 +99,7 @@ def _record(
     feed: Feed,
     size: FrameSize,
     source: _DigestedFrames,
+    compiler: CompilerProfile,
 ) -> RunRecord:
     identity = Identity(
         recording=source.name,
@@ -108,7 +110,7 @@ def _record(
         board_digest=hashlib.sha256(repr(spec).encode()).hexdigest(),
         ldf=ldf.name,
         ldf_digest=hashlib.sha256(ldf.read_bytes()).hexdigest(),
-        compiler=VDSP_O2.name,
+        compiler=compiler.name,
         feed=feed.value,
         bfsim_version=__version__,
         llvm_version=".".join(map(str, llvm.llvm_version_info)),

@@ -25,6 +25,7 @@ class StallReason(StrEnum):
     RING_EMPTY = "ring empty"
     RING_FULL = "ring full"
     SEMAPHORE = "semaphore"
+    INTERLOCK = "interlocks"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,11 +69,15 @@ class FrameRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineCost:
-    """One source line of a kernel: how often its first operation ran, and the issue cycles of all of them."""
+    """One source line of a kernel: how often its first operation ran, and the cycles of all of them.
+
+    `stall_cclk` are the interlocks: waits of one operation for another.
+    """
 
     line: int
     executions: int
     issue_cclk: int
+    stall_cclk: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -158,3 +163,46 @@ class RunRecord:
     kernels: tuple[KernelRecord, ...]
     traffic: tuple[TrafficRecord, ...]
     events: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExplainedOperation:
+    """An operation of a source line: `count` of them, `cclk` issue cycles each; `conditional`: one way of a branch."""
+
+    operation: str
+    mnemonic: str
+    count: int
+    cclk: int
+    conditional: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExplainedLine:
+    """The part of one source line that stands in `depth` loops, and its cycles per execution, interlocks included.
+
+    `stall_cclk` are the interlocks alone. `executions` and `total_cclk` are those of a run, at all depths together, and
+    stand in the line's last row; None without a run.
+    """
+
+    line: int
+    text: str
+    depth: int
+    operations: tuple[ExplainedOperation, ...]
+    least_cclk: int
+    most_cclk: int
+    stall_cclk: int
+    executions: int | None
+    total_cclk: int | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Explanation:
+    """One kernel as one compiler profile sees it. `calls` are those of a run, None without one."""
+
+    kernel: str
+    file: str
+    first_line: int
+    profile: str
+    code_bytes: int
+    calls: int | None
+    lines: tuple[ExplainedLine, ...]

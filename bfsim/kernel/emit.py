@@ -17,6 +17,11 @@ from bfsim.kernel.types import ArrayType, IntType, u32
 
 I1, I32, I64, POINTER = ir.IntType(1), ir.IntType(32), ir.IntType(64), ir.PointerType()
 SIMPLE = {"+": "add", "-": "sub", "*": "mul", "&": "and_", "|": "or_", "^": "xor"}
+# [predict.def of GCC 12] hit rates 67 % (continue) and 66 % (early return); both sides even otherwise
+CONTINUES, RETURNS, GOES_ON = 33, 34, 67
+EVEN = (GOES_ON, GOES_ON)
+SIGNED = "signed"  # names divisions of i32: LLVM may make them unsigned, the run-time library's routine stays
+FLOOR = "floor"  # names remainders that only round a quotient down
 SHIFT_MASK = 31  # a shift count uses its low five bits; the language refuses constants outside 0..31
 
 
@@ -45,6 +50,18 @@ def emit(function: tree.Function, *, checked: bool = False) -> ir.Module:
     return module
 
 
+def _weight(body: tuple[tree.Stmt, ...]) -> int:
+    """Percent by which a side of an `if` is likely, as GCC guesses it from how the side ends."""
+    last = body[-1] if body else None
+    return (
+        CONTINUES
+        if isinstance(last, tree.Continue)
+        else RETURNS
+        if isinstance(last, tree.Return)
+        else GOES_ON
+    )
+
+
 def _declare(module: ir.Module, function: tree.Function) -> None:
     types: list[ir.Type] = []
     for parameter in function.parameters:
@@ -67,6 +84,8 @@ class _Emitter:
     arrays: dict[str, tuple[ir.Value, ir.Value]] = field(init=False, default_factory=dict)
     loops: list[tuple[ir.Block, ir.Block]] = field(init=False, default_factory=list)
     """Of each open loop: where `continue` and where `break` go."""
+    weights: tuple[int, int] = field(init=False, default=EVEN)
+    """How likely the `if` whose condition is being emitted is true, and false."""
 
     def run(self) -> None:
         target = self.module.get_global(self.function.symbol)
@@ -157,12 +176,18 @@ class _Emitter:
 
     def _if(self, node: tree.If) -> None:
         yes, no, after = (self.builder.append_basic_block(name) for name in ("then", "else", "after"))
-        self.builder.cbranch(self.value(node.test), yes, no)
+        self.weights = (_weight(node.body), _weight(node.orelse))
+        self._hint(self.builder.cbranch(self.value(node.test), yes, no))
+        self.weights = EVEN
         for block, body in ((yes, node.body), (no, node.orelse)):
             self.builder.position_at_end(block)
             self._block(body)
             self._fall_to(after)
         self.builder.position_at_end(after)
+
+    def _hint(self, branch: ir.Instruction) -> None:
+        if self.weights[0] != self.weights[1]:
+            branch.set_weights(self.weights)
 
     def _while(self, node: tree.While) -> None:
         test, body, after = (self.builder.append_basic_block(name) for name in ("test", "body", "after"))
@@ -315,7 +340,8 @@ class _Emitter:
         Where both are left, LLVM makes the rest from the quotient: there is one division.
         """
         builder = self.builder
-        quotient, rest = builder.sdiv(left, right), builder.srem(left, right)
+        rest_name = FLOOR if op == "//" else SIGNED
+        quotient, rest = builder.sdiv(left, right, name=SIGNED), builder.srem(left, right, name=rest_name)
         signs_differ = builder.icmp_signed("<", builder.xor(rest, right), I32(0))
         down = builder.and_(signs_differ, builder.icmp_signed("!=", rest, I32(0)))
         if op == "//":
@@ -333,7 +359,7 @@ class _Emitter:
         slot = self._decided(node.left)
         more, after = (self.builder.append_basic_block(name) for name in (node.op, "decided"))
         left = self.builder.load(slot, typ=I1)
-        self.builder.cbranch(left, *((more, after) if node.op == "and" else (after, more)))
+        self._hint(self.builder.cbranch(left, *((more, after) if node.op == "and" else (after, more))))
         self.builder.position_at_end(more)
         self.builder.store(self.value(node.right), slot)
         self.builder.branch(after)

@@ -1,6 +1,6 @@
 """The entry point of a compiled kernel: what Python calls, and how events become totals and cycles.
 
-An entry takes nothing and returns the issue cycles of one call, because a C call without arguments is the
+An entry takes nothing and returns the issue and interlock cycles of one call in one word, because a C call without arguments is the
 cheapest that Python has. It finds its argument block through the cell `cell_name(entry)`, a pointer: an array of
 64-bit words with the address of the totals (one word per counter), then pointer and length of each array,
 each integer, the follower's state (followed kernels only), and last a word for the kernel's result.
@@ -15,6 +15,9 @@ from bfsim.kernel.schedule import Counter
 from bfsim.kernel.types import ArrayType
 
 FIRST_ARGUMENT = 1  # word 0 of the block is the address of the totals
+STALL_SHIFT = (
+    32  # of the result of an entry, the lower half is issue cycles and the upper one interlock cycles
+)
 REFUSED = -1  # returned instead of cycles when an integer does not fit in its 32 bits; nothing was run then
 
 
@@ -47,7 +50,7 @@ def settle(counters: Sequence[tuple[int, Counter, str]], place: str) -> list[str
             f"  {name}.old = load i64, ptr {name}.slot",
             f"  {name}.new = add i64 {name}.old, {events}",
             f"  store i64 {name}.new, ptr {name}.slot",
-            f"  {name}.cost = mul i64 {events}, {counter.cclk}",
+            f"  {name}.cost = mul i64 {events}, {counter.issue_cclk + (counter.stall_cclk << STALL_SHIFT)}",
             f"  %{place}.cclk.{step + 1} = add i64 %{place}.cclk.{step}, {name}.cost",
         ]
     return [*rows, f"  store i64 %{place}.cclk.{len(counters)}, ptr @bfsim.cclk"]

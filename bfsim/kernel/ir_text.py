@@ -16,8 +16,12 @@ NAME = re.compile(r"%[\w.$-]+")
 TARGET = re.compile(r"label (%[\w.$-]+)")
 DEBUG = re.compile(r", !dbg !(\d+)")
 LOCATION = re.compile(r"^!(\d+) = !DILocation\(line: (\d+)")
+PROFILE = re.compile(r", !prof !(\d+)")
+WEIGHTS = re.compile(r"^!(\d+) = !\{!\"branch_weights\"(.*)\}")
+WEIGHT = re.compile(r"i32 (-?\d+)")  # LLVM writes unsigned numbers as signed ones
 PHI_ARM = re.compile(r"\[ ([^,\]]+), (%[\w.$-]+) \]")
 CASE = re.compile(r"i\d+ (-?\d+), label (%[\w.$-]+)")
+WIDTH = re.compile(r"\bi(\d+)\b")
 OPCODE_NOISE = {"tail", "musttail", "notail"}
 
 
@@ -30,6 +34,24 @@ class Instruction:
     text: str
     operands: tuple[str, ...]
     line: int
+    weights: tuple[int, ...] = ()
+    """Of a branch: how likely each side is, where the source gives a hint."""
+
+    @property
+    def is_division(self) -> bool:
+        """Whether the Blackfin has no instruction for it, but a routine in the run-time library."""
+        return self.opcode in ("sdiv", "udiv", "srem", "urem")
+
+    @property
+    def is_call(self) -> bool:
+        """Whether it is a call of another kernel."""
+        return self.opcode == "call" and "@llvm." not in self.text
+
+    @property
+    def bits(self) -> int:
+        """Width of the value that it loads, stores, extends or computes."""
+        found = WIDTH.search(self.text)
+        return int(found.group(1)) if found else 32
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +88,10 @@ class Routine:
 
 def read_module(text: str) -> tuple[Routine, ...]:
     """Read every function definition of an LLVM module."""
+    weights_of = {
+        number: tuple(int(each) & 0xFFFFFFFF for each in WEIGHT.findall(row))
+        for number, row in _matches(WEIGHTS, text)
+    }
     lines_of = {number: int(line) for number, line in _matches(LOCATION, text)}
     routines = []
     rows = iter(text.splitlines())
@@ -77,7 +103,7 @@ def read_module(text: str) -> tuple[Routine, ...]:
                     break
                 body.append(inner)
             parameters = tuple(NAME.findall(found.group(2)))
-            routines.append(Routine(found.group(1), parameters, _blocks(_joined(body), lines_of)))
+            routines.append(Routine(found.group(1), parameters, _blocks(_joined(body), lines_of, weights_of)))
     return tuple(routines)
 
 
@@ -96,7 +122,9 @@ def _joined(body: list[str]) -> list[str]:
     return rows
 
 
-def _blocks(rows: list[str], lines_of: dict[str, int]) -> tuple[Block, ...]:
+def _blocks(
+    rows: list[str], lines_of: dict[str, int], weights_of: dict[str, tuple[int, ...]]
+) -> tuple[Block, ...]:
     blocks: list[Block] = []
     label, instructions, line = "", list[Instruction](), 0
     for row in rows:
@@ -106,19 +134,20 @@ def _blocks(rows: list[str], lines_of: dict[str, int]) -> tuple[Block, ...]:
             debug = DEBUG.search(row)
             # line 0 is LLVM's word for code merged from several lines; it stays with the line before it
             line = (lines_of.get(debug.group(1), 0) if debug else 0) or line or 1
-            instructions.append(_instruction(row, line))
+            hint = PROFILE.search(row)
+            instructions.append(_instruction(row, line, weights_of.get(hint.group(1), ()) if hint else ()))
             if instructions[-1].opcode in ("br", "ret", "switch", "unreachable"):
                 blocks.append(Block(label, tuple(instructions)))
     return tuple(blocks)
 
 
-def _instruction(row: str, line: int) -> Instruction:
+def _instruction(row: str, line: int, weights: tuple[int, ...]) -> Instruction:
     text = DEBUG.sub("", row).split(", !")[0].strip()
     found = RESULT.match(row)
     result = found.group(1) if found else None
     body = text.split(" = ", 1)[1] if result else text
     words = [word for word in body.split() if word not in OPCODE_NOISE]
-    return Instruction(result, words[0], body, _operands(words[0], body), line)
+    return Instruction(result, words[0], body, _operands(words[0], body), line, weights)
 
 
 def _operands(opcode: str, body: str) -> tuple[str, ...]:

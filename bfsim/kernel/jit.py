@@ -24,11 +24,17 @@ from bfsim.kernel.schedule import Counter, cost
 
 ENTRY = ctypes.CFUNCTYPE(ctypes.c_int64)
 HOST_SPEED_LEVEL = 3
+PASSES = (
+    "sroa", "simplify_cfg", "jump_threading", "simplify_cfg", "instruction_combine", "loop_simplify", "lcssa",
+    "loop_rotate", "new_gvn", "jump_threading", "instruction_combine", "simplify_cfg", "loop_simplify", "lcssa",
+    "loop_rotate", "jump_threading", "instruction_combine", "new_gvn", "simplify_cfg", "instruction_combine",
+    "aggressive_dce", "simplify_cfg",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
 class Compiled:
-    """A kernel ready to run. `entry()` returns the issue cycles of a call; `cell` holds the address of its arguments."""
+    """A kernel ready to run. `entry()` returns the cycles of a call (see `entry`); `cell` holds the address of its arguments."""
 
     entry: ctypes._CFunctionType
     cell: ctypes.c_int64
@@ -62,9 +68,11 @@ def optimised(function: tree.Function, profile: CompilerProfile, *, checked: boo
     machine = _generic_machine()
     module = emit(function, checked=checked)
     module.triple, module.data_layout = GENERIC_TRIPLE, str(machine.target_data)
-    # "no-builtins": a loop that fills or copies stays a loop, whose turns can be counted
-    parsed = llvm.parse_assembly(str(module).replace(" noinline", ' noinline "no-builtins"'))
-    _optimise(parsed, machine, profile.speed_level, vectorise=False)
+    # "no-builtins": a loop that fills or copies stays a loop, whose turns can be counted. "optforfuzzing": branches
+    # stay branches; what a compiler for the Blackfin makes of them is for the lowering to say
+    parsed = llvm.parse_assembly(str(module).replace(" noinline", ' noinline optforfuzzing "no-builtins"'))
+    if profile.optimises:
+        _simplify(parsed, machine)
     return str(parsed)
 
 
@@ -84,17 +92,24 @@ def host_code(text: str) -> bytes:
     parsed = llvm.parse_assembly(text)
     parsed.triple, parsed.data_layout = machine.triple, str(machine.target_data)
     parsed.verify()
-    _optimise(parsed, machine, HOST_SPEED_LEVEL, vectorise=True)
+    _optimise(parsed, machine)
     code: bytes = machine.emit_object(parsed)
     return code
 
 
-def _optimise(module: llvm.ModuleRef, machine: llvm.TargetMachine, level: int, *, vectorise: bool) -> None:
-    options = llvm.create_pipeline_tuning_options(speed_level=level)
-    options.loop_vectorization = vectorise
-    options.slp_vectorization = vectorise
-    options.loop_unrolling = vectorise
-    options.loop_interleaving = vectorise
+def _simplify(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
+    """Run the passes whose like every optimising compiler has, but none that reorders sums or merges branches."""
+    passes = llvm.create_new_module_pass_manager()
+    for name in PASSES:
+        getattr(passes, f"add_{name}_pass")()
+    passes.run(module, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options()))
+
+
+def _optimise(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
+    """Optimise for the host."""
+    options = llvm.create_pipeline_tuning_options(speed_level=HOST_SPEED_LEVEL)
+    options.loop_vectorization = options.slp_vectorization = True
+    options.loop_unrolling = options.loop_interleaving = True
     builder = llvm.create_pass_builder(machine, options)
     builder.getModulePassManager().run(module, builder)
 

@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from bfsim.kernel.ir_text import PHI_ARM, Block, Instruction, Routine
+from bfsim.kernel.ir_text import Block, Instruction, Routine
 
 
 @dataclass(slots=True)
@@ -121,73 +121,65 @@ class Flow:
         """Whether `value` stays the same while `loop` turns."""
         return value not in self.defined or self.defined[value][0] not in loop.blocks
 
-    def step(self, value: str, loop: Loop) -> int | None:
-        """Constant by which `value`, a phi of the loop's header, moves per turn; None if it does not."""
+    def instruction(self, value: str) -> Instruction | None:
+        """Where `value` is computed; None for parameters and constants."""
         place = self.defined.get(value)
-        if place is None or place[0] != loop.header or place[1].opcode != "phi":
-            return None
-        arms = PHI_ARM.findall(place[1].text)
-        moving = [arm for arm, source in arms if source[1:] in loop.blocks]
-        update = self.defined.get(moving[0]) if len(moving) == 1 else None
-        if (
-            update is None
-            or update[1].opcode not in ("add", "getelementptr")
-            or update[1].operands[0] != value
-        ):
-            return None
-        constant = update[1].operands[-1]
-        return int(constant) * pointee_nbytes(update[1]) if constant.lstrip("-").isdigit() else None
+        return place[1] if place else None
 
-    def is_counted(self, loop: Loop) -> bool:
-        """Whether the number of turns is known when the loop starts: its only exit compares a stepping value."""
-        around = loop.blocks | {
-            label for label, block in self.blocks.items() if block.terminator.opcode == "unreachable"
-        }
-        exits = [label for label in loop.blocks if set(self.blocks[label].successors) - around]
-        if exits != [loop.latch]:
-            return False
-        condition = self.defined.get(next(iter(self.blocks[loop.latch].terminator.operands), ""))
-        if condition is None or condition[1].opcode != "icmp":
-            return False
-        left, right = condition[1].operands[:2]
-        return any(
-            self.slope(moving, loop) and self.is_invariant(fixed, loop)
-            for moving, fixed in ((left, right), (right, left))
-        )
+    @cached_property
+    def order(self) -> tuple[str, ...]:
+        """Labels in reverse post-order: a block before those it leads to, but for back edges."""
+        found: list[str] = []
+        entry = self.routine.blocks[0].label
+        seen, open_visits = {entry}, [(entry, iter(reversed(self.blocks[entry].successors)))]
+        while open_visits:
+            label, successors = open_visits[-1]
+            following = next((each for each in successors if each not in seen), None)
+            if following is None:
+                found.append(label)
+                open_visits.pop()
+            else:
+                seen.add(following)
+                open_visits.append((following, iter(reversed(self.blocks[following].successors))))
+        return tuple(reversed(found))
 
-    def slope(self, value: str, loop: Loop, depth: int = 8) -> int | None:
-        """Bytes (or units) by which `value` moves per turn of `loop`: 0 when invariant, None when not constant."""
-        if self.is_invariant(value, loop):
-            return 0
-        step = self.step(value, loop)
-        if step is not None:
-            return step
-        instruction = self.defined[value][1]
-        parts = [self.slope(each, loop, depth - 1) if depth else None for each in instruction.operands]
-        if None in parts:
-            return None
-        return _combined(instruction, [part for part in parts if part is not None])
+    def around(self, loop: Loop) -> Loop | None:
+        """The loop directly around `loop`."""
+        return next((each for each in self.loops if loop in each.inner), None)
 
+    def loops_of(self, label: str) -> list[Loop]:
+        """Loops around a block, the innermost first."""
+        return [loop for loop in self.loops if label in loop.blocks]
 
-def _combined(instruction: Instruction, parts: list[int]) -> int | None:
-    """Slope of an instruction from those of its operands."""
-    last = instruction.operands[-1] if instruction.operands else ""
-    match instruction.opcode:
-        case "getelementptr":
-            return parts[0] + parts[-1] * pointee_nbytes(instruction)
-        case "add":
-            return sum(parts)
-        case "or" if " disjoint " in instruction.text:
-            return sum(parts)
-        case "sub":
-            return parts[0] - parts[1]
-        case "mul" if last.lstrip("-").isdigit():
-            return parts[0] * int(last)
-        case "shl" if last.isdigit():
-            return parts[0] << int(last)
-        case "sext" | "zext" | "trunc":
-            return parts[0]
-    return None
+    def entering(self, loop: Loop) -> str:
+        """The block from which `loop` is entered."""
+        return next(each for each in self.predecessors[loop.header] if each not in loop.blocks)
+
+    def inside(self, loop: Loop) -> list[str]:
+        """Labels of the blocks of `loop`, in order: what is decided must not depend on the order of a set."""
+        return [label for label in self.order if label in loop.blocks]
+
+    def exits(self, loop: Loop) -> list[str]:
+        """Blocks of `loop` that can leave it."""
+        return [label for label in self.inside(loop) if set(self.blocks[label].successors) - loop.blocks]
+
+    def root(self, pointer: str) -> str:
+        """Array parameter (or other origin) that `pointer` points into."""
+        seen: set[str] = set()
+        while pointer in self.defined and pointer not in seen:
+            seen.add(pointer)
+            instruction = self.defined[pointer][1]
+            if instruction.opcode not in ("getelementptr", "phi", "select"):
+                break
+            names = [
+                each for each in instruction.operands if each not in seen and each.startswith(("%", "@"))
+            ]
+            pointer = names[1 if instruction.opcode == "select" else 0] if names else pointer
+        return pointer
+
+    def every_turn(self, label: str, loop: Loop) -> bool:
+        """Whether a block runs once in each turn of `loop`."""
+        return label in self.dominators[loop.latch] and self.innermost(label) is loop
 
 
 def pointee_nbytes(instruction: Instruction) -> int:

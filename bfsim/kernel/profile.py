@@ -1,12 +1,17 @@
 """Compiler profiles: what stands between Python source and Blackfin code, as data.
 
-A profile names LLVM's optimisation level and the costs of the run-time library. LLVM optimises for one
-fixed 32-bit target whatever the host is, so that the same source costs the same cycles everywhere.
+LLVM optimises for one fixed 32-bit target whatever the host is, so that the same source costs the same cycles
+everywhere. Sources: [SIM] GNU simulator, [EE-171], [VLIB] ADI's run-time library manual (see HARDWARE notes in
+the README); [libgcc] measured: GCC 12.2's library for the Blackfin under the GNU simulator 13.1.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+from bfsim.errors import ConfigError
+from bfsim.kernel.isa import Op
+from bfsim.kernel.learnt import Learnt
 
 # A plain 32-bit machine with multiply and divide: 32-bit pointers as on the Blackfin, no vectors, and LLVM
 # knows it on every host.
@@ -14,19 +19,106 @@ GENERIC_TRIPLE, GENERIC_FEATURES = "riscv32-unknown-elf", "+m"
 
 
 @dataclass(frozen=True, slots=True)
+class Routine:
+    """A routine of the run-time library: cycles from its first operation to its return, the call not included.
+
+    `mix` tells how often each kind of operation runs, where that is known.
+    """
+
+    cclk: int
+    mix: tuple[tuple[Op, int], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Library:
+    """Integer division. Remainders come from routines of their own."""
+
+    divide_signed: Routine
+    divide_unsigned: Routine
+    remainder_signed: Routine
+    remainder_unsigned: Routine
+
+
+@dataclass(frozen=True, slots=True)
+class FloatLibrary:
+    """Soft floats: the Blackfin has no floating-point unit."""
+
+    add: Routine
+    subtract: Routine
+    multiply: Routine
+    divide: Routine
+    compare: Routine
+    from_integer: Routine
+    to_integer: Routine
+    square_root: Routine
+
+
+@dataclass(frozen=True, slots=True)
 class CompilerProfile:
-    """How a compiler for the Blackfin treats a kernel. `divide_cclk` includes the call."""
+    """How a compiler for the Blackfin treats a kernel."""
 
     name: str
-    speed_level: int
-    divide_cclk: int
-    saved_registers: int
-    """Registers that a function with calls in it saves and restores, one cycle each."""
+    optimises: bool
+    """Whether values live in registers (-O2) or every variable on the stack (-O0)."""
+    interlocks: bool
+    """Whether waits for pointer registers are counted."""
+    parallel_issue: bool
+    """Whether the compiler bundles memory accesses with 32-bit DSP operations (counts with `interlocks` only)."""
+    push_multiple_cclk: int | None
+    """Cycles of a push of several registers; None: one per register."""
+    pop_multiple_cclk: int | None
+    library: Library
+    floats: FloatLibrary | None
+    """None: kernels with floats are refused."""
+    without: tuple[Learnt, ...] = ()
+    """Fitted rules that are left out, to see what they are worth."""
+
+    def applies(self, rule: Learnt) -> bool:
+        """Whether a fitted rule is followed."""
+        return rule not in self.without
 
 
-VDSP_O2 = CompilerProfile(
-    name="vdsp-O2",
-    speed_level=2,
-    divide_cclk=52,     # [VLIB] VisualDSP++ run-time library, ___div32: 25 to 91 cycles, average 52
-    saved_registers=6,  # [assumed] R4-R7 and two P registers
+UDIV_MIX = (
+    (Op.IMM, 2), (Op.LOOP_SETUP, 1), (Op.SHIFT, 65), (Op.ALU, 33), (Op.COMPARE, 32), (Op.COND_MOVE, 32),
+    (Op.RETURN, 1),
 )  # fmt: skip
+DIV_MIX = (
+    *UDIV_MIX[:3], (Op.ALU, 37), (Op.COMPARE, 34), (Op.COND_MOVE, 35), (Op.CC_MOVE, 3), (Op.PUSH, 2), (Op.POP, 2),
+    (Op.CALL, 1), (Op.RETURN, 2),
+)  # fmt: skip
+
+LIBGCC = Library(
+    divide_unsigned=Routine(170, UDIV_MIX),  # [libgcc] lib1funcs.S: 32 turns of five operations, whatever the operands
+    divide_signed=Routine(196, DIV_MIX),     # [libgcc] the signs, and a call of the former
+    remainder_unsigned=Routine(183, (*UDIV_MIX, (Op.PUSH, 1), (Op.POP, 1), (Op.MOVE, 1), (Op.CALL, 1), (Op.RETURN, 1))),
+    remainder_signed=Routine(
+        216, (*DIV_MIX, (Op.PUSH, 3), (Op.POP, 3), (Op.MUL32, 1), (Op.ALU, 1), (Op.CALL, 1), (Op.RETURN, 1))
+    ),
+)  # fmt: skip
+ADI = Library(
+    divide_signed=Routine(47),       # [VLIB] ___div32: 25 to 91 cycles with the call, 52 on average
+    divide_unsigned=Routine(47),     # [assumed] as signed
+    remainder_signed=Routine(51),    # [assumed] a division, a multiplication and a subtraction
+    remainder_unsigned=Routine(51),  # [assumed] the same
+)  # fmt: skip
+
+GCC_O0 = CompilerProfile(
+    name="gcc-O0", optimises=False, interlocks=False, parallel_issue=False, push_multiple_cclk=14, pop_multiple_cclk=11,  # [SIM]
+    library=LIBGCC, floats=None,
+)  # fmt: skip
+GCC_O2 = CompilerProfile(
+    name="gcc-O2", optimises=True, interlocks=False, parallel_issue=False, push_multiple_cclk=14, pop_multiple_cclk=11,  # [SIM]
+    library=LIBGCC, floats=None,
+)  # fmt: skip
+VDSP_O2 = CompilerProfile(
+    name="vdsp-O2", optimises=True, interlocks=True, parallel_issue=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]
+    library=ADI, floats=None,
+)  # fmt: skip
+PROFILES = {each.name: each for each in (GCC_O0, GCC_O2, VDSP_O2)}
+
+
+def profile_named(name: str) -> CompilerProfile:
+    """Return a profile by its name; raise ConfigError when there is none."""
+    if name not in PROFILES:
+        raise ConfigError(f"the compiler profile must be one of {', '.join(PROFILES)}, not {name!r}")
+    return PROFILES[name]

@@ -10,17 +10,19 @@ import hashlib
 import json
 import os
 import tempfile
-from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import llvmlite
 import llvmlite.binding as llvm
 import platformdirs
 
 from bfsim.kernel import tree
+from bfsim.kernel.isa import Op
+from bfsim.kernel.lowering.charges import Charge
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.schedule import Counter
 
@@ -95,11 +97,8 @@ def save(name: str, binary: Binary) -> None:
             raise
 
 
-def _counter(row: dict[str, object]) -> Counter:
-    """Build a counter from its JSON; the lists of pairs become tuples again."""
-    fields = {name: _tupled(value) if isinstance(value, Sequence) else value for name, value in row.items()}
-    return Counter(**fields)  # type: ignore[arg-type]
-
-
-def _tupled(value: object) -> object:
-    return tuple(_tupled(each) for each in value) if isinstance(value, list) else value
+def _counter(row: dict[str, Any]) -> Counter:
+    """Build a counter from its JSON."""
+    charges = tuple(Charge(**each | {"op": Op(each["op"])}) for each in row["charges"])
+    accesses = tuple((name, reads, writes) for name, reads, writes in row["accesses"])
+    return Counter(**row | {"charges": charges, "accesses": accesses})

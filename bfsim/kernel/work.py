@@ -9,22 +9,27 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.kernel.entry import FIRST_ARGUMENT
+from bfsim.kernel.entry import FIRST_ARGUMENT, STALL_SHIFT
 from bfsim.kernel.followers import Follower
 from bfsim.kernel.jit import Compiled
+
+ISSUE_MASK = (1 << STALL_SHIFT) - 1
 
 
 class Work:
     """One kernel call, done natively: pixels are written already, time has not passed yet.
 
-    `value` is what the kernel returned. `accesses` counts its accesses outside L1 by class, in the order of
+    `stall_cclk` are interlocks: cycles in which one operation waits for another. `value` is what the kernel returned. `accesses` counts its accesses outside L1 by class, in the order of
     `followers.Access`, or is None when every array lies in L1.
     """
 
-    __slots__ = ("accesses", "issue_cclk", "value")
+    __slots__ = ("accesses", "issue_cclk", "stall_cclk", "value")
 
-    def __init__(self, issue_cclk: int, value: int | None = None, accesses: list[int] | None = None) -> None:
+    def __init__(
+        self, issue_cclk: int, stall_cclk: int, value: int | None = None, accesses: list[int] | None = None
+    ) -> None:
         self.issue_cclk = issue_cclk
+        self.stall_cclk = stall_cclk
         self.value = value
         self.accesses = accesses
 
@@ -78,13 +83,18 @@ class PreparedCall:
         if self._integers:
             self._put(arguments)
         self._cell.value = self._at
-        issue_cclk: int = self._entry()
-        if issue_cclk < 0 or len(arguments) != self._count:
+        cycles: int = self._entry()
+        if cycles < 0 or len(arguments) != self._count:
             self._check(arguments)
         if self._is_plain:
-            return Work(issue_cclk)
+            return Work(cycles & ISSUE_MASK, cycles >> STALL_SHIFT)
         value = self._block[self._value_word] if self._value_word else None
-        return Work(issue_cclk, value, self._follower.take_counts() if self._follower else None)
+        return Work(
+            cycles & ISSUE_MASK,
+            cycles >> STALL_SHIFT,
+            value,
+            self._follower.take_counts() if self._follower else None,
+        )
 
     def _put(self, arguments: Sequence[Any]) -> None:
         """Put the integers where the kernel finds them; it refuses those that do not fit."""

@@ -234,8 +234,11 @@ class Core:
                 raise self._told(error) from error
             if item is self._unclaimed and item is not None:
                 self._unclaimed = None
-                self._cclk += item.issue_cclk
+                self._cclk += item.issue_cclk + item.stall_cclk
                 self._account.issue_cclk += item.issue_cclk
+                if item.stall_cclk:
+                    stalls = self._account.stall_cclk
+                    stalls[StallReason.INTERLOCK] = stalls.get(StallReason.INTERLOCK, 0) + item.stall_cclk
                 if item.accesses is not None:
                     yield from self._outside_l1(item.accesses)
                 value = item.value

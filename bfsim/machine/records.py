@@ -19,6 +19,7 @@ class _Tally:
     calls: int = 0
     executions: dict[int, int] = field(default_factory=lambda: defaultdict(int))
     issue_cclk: dict[int, int] = field(default_factory=lambda: defaultdict(int))
+    stall_cclk: dict[int, int] = field(default_factory=lambda: defaultdict(int))
     accesses: dict[str, list[int]] = field(default_factory=lambda: defaultdict(lambda: [0, 0]))
 
 
@@ -40,7 +41,10 @@ def kernel_records(core: str, book: CallBook) -> Iterator[KernelRecord]:
             issue_cclk=sum(tally.issue_cclk.values()),
             lines=tuple(
                 LineCost(
-                    line=function.first_line + line - 1, executions=tally.executions[line], issue_cclk=cclk
+                    line=function.first_line + line - 1,
+                    executions=tally.executions[line],
+                    issue_cclk=cclk,
+                    stall_cclk=tally.stall_cclk[line],
                 )
                 for line, cclk in sorted(tally.issue_cclk.items())
             ),
@@ -59,8 +63,9 @@ def _add(group: CallGroup, tallies: dict[tuple[str, str], _Tally]) -> None:
         if counter.value is None and counter.routine not in entered:
             entered.add(counter.routine)  # a routine's first block runs once per call
             tally.calls += events
-        for line, cclk in counter.line_cclk:
-            tally.issue_cclk[line] += events * cclk
+        for line, issue_cclk, stall_cclk in counter.line_cclk:
+            tally.issue_cclk[line] += events * issue_cclk
+            tally.stall_cclk[line] += events * stall_cclk
             if counter.value is None:
                 place = (counter.routine, line)
                 executions[place] = max(executions.get(place, 0), events)

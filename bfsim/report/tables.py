@@ -66,7 +66,7 @@ def new_table(title: str, first: str, *numbers: str) -> Table:
     )
     table.add_column(first, no_wrap=True, overflow="ellipsis")
     for number in numbers:
-        table.add_column(number, justify="right", overflow="ellipsis", min_width=6, vertical="bottom")
+        table.add_column(number, justify="right", overflow="ellipsis", min_width=6, vertical="top")
     return table
 
 

@@ -1,0 +1,126 @@
+"""One kernel, line by line: the operations that stand for it, what each execution costs, and how often it ran.
+
+What llvm-mca and uiCA give for machine code, for kernels: the answer to "why does this line cost so much".
+"""
+
+from __future__ import annotations
+
+from collections import Counter as Tally
+from collections.abc import Iterable, Sequence
+
+from bfsim.errors import ConfigError
+from bfsim.kernel import CompilerProfile, Kernel, profile_named, tree
+from bfsim.kernel.isa import MNEMONICS, Op
+from bfsim.kernel.schedule import Counter
+from bfsim.loading import load_kernel
+from bfsim.trace import ExplainedLine, ExplainedOperation, Explanation, KernelRecord, RunRecord
+
+BRANCHES = {Op.BRANCH_TAKEN, Op.BRANCH_NOT_TAKEN, Op.BRANCH_TAKEN_BP, Op.BRANCH_NOT_TAKEN_BP}
+
+
+def explain_named(name: str, firmware: str, profile: str, run: RunRecord | None = None) -> Explanation:
+    """Explain the kernel called `name`, PACKAGE:NAME or the name of a kernel of `firmware`; see `explain`."""
+    return explain(load_kernel(name, firmware), profile_named(profile), run.kernels if run else None)
+
+
+def explain(
+    kernel: Kernel, profile: CompilerProfile, records: Sequence[KernelRecord] | None = None
+) -> Explanation:
+    """Explain `kernel` as `profile` compiles it; with the `records` of a run, how often each line ran and what it cost.
+
+    Raises ConfigError when the kernel did not run, and KernelError when the profile refuses it.
+    """
+    function = kernel.function
+    counters = [each for each in kernel.compiled(profile).counters if each.routine == function.symbol]
+    mine = None if records is None else _of_kernel(function, records)
+    lines = {line for each in counters for line, _, _ in each.line_cclk}
+    return Explanation(
+        kernel=function.name,
+        file=function.file,
+        first_line=function.first_line,
+        profile=profile.name,
+        code_bytes=sum(each.nbytes for each in counters),
+        calls=None if mine is None else sum(each.calls for each in mine),
+        lines=tuple(
+            row
+            for line, text in enumerate(function.source.splitlines(), start=1)
+            for row in _line(function, line, text, counters if line in lines else (), mine)
+        ),
+    )
+
+
+def _of_kernel(function: tree.Function, records: Sequence[KernelRecord]) -> list[KernelRecord]:
+    place = (function.name, function.file, function.first_line)
+    found = [each for each in records if (each.kernel, each.file, each.first_line) == place]
+    if not found:
+        ran = ", ".join(sorted({each.kernel for each in records})) or "none"
+        raise ConfigError(f"{function.name} must have run to be counted, but only these kernels did: {ran}")
+    return found
+
+
+def _line(
+    function: tree.Function,
+    line: int,
+    text: str,
+    counters: Sequence[Counter],
+    records: Sequence[KernelRecord] | None,
+) -> Iterable[ExplainedLine]:
+    """One row per depth of loops at which a line has operations: what enters a loop runs once, its turns often."""
+    depths = sorted({each.depth for each in counters if any(charge.line == line for charge in each.charges)})
+    number = function.first_line + line - 1
+    for row, depth in enumerate(depths or [0]):
+        here = [each for each in counters if each.depth == depth]
+        always, sides = _cycles(line, here)
+        costs = [cost for each in records or () for cost in each.lines if cost.line == number]
+        last = row == len(depths or [0]) - 1
+        counted = records is not None and last
+        yield ExplainedLine(
+            line=number,
+            text=text if row == 0 else "",
+            depth=depth,
+            operations=_operations(line, here),
+            least_cclk=always + sum(min(0, side) for side in sides),
+            most_cclk=always + sum(max(0, side) for side in sides),
+            stall_cclk=sum(
+                each.count * each.stall_cclk
+                for counter in here
+                for each in counter.charges
+                if each.line == line
+            ),
+            executions=sum(cost.executions for cost in costs) if counted else None,
+            total_cclk=sum(cost.issue_cclk + cost.stall_cclk for cost in costs) if counted else None,
+        )
+
+
+def _cycles(line: int, counters: Sequence[Counter]) -> tuple[int, list[int]]:
+    """Cycles of a line when every test is false, and what each test adds when it is true."""
+    always, sides = 0, []
+    for each in counters:
+        cclk = sum(one.count * (one.issue_cclk + one.stall_cclk) for one in each.charges if one.line == line)
+        if each.value is None:
+            always += cclk
+        else:
+            sides.append(cclk)
+    return always, sides
+
+
+def _operations(line: int, counters: Sequence[Counter]) -> tuple[ExplainedOperation, ...]:
+    """The operations of a line, those of both sides of its tests; a branch once for each way."""
+    counts: Tally[Op] = Tally()
+    for counter in counters:
+        for each in counter.charges:
+            if each.line == line and (each.count > 0 or counter.value is None):
+                counts[each.op] = (
+                    max(counts[each.op], each.count) if counter.value else counts[each.op] + each.count
+                )
+    cycles = {each.op: each.issue_cclk for counter in counters for each in counter.charges}
+    return tuple(
+        ExplainedOperation(
+            operation=op.value,
+            mnemonic=MNEMONICS[op],
+            count=count,
+            cclk=cycles[op],
+            conditional=op in BRANCHES,
+        )
+        for op, count in counts.items()
+    )

@@ -1,0 +1,1 @@
+"""Lowering: from optimised or plain LLVM IR to the Blackfin operations that a C compiler would emit, and their cost."""

@@ -1,0 +1,132 @@
+"""Calls: of other kernels, of the run-time library, and of what LLVM has names for and the Blackfin has not."""
+
+from __future__ import annotations
+
+from bfsim.kernel import isa
+from bfsim.kernel.emit import FLOOR
+from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.isa import Op
+from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.multiples import multiple
+from bfsim.kernel.lowering.steps import Bank, Step, Steps
+from bfsim.kernel.profile import Routine
+
+ANY, DATA = Bank.ANY, Bank.DATA
+RECIPROCAL = 1 << 35  # divided by the divisor: a constant of 32 bits
+
+
+class Calls:
+    """Emits steps into the block `label`; here those of calls and divisions."""
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+        self.steps = Steps({label: [] for label in context.flow.blocks})
+        self.label = ""
+
+    def step(self, op: Op, each: Instruction, result: str | None, bank: Bank, *uses: tuple[str, Bank],
+             overwrites: tuple[str, ...] = (), cclk: int | None = None) -> None:  # fmt: skip
+        named = tuple(
+            (value if value.startswith("#") else self.context.name(value), where) for value, where in uses
+        )
+        over = tuple(self.context.name(value) for value in overwrites)
+        self.steps.add(self.label, Step(op, each.line, result, bank, named, over, cclk))
+
+    def call(self, each: Instruction) -> None:
+        if not each.is_call:
+            self._intrinsic(each)
+            return
+        arguments = self.context.arguments(each)
+        self._pass(each, arguments)
+        result = each.result or None
+        self.step(Op.CALL, each, result, DATA)
+
+    def _pass(self, each: Instruction, arguments: list[str]) -> None:
+        for number, value in enumerate(arguments):
+            if number >= isa.REGISTER_ARGUMENTS:
+                self.step(Op.STORE32, each, None, DATA, (value, ANY))
+            elif value.startswith("%") and self.context.needs.ends_in(value, each):
+                continue  # computed right where it is passed
+            else:
+                self.step(Op.IMM if not value.startswith("%") else Op.MOVE, each, None, DATA, (value, ANY))
+
+    def _intrinsic(self, each: Instruction) -> None:
+        values = tuple((value, DATA) for value in each.operands if not value.startswith(("true", "false")))
+        if "@llvm.cttz" in each.text:
+            self._shift_by_zeros(each)
+        elif "@llvm.bitreverse" in each.text or "@llvm.bswap" in each.text:
+            self._swap_bits(each)
+        elif "@llvm.umin" in each.text or "@llvm.umax" in each.text:
+            self.step(Op.COMPARE, each, None, DATA, *values)
+            self.step(Op.COND_MOVE, each, each.result, DATA, *values, overwrites=(each.operands[0],))
+        elif "@llvm.fsh" in each.text:
+            self.step(Op.SHIFT, each, f"{each.result}.half", DATA, values[0])
+            self.step(Op.SHIFT, each, f"{each.result}.half2", DATA, values[0])
+            self.step(
+                Op.ALU, each, each.result, DATA, (f"{each.result}.half", DATA), (f"{each.result}.half2", DATA)
+            )
+        else:
+            self.step(Op.DSP_ALU, each, each.result, DATA, *values)
+
+    def _shift_by_zeros(self, each: Instruction) -> None:
+        """LLVM divides by what it knows to be a power of two with a count of zeros; the Blackfin calls its library."""
+        routine = self.context.profile.library.divide_unsigned
+        self._pass(each, list(each.operands[:1]) * 2)
+        self.step(Op.CALL, each, each.result, DATA)
+        self._library(each, routine)
+
+    def _swap_bits(self, each: Instruction) -> None:
+        """Halves are swapped over and over, as the source does from which LLVM has read the whole reversal."""
+        stages = 5 if "bitreverse" in each.text else 2
+        for _ in range(stages - 1):
+            self.step(Op.SHIFT, each, f"{each.result}.up", DATA, (each.operands[0], DATA))
+            self.step(Op.SHIFT, each, f"{each.result}.down", DATA, (each.operands[0], DATA))
+            for half in ("up", "down"):
+                self.step(Op.ALU, each, f"{each.result}.{half}", DATA, (f"{each.result}.{half}", DATA))
+            self.step(
+                Op.ALU, each, each.result, DATA, (f"{each.result}.up", DATA), (f"{each.result}.down", DATA)
+            )
+        self.step(Op.ALU, each, each.result, DATA, (each.result or "", DATA))
+
+    def _library(self, each: Instruction, routine: Routine) -> None:
+        if routine.mix:
+            for op, count in routine.mix:
+                for _ in range(count):
+                    self.step(op, each, None, DATA)
+        else:
+            self.step(Op.LIBRARY, each, None, DATA, cclk=routine.cclk)
+
+    def divide(self, each: Instruction) -> None:
+        library = self.context.profile.library
+        signed = self.context.needs.divides_signed(each)
+        routines = {
+            ("div", True): library.divide_signed, ("div", False): library.divide_unsigned,
+            ("rem", True): library.remainder_signed, ("rem", False): library.remainder_unsigned,
+        }  # fmt: skip
+        routine = routines[each.opcode[1:], signed]
+        if not self.context.needs.divides_by_call(each):
+            self._divide_by_constant(each)
+            return
+        if FLOOR in (each.result or "") and self.context.needs.has_quotient(each):
+            self.step(Op.MUL32, each, f"{each.result}.back", DATA, (each.operands[1], DATA))
+            self.step(
+                Op.ALU, each, each.result, DATA, (each.operands[0], DATA), (f"{each.result}.back", DATA)
+            )
+            return
+        self._pass(each, list(each.operands[:2]))
+        self.step(Op.CALL, each, each.result, DATA)
+        self._library(each, routine)
+
+    def _divide_by_constant(self, each: Instruction) -> None:
+        """The upper half of a product with the reciprocal [umulsi3_highpart of GCC: seven operations, and a move]."""
+        value = each.operands[0]
+        if each.opcode == "udiv" or not self.context.needs.has_quotient(each):
+            for _ in range(7):
+                self.step(
+                    Op.MAC, each, None, DATA, (value, DATA), (f"#{RECIPROCAL // int(each.operands[1])}", DATA)
+                )
+            self.step(Op.MOVE, each, each.result, DATA)
+            self.step(Op.SHIFT, each, each.result, DATA, (each.result or "", DATA))
+        if each.opcode == "urem":
+            for op in multiple(int(each.operands[1])) or (Op.MUL32,):
+                self.step(op, each, f"{each.result}.back", DATA, (each.result or "", DATA))
+            self.step(Op.ALU, each, each.result, DATA, (value, DATA), (f"{each.result}.back", DATA))

@@ -1,0 +1,63 @@
+"""What a block costs: operations, each charged to its source line, and what happens only on one side of a test."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from bfsim.kernel.isa import COSTS, Op
+
+
+@dataclass(frozen=True, slots=True)
+class Charge:
+    """`count` executions of one operation per event; negative where a test moves a cost to its other side."""
+
+    op: Op
+    line: int
+    issue_cclk: int
+    """Cycles of one execution, without interlocks."""
+    stall_cclk: int = 0
+    """Interlock cycles of one execution (0 in profiles without interlocks)."""
+    count: int = 1
+
+
+def charge(op: Op, line: int) -> Charge:
+    """Return one execution of `op` at its cost in the instruction set."""
+    return Charge(op, line, COSTS[op].cclk)
+
+
+def instead(side: Iterable[Charge], other: Iterable[Charge]) -> tuple[Charge, ...]:
+    """Return the charges that turn the cost of `other` into that of `side`."""
+    taken_back = (Charge(each.op, each.line, each.issue_cclk, each.stall_cclk, -each.count) for each in other)
+    return (*side, *taken_back)
+
+
+@dataclass(frozen=True, slots=True)
+class Test:
+    """Extra charges each time `value` is true, or equals `equals`: the other side of a branch."""
+
+    value: str
+    equals: int | None
+    charges: tuple[Charge, ...]
+
+
+@dataclass(slots=True)
+class BlockCost:
+    """What one execution of a block costs: the charges of its false (or default) side, and the tests that change them.
+
+    `nbytes` is the size of its code; a branch counts once.
+    """
+
+    charges: list[Charge] = field(default_factory=list)
+    tests: list[Test] = field(default_factory=list)
+    nbytes: int = 0
+
+    def add(self, line: int, *ops: Op) -> None:
+        """Append operations of one source line, and their code."""
+        self.charges.extend(charge(op, line) for op in ops)
+        self.nbytes += sum(COSTS[op].nbytes for op in ops)
+
+    def branch(self, value: str, if_true: tuple[Charge, ...], if_false: tuple[Charge, ...]) -> None:
+        """Charge one side or the other, by whether `value` is true."""
+        self.charges.extend(if_false)
+        self.tests.append(Test(value, None, instead(if_true, if_false)))

@@ -1,0 +1,107 @@
+"""What the lowering of one routine knows about it, gathered once."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from bfsim.kernel.ir_text import PHI_ARM, Instruction, Routine
+from bfsim.kernel.loops import Flow
+from bfsim.kernel.lowering.flags import Flags
+from bfsim.kernel.lowering.groups import Groups
+from bfsim.kernel.lowering.idioms import bit_counting_loops
+from bfsim.kernel.lowering.needs import Needs
+from bfsim.kernel.lowering.places import Places
+from bfsim.kernel.lowering.predict import Likelihood
+from bfsim.kernel.lowering.shapes import Shape, Shapes
+from bfsim.kernel.lowering.walks import Walks
+from bfsim.kernel.profile import CompilerProfile
+
+HIDDEN = ".len"  # every array comes with its length, which C code would not pass
+
+
+class Context:
+    """Analyses of one routine."""
+
+    def __init__(self, routine: Routine, profile: CompilerProfile) -> None:
+        self.routine, self.profile = routine, profile
+        self.flow = Flow(routine)
+        self.flags = Flags(self.flow)
+        for loop in self.flow.loops:
+            loop.blocks -= self.flags.leaving(loop)
+        self.likelihood = Likelihood(self.flow)
+        self.places = Places(self.flow)
+        self.walks = Walks(self.flow, self.places)
+        self.shapes = Shapes(self.flow, profile)
+        self.groups = Groups(self.flow, self.walks, profile)
+        self.bit_counts = bit_counting_loops(self.flow, self.walks)
+        self.needs = Needs(self.flow, self.walks, self.shapes, self.groups, self.flags, profile)
+
+    @cached_property
+    def _shape_by_phi(self) -> dict[str, Shape]:
+        return {shape.phi.result or "": shape for shape in self.shapes.by_label.values()}
+
+    def shape_of(self, phi: Instruction) -> Shape | None:
+        """The branchless `if` that computes a phi."""
+        return self._shape_by_phi.get(phi.result or "")
+
+    def is_alias(self, each: Instruction) -> bool:
+        """Whether an instruction only renames a register: widening what a load has extended already, or narrowing."""
+        if each.opcode in ("trunc", "freeze"):
+            return True
+        return (
+            each.opcode in ("sext", "zext") and " i1 " not in each.text and self._is_clean(each.operands[0])
+        )
+
+    def _is_clean(self, narrow: str, depth: int = 8) -> bool:
+        """Whether the register of a narrow value holds it extended already: all it is made of was, and nothing overflows."""
+        each = self.flow.instruction(narrow)
+        if each is None or each.opcode == "load" or depth == 0:
+            return True
+        if each.opcode in ("add", "sub", "mul", "shl") and not {"nuw", "nsw"} & set(each.text.split()):
+            return False
+        if each.opcode == "and":
+            return any(self._is_clean(operand, depth - 1) for operand in each.operands)
+        if each.opcode in ("trunc", "call"):
+            return False
+        return all(self._is_clean(operand, depth - 1) for operand in each.operands)
+
+    def name(self, value: str) -> str:
+        """The register that holds `value`; constants are written #5."""
+        if not value.startswith(("%", "@")):
+            return f"#{value}"
+        value = self.places.same.get(value, value)
+        each = self.flow.instruction(value)
+        if each is not None and self.needs.in_sunk_mask(each):
+            return self.name(each.operands[0])
+        if each is not None and self.is_alias(each):
+            source = self.flow.instruction(each.operands[0])
+            if source is not None and source.opcode == "load" and self.needs.extended_apart(source):
+                return f"{source.result}.wide"
+            return self.name(each.operands[0])
+        return value
+
+    def base(self, pointer: str) -> str:
+        """The pointer behind constant offsets."""
+        each = self.flow.instruction(pointer)
+        while each is not None and each.opcode == "getelementptr" and not each.operands[-1].startswith("%"):
+            pointer = each.operands[0]
+            each = self.flow.instruction(pointer)
+        return pointer
+
+    def arguments(self, call: Instruction) -> list[str]:
+        """What C code would pass: without the lengths that follow the arrays."""
+        inside = call.text[call.text.index("(") + 1 : call.text.rindex(")")].split(",")
+        values = [part.split() for part in inside if part.strip()]
+        kept = []
+        for before, part in zip([["i32"], *values], values, strict=False):
+            if before[0] != "ptr":
+                kept.append(part[-1])
+        return kept
+
+    def parameters(self) -> list[str]:
+        """Parameters of the C function, in order."""
+        return [each for each in self.routine.parameters if not each.endswith(HIDDEN)]
+
+    def arms(self, phi: Instruction) -> list[tuple[str, str]]:
+        """(value, label of the block it comes from) of a phi."""
+        return [(value, label[1:]) for value, label in PHI_ARM.findall(phi.text)]

@@ -1,0 +1,138 @@
+"""Instructions of the IR that are part of another operation of the Blackfin."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.isa import ADDRESS_SHIFTS
+from bfsim.kernel.learnt import Learnt
+from bfsim.kernel.loops import Flow
+from bfsim.kernel.lowering.predict import predicate
+from bfsim.kernel.profile import CompilerProfile
+
+SHIFTS = ("shl", "lshr", "ashr")
+NARROW = (8, 16)
+HIGH_BYTE = 0xFF00  # a mask with these bits cuts a sum down to a half-word
+
+
+class Folding:
+    """What is folded into what, in one routine."""
+
+    def __init__(self, flow: Flow, profile: CompilerProfile) -> None:
+        self.flow, self.profile = flow, profile
+
+    def shift_add(self, each: Instruction) -> tuple[str, str] | None:
+        """The value that an addition shifts by 1 or 2 on the way, and the other one."""
+        if each.opcode != "add":
+            return None
+        for operand, other in (each.operands[:2], each.operands[1::-1]):
+            source = self.flow.instruction(operand)
+            if source is not None and source.opcode == "shl" and len(self.users(operand)) == 1:
+                amount = source.operands[1]
+                fits = amount.isdigit() and int(amount) in ADDRESS_SHIFTS and not other.lstrip("-").isdigit()
+                if fits and self.shifted_sum(source) is None:
+                    return source.operands[0], other
+        return None
+
+    def shifted_sum(self, shift: Instruction) -> tuple[str, str] | None:
+        """The two values of (x + y) << 1 or 2, which is one operation."""
+        source = self.flow.instruction(shift.operands[0])
+        if (
+            shift.opcode != "shl"
+            or source is None
+            or source.opcode != "add"
+            or len(self.users(shift.operands[0])) != 1
+        ):
+            return None
+        amount = shift.operands[1]
+        constant = any(operand.lstrip("-").isdigit() for operand in source.operands)
+        if constant or not amount.isdigit() or int(amount) not in ADDRESS_SHIFTS:
+            return None
+        return source.operands[0], source.operands[1]
+
+    def in_shifted_sum(self, each: Instruction) -> bool:
+        """Whether an addition is done by the shift that uses it."""
+        users = self.users(each.result or "")
+        return each.opcode == "add" and len(users) == 1 and self.shifted_sum(users[0]) is not None
+
+    def in_shift_add(self, shift: Instruction) -> bool:
+        """Whether a shift is done by the addition that uses it."""
+        users = self.users(shift.result or "")
+        if len(users) != 1 or shift.opcode != "shl":
+            return False
+        plan = self.shift_add(users[0])
+        return (
+            plan is not None
+            and plan[0] == shift.operands[0]
+            and users[0].operands.count(shift.result or "") == 1
+        )
+
+    def extension_of(self, each: Instruction) -> str | None:
+        """The value of which (x << k) >> k is the sign extension."""
+        source = self.flow.instruction(each.operands[0])
+        if each.opcode != "ashr" or source is None or source.opcode != "shl":
+            return None
+        alike = source.operands[1] == each.operands[1] and each.operands[1] in ("16", "24")
+        return source.operands[0] if alike else None
+
+    def is_shift_mask(self, each: Instruction) -> bool:
+        """Whether an `and 31` is only the language's rule for shift counts: the shifter does it."""
+        return each.opcode == "and" and each.operands[1] == "31" and all(
+            user.opcode in SHIFTS and user.operands[1] == each.result for user in self.users(each.result or "")
+        )  # fmt: skip
+
+    def bit_tested(self, compare: Instruction) -> str | None:
+        """The value of which a comparison tests a single bit."""
+        masked = self.flow.instruction(compare.operands[0])
+        if predicate(compare) not in ("eq", "ne") or compare.operands[1] != "0" or masked is None:
+            return None
+        mask, alone = masked.operands[-1], len(self.users(masked.result or "")) == 1
+        single = masked.opcode == "and" and mask.isdigit() and int(mask).bit_count() == 1
+        return masked.operands[0] if single and alone else None
+
+    def in_bit_test(self, each: Instruction) -> bool:
+        """Whether an `and` is done by a bit test."""
+        users = self.users(each.result or "")
+        return len(users) == 1 and users[0].opcode == "icmp" and self.bit_tested(users[0]) is not None and (
+            users[0].operands[0] == each.result
+        )  # fmt: skip
+
+    def sunk_mask(self, phi: Instruction) -> bool:
+        """Whether every arm of a phi ends in a 16-bit mask: as a conversion, it is done once behind them."""
+        several = phi.opcode == "phi" and len(phi.operands) > 1 and self.profile.applies(Learnt.SUNK_MASK)
+        return several and all(self._masked(each) for each in phi.operands)
+
+    def _masked(self, value: str) -> Instruction | None:
+        each = self.flow.instruction(value)
+        if each is not None and each.opcode in ("xor", "or") and _fits_16(each.operands[1]):
+            each = self.flow.instruction(each.operands[0])
+        if each is None or each.opcode != "and" or not _fits_16(each.operands[1]):
+            return None
+        return each if int(each.operands[1]) >= HIGH_BYTE else None
+
+    def in_sunk_mask(self, each: Instruction) -> bool:
+        """Whether a mask is done behind the arms that end in it."""
+        return id(each) in self._sunk
+
+    @cached_property
+    def _sunk(self) -> set[int]:
+        phis = [
+            each for block in self.flow.routine.blocks for each in block.instructions if self.sunk_mask(each)
+        ]
+        return {id(self._masked(value)) for each in phis for value in each.operands}
+
+    def is_short(self, operand: str) -> bool:
+        """Whether a compiler sees that a factor has 16 bits: a constant, or a narrow value that was extended."""
+        if operand.lstrip("-").isdigit():
+            return -(1 << 15) <= int(operand) < 1 << 15
+        each = self.flow.instruction(operand)
+        return each is not None and each.opcode in ("sext", "zext", "load") and each.bits in NARROW
+
+    def users(self, value: str) -> list[Instruction]:
+        """Return the instructions that use a value."""
+        return self.flow.users.get(value, [])
+
+
+def _fits_16(operand: str) -> bool:
+    return operand.isdigit() and int(operand) <= 0xFFFF

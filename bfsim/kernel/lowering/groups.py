@@ -1,0 +1,110 @@
+"""Array accesses that walk along with a loop, grouped by the pointer that they share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from bfsim.kernel.ir_text import PHI_ARM, Instruction
+from bfsim.kernel.learnt import Learnt
+from bfsim.kernel.loops import Flow, Loop
+from bfsim.kernel.lowering.walks import Advance, Form, Walks
+from bfsim.kernel.profile import CompilerProfile
+
+
+@dataclass(slots=True)
+class Group:
+    """Accesses at constant distances from one pointer, which advances by the same amount with each turn of `loop`."""
+
+    name: str
+    loop: Loop
+    root: str
+    advance: Advance
+    line: int
+    accesses: list[tuple[str, Instruction, int]] = field(default_factory=list)
+    """(block, access, offset in bytes)"""
+    steps_free: bool = False
+    offset_apart: bool = False
+
+    @property
+    def stride(self) -> str | None:
+        """The register that holds the step, if it is no constant."""
+        return f"{self.name}.stride" if self.advance.symbolic else None
+
+
+class Groups:
+    """The walking pointers of one routine; `of` finds the group of an access by its identity."""
+
+    def __init__(self, flow: Flow, walks: Walks, profile: CompilerProfile) -> None:
+        self.flow, self.walks, self.profile = flow, walks, profile
+        self.all: list[Group] = []
+        self.of: dict[int, Group] = {}
+        found: dict[tuple[str, tuple[tuple[str, int], ...]], Group] = {}
+        for label in flow.order:
+            for each in flow.blocks[label].instructions:
+                if each.opcode in ("load", "store"):
+                    for where, pointer in self._pointers(label, each):
+                        self._place(where, each, pointer, found)
+        for group in self.all:
+            group.steps_free = self._steps_free(group)
+            group.offset_apart = not any(offset == 0 for _, _, offset in group.accesses)
+
+    def _pointers(self, label: str, each: Instruction) -> list[tuple[str, str]]:
+        """(block, pointer) of an access; LLVM merges the loads of several arms, a compiler for the Blackfin does not."""
+        source = self.flow.instruction(each.operands[-1])
+        if source is not None and is_merged_pointer(source):
+            return [(arm_label[1:], value) for value, arm_label in PHI_ARM.findall(source.text)]
+        return [(label, each.operands[-1])]
+
+    def _place(
+        self,
+        label: str,
+        each: Instruction,
+        pointer: str,
+        found: dict[tuple[str, tuple[tuple[str, int], ...]], Group],
+    ) -> None:
+        for loop in self.flow.loops_of(label):
+            advance = self.walks.advance(pointer, loop)
+            if advance is None:
+                return
+            if advance.moves:
+                form = self.walks.form(pointer)
+                key = (loop.header, form.terms)
+                group = found.get(key)
+                if group is None:
+                    root = _root(form)
+                    group = found[key] = Group(f"%walk.{len(self.all)}", loop, root, advance, each.line)
+                    self.all.append(group)
+                group.accesses.append((label, each, form.constant))
+                self.of[id(each)] = group
+                return
+
+    def _hoisted(self, label: str, group: Group) -> str:
+        """The block of a test, when both its sides load the same element first thing: it is loaded before the test."""
+        before = self.flow.predecessors[label]
+        if len(before) != 1 or not self.profile.applies(Learnt.COMMON_LOADS):
+            return label
+        sides = set(self.flow.blocks[before[0]].successors)
+        alike = {
+            (where, offset)
+            for where, each, offset in group.accesses
+            if each.opcode == "load" and where in sides
+        }
+        both = len(sides) == 2 and len(alike) == 2 and len({offset for _, offset in alike}) == 1
+        return before[0] if both and len({where for where, _ in alike}) == 2 else label
+
+    def _steps_free(self, group: Group) -> bool:
+        """A post-increment: all accesses in one block of every turn, and the step is the width of one access."""
+        labels = {self._hoisted(label, group) for label, _, _ in group.accesses}
+        if len(labels) != 1 or group.advance.symbolic or not self.flow.every_turn(labels.pop(), group.loop):
+            return False
+        return any(abs(group.advance.constant) == each.bits // 8 for _, each, _ in group.accesses)
+
+
+def is_merged_pointer(each: Instruction) -> bool:
+    """Whether a phi merges addresses, not a pointer that the loop carries."""
+    return each.opcode == "phi" and each.text.startswith("phi ptr") and each.result not in each.operands
+
+
+def _root(form: Form) -> str:
+    """The array that an address points into: the term that counts once and is a pointer."""
+    return next((name for name, times in form.terms if times == 1), form.terms[0][0])

@@ -1,0 +1,151 @@
+"""What it takes to have every value in the right bank: copies, moves, and constants that are no immediates."""
+
+from __future__ import annotations
+
+from bfsim.kernel import isa
+from bfsim.kernel.isa import Op
+from bfsim.kernel.loops import Loop
+from bfsim.kernel.lowering.steps import Bank, Step
+from bfsim.kernel.lowering.webs import Webs
+
+
+class Moves:
+    """Inserts the moves into the steps of a routine; `on_edges` are those that belong to an edge."""
+
+    def __init__(self, webs: Webs) -> None:
+        self.webs, self.flow, self.steps = webs, webs.flow, webs.steps
+        self.find, self.bank = webs.find, webs.bank
+        self.on_edges: dict[tuple[str, str], list[Step]] = {}
+        self._copies()
+        self._overwrites()
+        self._moves()
+        self._constants()
+
+    def _copies(self) -> None:
+        """What phis need at the ends of the blocks before them."""
+        for phi, arms in self.webs.phis.items():
+            home = self.flow.defined[phi][0]
+            line = self.flow.defined[phi][1].line
+            for value, label in arms:
+                if value.startswith("#"):
+                    self._on_edge(label, home, Step(immediate(value), line, phi, self.bank[self.find(phi)]))
+                elif self.find(value) != self.find(phi):
+                    self._on_edge(label, home, Step(Op.MOVE, line, phi, Bank.ANY, ((value, Bank.ANY),)))
+
+    def _on_edge(self, label: str, home: str, step: Step) -> None:
+        if len(set(self.flow.blocks[label].successors)) == 1:
+            self.steps.add(label, step)
+        else:
+            self.on_edges.setdefault((label, home), []).append(step)
+
+    def _overwrites(self) -> None:
+        """Two-operand instructions destroy an operand: one that is still needed is copied first."""
+        for label, block in self.steps.of.items():
+            alive = {self.find(name) for name in self.webs.live.out[label]}
+            kept: list[Step] = []
+            for step in reversed(block):
+                kept.append(step)
+                if step.overwrites:
+                    lost = [self.find(name) for name in step.overwrites]
+                    own = self.find(step.result or "")
+                    needed = all((name in alive and name != own) or name.startswith("#") for name in lost)
+                    if needed and not all(name.startswith("#") for name in lost):
+                        kept.append(Step(Op.MOVE, step.line, None, Bank.ANY))
+                if step.result:
+                    alive.discard(self.find(step.result))
+                alive.update(self.find(name) for name, _ in step.uses)
+            self.steps.of[label] = kept[::-1]
+
+    def _moves(self) -> None:
+        """A move wherever a value is used in the other bank; outside the loop if it does not change there."""
+        for label in self.flow.order:
+            block: list[Step] = []
+            for step in self.steps.of[label]:
+                for position, (name, wanted) in enumerate(step.uses):
+                    bank = self._wanted(step, wanted)
+                    if name.startswith("#") or bank in (Bank.ANY, self.bank.get(self.find(name), bank)):
+                        continue
+                    place = self._move_place(name, label)
+                    copy = self._copy_of(name, bank, place)
+                    move = Step(Op.MOVE, step.line, copy, bank, ((name, Bank.ANY),))
+                    if place == label:
+                        block.insert(
+                            self._behind_definition(block, name) if bank is Bank.DATA else len(block), move
+                        )
+                    elif not any(each.result == copy for each in self.steps.of[place]):
+                        self.steps.add(place, move)
+                    step.uses = (*step.uses[:position], (copy, bank), *step.uses[position + 1 :])
+                block.append(step)
+            self.steps.of[label] = block
+
+    def _behind_definition(self, block: list[Step], name: str) -> int:
+        """Position right behind the step that computes `name`, or the end: what a pointer register yields goes back."""
+        places = [number for number, step in enumerate(block) if step.result == name]
+        return places[-1] + 1 if places else len(block)
+
+    def _copy_of(self, name: str, bank: Bank, place: str) -> str:
+        copy = f"{name}@{bank.value}.{place}"
+        self.bank[copy] = bank
+        return copy
+
+    def _wanted(self, step: Step, bank: Bank) -> Bank:
+        """The bank in which an operand is wanted: that of the result, or of the other operand."""
+        if bank is not Bank.ANY or step.op in (Op.STORE32, Op.MOVE):
+            return bank
+        if step.result:
+            return self.bank.get(self.find(step.result), Bank.DATA)
+        banks = {
+            self.bank.get(self.find(name), Bank.DATA) for name, _ in step.uses if not name.startswith("#")
+        }
+        return banks.pop() if len(banks) == 1 else Bank.DATA
+
+    def _move_place(self, name: str, label: str) -> str:
+        place = label
+        for loop in self.flow.loops_of(label):
+            if self._changes_in(self.find(name), loop):
+                break
+            place = self.flow.entering(loop)
+        return place
+
+    def _changes_in(self, web: str, loop: Loop) -> bool:
+        if any(self.find(phi) == web and self.flow.defined[phi][0] in loop.blocks for phi in self.webs.phis):
+            return True
+        return any(
+            step.result and self.find(step.result) == web
+            for label in self.flow.inside(loop)
+            for step in self.steps.of[label]
+        )
+
+    def _constants(self) -> None:
+        """A constant that is no immediate is loaded once, before the outermost loop around its use."""
+        made: set[tuple[str, str]] = set()
+        for label in self.flow.order:
+            block: list[Step] = []
+            for step in self.steps.of[label]:
+                for name, _ in step.uses:
+                    if (
+                        not name.startswith("#")
+                        or step.op is Op.IMM
+                        or (step.op is Op.COND_MOVE and name == "#poison")
+                    ):
+                        continue
+                    loops = self.flow.loops_of(label)
+                    place = self.flow.entering(loops[-1]) if loops else label
+                    if (name, place) in made:
+                        continue
+                    made.add((name, place))
+                    if place == label:
+                        block.append(Step(immediate(name), step.line, None, Bank.ANY))
+                    else:
+                        self.steps.add(place, Step(immediate(name), step.line, None, Bank.ANY))
+                block.append(step)
+            self.steps.of[label] = block
+
+
+def immediate(constant: str) -> Op:
+    """Return the operation that loads a constant, written #5."""
+    try:
+        number = int(constant[1:])
+    except ValueError:
+        return Op.IMM
+    return Op.IMM if number in isa.LONG_IMMEDIATE else Op.IMM32

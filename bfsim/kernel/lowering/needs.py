@@ -1,0 +1,219 @@
+"""What of the optimised IR a Blackfin has to compute at all, and in which form.
+
+Post-increments, hardware loops, folded offsets and extending loads do much of what the IR spells out.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from bfsim.kernel.emit import FLOOR, SIGNED
+from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.learnt import Learnt
+from bfsim.kernel.loops import Flow, Loop
+from bfsim.kernel.lowering.flags import Flags
+from bfsim.kernel.lowering.folding import NARROW, Folding
+from bfsim.kernel.lowering.groups import Groups
+from bfsim.kernel.lowering.shapes import Kind, Shapes
+from bfsim.kernel.lowering.walks import Walks
+from bfsim.kernel.profile import CompilerProfile
+
+FEWEST_TURNS = 3  # a loop of so few turns keeps its branch ["too few iterations" in loop-doloop.cc of GCC 12]
+
+
+class Needs(Folding):
+    """Which instructions of one routine are emitted, and which are part of others."""
+
+    def __init__(
+        self, flow: Flow, walks: Walks, shapes: Shapes, groups: Groups, flags: Flags, profile: CompilerProfile
+    ) -> None:
+        super().__init__(flow, profile)
+        self.walks, self.shapes, self.groups, self.flags = walks, shapes, groups, flags
+        self.counted = {loop.header for loop in flow.loops if self._turns_by_counter(loop)}
+
+    def _turns_by_counter(self, loop: Loop) -> bool:
+        """Counted, and without calls: a register counts the turns, not the program's variable."""
+        inside = (each for label in self.flow.inside(loop) for each in self.flow.blocks[label].instructions)
+        library = any(each.is_call or (each.is_division and self.divides_by_call(each)) for each in inside)
+        turns = self.walks.turns(loop)
+        many = turns is None or turns > FEWEST_TURNS
+        return not library and many and self.walks.is_counted(loop) and not self._may_be_endless(loop)
+
+    def _may_be_endless(self, loop: Loop) -> bool:
+        """With several exits, the pointer that walks is compared for equality with its end.
+
+        GCC counts such turns only if the pointer is sure to meet the end: steps of one byte, or a fixed start
+        ["possible infinite iteration case" in loop-doloop.cc of GCC 12].
+        """
+        if len(self.flow.exits(loop)) < 2:
+            return False
+        wide = any(group.loop is loop and abs(group.advance.constant) > 1 for group in self.groups.all)
+        return wide and not self.walks.starts_fixed(loop)
+
+    def emits(self, each: Instruction) -> bool:
+        """Whether `each` becomes operations."""
+        if each.result is None:
+            return True
+        if each.result in self.walks.places.same:
+            return False
+        return each.result in self._needed and self.flow.defined[each.result][0] not in self.shapes.gone
+
+    @cached_property
+    def _needed(self) -> set[str]:
+        needed: set[str] = set()
+        waiting = [
+            each for block in self.flow.routine.blocks for each in block.instructions if self._is_root(each)
+        ]
+        roots = {id(each) for each in waiting}
+        while waiting:
+            each = waiting.pop()
+            if each.result and (each.result not in needed or id(each) in roots):
+                needed.add(each.result)
+            for used in self._really_used(each):
+                operand = self.walks.places.same.get(used, used)
+                source = self.flow.instruction(operand)
+                if source is not None and operand not in needed:
+                    needed.add(operand)
+                    waiting.append(source)
+        return needed
+
+    def _is_root(self, each: Instruction) -> bool:
+        return each.opcode in ("store", "br", "switch", "ret") or each.is_call
+
+    def _really_used(self, each: Instruction) -> tuple[str, ...]:
+        if each.opcode in ("load", "store") and id(each) in self.groups.of:
+            return each.operands[:-1]
+        if each.opcode == "br":
+            return () if self.flags.decides(each) else self._of_branch(each)
+        if each.opcode == "icmp":
+            return self._of_compare(each)
+        if each.opcode in ("select", "and", "or") and each.bits == 1:
+            counting = {self.walks.exit_test(loop) for loop in self.flow.loops if loop.header in self.counted}
+            return tuple(operand for operand in each.operands if operand not in counting)
+        return each.operands
+
+    def _of_branch(self, each: Instruction) -> tuple[str, ...]:
+        """The test of a loop that a counter ends is not made, nor that of a minimum or an absolute value."""
+        label = next(block.label for block in self.flow.routine.blocks if block.terminator is each)
+        for loop in self.flow.loops:
+            if loop.latch == label and loop.header in self.counted:
+                return tuple(operand for operand in each.operands if operand != self.walks.exit_test(loop))
+        shape = self.shapes.by_label.get(label)
+        if shape is not None and shape.kind in (Kind.ABSOLUTE, Kind.EXTREME):
+            return ()
+        return each.operands
+
+    def _of_compare(self, each: Instruction) -> tuple[str, ...]:
+        """A counter that only walks and is compared with a fixed bound: the pointer is compared instead."""
+        label = self.flow.defined[each.result or ""][0]
+        loop = self.flow.innermost(label)
+        if loop is None or not any(group.loop is loop and not group.stride for group in self.groups.all):
+            return each.operands
+        gains = [self.walks.advance(operand, loop) for operand in each.operands[:2]]
+        if None in gains or sum(gain.moves for gain in gains if gain) != 1:
+            return each.operands
+        return tuple(
+            operand for operand, gain in zip(each.operands[:2], gains, strict=True) if gain and not gain.moves
+        )
+
+    # Divisions
+
+    def has_quotient(self, rest: Instruction) -> bool:
+        """Whether the quotient of the same two values is computed as well: the remainder follows from it."""
+        return any(
+            each.is_division
+            and each.opcode.endswith("div")
+            and each.operands == rest.operands
+            and self.emits(each)
+            for block in self.flow.routine.blocks
+            for each in block.instructions
+        )
+
+    def divides_by_call(self, each: Instruction) -> bool:
+        """Whether a division calls the library; the others are products with a reciprocal."""
+        return self.divides_signed(each) or not each.operands[1].isdigit()
+
+    def divides_signed(self, each: Instruction) -> bool:
+        """Whether a quotient comes from the signed routine: it was signed, or the compiler knows its dividend's sign.
+
+        GCC then takes the cheaper of the two ways, and counts a call as one [expand_divmod in expmed.cc of GCC 12];
+        a byte or half-word that was just extended is not known to be positive there.
+        """
+        constant = each.operands[1].lstrip("-").isdigit()
+        dividend = self.flow.instruction(each.operands[0])
+        narrow = dividend is not None and dividend.opcode in ("zext", "load")
+        if SIGNED in (each.result or "") or FLOOR in (each.result or "") or each.opcode[0] == "s":
+            return not (constant and narrow)
+        known = constant and not narrow and self.profile.applies(Learnt.KNOWN_SIGN)
+        return known and self._never_negative(each.operands[0])
+
+    def _never_negative(self, value: str, seen: frozenset[str] = frozenset()) -> bool:
+        each = self.flow.instruction(value)
+        if value.isdigit() or value in seen:
+            return value in seen or int(value) < 1 << 31
+        if each is None:
+            return False
+        if each.opcode == "phi":
+            return all(self._never_negative(operand, seen | {value}) for operand in each.operands)
+        bound = each.operands[-1] if each.operands else ""
+        if each.opcode in ("lshr", "udiv", "urem", "and") and bound.isdigit():
+            return int(bound) > (1 if each.opcode == "udiv" else 0)
+        return each.opcode == "zext"
+
+    # Narrow values
+
+    def extended_apart(self, load: Instruction) -> bool:
+        """Whether a narrow value is stored as it is and computed with: it is loaded, then extended."""
+        if load.bits not in NARROW:
+            return False
+        users = self._wide_users(load)
+        raw = any(self._is_raw(user) for user in users)
+        return raw and any(not self._is_raw(user) and self.emits(user) for user in users)
+
+    def _wide_users(self, load: Instruction) -> list[Instruction]:
+        """Users of a loaded value, through its extension."""
+        found: list[Instruction] = []
+        for user in self.users(load.result or ""):
+            found += self.users(user.result or "") if user.opcode in ("zext", "sext") else [user]
+        return found
+
+    def _is_raw(self, user: Instruction) -> bool:
+        """Whether a use takes the narrow value as it is: a store, its low byte, or arithmetic that is stored as narrow."""
+        low_byte = (
+            user.opcode == "and" and user.operands[1] == "255" and self.profile.applies(Learnt.RAW_BYTE)
+        )
+        return user.opcode == "store" or low_byte or self.narrowed(user)
+
+    def narrowed(self, each: Instruction) -> bool:
+        """Whether a sum is stored as a narrow value and used as a wide one: C compilers compute it twice."""
+        users = self.users(each.result or "")
+        cut = [user for user in users if user.opcode == "trunc"]
+        stored = [user for user in cut if all(one.opcode == "store" for one in self.users(user.result or ""))]
+        both = bool(stored) and len(stored) < len(users)
+        return each.opcode in ("add", "sub") and both and self.profile.applies(Learnt.NARROW_SUMS)
+
+    def extended_late(self, load: Instruction) -> bool:
+        """Whether the load with the post-increment is extended on its own: others through its pointer come before its use."""
+        group = self.groups.of.get(id(load))
+        if not self.profile.applies(Learnt.LATE_EXTENSION):
+            return False
+        if (
+            load.bits not in NARROW
+            or group is None
+            or not group.steps_free
+            or group.accesses[0][1] is not load
+        ):
+            return False
+        users = self.users(load.result or "")
+        if len(group.accesses) < 2 or len(users) != 1 or users[0].opcode != "zext":
+            return False
+        label = group.accesses[0][0]
+        rows = self.flow.blocks[label].instructions
+        ends = {id(user) for user in self.users(users[0].result or "")}
+        between = rows[rows.index(load) + 1 :]
+        first_use = next((number for number, each in enumerate(between) if id(each) in ends), len(between))
+        return any(each is access for each in between[:first_use] for _, access, _ in group.accesses)
+
+    def ends_in(self, value: str, call: Instruction) -> bool:
+        """Whether `call` is the only use of a value: then it is computed in the argument's register."""
+        return value in self.flow.defined and self.users(value) == [call]

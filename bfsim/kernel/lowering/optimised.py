@@ -1,0 +1,200 @@
+"""The cost of each block of a kernel that a compiler optimised (-O2)."""
+
+from __future__ import annotations
+
+from bfsim.kernel import isa
+from bfsim.kernel.ir_text import Block, Routine
+from bfsim.kernel.isa import COSTS, Op
+from bfsim.kernel.learnt import Learnt
+from bfsim.kernel.loops import Loop
+from bfsim.kernel.lowering.charges import BlockCost, Charge, Test, charge, instead
+from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.interlocks import Issue, issues
+from bfsim.kernel.lowering.layout import Layout
+from bfsim.kernel.lowering.registers import Allocation, allocate
+from bfsim.kernel.lowering.select import select
+from bfsim.kernel.lowering.steps import Step
+from bfsim.kernel.profile import CompilerProfile
+
+ALONE = Issue()
+
+
+def lower(routine: Routine, profile: CompilerProfile) -> dict[str, BlockCost]:
+    """Return what each block of `routine` costs, by label."""
+    lowering = _Lowering(routine, profile)
+    return {block.label: lowering.block(block) for block in routine.blocks}
+
+
+class _Lowering:
+    def __init__(self, routine: Routine, profile: CompilerProfile) -> None:
+        self.context = Context(routine, profile)
+        self.flow, self.profile = self.context.flow, profile
+        self.steps = select(self.context)
+        self.allocation = allocate(self.context, self.steps)
+        empty = set(self.context.bit_counts) | {label for label in self.flow.blocks if self._is_empty(label)}
+        copies = {
+            edge: [self._charge(step) for step in steps] for edge, steps in self.allocation.on_edges.items()
+        }
+        self.layout = Layout(
+            self.flow, self.context.likelihood, frozenset(empty | self.context.shapes.gone), copies
+        )
+        self.hardware = {loop.header for loop in self.flow.loops if self._is_hardware(loop)}
+
+    def _is_empty(self, label: str) -> bool:
+        block = self.flow.blocks[label]
+        is_latch = any(loop.latch == label for loop in self.flow.loops)
+        return not self.steps.of[label] and len(block.successors) == 1 and not is_latch and (
+            label != self.flow.routine.blocks[0].label
+        )  # fmt: skip
+
+    def _is_hardware(self, loop: Loop) -> bool:
+        """A counted loop, at most two deep, with an operation before its end [GCC: hwloop_optimize in bfin.cc]."""
+        if loop.header not in self.context.needs.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
+            return False
+        before = self.flow.predecessors[loop.latch]
+        copied = any(len(inner.blocks & set(before)) > 1 for inner in loop.inner)
+        if copied and self.profile.applies(Learnt.COPIED_END):
+            return False  # the end of the loop is copied behind each exit of the inner one, so there are two ends
+        return bool(self.steps.of[loop.latch]) or len(before) == 1
+
+    def _counted_depth(self, loop: Loop) -> int:
+        own = int(loop.header in self.context.needs.counted)
+        return own + max((self._counted_depth(each) for each in loop.inner), default=0)
+
+    def block(self, block: Block) -> BlockCost:
+        cost = BlockCost()
+        if block is self.flow.routine.blocks[0]:
+            self._enter(cost, block.instructions[0].line)
+        steps = self.steps.of[block.label]
+        cost.charges += [
+            self._charge(step, issue) for step, issue in zip(steps, self._issues(steps), strict=True)
+        ]
+        self._loops(block, cost)
+        self._leave_block(block, cost)
+        cost.nbytes = sum(COSTS[each.op].nbytes for each in cost.charges)
+        return cost
+
+    def _issues(self, steps: list[Step]) -> list[Issue]:
+        if not self.profile.interlocks:
+            return [Issue()] * len(steps)
+        return issues(steps, self.allocation.bank.get, parallel=self.profile.parallel_issue)
+
+    def _charge(self, step: Step, issue: Issue = ALONE) -> Charge:
+        cclk = COSTS[step.op].cclk if step.cclk is None else step.cclk
+        return Charge(step.op, step.line, 0 if issue.paired else cclk, issue.stall_cclk)
+
+    # Function
+
+    def _enter(self, cost: BlockCost, line: int) -> None:
+        for op in _saving(self.allocation, Op.PUSH, Op.PUSH_MULTIPLE):
+            cost.charges.append(self._stack(op, line))
+        if self.allocation.calls:
+            ops = (Op.LINK,) if self.allocation.saves_frame_pointer else (Op.PUSH, Op.ALU)
+            cost.charges += [charge(op, line) for op in ops]
+        elif self.allocation.saves_frame_pointer:
+            cost.charges.append(charge(Op.PUSH, line))
+        cost.charges += [self._charge(step) for step in self.allocation.entry]
+
+    def _return(self, cost: BlockCost, line: int) -> None:
+        if self.allocation.calls:
+            ops = (Op.ALU, Op.POP, Op.POP) if self.allocation.saves_frame_pointer else (Op.ALU, Op.POP)
+            cost.charges += [charge(op, line) for op in ops]
+        elif self.allocation.saves_frame_pointer:
+            cost.charges.append(charge(Op.POP, line))
+        for op in _saving(self.allocation, Op.POP, Op.POP_MULTIPLE):
+            cost.charges.append(self._stack(op, line))
+        cost.charges.append(charge(Op.RETURN, line))
+
+    def _stack(self, op: Op, line: int) -> Charge:
+        saved = self.allocation.saved_data + self.allocation.saved_pointers
+        fixed = {
+            Op.PUSH_MULTIPLE: self.profile.push_multiple_cclk,
+            Op.POP_MULTIPLE: self.profile.pop_multiple_cclk,
+        }
+        if op not in fixed:
+            return charge(op, line)
+        return Charge(op, line, fixed[op] or saved)
+
+    # Loops and branches
+
+    def _loops(self, block: Block, cost: BlockCost) -> None:
+        for loop in self.flow.loops:
+            if loop.header not in self.context.needs.counted or loop.header in self.context.bit_counts:
+                continue
+            line = self.flow.blocks[loop.header].instructions[-1].line
+            line = self.flow.blocks[loop.latch].terminator.line or line
+            if block.label == self.flow.entering(loop):
+                cost.charges.append(charge(Op.MOVE, line))
+                if any(
+                    group.loop is loop and abs(group.advance.constant) > 1
+                    for group in self.context.groups.all
+                ):
+                    cost.charges += [charge(Op.ALU, line)] * 3
+                if loop.header in self.hardware:
+                    cost.charges.append(charge(Op.LOOP_SETUP, line))
+
+    def _leave_block(self, block: Block, cost: BlockCost) -> None:
+        terminator, label = block.terminator, block.label
+        if label in self.context.bit_counts:
+            return
+        if terminator.opcode == "ret":
+            self._return(cost, terminator.line)
+        elif terminator.opcode == "switch":
+            self._switch(block, cost)
+        elif terminator.opcode == "br" and len(set(block.successors)) == 1:
+            if label not in self.context.shapes.gone and not self._vanishes(label):
+                cost.charges += self.layout.on(label, block.successors[0], terminator.line)
+        elif terminator.opcode == "br" and label in self.context.shapes.by_label:
+            arms = self.context.shapes.by_label[label].arms
+            join = self.flow.blocks[next(iter(arms))].successors[0]
+            cost.charges += self.layout.jump(label, self.layout.landing(join), terminator.line)
+        elif terminator.opcode == "br":
+            self._conditional(block, cost)
+
+    def _vanishes(self, label: str) -> bool:
+        return label in self.layout.skipped
+
+    def _conditional(self, block: Block, cost: BlockCost) -> None:
+        label, line = block.label, block.terminator.line
+        if self.context.flags.decides(block.terminator):
+            sides = tuple(self.layout.on(label, way, line) for way in block.successors)
+        else:
+            sides = self._branch(label, line)
+        cost.branch(block.terminator.operands[0], tuple(sides[0]), tuple(sides[1]))
+
+    def _branch(self, label: str, line: int) -> tuple[list[Charge], list[Charge]]:
+        loop = next(
+            (
+                each
+                for each in self.flow.loops
+                if each.latch == label and each.header in self.context.needs.counted
+            ),
+            None,
+        )
+        if loop is None:
+            return self.layout.sides(label, line)
+        again, leaving = [], []
+        if loop.header not in self.hardware:
+            count = [charge(Op.ALU, line), charge(Op.COMPARE, line)]
+            again = [*count, charge(Op.BRANCH_TAKEN, line)]
+            leaving = [*count, charge(Op.BRANCH_NOT_TAKEN, line)]
+        ways = self.flow.blocks[label].successors
+        out = ways[0] if ways[0] not in loop.blocks else ways[1]
+        leaving = leaving + self.layout.on(label, out, line)
+        again = again + self.layout.copies.get((label, loop.header), [])
+        return (again, leaving) if ways[0] == loop.header else (leaving, again)
+
+    def _switch(self, block: Block, cost: BlockCost) -> None:
+        """A chain of comparisons and branches, in the order of the cases."""
+        value, line = block.terminator.operands[0], block.terminator.line
+        pair = [charge(Op.COMPARE, line), charge(Op.BRANCH_NOT_TAKEN, line)]
+        default = pair * len(block.cases)
+        cost.charges += default
+        for index, (case, _) in enumerate(block.cases):
+            hit = [*pair * index, charge(Op.COMPARE, line), charge(Op.BRANCH_TAKEN, line)]
+            cost.tests.append(Test(value, case, instead(hit, default)))
+
+
+def _saving(allocation: Allocation, one: Op, several: Op) -> list[Op]:
+    saved = allocation.saved_data + allocation.saved_pointers
+    return [] if not saved else [several]

@@ -1,0 +1,76 @@
+"""Where a compiler computes each value: out of every loop in which its operands do not change.
+
+Arithmetic moves freely. A load moves only where it runs in every turn and nothing in the loop may write
+what it reads; arrays of the same element width may overlap, as in C without `restrict`.
+"""
+
+from __future__ import annotations
+
+from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.loops import Flow, Loop
+
+HOISTED = ("add", "sub", "mul", "and", "or", "xor", "shl", "lshr", "ashr")
+FIXED = ("phi", "store", "call", "br", "ret", "switch", "unreachable")
+BYTE = 8  # in C, bytes may overlap with anything
+
+
+class Places:
+    """The block in which each value of one routine is computed."""
+
+    def __init__(self, flow: Flow) -> None:
+        self.flow = flow
+        self.of: dict[str, str] = {}
+        self.same: dict[str, str] = {}
+        self.hoisted: dict[str, str] = {}
+        """What both sides of a test compute is computed once, before it: the second result → the first."""
+        for label in flow.order:
+            for each in flow.blocks[label].instructions:
+                if each.result:
+                    self.of[each.result] = self._place(each, label)
+            self._hoist(label)
+
+    def is_invariant(self, value: str, loop: Loop) -> bool:
+        """Whether `value` stays the same while `loop` turns."""
+        return value not in self.of or self.of[value] not in loop.blocks
+
+    def _hoist(self, label: str) -> None:
+        ways = self.flow.blocks[label].successors
+        if len(set(ways)) != 2 or any(self.flow.predecessors[way] != [label] for way in ways):
+            return
+        first, second = (self.flow.blocks[way].instructions for way in ways)
+        known = {each.text: each for each in first if each.opcode in HOISTED}
+        for each in second:
+            twin = known.get(each.text)
+            if twin is not None and twin.result and each.result and self._is_before(each, label):
+                self.same[each.result] = twin.result
+                self.hoisted[twin.result] = self.hoisted[each.result] = label
+
+    def _is_before(self, each: Instruction, label: str) -> bool:
+        """Whether the operands of `each` are computed before the end of block `label`."""
+        homes = [self.flow.defined[operand][0] for operand in each.operands if operand in self.flow.defined]
+        return all(home in self.flow.dominators[label] for home in homes)
+
+    def _place(self, each: Instruction, label: str) -> str:
+        if each.opcode in FIXED and "@llvm." not in each.text:
+            return label
+        label = place = self.hoisted.get(each.result or "", label)
+        for loop in self.flow.loops_of(label):
+            if not all(self.is_invariant(operand, loop) for operand in each.operands):
+                break
+            if each.opcode == "load" and not self._may_leave(each, label, loop):
+                break
+            if each.is_division:
+                break
+            place = self.flow.entering(loop)
+        return place
+
+    def _may_leave(self, load: Instruction, label: str, loop: Loop) -> bool:
+        if label not in self.flow.dominators[loop.latch]:
+            return False
+        for inside in loop.blocks:
+            for each in self.flow.blocks[inside].instructions:
+                if each.is_call:
+                    return False
+                if each.opcode == "store" and (each.bits == load.bits or BYTE in (each.bits, load.bits)):
+                    return False
+        return True

@@ -1,0 +1,136 @@
+"""Register pressure: what does not fit in the registers of a loop is reloaded where it is used."""
+
+from __future__ import annotations
+
+from bfsim.kernel import isa
+from bfsim.kernel.isa import Op
+from bfsim.kernel.learnt import Learnt
+from bfsim.kernel.loops import Loop
+from bfsim.kernel.lowering.moves import immediate
+from bfsim.kernel.lowering.steps import Bank, Step
+from bfsim.kernel.lowering.webs import Webs
+
+POINTERS = isa.POINTER_REGISTERS + 1  # with FP, which -O2 frees
+KEPT = {Bank.DATA: 4, Bank.POINTER: 4}  # R4-R7, P3-P5 and FP survive a call
+ROOM = {Bank.DATA: isa.DATA_REGISTERS, Bank.POINTER: POINTERS}
+
+
+class Pressure:
+    """Inserts the reloads into the steps of a routine."""
+
+    def __init__(self, webs: Webs) -> None:
+        self.webs, self.flow, self.steps = webs, webs.flow, webs.steps
+        self.find, self.bank, self.frequency = webs.find, webs.bank, webs.frequency
+        self.reloading: set[tuple[str, Bank]] = set()
+        webs.analyse()
+        self._spill()
+
+    def _spill(self) -> None:
+        """Innermost loops first: what is used least there gives up its register."""
+        spilled: set[str] = set()
+        for loop in self.flow.loops:
+            for bank in (Bank.DATA, Bank.POINTER):
+                for _ in range(32):
+                    victim = self._victim(loop, bank, spilled)
+                    if victim is None:
+                        break
+                    spilled.add(victim)
+                    self._reload(victim, loop)
+
+    def constants_in(self, loop: Loop) -> dict[str, float]:
+        """Return the constants that a loop keeps in registers, and how often it uses them."""
+        found: dict[str, float] = {}
+        for label in self.flow.inside(loop):
+            for step in self.steps.of[label]:
+                for name, _ in step.uses:
+                    if name.startswith("#") and step.op is not Op.IMM:
+                        found[name] = found.get(name, 0) + self.frequency[label]
+        return found
+
+    def _victim(self, loop: Loop, bank: Bank, spilled: set[str]) -> str | None:
+        constants = {name: weight for name, weight in self.constants_in(loop).items() if name not in spilled}
+        extra = len(constants) if bank is Bank.DATA else 0
+        has_call = any(
+            step.op is Op.CALL for label in self.flow.inside(loop) for step in self.steps.of[label]
+        )
+        room = KEPT[bank] if has_call else ROOM[bank]
+        busiest: set[str] = set()
+        for label in self.flow.inside(loop):
+            for alive in self.points(label, across_calls=has_call):
+                here = {name for name in alive if self.bank.get(name) is bank and name not in spilled}
+                if len(here) > len(busiest):
+                    busiest = here
+        # once something is spilled, one register is taken by the reloads
+        reloading = (loop.header, bank) in self.reloading and self.webs.context.profile.applies(
+            Learnt.RELOAD_REGISTER
+        )
+        if len(busiest) + extra <= room - reloading:
+            return None
+        self.reloading.add((loop.header, bank))
+        weights = {name: self._weight(name, loop) for name in busiest}
+        if bank is Bank.DATA:
+            weights |= constants
+        return min(weights, key=lambda name: (weights[name], name), default=None)
+
+    def points(self, label: str, *, across_calls: bool) -> list[set[str]]:
+        """Webs alive after each step of a block (only across calls, if asked for)."""
+        alive = {self.find(name) for name in self.webs.live.out[label]}
+        found = [] if across_calls else [set(alive)]
+        for step in reversed(self.steps.of[label]):
+            if step.result:
+                alive.discard(self.find(step.result))
+            if across_calls and step.op is Op.CALL:
+                found.append(set(alive))
+            alive.update(self.find(name) for name, _ in step.uses if not name.startswith("#"))
+            if not across_calls:
+                found.append(set(alive))
+        return found
+
+    def _weight(self, web: str, loop: Loop) -> float:
+        total = 0.0
+        for label in self.flow.inside(loop):
+            for step in self.steps.of[label]:
+                names = {self.find(name) for name, _ in step.uses} | {self.find(step.result or "")}
+                total += self.frequency[label] * (web in names)
+        return total
+
+    def _accumulates(self, web: str, loop: Loop) -> bool:
+        """Whether a loop only adds to a value: it may live where there is no other arithmetic (P, I registers)."""
+        touching = [
+            step
+            for label in self.flow.inside(loop)
+            for step in self.steps.of[label]
+            if self.find(step.result or "") == web or any(self.find(name) == web for name, _ in step.uses)
+        ]
+        fitted = self.webs.context.profile.applies(Learnt.ACCUMULATORS)
+        return (
+            fitted
+            and len(touching) == 1
+            and touching[0].op is Op.ALU
+            and self.find(touching[0].result or "") == web
+        )
+
+    def _reload(self, web: str, loop: Loop) -> None:
+        if self._accumulates(web, loop):
+            self._move_in(web, loop)
+            return
+        for label in self.flow.inside(loop):
+            block: list[Step] = []
+            for step in self.steps.of[label]:
+                if any(self.find(name) == web for name, _ in step.uses) and step.op is not Op.IMM:
+                    op = immediate(web) if web.startswith("#") else Op.LOAD32
+                    block.append(Step(op, step.line, None, Bank.ANY))
+                block.append(step)
+                if step.result and self.find(step.result) == web:
+                    block.append(Step(Op.STORE32, step.line, None, Bank.ANY))
+            self.steps.of[label] = block
+
+    def _move_in(self, web: str, loop: Loop) -> None:
+        """What is added to a value in another bank has to be moved there."""
+        for label in self.flow.inside(loop):
+            block: list[Step] = []
+            for step in self.steps.of[label]:
+                if step.result and self.find(step.result) == web:
+                    block.append(Step(Op.MOVE, step.line, None, Bank.ANY))
+                block.append(step)
+            self.steps.of[label] = block

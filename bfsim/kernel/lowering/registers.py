@@ -1,0 +1,87 @@
+"""Registers: a model of what an allocator would cost, not one.
+
+It counts the moves between the banks, the constants, the reloads and the saved registers, and places them where an
+allocator would: see `webs`, `moves` and `pressure`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from bfsim.kernel import isa
+from bfsim.kernel.isa import Op
+from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.moves import Moves
+from bfsim.kernel.lowering.pressure import POINTERS, Pressure
+from bfsim.kernel.lowering.steps import Bank, Step, Steps
+from bfsim.kernel.lowering.webs import Webs
+
+
+@dataclass(slots=True)
+class Allocation:
+    """What the registers of one routine cost beside its operations, and the bank of each value."""
+
+    bank: dict[str, Bank]
+    on_edges: dict[tuple[str, str], list[Step]]
+    calls: bool
+    entry: list[Step] = field(default_factory=list)
+    saved_data: int = 0
+    saved_pointers: int = 0
+    saves_frame_pointer: bool = False
+
+
+def allocate(context: Context, steps: Steps) -> Allocation:
+    """Insert moves, constants and reloads into `steps`; return what belongs to edges and to the function's ends."""
+    webs = Webs(context, steps)
+    moves = Moves(webs)
+    pressure = Pressure(webs)
+    names = (*webs.web, *webs.bank)
+    result = Allocation(
+        bank={name: webs.bank[webs.find(name)] for name in names if webs.find(name) in webs.bank},
+        on_edges=moves.on_edges,
+        calls=any(step.op is Op.CALL for block in steps.of.values() for step in block),
+    )
+    _Ends(webs, pressure, result).save()
+    return result
+
+
+class _Ends:
+    """What a function saves when it is entered, and where its arguments go."""
+
+    def __init__(self, webs: Webs, pressure: Pressure, result: Allocation) -> None:
+        self.webs, self.pressure, self.result = webs, pressure, result
+        self.flow, self.steps, self.bank = webs.flow, webs.steps, webs.bank
+
+    def save(self) -> None:
+        """Find the registers that are saved, and load or move the arguments."""
+        peak = {Bank.DATA: 0, Bank.POINTER: 0}
+        across = {Bank.DATA: set[str](), Bank.POINTER: set[str]()}
+        for label in self.flow.blocks:
+            for alive in self.pressure.points(label, across_calls=False):
+                for bank, highest in peak.items():
+                    peak[bank] = max(highest, sum(self.bank.get(name) is bank for name in alive))
+            for alive in self.pressure.points(label, across_calls=True):
+                for name in alive:
+                    across[self.bank.get(name, Bank.DATA)].add(name)
+        constants = {name for loop in self.flow.loops for name in self.pressure.constants_in(loop)}
+        data = min(peak[Bank.DATA] + len(constants), isa.DATA_REGISTERS) - isa.SCRATCH_DATA_REGISTERS
+        pointers = min(peak[Bank.POINTER], POINTERS) - isa.SCRATCH_POINTER_REGISTERS
+        if self.result.calls:
+            data, pointers = max(data, len(across[Bank.DATA])), max(pointers, len(across[Bank.POINTER]))
+        self.result.saved_data = min(max(data, 0), 4)
+        self.result.saved_pointers = min(max(pointers, 0), 3)
+        self.result.saves_frame_pointer = pointers > 3
+        self._parameters(across)
+
+    def _parameters(self, across: dict[Bank, set[str]]) -> None:
+        used = {name for block in self.steps.of.values() for step in block for name, _ in step.uses}
+        used |= {value for arms in self.webs.phis.values() for value, _ in arms}
+        line = self.flow.routine.blocks[0].instructions[0].line
+        for number, name in enumerate(self.webs.context.parameters()):
+            if name not in used:
+                continue
+            bank = self.bank.get(self.webs.find(name), Bank.DATA)
+            if number >= isa.REGISTER_ARGUMENTS:
+                self.result.entry.append(Step(Op.LOAD32, line, None, bank))
+            elif bank is Bank.POINTER or name in across[bank]:
+                self.result.entry.append(Step(Op.MOVE, line, None, bank))

@@ -1,0 +1,297 @@
+"""Optimised IR → Blackfin operations: one rule per kind of instruction.
+
+Each rule says what a C compiler emits for an instruction in its surroundings; what nothing needs is not emitted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from bfsim.kernel import isa
+from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.isa import Op
+from bfsim.kernel.learnt import Learnt
+from bfsim.kernel.loops import pointee_nbytes
+from bfsim.kernel.lowering.calls import Calls
+from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.multiples import multiple
+from bfsim.kernel.lowering.predict import predicate
+from bfsim.kernel.lowering.shapes import Kind
+from bfsim.kernel.lowering.steps import Bank, Step, Steps
+
+ANY, DATA, POINTER = Bank.ANY, Bank.DATA, Bank.POINTER
+LOADS = {8: Op.LOAD8, 16: Op.LOAD16, 32: Op.LOAD32}
+STORES = {8: Op.STORE8, 16: Op.STORE16, 32: Op.STORE32}
+EXTENDING_MASKS = {"255": 8, "65535": 16}
+
+
+def select(context: Context) -> Steps:
+    """Return the operations of every block of a routine."""
+    selector = _Selector(context)
+    for loop in context.bit_counts.values():
+        line = context.flow.blocks[loop.header].instructions[-1].line
+        selector.steps.add(context.flow.entering(loop), Step(Op.ALU, line, None, DATA))
+    for label in context.flow.order:
+        if label in context.bit_counts:
+            continue
+        for each in context.flow.blocks[label].instructions:
+            if context.needs.emits(each):
+                selector.emit(each, context.places.of.get(each.result or "", label))
+    selector.pointers()
+    return selector.steps
+
+
+class _Selector(Calls):
+    def __init__(self, context: Context) -> None:
+        super().__init__(context)
+        self.flow = context.flow
+
+    def emit(self, each: Instruction, label: str) -> None:
+        """Append the operations of one instruction to the block where it is computed."""
+        self.label = label
+        shape = self.context.shape_of(each)
+        if each.opcode == "phi":
+            if shape is not None:
+                self.label = shape.label
+                self._shaped(each)
+            if self.context.needs.sunk_mask(each):
+                self.step(Op.EXTEND, each, None, DATA, (each.result or "", DATA))
+            return
+        rule = RULES.get(each.opcode)
+        if rule is not None:
+            rule(self, each)
+
+    # Memory
+
+    def load(self, each: Instruction) -> None:
+        bank = ANY if each.bits == 32 else DATA
+        self.step(LOADS[each.bits], each, each.result, bank, (self._address(each), POINTER))
+        if self.context.needs.extended_apart(each):
+            self.step(Op.EXTEND, each, f"{each.result}.wide", DATA, (each.result or "", DATA))
+        elif self.context.needs.extended_late(each):
+            self.step(Op.EXTEND, each, each.result, DATA, (each.result or "", DATA))
+
+    def store(self, each: Instruction) -> None:
+        bank = ANY if each.bits == 32 else DATA
+        self.step(
+            STORES[each.bits], each, None, DATA, (each.operands[0], bank), (self._address(each), POINTER)
+        )
+
+    def _address(self, each: Instruction) -> str:
+        """Return the pointer that an access uses: one that walks along, or one that was computed."""
+        group = self.context.groups.of.get(id(each))
+        return group.name if group else self.context.base(each.operands[-1])
+
+    def element(self, each: Instruction) -> None:
+        """An address that does not walk: base plus scaled index; constant offsets belong to the access."""
+        base, index = each.operands[0], each.operands[-1]
+        if not index.startswith("%"):
+            return
+        nbytes = pointee_nbytes(each)
+        op = Op.ALU if nbytes == 1 else Op.ADD_SHIFT
+        self.step(op, each, each.result, POINTER, (self.context.base(base), POINTER), (index, POINTER))
+
+    def pointers(self) -> None:
+        """Set up the pointers that walk, and step those for which no post-increment does."""
+        for group in self.context.groups.all:
+            line = group.line
+            entering, latch = self.flow.entering(group.loop), group.loop.latch
+            start = Step(Op.MOVE, line, group.name, POINTER, ((group.root, ANY),))
+            self.steps.add(entering, start)
+            if group.offset_apart:
+                self.steps.add(entering, Step(Op.ALU, line, group.name, POINTER, ((group.name, POINTER),)))
+            if not group.steps_free:
+                uses = ((group.name, POINTER),) + (((group.stride, POINTER),) if group.stride else ())
+                self.steps.add(latch, Step(Op.ALU, line, group.name, POINTER, uses))
+                loose = (
+                    group.loop.header not in self.context.needs.counted
+                    and len(self.flow.exits(group.loop)) > 1
+                )
+                if loose and self.context.profile.applies(Learnt.POINTER_COPIES):
+                    # the exits see the pointer before and after its step
+                    self.steps.add(latch, Step(Op.MOVE, line, None, POINTER, ((group.name, POINTER),)))
+
+    # Arithmetic
+
+    def add(self, each: Instruction) -> None:
+        if self.context.needs.in_shifted_sum(each):
+            return
+        if (plan := self.context.needs.shift_add(each)) is not None:
+            shifted, other = plan
+            self.step(Op.ADD_SHIFT, each, each.result, POINTER, (other, POINTER), (shifted, POINTER))
+            return
+        left, right = each.operands[:2]
+        if self.context.needs.narrowed(each):
+            self.step(Op.MOVE, each, None, DATA)
+            self.step(Op.ALU, each, None, DATA, (left, DATA))
+        if right.lstrip("-").isdigit() and int(right) in isa.ADD_IMMEDIATE and each.opcode == "add":
+            self.step(Op.ALU, each, each.result, ANY, (left, ANY), overwrites=(left,))
+        elif each.opcode == "sub" and left == "0":
+            self.step(Op.ALU, each, each.result, DATA, (right, DATA))
+        else:
+            self.step(Op.ALU, each, each.result, ANY, (left, ANY), (right, ANY))
+
+    def shift(self, each: Instruction) -> None:
+        if self.context.needs.in_shift_add(each) or self._is_half_extension(each):
+            return
+        value, amount = each.operands[:2]
+        if (pair := self.context.needs.shifted_sum(each)) is not None:
+            self.step(Op.ADD_SHIFT, each, each.result, ANY, (pair[0], ANY), (pair[1], ANY), overwrites=pair)
+        elif each.opcode == "ashr" and (source := self.context.needs.extension_of(each)):
+            self.step(Op.EXTEND, each, each.result, DATA, (source, DATA))
+        elif amount.isdigit():
+            near = int(amount) in isa.ADDRESS_SHIFTS and each.opcode != "ashr"
+            self.step(Op.SHIFT, each, each.result, ANY if near else DATA, (value, ANY if near else DATA))
+        else:
+            self.step(Op.SHIFT, each, each.result, DATA, (value, DATA), (amount, DATA), overwrites=(value,))
+
+    def _is_half_extension(self, each: Instruction) -> bool:
+        users = self.flow.users.get(each.result or "", [])
+        return each.opcode == "shl" and bool(users) and all(
+            self.context.needs.extension_of(user) == each.operands[0] for user in users
+        )  # fmt: skip
+
+    def logic(self, each: Instruction) -> None:
+        left, right = each.operands[:2]
+        needs = self.context.needs
+        if each.bits == 1:
+            self._joined(each)
+            return
+        if needs.in_bit_test(each) or needs.is_shift_mask(each) or needs.in_sunk_mask(each):
+            return
+        if each.opcode == "and" and right in EXTENDING_MASKS:
+            self.step(Op.EXTEND, each, each.result, DATA, (left, DATA))
+        elif right.lstrip("-").isdigit() and _is_single_bit(each.opcode, int(right)):
+            self.step(Op.ALU, each, each.result, DATA, (left, DATA), overwrites=(left,))
+        else:
+            self.step(Op.ALU, each, each.result, DATA, (left, DATA), (right, DATA))
+
+    def multiply(self, each: Instruction) -> None:
+        left, right = each.operands[:2]
+        if self._steps_along(each):
+            return
+        if (
+            right.lstrip("-").isdigit()
+            and (plan := multiple(int(right))) is not None
+            and not self._short(each)
+        ):
+            value = left
+            for number, op in enumerate(plan):
+                result = each.result if number == len(plan) - 1 else f"{each.result}.{number}"
+                bank = POINTER if op is Op.ADD_SHIFT else ANY
+                self.step(op, each, result, bank, (value, bank), (left, bank))
+                value = result or ""
+        elif self._short(each):
+            self.step(Op.MUL16, each, each.result, DATA, (left, DATA), (right, DATA))
+        else:
+            self.step(
+                Op.MUL32, each, each.result, DATA, (left, DATA), (right, DATA), overwrites=(left, right)
+            )
+
+    def _steps_along(self, each: Instruction) -> bool:
+        """A product of a counter: an addition per turn takes its place (strength reduction)."""
+        loop = self.flow.innermost(self.label)
+        advance = self.context.walks.advance(each.result or "", loop) if loop else None
+        if loop is None or advance is None or not advance.moves:
+            return False
+        stride = f"{each.result}.stride"
+        self.steps.add(self.flow.entering(loop), Step(Op.IMM, each.line, each.result, ANY))
+        uses = ((each.result or "", ANY), (stride, ANY)) if advance.symbolic else ((each.result or "", ANY),)
+        self.steps.add(loop.latch, Step(Op.ALU, each.line, each.result, ANY, uses))
+        return True
+
+    def _short(self, each: Instruction) -> bool:
+        return all(self.context.needs.is_short(operand) for operand in each.operands[:2])
+
+    def extend(self, each: Instruction) -> None:
+        if " i1 " in each.text:
+            self.step(Op.CC_MOVE, each, each.result, DATA)
+        elif not self.context.is_alias(each):
+            self.step(Op.EXTEND, each, each.result, DATA, (each.operands[0], DATA))
+
+    # Decisions
+
+    def compare(self, each: Instruction) -> None:
+        if self.context.needs.bit_tested(each) is not None:
+            masked = self.context.needs.bit_tested(each) or ""
+            self.step(Op.BIT_TEST, each, None, DATA, (masked, DATA))
+            return
+        left, right = each.operands[:2]
+        if right.lstrip("-").isdigit() and _is_near(predicate(each), int(right)):
+            self.step(Op.COMPARE, each, None, DATA, (left, ANY))
+        else:
+            self.step(Op.COMPARE, each, None, DATA, (left, ANY), (right, ANY))
+
+    def choose(self, each: Instruction) -> None:
+        """A select that LLVM itself formed."""
+        if each.text.split(",")[1].strip().startswith("i1"):
+            self._joined(each)
+        else:
+            yes, no = each.operands[1:3]
+            self.step(Op.COND_MOVE, each, each.result, ANY, (yes, ANY), (no, ANY), overwrites=(no,))
+
+    def _joined(self, each: Instruction) -> None:
+        """`and` or `or` of two conditions: in C, a branch of its own."""
+        if all(user.opcode == "br" for user in self.flow.users.get(each.result or "", [])):
+            self.step(Op.BRANCH_NOT_TAKEN, each, None, DATA)
+        else:
+            self.step(Op.CC_MOVE, each, each.result, DATA)
+            self.step(Op.ALU, each, each.result, DATA)
+
+    def _shaped(self, each: Instruction) -> None:
+        """An `if` without a branch: its operation stands in the block that tests."""
+        shape = self.context.shape_of(each)
+        assert shape is not None
+        if shape.kind is Kind.ABSOLUTE:
+            self.step(Op.DSP_ALU, each, each.result, DATA, (shape.operands[0], DATA))
+            if self.context.needs.is_short(shape.operands[0]):
+                self.step(Op.EXTEND, each, each.result, DATA, (each.result or "", DATA))
+        elif shape.kind is Kind.EXTREME:
+            self.step(Op.DSP_ALU, each, each.result, DATA, *((value, DATA) for value in shape.operands))
+        elif shape.kind is Kind.FLAG:
+            self.step(Op.CC_MOVE, each, each.result, DATA)
+        else:
+            uses = tuple((value, ANY) for value in shape.operands)
+            self.step(Op.COND_MOVE, each, each.result, ANY, *uses, overwrites=shape.operands[1:])
+
+
+def _is_single_bit(opcode: str, mask: int) -> bool:
+    """Whether BITSET, BITCLR, BITTGL or NOT does it."""
+    if opcode == "xor" and mask == -1:
+        return True
+    bits = ~mask if opcode == "and" else mask
+    return (bits & 0xFFFFFFFF).bit_count() == 1
+
+
+def _is_near(relation: str, bound: int) -> bool:
+    """Whether a comparison takes its bound as an immediate; x < 4 may be written x <= 3."""
+    if relation in ("eq", "ne"):
+        return bound in isa.COMPARE_IMMEDIATE
+    allowed = isa.COMPARE_UNSIGNED_IMMEDIATE if relation[0] == "u" else isa.COMPARE_IMMEDIATE
+    other = bound - 1 if relation.endswith(("lt", "ge")) else bound + 1
+    return bound in allowed or other in allowed
+
+
+RULES: dict[str, Callable[[_Selector, Instruction], None]] = {
+    "load": _Selector.load,
+    "store": _Selector.store,
+    "getelementptr": _Selector.element,
+    "add": _Selector.add,
+    "sub": _Selector.add,
+    "shl": _Selector.shift,
+    "lshr": _Selector.shift,
+    "ashr": _Selector.shift,
+    "and": _Selector.logic,
+    "or": _Selector.logic,
+    "xor": _Selector.logic,
+    "mul": _Selector.multiply,
+    "sext": _Selector.extend,
+    "zext": _Selector.extend,
+    "icmp": _Selector.compare,
+    "select": _Selector.choose,
+    "call": _Selector.call,
+    "sdiv": _Selector.divide,
+    "udiv": _Selector.divide,
+    "srem": _Selector.divide,
+    "urem": _Selector.divide,
+}

@@ -1,0 +1,157 @@
+"""Small `if`s that a compiler turns into one operation: minimum, maximum, absolute value, conditional move.
+
+As GCC does it [phiopt and ifcvt.cc of GCC 12]: a branch goes away only if all that its arms do is to choose
+between two values that are there already (or to negate one that was tested for its sign).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from bfsim.kernel.ir_text import PHI_ARM, Instruction
+from bfsim.kernel.learnt import Learnt
+from bfsim.kernel.loops import Flow
+from bfsim.kernel.lowering.predict import predicate
+from bfsim.kernel.profile import CompilerProfile
+
+RENAMING = ("trunc", "zext", "sext", "freeze")
+BYTE, WORD = 8, 32
+
+
+class Kind(Enum):
+    """What becomes of a small `if`."""
+
+    ABSOLUTE = auto()
+    EXTREME = auto()
+    """Minimum or maximum."""
+    CHOICE = auto()
+    """A conditional move."""
+    FLAG = auto()
+    """The condition itself as 0 or 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """An `if` in block `label` that needs no branch; `phi` is what it computes, from `operands`."""
+
+    kind: Kind
+    label: str
+    phi: Instruction
+    operands: tuple[str, str]
+    arms: frozenset[str]
+    """Blocks that vanish."""
+
+
+class Shapes:
+    """The small `if`s of one routine, by the block that tests."""
+
+    def __init__(self, flow: Flow, profile: CompilerProfile) -> None:
+        self.flow, self.profile = flow, profile
+        self.by_label: dict[str, Shape] = {}
+        for label in flow.order:
+            shape = self._shape(label)
+            if shape:
+                self.by_label[label] = shape
+        self.gone = frozenset(arm for shape in self.by_label.values() for arm in shape.arms)
+
+    def _shape(self, label: str) -> Shape | None:
+        block = self.flow.blocks[label]
+        if block.terminator.opcode != "br" or len(set(block.successors)) != 2:
+            return None
+        yes, no = block.successors
+        arms = [way for way in (yes, no) if self._is_arm(way, label)]
+        ends = {self.flow.blocks[way].successors[0] if way in arms else way for way in (yes, no)}
+        if not arms or len(ends) != 1:
+            return None
+        join = ends.pop()
+        sources = [way if way in arms else label for way in (yes, no)]
+        phis = [each for each in self.flow.blocks[join].instructions if each.opcode == "phi"]
+        choices: list[tuple[Instruction, str, str]] = []
+        for each in phis:
+            chosen, other = (self._plain(_arm_value(each, source), each) for source in sources)
+            if chosen != other:
+                choices.append((each, chosen, other))
+        if len(choices) != 1:
+            return None
+        return self._of_choice(label, frozenset(arms), *choices[0])
+
+    def _is_arm(self, way: str, label: str) -> bool:
+        block = self.flow.blocks[way]
+        return (
+            self.flow.predecessors[way] == [label]
+            and len(set(block.successors)) == 1
+            and block.terminator.opcode == "br"
+            and not any(each.opcode == "phi" for each in block.instructions)
+            and len(self._work(way)) <= 1
+        )
+
+    def _work(self, arm: str) -> list[Instruction]:
+        """What a block does but for renaming and its branch."""
+        return [each for each in self.flow.blocks[arm].instructions[:-1] if each.opcode not in RENAMING]
+
+    def _plain(self, value: str, phi: Instruction | None = None) -> str:
+        """The 32-bit value behind one that LLVM has narrowed."""
+        if value.lstrip("-").isdigit():
+            narrow = phi is not None and f"phi i{BYTE} " in phi.text + " "
+            return str(int(value) & 0xFF) if narrow else value
+        each = self.flow.instruction(value)
+        while each is not None and each.opcode in RENAMING and " i1 " not in each.text:
+            value = each.operands[0]
+            each = self.flow.instruction(value)
+        return value
+
+    def _of_choice(
+        self, label: str, arms: frozenset[str], phi: Instruction, yes: str, no: str
+    ) -> Shape | None:
+        work = [each for arm in arms for each in self._work(arm)]
+        test = self.flow.instruction(self.flow.blocks[label].terminator.operands[0])
+        if test is None or test.opcode != "icmp":
+            return None
+        if work:
+            return self._negation(label, arms, phi, work, test)
+        if {yes, no} == {"1", "0"}:
+            return Shape(Kind.FLAG, label, phi, (yes, no), arms)
+        bounds = {self._plain(each) for each in _bounds(test)}
+        if (predicate(test)[0] == "s" or self._is_positive(test)) and {yes, no} <= bounds:
+            return Shape(Kind.EXTREME, label, phi, (yes, no), arms)
+        return Shape(Kind.CHOICE, label, phi, (yes, no), arms)
+
+    def _is_positive(self, test: Instruction) -> bool:
+        """Whether an unsigned comparison is as good as a signed one: LLVM makes them of values that are never negative."""
+        if predicate(test)[0] != "u":
+            return False
+        source = self.flow.instruction(self._plain(test.operands[0]))
+        return "samesign" in test.text or test.bits < WORD or (source is not None and source.bits < WORD)
+
+    def _negation(
+        self, label: str, arms: frozenset[str], phi: Instruction, work: list[Instruction], test: Instruction
+    ) -> Shape | None:
+        if len(work) != 1 or work[0].opcode != "sub" or work[0].operands[0] != "0":
+            return None
+        value = work[0].operands[1]
+        difference = self.flow.instruction(self._plain(value))
+        written_as_if = any(arm.startswith("then") for arm in arms)
+        branches = written_as_if and self.profile.applies(Learnt.DIFFERENCE)
+        if branches and difference is not None and difference.opcode == "sub":
+            return None  # -(x - y) has become y - x before anyone looks for an absolute value
+        tested = self._plain(test.operands[0]) == self._plain(value)
+        chosen = value in phi.operands and work[0].result in phi.operands
+        by_sign = predicate(test) in ("slt", "sgt", "sle", "sge") and test.operands[1] in ("0", "-1", "1")
+        return (
+            Shape(Kind.ABSOLUTE, label, phi, (value, value), arms) if chosen and tested and by_sign else None
+        )
+
+
+def _bounds(test: Instruction) -> tuple[str, ...]:
+    """What a comparison with a constant bounds: LLVM writes x <= 255 as x < 256."""
+    bound = test.operands[1]
+    if not bound.lstrip("-").isdigit():
+        return test.operands
+    near = {str(int(bound) - 1), bound, str(int(bound) + 1)}
+    return (test.operands[0], *sorted(near))
+
+
+def _arm_value(phi: Instruction, source: str) -> str:
+    values: dict[str, str] = {label[1:]: value for value, label in PHI_ARM.findall(phi.text)}
+    return values[source]

@@ -1,0 +1,42 @@
+"""Blackfin operations on values that have no register yet, and how a routine's control flow will be coded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from bfsim.kernel.isa import Op
+
+
+class Bank(Enum):
+    """Where a value must be: data register, pointer register, or either."""
+
+    DATA = "R"
+    POINTER = "P"
+    ANY = "R/P"
+
+
+@dataclass(slots=True)
+class Step:
+    """One operation. `uses` are names of values, or constants written #5; `overwrites`: the operand it destroys."""
+
+    op: Op
+    line: int
+    result: str | None
+    bank: Bank
+    uses: tuple[tuple[str, Bank], ...] = ()
+    overwrites: tuple[str, ...] = ()
+    cclk: int | None = None
+    """Cycles, where they are not those of the operation."""
+    text: str = ""
+
+
+@dataclass(slots=True)
+class Steps:
+    """The operations of each block of a routine, but for its branches."""
+
+    of: dict[str, list[Step]] = field(default_factory=dict)
+
+    def add(self, label: str, step: Step) -> None:
+        """Append to a block."""
+        self.of.setdefault(label, []).append(step)

@@ -1,0 +1,85 @@
+"""A kernel, line by line, as a rich table: cycles, operations, source."""
+
+from __future__ import annotations
+
+import json
+from pathlib import PurePath
+
+from pydantic_core import to_jsonable_python
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from bfsim.report.tables import new_table, percent, stacked
+from bfsim.trace import ExplainedLine, ExplainedOperation, Explanation
+
+SCHEMA = "bfsim.explain/1"
+SHORT = {"branch_taken": "taken", "branch_not_taken": "not taken"}
+
+
+def explain_report(explanation: Explanation) -> RenderableType:
+    """Return the kernel's lines with their operations and cycles; after a run with counts and totals, too."""
+    place = f"{PurePath(explanation.file).name}:{explanation.first_line}"
+    title = f"{explanation.kernel} ({place}), {explanation.profile}, {explanation.code_bytes} bytes of code"
+    numbers = ("Cycles",) if explanation.calls is None else ("Cycles", "Executed", "Total", "%")
+    table = new_table(title, "Source", *numbers, "Operations")
+    table.columns[-1].justify = "left"
+    whole = sum(each.total_cclk or 0 for each in explanation.lines)
+    for each in explanation.lines:
+        _add(table, each, whole)
+    table.expand = True
+    table.columns[0].ratio, table.columns[-1].ratio = 5, 4
+    table.columns[-1].overflow = "fold"
+    return stacked(table, _legend(explanation))
+
+
+def explain_json(explanation: Explanation) -> str:
+    """Return the explanation as indented text that ends in a line feed; keys are the field names of `bfsim.trace`."""
+    return (
+        json.dumps({"schema": SCHEMA, **to_jsonable_python(explanation)}, indent=2, ensure_ascii=False) + "\n"
+    )
+
+
+def _add(table: Table, line: ExplainedLine, whole_cclk: int) -> None:
+    source = (
+        f"{line.line:4} {line.text.expandtabs()}"
+        if line.text or not line.operations
+        else "        (each turn)"
+    )
+    cells = [source, _cycles(line)]
+    if len(table.columns) > 3:
+        counted = line.operations and line.total_cclk is not None
+        cells += [
+            f"{line.executions:,}" if counted else "",
+            f"{line.total_cclk:,}" if counted else "",
+            percent(line.total_cclk or 0, whole_cclk) if counted else "",
+        ]
+    table.add_row(*cells, ", ".join(_operation(each) for each in line.operations))
+
+
+def _cycles(line: ExplainedLine) -> str:
+    if not line.operations:
+        return ""
+    span = (
+        f"{line.least_cclk}" if line.least_cclk == line.most_cclk else f"{line.least_cclk}..{line.most_cclk}"
+    )
+    return f"{span} ({line.stall_cclk} wait)" if line.stall_cclk else span
+
+
+def _operation(each: ExplainedOperation) -> str:
+    name = each.operation.removesuffix("_bp")
+    if each.conditional:
+        return f"{SHORT[name]} {each.cclk}"
+    times = f"{each.count} " if each.count > 1 else ""
+    cycles = f" {each.cclk}" if each.cclk != 1 else ""
+    return f"{times}{name}{cycles}"
+
+
+def _legend(explanation: Explanation) -> Text:
+    lines = [
+        "Cycles: of one execution, from the cheapest way through the line's branches to the dearest.",
+        "Operations: how many and which, with their cycles where these are not 1.",
+    ]
+    if explanation.calls is not None:
+        lines.append(f"Executed, Total, %: in the run, {explanation.calls:,} calls.")
+    return Text("\n".join(lines))

@@ -1,0 +1,25 @@
+"""What `measured.json` says is what a bfin-elf toolchain gives; without one on PATH there is nothing to compare."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from benchmarks.twins.measure import MEASURED, measure, missing_tools
+
+pytestmark = [
+    pytest.mark.toolchain,
+    pytest.mark.skipif(
+        bool(missing_tools()), reason="no bfin-elf toolchain (GCC 12.2, GNU simulator 13.1) on PATH"
+    ),
+]
+
+
+@pytest.mark.parametrize("name", ["sobel_row", "crc16_bits", "label_row"])
+def test_a_measurement_repeats_to_the_cycle(name: str, tmp_path: Path) -> None:
+    """Compiled, run and traced again, a kernel gives the recorded checksum, cycles and instruction classes."""
+    recorded = json.loads(MEASURED.read_text())[name]
+    recorded.pop("role")
+    assert measure(name, tmp_path) == recorded

@@ -1,0 +1,69 @@
+"""Twins of kernels that ran as Blackfin code: the same outputs bit for bit, and cycles as near as the README says."""
+
+from __future__ import annotations
+
+from statistics import mean
+
+import pytest
+
+from benchmarks.twins.case import Case
+from benchmarks.twins.cases import CASES
+from benchmarks.twins.measured import Role, by_class, measured
+from benchmarks.twins.predicted import predict
+from bfsim.kernel import GCC_O0, GCC_O2
+from bfsim.kernel.learnt import LEARNT_FROM, Learnt
+
+MEASURED = measured()
+each_case = pytest.mark.parametrize("case", CASES, ids=[each.name for each in CASES])
+
+
+@each_case
+def test_a_twin_gives_the_checksum_of_the_blackfin_code(case: Case) -> None:
+    """Under either profile the Python kernel's output is the C kernel's output on the Blackfin, bit for bit."""
+    assert predict(case, GCC_O2).checksum == MEASURED[case.name].checksum
+    assert predict(case, GCC_O0).checksum == MEASURED[case.name].checksum
+
+
+def errors(role: Role, level: str) -> dict[str, float]:
+    """Percent by which the prediction of each kernel of a role is off."""
+    profile = {"O0": GCC_O0, "O2": GCC_O2}[level]
+    cases = [each for each in CASES if MEASURED[each.name].role is role]
+    return {
+        each.name: abs(100 * (predict(each, profile).cycles / MEASURED[each.name].cycles[level] - 1)) for each in cases
+    }
+
+
+@pytest.mark.parametrize(
+    ("role", "level", "largest_mean", "largest"),
+    [
+        (Role.REFERENCE, "O0", 0.1, 1),
+        (Role.FIT, "O0", 1, 15),
+        (Role.HELD_OUT, "O0", 2, 12),
+        (Role.REFERENCE, "O2", 2.5, 10),
+        (Role.FIT, "O2", 10, 40),
+        (Role.HELD_OUT, "O2", 7, 15),
+    ],
+)
+def test_the_cycles_are_as_near_as_the_readme_says(
+    role: Role, level: str, largest_mean: float, largest: float
+) -> None:
+    """Mean and largest error of each set of kernels, at both levels, in percent."""
+    found = errors(role, level)
+    assert mean(found.values()) < largest_mean
+    assert max(found.values()) < largest
+
+
+def test_what_runs_is_what_ran_on_the_blackfin() -> None:
+    """Not the cycles alone are near: loads, stores and branches of the smoothing kernel are those of GCC's code."""
+    case = next(each for each in CASES if each.name == "gauss3_row")
+    ours = by_class(predict(case, GCC_O2).operations)
+    theirs = by_class(MEASURED["gauss3_row"].operations["O2"])
+    for group in ("loads", "stores", "ALU", "shifts", "taken", "not taken"):
+        assert ours[group] == pytest.approx(theirs[group], abs=3), group
+
+
+def test_every_fitted_rule_names_kernels_that_were_measured() -> None:
+    """The kernels that a rule was learnt from are there, and none of them is held out."""
+    assert set(LEARNT_FROM) == set(Learnt)
+    for kernels in LEARNT_FROM.values():
+        assert {MEASURED[each].role for each in kernels} <= {Role.REFERENCE, Role.FIT}
