@@ -51,7 +51,7 @@ def simulate(
     script = ldf or THESIS_LDF
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
         size = FrameSize(reader.width, reader.height)
-        link_map = link(parse_ldf(script), symbols_of(loaded.firmware, size), spec.chip.regions)
+        link_map = link(parse_ldf(script), symbols_of(loaded.firmware, size, compiler), spec.chip.regions)
         machine = Board(spec, loaded.firmware, size, link_map, feed=feed, sanitize=sanitize, profile=compiler)
         total = min(frames or reader.frame_count, reader.frame_count)
         if not total:
@@ -127,6 +127,7 @@ def _record(
         interrupted=outcome.interrupted,
         kernels=outcome.kernels,
         traffic=outcome.traffic,
+        code=outcome.code,
         events=outcome.events,
     )
 

@@ -149,6 +149,21 @@ class Identity:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class CodeRecord:
+    """Code of one core's kernels in one segment of the LDF: how many kernels, their bytes, and what the segment has left.
+
+    Without `in_l1`, fetches take cycles that are not in the kernels' costs.
+    """
+
+    core: str
+    segment: str
+    in_l1: bool
+    kernels: int
+    nbytes: int
+    free_bytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RunRecord:
     """One run. `missed` are the recording's frames that came while the firmware was busy.
 
@@ -162,6 +177,7 @@ class RunRecord:
     interrupted: bool
     kernels: tuple[KernelRecord, ...]
     traffic: tuple[TrafficRecord, ...]
+    code: tuple[CodeRecord, ...]
     events: int
 
 

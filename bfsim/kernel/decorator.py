@@ -53,6 +53,13 @@ class Kernel:
         """Compile for `profile`, or take it from the cache on disk. See `jit.compiled`."""
         return compiled(self.function, profile, followed=followed, counted=counted)
 
+    def code_bytes(self, profile: CompilerProfile) -> dict[str, int]:
+        """Return the size of the kernel's code, and of each kernel that it calls, by the names in the machine code."""
+        nbytes: dict[str, int] = {}
+        for each in self.compiled(profile).counters:
+            nbytes[each.routine] = nbytes.get(each.routine, 0) + each.nbytes
+        return nbytes
+
     def prepare(
         self,
         code: Compiled,

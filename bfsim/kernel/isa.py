@@ -101,6 +101,9 @@ SHORT_IMMEDIATE = range(-64, 64)  # R = imm7 in two bytes
 LONG_IMMEDIATE = range(-(1 << 15), 1 << 16)  # R = imm16 (X) or (Z) in four bytes; beyond: two halves
 ADDRESS_SHIFTS = (1, 2)  # P = P + (P << 1), P = P + (P << 2)
 
+BYTE_BITS = 8
+LONG_FORM_BYTES = 4  # [PRM] offsets of bytes, shifts with three operands, immediates beyond seven bits
+
 DATA_REGISTERS = 8  # [PRM] R0-R7
 POINTER_REGISTERS = 6  # [PRM] P0-P5; FP and SP are taken
 SCRATCH_DATA_REGISTERS = 4  # [GCC] R0-R3 are not saved by the callee

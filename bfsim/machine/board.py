@@ -12,6 +12,7 @@ from bfsim.kernel.followers import Follower
 from bfsim.linker import LinkMap, Symbol
 from bfsim.machine.calls import CallBook
 from bfsim.machine.capture import Capture, Feed, Pair, StereoPictures
+from bfsim.machine.code import code_records, code_symbols
 from bfsim.machine.core import Core
 from bfsim.machine.direct import DirectAccess
 from bfsim.machine.ebiu import Ebiu
@@ -24,7 +25,7 @@ from bfsim.machine.sdram import Sdram
 from bfsim.machine.semaphore import Semaphore
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.traffic import Traffic
-from bfsim.trace import FrameRecord, KernelRecord, TrafficRecord
+from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, TrafficRecord
 
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
 
@@ -38,12 +39,17 @@ class Outcome:
     interrupted: bool
     kernels: tuple[KernelRecord, ...]
     traffic: tuple[TrafficRecord, ...]
+    code: tuple[CodeRecord, ...]
     events: int
 
 
-def symbols_of(firmware: Firmware, size: FrameSize) -> list[Symbol]:
-    """Return what the linker must place for pictures of `size`."""
-    found = []
+def symbols_of(firmware: Firmware, size: FrameSize, profile: CompilerProfile = VDSP_O2) -> list[Symbol]:
+    """Return what the linker must place for pictures of `size`: buffers, and code as `profile` compiles it."""
+    found = [
+        symbol
+        for owner, main in firmware.mains.items()
+        for symbol in code_symbols(main, PROCESSORS[owner], profile)
+    ]
     for owner, buffers in firmware.buffers(size).items():
         if owner not in PROCESSORS:
             raise FirmwareError(f"buffers must belong to {', '.join(PROCESSORS)}, not {owner!r}")
@@ -202,5 +208,6 @@ class Board:
             interrupted=interrupted,
             kernels=tuple(each for name, book in self._calls.items() for each in kernel_records(name, book)),
             traffic=self._traffic.records(self.spec.clocks.cclk_ticks),
+            code=code_records(self.link_map, PROCESSORS, self.spec.chip.regions),
             events=self._env.count_events(),
         )

@@ -22,7 +22,7 @@ from bfsim.report.budget import (
     stage_names,
 )
 from bfsim.report.digest import cycle_digest, identity_digest
-from bfsim.trace import REST, FrameRecord, RunRecord, StallReason
+from bfsim.trace import REST, CodeRecord, FrameRecord, RunRecord, StallReason
 
 SHOWN_AT_EACH_END = 4
 """Frames listed at the beginning and at the end of a long run."""
@@ -216,11 +216,20 @@ def configuration(run: RunRecord) -> Table:
     table.add_row("Board", f"{identity.board}, CCLK {_mhz(identity.cclk_hz)}, SCLK {_mhz(identity.sclk_hz)}")
     table.add_row("LDF", identity.ldf)
     table.add_row("Compiler", f"{identity.compiler}, LLVM {identity.llvm_version}")
+    for each in run.code:
+        table.add_row(f"Code of {each.core}", _code(each))
     table.add_row("Feed", identity.feed)
     table.add_row("bfsim", f"{identity.bfsim_version}, {run.events:,} events simulated")
     table.add_row("Identity", identity_digest(identity))
     table.add_row("Cycles", cycle_digest(run.frames))
     return table
+
+
+def _code(code: CodeRecord) -> str:
+    outside = "" if code.in_l1 else "; outside L1, its fetches are not modelled"
+    return (
+        f"{code.kernels} kernels, {code.nbytes:,} bytes in {code.segment}, {code.free_bytes:,} free{outside}"
+    )
 
 
 def _mhz(hz: float) -> str:

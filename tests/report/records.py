@@ -77,6 +77,7 @@ def run_of(frames: Sequence[FrameRecord], missed: tuple[int, ...] = ()) -> RunRe
         missed=missed,
         interrupted=False,
         kernels=(),
+        code=(),
         traffic=(),
         events=0,
     )

@@ -24,12 +24,12 @@ class Calls:
         self.label = ""
 
     def step(self, op: Op, each: Instruction, result: str | None, bank: Bank, *uses: tuple[str, Bank],
-             overwrites: tuple[str, ...] = (), cclk: int | None = None) -> None:  # fmt: skip
+             overwrites: tuple[str, ...] = (), cclk: int | None = None, nbytes: int | None = None) -> None:  # fmt: skip
         named = tuple(
             (value if value.startswith("#") else self.context.name(value), where) for value, where in uses
         )
         over = tuple(self.context.name(value) for value in overwrites)
-        self.steps.add(self.label, Step(op, each.line, result, bank, named, over, cclk))
+        self.steps.add(self.label, Step(op, each.line, result, bank, named, over, cclk, nbytes))
 
     def call(self, each: Instruction) -> None:
         if not each.is_call:
@@ -91,9 +91,9 @@ class Calls:
         if routine.mix:
             for op, count in routine.mix:
                 for _ in range(count):
-                    self.step(op, each, None, DATA)
+                    self.step(op, each, None, DATA, nbytes=0)
         else:
-            self.step(Op.LIBRARY, each, None, DATA, cclk=routine.cclk)
+            self.step(Op.LIBRARY, each, None, DATA, cclk=routine.cclk, nbytes=0)
 
     def divide(self, each: Instruction) -> None:
         library = self.context.profile.library

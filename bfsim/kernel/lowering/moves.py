@@ -28,7 +28,7 @@ class Moves:
             line = self.flow.defined[phi][1].line
             for value, label in arms:
                 if value.startswith("#"):
-                    self._on_edge(label, home, Step(immediate(value), line, phi, self.bank[self.find(phi)]))
+                    self._on_edge(label, home, load_constant(value, line, phi, self.bank[self.find(phi)]))
                 elif self.find(value) != self.find(phi):
                     self._on_edge(label, home, Step(Op.MOVE, line, phi, Bank.ANY, ((value, Bank.ANY),)))
 
@@ -135,17 +135,19 @@ class Moves:
                         continue
                     made.add((name, place))
                     if place == label:
-                        block.append(Step(immediate(name), step.line, None, Bank.ANY))
+                        block.append(load_constant(name, step.line))
                     else:
-                        self.steps.add(place, Step(immediate(name), step.line, None, Bank.ANY))
+                        self.steps.add(place, load_constant(name, step.line))
                 block.append(step)
             self.steps.of[label] = block
 
 
-def immediate(constant: str) -> Op:
+def load_constant(constant: str, line: int, result: str | None = None, bank: Bank = Bank.ANY) -> Step:
     """Return the operation that loads a constant, written #5."""
-    try:
-        number = int(constant[1:])
-    except ValueError:
-        return Op.IMM
-    return Op.IMM if number in isa.LONG_IMMEDIATE else Op.IMM32
+    digits = constant[1:].lstrip("-")
+    number = int(constant[1:]) if digits.isdigit() else 0
+    if number in isa.SHORT_IMMEDIATE:
+        return Step(Op.IMM, line, result, bank)
+    if number in isa.LONG_IMMEDIATE:
+        return Step(Op.IMM, line, result, bank, nbytes=isa.LONG_FORM_BYTES)
+    return Step(Op.IMM32, line, result, bank)

@@ -63,15 +63,17 @@ class _Lowering:
 
     def block(self, block: Block) -> BlockCost:
         cost = BlockCost()
+        steps = self.steps.of[block.label]
         if block is self.flow.routine.blocks[0]:
             self._enter(cost, block.instructions[0].line)
-        steps = self.steps.of[block.label]
+        before = len(cost.charges)
         cost.charges += [
             self._charge(step, issue) for step, issue in zip(steps, self._issues(steps), strict=True)
         ]
         self._loops(block, cost)
         self._leave_block(block, cost)
-        cost.nbytes = sum(COSTS[each.op].nbytes for each in cost.charges)
+        others = cost.charges[:before] + cost.charges[before + len(steps) :]
+        cost.nbytes = sum(each.code_bytes for each in steps) + sum(COSTS[each.op].nbytes for each in others)
         return cost
 
     def _issues(self, steps: list[Step]) -> list[Issue]:

@@ -6,7 +6,7 @@ from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import Loop
-from bfsim.kernel.lowering.moves import immediate
+from bfsim.kernel.lowering.moves import load_constant
 from bfsim.kernel.lowering.steps import Bank, Step
 from bfsim.kernel.lowering.webs import Webs
 
@@ -118,8 +118,12 @@ class Pressure:
             block: list[Step] = []
             for step in self.steps.of[label]:
                 if any(self.find(name) == web for name, _ in step.uses) and step.op is not Op.IMM:
-                    op = immediate(web) if web.startswith("#") else Op.LOAD32
-                    block.append(Step(op, step.line, None, Bank.ANY))
+                    constant = web.startswith("#")
+                    block.append(
+                        load_constant(web, step.line)
+                        if constant
+                        else Step(Op.LOAD32, step.line, None, Bank.ANY)
+                    )
                 block.append(step)
                 if step.result and self.find(step.result) == web:
                     block.append(Step(Op.STORE32, step.line, None, Bank.ANY))

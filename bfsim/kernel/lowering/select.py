@@ -65,7 +65,8 @@ class _Selector(Calls):
 
     def load(self, each: Instruction) -> None:
         bank = ANY if each.bits == 32 else DATA
-        self.step(LOADS[each.bits], each, each.result, bank, (self._address(each), POINTER))
+        address, nbytes = (self._address(each), POINTER), self._access_bytes(each)
+        self.step(LOADS[each.bits], each, each.result, bank, address, nbytes=nbytes)
         if self.context.needs.extended_apart(each):
             self.step(Op.EXTEND, each, f"{each.result}.wide", DATA, (each.result or "", DATA))
         elif self.context.needs.extended_late(each):
@@ -73,9 +74,18 @@ class _Selector(Calls):
 
     def store(self, each: Instruction) -> None:
         bank = ANY if each.bits == 32 else DATA
-        self.step(
-            STORES[each.bits], each, None, DATA, (each.operands[0], bank), (self._address(each), POINTER)
+        value, address = (each.operands[0], bank), (self._address(each), POINTER)
+        self.step(STORES[each.bits], each, None, DATA, value, address, nbytes=self._access_bytes(each))
+
+    def _access_bytes(self, each: Instruction) -> int | None:
+        """Bytes have no short form with an offset [PRM]."""
+        pointer = self.flow.instruction(each.operands[-1])
+        offset = (
+            pointer is not None
+            and pointer.opcode == "getelementptr"
+            and not pointer.operands[-1].startswith("%")
         )
+        return isa.LONG_FORM_BYTES if offset and each.bits == isa.BYTE_BITS else None
 
     def _address(self, each: Instruction) -> str:
         """Return the pointer that an access uses: one that walks along, or one that was computed."""
@@ -141,7 +151,10 @@ class _Selector(Calls):
             self.step(Op.EXTEND, each, each.result, DATA, (source, DATA))
         elif amount.isdigit():
             near = int(amount) in isa.ADDRESS_SHIFTS and each.opcode != "ashr"
-            self.step(Op.SHIFT, each, each.result, ANY if near else DATA, (value, ANY if near else DATA))
+            kept = len(self.flow.users.get(value, [])) > 1  # three operands take the long form
+            where = ANY if near else DATA
+            nbytes = isa.LONG_FORM_BYTES if kept else None
+            self.step(Op.SHIFT, each, each.result, where, (value, where), nbytes=nbytes)
         else:
             self.step(Op.SHIFT, each, each.result, DATA, (value, DATA), (amount, DATA), overwrites=(value,))
 

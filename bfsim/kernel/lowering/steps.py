@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
-from bfsim.kernel.isa import Op
+from bfsim.kernel.isa import COSTS, Op
 
 
 class Bank(Enum):
@@ -28,7 +28,13 @@ class Step:
     overwrites: tuple[str, ...] = ()
     cclk: int | None = None
     """Cycles, where they are not those of the operation."""
-    text: str = ""
+    nbytes: int | None = None
+    """Bytes of code, where they are not those of the operation."""
+
+    @property
+    def code_bytes(self) -> int:
+        """Bytes of code."""
+        return COSTS[self.op].nbytes if self.nbytes is None else self.nbytes
 
 
 @dataclass(slots=True)

@@ -1,0 +1,95 @@
+"""The code of a firmware: which kernels each core runs, and how many bytes the linker must place for them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from types import CodeType, FunctionType
+from typing import Any
+
+from bfsim.chip.memory_map import Region
+from bfsim.kernel import CompilerProfile, Kernel
+from bfsim.linker import LinkMap, Placement, Symbol
+from bfsim.machine.program import Main
+from bfsim.trace import CodeRecord
+
+SECTION = "program"  # input section of code, as VisualDSP++ names it
+ALIGN_BYTES = 4
+
+
+def code_symbols(main: Main, processor: str | None, profile: CompilerProfile) -> list[Symbol]:
+    """Return a symbol for every kernel of a core's main loop, callees included, each once.
+
+    Library routines (division, floats) and the main loop itself are not counted.
+    """
+    nbytes: dict[str, int] = {}
+    for kernel in kernels_named(main):
+        nbytes.update(kernel.code_bytes(profile))
+    return [Symbol(name, SECTION, size, ALIGN_BYTES, processor) for name, size in nbytes.items() if size]
+
+
+def code_records(
+    link_map: LinkMap, processors: Mapping[str, str | None], regions: Sequence[Region]
+) -> tuple[CodeRecord, ...]:
+    """Return where the code of each core went; `processors`: the names of the cores in the LDF."""
+    free = {segment.name: segment.free_bytes for segment in link_map.segments}
+    found: dict[tuple[str, str], list[Placement]] = {}
+    for core, processor in processors.items():
+        for placed in link_map.placements:
+            if (
+                placed.symbol.section == SECTION
+                and processor is not None
+                and placed.symbol.processor == processor
+            ):
+                found.setdefault((core, placed.segment), []).append(placed)
+    return tuple(
+        CodeRecord(
+            core=core,
+            segment=segment,
+            in_l1=all(_in_l1(each, regions) for each in placements),
+            kernels=len(placements),
+            nbytes=sum(each.symbol.nbytes for each in placements),
+            free_bytes=free[segment],
+        )
+        for (core, segment), placements in found.items()
+    )
+
+
+def _in_l1(placed: Placement, regions: Sequence[Region]) -> bool:
+    holding = (each for each in regions if each.holds(placed.address, placed.symbol.nbytes))
+    return any(each.memory.startswith("L1_CODE") for each in holding)
+
+
+def kernels_named(main: object) -> tuple[Kernel, ...]:
+    """Return the kernels that a function names, or that a function named by it names, in the order of their names."""
+    found: dict[Kernel, None] = {}
+    seen: set[int] = set()
+    waiting: list[object] = [main]
+    while waiting:
+        each = waiting.pop()
+        if id(each) in seen:
+            continue
+        seen.add(id(each))
+        if isinstance(each, Kernel):
+            found[each] = None
+        elif isinstance(each, FunctionType):
+            waiting.extend(_named(each))
+    return tuple(sorted(found, key=lambda kernel: kernel.function.symbol))
+
+
+def _named(function: FunctionType) -> Iterator[Any]:
+    """What the names in the code of a function stand for, as far as they are global or bound in its closure."""
+    wrapped = getattr(function, "__wrapped__", None)
+    if wrapped is not None:
+        yield wrapped
+    for cell in function.__closure__ or ():
+        yield cell.cell_contents
+    for name in _names(function.__code__):
+        if name in function.__globals__:
+            yield function.__globals__[name]
+
+
+def _names(code: CodeType) -> Iterator[str]:
+    yield from code.co_names
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _names(constant)
