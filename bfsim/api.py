@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.kernel import Kernel, Work, i8, i16, i32, kernel, u8, u16, u32
+from bfsim.kernel import Kernel, Work, f32, i8, i16, i32, kernel, sqrt, u8, u16, u32
 from bfsim.machine.core import Core, Frame
 from bfsim.machine.memories import Row
 from bfsim.machine.program import Buffer, Firmware, FrameSize
@@ -11,5 +11,5 @@ from bfsim.trace import BudgetRow
 
 __all__ = [
     "BudgetRow", "Buffer", "Core", "Firmware", "Frame", "FrameSize", "InputRing", "Kernel", "OutputRing", "Row", "Work",
-    "i8", "i16", "i32", "kernel", "u8", "u16", "u32",
+    "f32", "i8", "i16", "i32", "kernel", "sqrt", "u8", "u16", "u32",
 ]  # fmt: skip

@@ -18,7 +18,7 @@ from bfsim.kernel.ir_text import DEFINE, LABEL
 from bfsim.kernel.schedule import Counter
 
 DIVISION = re.compile(r"^(  %[\w.$-]+ = )(sdiv|udiv|srem|urem)(?: exact)? (i\d+) ([^,]+), (.+)$")
-ACCESS = re.compile(r"^  (?:%[\w.$-]+ = load|store) (i\d+)(?: [^,]+)?, ptr (%[\w.$-]+)")
+ACCESS = re.compile(r"^  (?:%[\w.$-]+ = load|store) (i\d+|float)(?: [^,]+)?, ptr (%[\w.$-]+)")
 SWITCH = re.compile(r"^  switch (i\d+) ")
 NOISE = re.compile(r" local_unnamed_addr| #\d+| !dbg !\d+")
 LEFT_OUT = ("!", "attributes", "target", "source_filename", ";")

@@ -18,7 +18,7 @@ from bfsim.kernel.followers import Follower
 from bfsim.kernel.jit import Compiled, compiled
 from bfsim.kernel.language import read_kernel
 from bfsim.kernel.profile import VDSP_O2, CompilerProfile
-from bfsim.kernel.types import ArrayType, IntType
+from bfsim.kernel.types import ArrayType, FloatType, IntType
 from bfsim.kernel.work import PreparedCall
 
 
@@ -49,8 +49,18 @@ class Kernel:
         """Which parameters are integers."""
         return tuple(i for i, each in enumerate(self.function.parameters) if isinstance(each.type, IntType))
 
+    @cached_property
+    def float_positions(self) -> tuple[int, ...]:
+        """Which parameters are single floats."""
+        return tuple(i for i, each in enumerate(self.function.parameters) if isinstance(each.type, FloatType))
+
     def compiled(self, profile: CompilerProfile, *, followed: bool = False, counted: bool = True) -> Compiled:
-        """Compile for `profile`, or take it from the cache on disk. See `jit.compiled`."""
+        """Compile for `profile`, or take it from the cache on disk. See `jit.compiled`.
+
+        Raises KernelError where the kernel has floats and the profile has no library for them.
+        """
+        if profile.floats is None:
+            self._refuse_floats(profile)
         return compiled(self.function, profile, followed=followed, counted=counted)
 
     def code_bytes(self, profile: CompilerProfile) -> dict[str, int]:
@@ -74,10 +84,22 @@ class Kernel:
             self.check_array(position, array)
             bound.append((slots[position], array))
         integers = [(slots[each], each) for each in self.integer_positions]
-        has_value = self.function.result is not None
+        floats = [(slots[each], each) for each in self.float_positions]
+        result = self.function.result
         return PreparedCall(
-            code, bound, integers, self.check, has_value=has_value, follower=follower, totals=totals
+            code, bound, integers, floats, self.check, result=result, follower=follower, totals=totals
         )
+
+    def _refuse_floats(self, profile: CompilerProfile) -> None:
+        for each in (self.function, *self.function.callees()):
+            line = each.first_float()
+            if line is not None:
+                place = f"{each.file}:{each.first_line + line - 1}"
+                shown = each.source.splitlines()[line - 1]
+                raise KernelError(
+                    f"{place}: {each.name} must do without floats, for the profile {profile.name} has no library for "
+                    f"them; use fixed point, or another profile\n    {shown}"
+                )
 
     def _slots(self) -> list[int]:
         """First word of each parameter in the argument block: two words an array, one an integer."""
@@ -110,6 +132,14 @@ class Kernel:
                 raise KernelError(
                     f"{name} must be an int in {low}..{high}, not {value!r} ({self.name}, {self.place})"
                 )
+        for position in self.float_positions:
+            if isinstance(arguments[position], bool) or not isinstance(
+                arguments[position], (float, int, np.floating)
+            ):
+                name = self.function.parameters[position].name
+                raise KernelError(
+                    f"{name} must be a float, not {arguments[position]!r} ({self.name}, {self.place})"
+                )
 
     @cached_property
     def _written(self) -> frozenset[str]:
@@ -141,7 +171,7 @@ class Kernel:
         """Run with every index checked and undo it; raise KernelError at the first index outside its array."""
         sanitizer.check(self.function, arguments)
 
-    def __call__(self, *arguments: Any) -> int | None:
+    def __call__(self, *arguments: Any) -> Any:
         """Run on numpy arrays and ints, as the firmware would, but without a machine around it."""
         self.check(arguments)
         arrays = [arguments[each] for each in self.array_positions]

@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 
 from llvmlite import ir
 
-from bfsim.kernel import tree
-from bfsim.kernel.types import ArrayType, IntType, u32
+from bfsim.kernel import floats, tree
+from bfsim.kernel.floats import register_type
+from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, u32
 
 I1, I32, I64, POINTER = ir.IntType(1), ir.IntType(32), ir.IntType(64), ir.PointerType()
 SIMPLE = {"+": "add", "-": "sub", "*": "mul", "&": "and_", "|": "or_", "^": "xor"}
@@ -22,6 +23,7 @@ CONTINUES, RETURNS, GOES_ON = 33, 34, 67
 EVEN = (GOES_ON, GOES_ON)
 SIGNED = "signed"  # names divisions of i32: LLVM may make them unsigned, the run-time library's routine stays
 FLOOR = "floor"  # names remainders that only round a quotient down
+WORD_BITS = 32
 SHIFT_MASK = 31  # a shift count uses its low five bits; the language refuses constants outside 0..31
 
 
@@ -62,11 +64,18 @@ def _weight(body: tuple[tree.Stmt, ...]) -> int:
     )
 
 
+def _is_power_of_two(value: float) -> bool:
+    return value > 0 and int(value).bit_count() == 1
+
+
 def _declare(module: ir.Module, function: tree.Function) -> None:
     types: list[ir.Type] = []
     for parameter in function.parameters:
-        types.extend([POINTER, I32] if isinstance(parameter.type, ArrayType) else [I32])
-    result = I32 if function.result else ir.VoidType()
+        if isinstance(parameter.type, ArrayType):
+            types.extend([POINTER, I32])
+        else:
+            types.append(register_type(parameter.type))
+    result = register_type(function.result) if function.result else ir.VoidType()
     declared = ir.Function(module, ir.FunctionType(result, types), function.symbol)
     declared.attributes.add("noinline")
     declared.attributes.add("nounwind")
@@ -90,12 +99,12 @@ class _Emitter:
     def run(self) -> None:
         target = self.module.get_global(self.function.symbol)
         self.scope = self._debug_scope(target)
-        integers = self._name_arguments(target)
+        scalars = self._name_arguments(target)
         self.builder = ir.IRBuilder(target.append_basic_block("entry"))
         self._at(1)
         for name, kind in self.function.locals:
-            self.slots[name] = self.builder.alloca(I32 if isinstance(kind, IntType) else I1, name=name)
-        for name, value in integers.items():
+            self.slots[name] = self.builder.alloca(register_type(kind), name=name)
+        for name, value in scalars.items():
             self.builder.store(value, self.slots[name])
         self._block(self.function.body)
         if not self.builder.block.is_terminated:
@@ -105,8 +114,8 @@ class _Emitter:
                 self.builder.ret_void()
 
     def _name_arguments(self, target: ir.Function) -> dict[str, ir.Value]:
-        """Name the arguments as the parameters, before anything else takes a name. Returns the integers."""
-        integers: dict[str, ir.Value] = {}
+        """Name the arguments as the parameters, before anything else takes a name. Returns the scalars."""
+        scalars: dict[str, ir.Value] = {}
         arguments = iter(target.args)
         for parameter in self.function.parameters:
             value = next(arguments)
@@ -116,8 +125,8 @@ class _Emitter:
                 length.name = f"{parameter.name}.len"
                 self.arrays[parameter.name] = (value, length)
             else:
-                integers[parameter.name] = value
-        return integers
+                scalars[parameter.name] = value
+        return scalars
 
     def _debug_scope(self, target: ir.Function) -> ir.values.MDValue:
         file = self.module.add_debug_info("DIFile", {"filename": self.function.name, "directory": ""})
@@ -155,7 +164,7 @@ class _Emitter:
     def _store(self, node: tree.Store) -> None:
         value = self.value(node.value)
         address = self._address(node.array, node.element, node.index)
-        if node.element.bits < 32:
+        if node.element.bits < WORD_BITS:
             value = self.builder.trunc(value, ir.IntType(node.element.bits))
         self.builder.store(value, address)
 
@@ -248,15 +257,15 @@ class _Emitter:
         return result
 
     def _const(self, node: tree.Const) -> ir.Value:
-        return I32(node.value)
+        return register_type(node.type)(node.value)
 
     def _local(self, node: tree.Local) -> ir.Value:
-        return self.builder.load(self.slots[node.name], typ=I32 if isinstance(node.type, IntType) else I1)
+        return self.builder.load(self.slots[node.name], typ=register_type(node.type))
 
     def _length(self, node: tree.Length) -> ir.Value:
         return self.arrays[node.array][1]
 
-    def _address(self, array: str, element: IntType, index: tree.Expr) -> ir.Value:
+    def _address(self, array: str, element: Number, index: tree.Expr) -> ir.Value:
         pointer, length = self.arrays[array]
         offset = self.value(index)
         if self.trap:
@@ -274,33 +283,46 @@ class _Emitter:
 
     def _leave(self) -> None:
         if self.function.result:
-            self.builder.ret(I32(0))
+            self.builder.ret(register_type(self.function.result)(0))
         else:
             self.builder.ret_void()
 
     def _load(self, node: tree.Load) -> ir.Value:
         address = self._address(node.array, node.element, node.index)
+        if isinstance(node.element, FloatType):
+            return self.builder.load(address, typ=floats.FLOAT)
         value = self.builder.load(address, typ=ir.IntType(node.element.bits))
         return self._extend(value, node.element)
 
     def _extend(self, value: ir.Value, kind: IntType) -> ir.Value:
-        if kind.bits == 32:
+        if kind.bits == WORD_BITS:
             return value
         return self.builder.sext(value, I32) if kind.signed else self.builder.zext(value, I32)
 
     def _cast(self, node: tree.Cast) -> ir.Value:
         value = self.value(node.operand)
-        if node.to.bits == 32:
+        if isinstance(node.to, FloatType) or isinstance(node.operand.type, FloatType):
+            assert node.operand.type
+            return floats.convert(self.builder, value, node.operand.type, node.to, self._float_intrinsic)
+        if node.to.bits == WORD_BITS:
             return value
         return self._extend(self.builder.trunc(value, ir.IntType(node.to.bits)), node.to)
 
     def _unary(self, node: tree.Unary) -> ir.Value:
         value = self.value(node.operand)
+        if isinstance(node.type, FloatType):
+            return floats.unary(self.builder, node.op, value, self._float_intrinsic)
         if node.op == "-":
             return self.builder.neg(value)
         if node.op == "~":
             return self.builder.not_(value)
         return self._intrinsic("llvm.abs.i32", [I32, I1], [value, I1(0)])
+
+    def _float_intrinsic(self, name: str, result: ir.Type, arguments: list[ir.Value]) -> ir.Value:
+        kind = ir.FunctionType(result, [each.type for each in arguments])
+        return self.builder.call(
+            self.module.globals.get(name) or ir.Function(self.module, kind, name), arguments
+        )
 
     def _intrinsic(self, name: str, types: list[ir.Type], arguments: list[ir.Value]) -> ir.Value:
         target = self.module.globals.get(name) or ir.Function(self.module, ir.FunctionType(I32, types), name)
@@ -308,6 +330,8 @@ class _Emitter:
 
     def _binary(self, node: tree.Binary) -> ir.Value:
         left, right = self.value(node.left), self.value(node.right)
+        if isinstance(node.type, FloatType):
+            return floats.binary(self.builder, node.op, left, right)
         unsigned = node.type is u32
         if node.op in SIMPLE:
             return getattr(self.builder, SIMPLE[node.op])(left, right)
@@ -317,8 +341,8 @@ class _Emitter:
             return self._intrinsic(f"llvm.{'u' if unsigned else 's'}{node.op}.i32", [I32, I32], [left, right])
         if unsigned:
             return (self.builder.udiv if node.op == "//" else self.builder.urem)(left, right)
-        if isinstance(node.right, tree.Const) and node.right.value.bit_count() == 1 and node.right.value > 0:
-            return self._power_of_two_division(node.op, left, node.right.value)
+        if isinstance(node.right, tree.Const) and _is_power_of_two(node.right.value):
+            return self._power_of_two_division(node.op, left, int(node.right.value))
         return self._floor_division(node.op, left, right)
 
     def _shift(self, node: tree.Binary, left: ir.Value, right: ir.Value) -> ir.Value:
@@ -350,6 +374,8 @@ class _Emitter:
 
     def _compare(self, node: tree.Compare) -> ir.Value:
         left, right = self.value(node.left), self.value(node.right)
+        if isinstance(node.left.type, FloatType):
+            return floats.compare(self.builder, node.op, left, right)
         if node.left.type is u32:
             return self.builder.icmp_unsigned(node.op, left, right)
         return self.builder.icmp_signed(node.op, left, right)
@@ -378,7 +404,8 @@ class _Emitter:
 
     def _choose(self, node: tree.Choose) -> ir.Value:
         """Only the chosen side runs, as in Python."""
-        slot = self._entry_slot("chosen")
+        with self.builder.goto_entry_block():
+            slot = self.builder.alloca(register_type(node.type), name="chosen")
         yes, no, after = (self.builder.append_basic_block(name) for name in ("yes", "no", "chosen"))
         self.builder.cbranch(self.value(node.test), yes, no)
         for block, side in ((yes, node.yes), (no, node.no)):
@@ -386,7 +413,7 @@ class _Emitter:
             self.builder.store(self.value(side), slot)
             self.builder.branch(after)
         self.builder.position_at_end(after)
-        return self.builder.load(slot, typ=I32)
+        return self.builder.load(slot, typ=register_type(node.type))
 
     def _call(self, node: tree.Call) -> ir.Value:
         arguments: list[ir.Value] = []

@@ -3,7 +3,7 @@
 An entry takes nothing and returns the issue and interlock cycles of one call in one word, because a C call without arguments is the
 cheapest that Python has. It finds its argument block through the cell `cell_name(entry)`, a pointer: an array of
 64-bit words with the address of the totals (one word per counter), then pointer and length of each array,
-each integer, the follower's state (followed kernels only), and last a word for the kernel's result.
+each integer (or the bits of a float), the follower's state (followed kernels only), and last a word for the kernel's result.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from bfsim.kernel import tree
 from bfsim.kernel.schedule import Counter
-from bfsim.kernel.types import ArrayType
+from bfsim.kernel.types import ArrayType, FloatType
 
 FIRST_ARGUMENT = 1  # word 0 of the block is the address of the totals
 STALL_SHIFT = (
@@ -80,6 +80,13 @@ def entry_point(function: tree.Function, counters: Sequence[Counter], entry: str
             values.append(f"i32 {take('i32')}")
             continue
         word = take("i64")
+        if isinstance(parameter.type, FloatType):
+            rows += [
+                f"  {word}.low = trunc i64 {word} to i32",
+                f"  {word}.float = bitcast i32 {word}.low to float",
+            ]
+            values.append(f"float {word}.float")
+            continue
         rows += [
             f"  {word}.low = trunc i64 {word} to i32",
             f"  {word}.wide = {'sext' if parameter.type.signed else 'zext'} i32 {word}.low to i64",
@@ -92,13 +99,18 @@ def entry_point(function: tree.Function, counters: Sequence[Counter], entry: str
     if followed:
         rows.append(f"  store ptr {take('ptr')}, ptr @bfsim.state")
     call = f"@{function.symbol}({', '.join(values)})"
-    if function.result:
+    if isinstance(function.result, FloatType):
+        rows.append(f"  %value = call float {call}")
+        rows.append("  %bits = bitcast float %value to i32")
+        rows.append("  %wide = zext i32 %bits to i64")
+    elif function.result:
         rows.append(f"  %value = call i32 {call}")
         rows.append(f"  %wide = {'sext' if function.result.signed else 'zext'} i32 %value to i64")
-        rows.append(f"  %result = getelementptr i64, ptr %arguments, i64 {slot}")
-        rows.append("  store i64 %wide, ptr %result")
     else:
         rows.append(f"  call void {call}")
+    if function.result:
+        rows.append(f"  %result = getelementptr i64, ptr %arguments, i64 {slot}")
+        rows.append("  store i64 %wide, ptr %result")
     body = "\n".join([*rows, *_callees(function, counters)])
     return f"define i64 @{entry}() {{\n{body}\n  %cclk = load i64, ptr @bfsim.cclk\n  ret i64 %cclk\n}}\n"
 

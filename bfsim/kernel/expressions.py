@@ -1,7 +1,8 @@
 """Expressions of the kernel language: Python AST → typed tree.
 
-All arithmetic is 32 bits wide and wraps. An int literal takes the type of the other side; mixing i32
-and u32 is refused, because C and Python disagree about what it means.
+All integer arithmetic is 32 bits wide and wraps. An int literal takes the type of the other side; mixing i32
+and u32 is refused, because C and Python disagree about what it means, and so is mixing integers and floats,
+because the conversion is a call that should be seen.
 """
 
 from __future__ import annotations
@@ -12,12 +13,25 @@ from dataclasses import dataclass, field, replace
 
 from bfsim.kernel import tree
 from bfsim.kernel.refusal import Source
-from bfsim.kernel.types import BOOL, ArrayType, IntType, Value, i32, promoted, u32
+from bfsim.kernel.types import (
+    BOOL,
+    ArrayType,
+    FloatType,
+    IntType,
+    Number,
+    Value,
+    f32,
+    i32,
+    promoted,
+    sqrt,
+    u32,
+)
 
 BINARY = {
-    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.FloorDiv: "//", ast.Mod: "%",
+    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.FloorDiv: "//", ast.Mod: "%",
     ast.LShift: "<<", ast.RShift: ">>", ast.BitAnd: "&", ast.BitOr: "|", ast.BitXor: "^",
 }  # fmt: skip
+ON_FLOATS = ("+", "-", "*", "/", "min", "max")
 COMPARE = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 
 FOLD: dict[str, Callable[[int, int], int]] = {
@@ -51,7 +65,7 @@ class Scope:
             self.source.refuse(
                 node,
                 f"a kernel cannot use {_plain(node)}",
-                "write it with integers, array elements, + - * // % << >> & | ^ ~, comparisons, min, max and abs",
+                "write it with numbers, array elements, + - * // % << >> & | ^ ~, comparisons, min, max and abs",
             )
         result: tree.Expr = method(node)
         return result
@@ -62,6 +76,24 @@ class Scope:
         if isinstance(result.type, IntType):
             return self._as_type(node, result, wanted)
         self._refuse_nothing(node, result)
+        if isinstance(result.type, FloatType):
+            self.source.refuse(
+                node, "an integer is needed here, not an f32", "write i32(...) round it: it rounds to 0"
+            )
+        self.source.refuse(node, "a number is needed here, not a truth value", "write `1 if test else 0`")
+
+    def number(self, node: ast.expr, wanted: Number | None = None) -> tree.Expr:
+        """Read an expression that must be a number, of type `wanted` if that is given."""
+        if isinstance(wanted, IntType):
+            return self.integer(node, wanted)
+        result = self.expression(node)
+        if isinstance(result.type, FloatType) or (wanted is None and isinstance(result.type, IntType)):
+            return result
+        self._refuse_nothing(node, result)
+        if isinstance(result.type, IntType):
+            self.source.refuse(
+                node, f"f32 is needed here, not {result.type}", "write f32(...) round it: a call"
+            )
         self.source.refuse(node, "a number is needed here, not a truth value", "write `1 if test else 0`")
 
     def condition(self, node: ast.expr) -> tree.Expr:
@@ -71,6 +103,8 @@ class Scope:
             zero = tree.Const(0, result.type, result.line)
             return tree.Compare("!=", result, zero, BOOL, result.line)
         self._refuse_nothing(node, result)
+        if isinstance(result.type, FloatType):
+            self.source.refuse(node, "an f32 is no truth value", "write `x != 0.0`")
         return result
 
     def _refuse_nothing(self, node: ast.expr, value: tree.Expr) -> None:
@@ -84,7 +118,7 @@ class Scope:
     def _as_type(self, node: ast.expr, value: tree.Expr, wanted: IntType | None) -> tree.Expr:
         if wanted is None or value.type is wanted:
             return value
-        if isinstance(value, tree.Const):
+        if isinstance(value, tree.Const) and isinstance(value.value, int):
             low, high = wanted.bounds
             if not low <= value.value <= high:
                 self.source.refuse(
@@ -106,10 +140,8 @@ class Scope:
         if type(node.value) is int:
             return self._literal(node, node.value)
         if type(node.value) is float:
-            self.source.refuse(
-                node, "a kernel cannot use floats", "scale to integers, for example 8.8 fixed point"
-            )
-        self.source.refuse(node, f"a kernel cannot use the constant {node.value!r}", "use integers")
+            return tree.Const(f32(node.value), f32, node.lineno)
+        self.source.refuse(node, f"a kernel cannot use the constant {node.value!r}", "use numbers")
 
     def _literal(self, node: ast.expr, value: int) -> tree.Expr:
         if not i32.bounds[0] <= value <= u32.bounds[1]:
@@ -135,6 +167,8 @@ class Scope:
         constant = self.outer.get(name)
         if type(constant) is int:
             return self._literal(node, constant)
+        if type(constant) is float:
+            return tree.Const(f32(constant), f32, node.lineno)
         if name not in self.outer:
             self.source.refuse(
                 node, f"the name {name} is not defined", "assign it first, or make it a parameter"
@@ -142,44 +176,67 @@ class Scope:
         self.source.refuse(
             node,
             f"a kernel cannot read {name}, which is a {type(constant).__name__}",
-            "pass it as an array or integer parameter; only int constants of the module can be read",
+            "pass it as an array or integer parameter; only int and float constants of the module can be read",
         )
 
     def _binop(self, node: ast.BinOp) -> tree.Expr:
         op = BINARY.get(type(node.op))
         if op is None:
-            instead = (
-                "write // (rounds down)"
-                if isinstance(node.op, ast.Div)
-                else "write it with + - * // % << >> & | ^"
+            self.source.refuse(
+                node, f"a kernel cannot use {_plain(node.op)}", "write it with + - * // % << >> & | ^"
             )
-            self.source.refuse(node, f"a kernel cannot use {_plain(node.op)}", instead)
         if op in ("<<", ">>"):
             return self._shift(node, op)
         return self._arithmetic(node, op, node.left, node.right)
 
     def _shift(self, node: ast.BinOp, op: str) -> tree.Expr:
         left, right = self.integer(node.left), self.integer(node.right)
-        if isinstance(right, tree.Const) and not 0 <= right.value <= 31:
+        if isinstance(right, tree.Const) and not 0 <= int(right.value) <= 31:
             self.source.refuse(node.right, f"a shift must be by 0..31, not by {right.value}", "shift by less")
-        if isinstance(right, tree.Const) and isinstance(left, tree.Const):
-            return self._literal(node, FOLD[op](left.value, right.value))
+        if _are_ints(left, right):
+            return self._folded(node, op, left, right)
         assert isinstance(left.type, IntType)
         return tree.Binary(op, left, right, left.type, node.lineno)
 
     def _arithmetic(self, node: ast.expr, op: str, left_node: ast.expr, right_node: ast.expr) -> tree.Expr:
-        left, right = self.integer(left_node), self.integer(right_node)
+        left, right = self.number(left_node), self.number(right_node)
+        if f32 in (left.type, right.type) or op == "/":
+            return self._float_arithmetic(node, op, left, right)
         if op in ("//", "%") and isinstance(right, tree.Const) and right.value == 0:
             self.source.refuse(right_node, "the division is by zero", "divide by something else")
-        if isinstance(left, tree.Const) and isinstance(right, tree.Const):
-            return self._literal(node, FOLD[op](left.value, right.value))
+        if _are_ints(left, right):
+            return self._folded(node, op, left, right)
         kind = self._common_type(right_node, left, right)
         left, right = self._as_type(left_node, left, kind), self._as_type(right_node, right, kind)
         return tree.Binary(op, left, right, kind, node.lineno)
 
-    def _pair(self, left_node: ast.expr, right_node: ast.expr) -> tuple[tree.Expr, tree.Expr, IntType]:
+    def _folded(self, node: ast.expr, op: str, left: tree.Expr, right: tree.Expr) -> tree.Expr:
+        assert isinstance(left, tree.Const)
+        assert isinstance(right, tree.Const)
+        return self._literal(node, FOLD[op](int(left.value), int(right.value)))
+
+    def _float_arithmetic(self, node: ast.expr, op: str, left: tree.Expr, right: tree.Expr) -> tree.Expr:
+        if left.type is not right.type:
+            self.source.refuse(
+                node,
+                f"the two sides are {left.type} and {right.type}",
+                "write f32(...) round the integer, or 2.0 for 2: the conversion is a call",
+            )
+        if left.type is not f32:
+            self.source.refuse(
+                node, "a kernel cannot use the float division / on integers", "write // (rounds down)"
+            )
+        if op not in ON_FLOATS:
+            self.source.refuse(node, f"{op} is not for f32", "use + - * / min max, or convert with i32(...)")
+        return tree.Binary(op, left, right, f32, node.lineno)
+
+    def _pair(self, left_node: ast.expr, right_node: ast.expr) -> tuple[tree.Expr, tree.Expr, Number]:
         """Both sides of a comparison or a choice in one type."""
-        left, right = self.integer(left_node), self.integer(right_node)
+        left, right = self.number(left_node), self.number(right_node)
+        if f32 in (left.type, right.type):
+            if left.type is not right.type:
+                self._float_arithmetic(right_node, "", left, right)
+            return left, right, f32
         kind = self._common_type(right_node, left, right)
         return self._as_type(left_node, left, kind), self._as_type(right_node, right, kind), kind
 
@@ -201,14 +258,25 @@ class Scope:
     def _unaryop(self, node: ast.UnaryOp) -> tree.Expr:
         if isinstance(node.op, ast.Not):
             return tree.Not(self.condition(node.operand), BOOL, node.lineno)
-        operand = self.integer(node.operand)
+        operand = self.number(node.operand)
+        if isinstance(operand.type, FloatType):
+            return self._float_sign(node, operand)
         if isinstance(node.op, ast.UAdd):
             return operand
         op = "-" if isinstance(node.op, ast.USub) else "~"
         if isinstance(operand, tree.Const):
-            return self._literal(node, -operand.value if op == "-" else ~operand.value)
+            return self._literal(node, -int(operand.value) if op == "-" else ~int(operand.value))
         assert isinstance(operand.type, IntType)
         return tree.Unary(op, operand, operand.type, node.lineno)
+
+    def _float_sign(self, node: ast.UnaryOp, operand: tree.Expr) -> tree.Expr:
+        if isinstance(node.op, ast.Invert):
+            self.source.refuse(node, "~ is not for f32", "convert with i32(...)")
+        if isinstance(node.op, ast.UAdd):
+            return operand
+        if isinstance(operand, tree.Const):
+            return replace(operand, value=-operand.value)
+        return tree.Unary("-", operand, f32, node.lineno)
 
     def _compare(self, node: ast.Compare) -> tree.Expr:
         result: tree.Expr | None = None
@@ -251,7 +319,7 @@ class Scope:
         name, element = self.array_of(node)
         return tree.Load(name, element, self.index(node), promoted(element), node.lineno)
 
-    def array_of(self, node: ast.Subscript) -> tuple[str, IntType]:
+    def array_of(self, node: ast.Subscript) -> tuple[str, Number]:
         """Name and element type of the array that `node` indexes."""
         if not isinstance(node.value, ast.Name) or node.value.id not in self.arrays:
             self.source.refuse(node, "only array parameters can be indexed", "pass the array as a parameter")
@@ -288,7 +356,7 @@ class Scope:
                 node, f"{name} is a variable here, not a function", "give the variable another name"
             )
         target = self.outer.get(name)
-        if isinstance(target, IntType):
+        if isinstance(target, (IntType, FloatType)):
             return self._cast(node, target)
         callee = getattr(target, "function", None)
         if isinstance(callee, tree.Function):
@@ -298,10 +366,9 @@ class Scope:
         if (target is min or target is max) and len(node.args) == 2:
             return self._arithmetic(node, name, node.args[0], node.args[1])
         if target is abs and len(node.args) == 1:
-            operand = self.integer(node.args[0], i32)
-            if isinstance(operand, tree.Const):
-                return self._literal(node, abs(operand.value))
-            return tree.Unary("abs", operand, i32, node.lineno)
+            return self._absolute(node)
+        if target is sqrt and len(node.args) == 1:
+            return tree.Unary("sqrt", self.number(node.args[0], f32), f32, node.lineno)
         advice = (
             f"give {name} two arguments"
             if target is min or target is max
@@ -309,10 +376,22 @@ class Scope:
         )
         self.source.refuse(node, f"a kernel cannot call {name} like this", advice)
 
-    def _cast(self, node: ast.Call, to: IntType) -> tree.Expr:
+    def _absolute(self, node: ast.Call) -> tree.Expr:
+        operand = self.number(node.args[0])
+        if isinstance(operand.type, FloatType):
+            return tree.Unary("abs", operand, f32, node.lineno)
+        operand = self._as_type(node.args[0], operand, i32)
+        if isinstance(operand, tree.Const):
+            return self._literal(node, abs(int(operand.value)))
+        return tree.Unary("abs", operand, i32, node.lineno)
+
+    def _cast(self, node: ast.Call, to: Number) -> tree.Expr:
         if len(node.args) != 1:
             self.source.refuse(node, f"{to}(...) takes one number", f"write {to}(x)")
-        return tree.Cast(self.integer(node.args[0]), to, promoted(to), node.lineno)
+        operand = self.number(node.args[0])
+        if isinstance(operand.type, FloatType) and to.bits < f32.bits:
+            self.source.refuse(node, f"an f32 cannot become {to} in one step", f"write {to}(i32(x))")
+        return tree.Cast(operand, to, promoted(to), node.lineno)
 
     def _length(self, node: ast.Call) -> tree.Expr:
         if len(node.args) == 1 and isinstance(node.args[0], ast.Name) and node.args[0].id in self.arrays:
@@ -333,8 +412,8 @@ class Scope:
         return tree.Call(callee, arguments, callee.result, node.lineno)
 
     def _argument(self, node: ast.expr, parameter: tree.Parameter) -> tree.Expr | str:
-        if isinstance(parameter.type, IntType):
-            return self.integer(node, parameter.type)
+        if isinstance(parameter.type, (IntType, FloatType)):
+            return self.number(node, parameter.type)
         if isinstance(node, ast.Name) and self.arrays.get(node.id) == parameter.type:
             return node.id
         self.source.refuse(
@@ -342,10 +421,14 @@ class Scope:
         )
 
 
+def _are_ints(*values: tree.Expr) -> bool:
+    return all(isinstance(each, tree.Const) for each in values)
+
+
 def _plain(node: ast.AST) -> str:
     """What `node` is, in words."""
     names = {"listcomp": "comprehensions", "joinedstr": "strings", "tuple": "tuples", "list": "lists",
              "dict": "dictionaries", "attribute": "attributes", "lambda": "lambda", "namedexpr": "`:=`",
-             "div": "the float division /", "pow": "**", "matmult": "@", "is": "`is`", "in": "`in`"}  # fmt: skip
+             "pow": "**", "matmult": "@", "is": "`is`", "in": "`in`"}  # fmt: skip
     name = type(node).__name__.lower()
     return names.get(name, f"`{name}`")

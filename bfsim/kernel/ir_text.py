@@ -43,6 +43,12 @@ class Instruction:
         return self.opcode in ("sdiv", "udiv", "srem", "urem")
 
     @property
+    def is_soft_float(self) -> bool:
+        """Whether it calls the soft-float library."""
+        named = self.opcode == "call" and ("@llvm.sqrt" in self.text or "@llvm.fpto" in self.text)
+        return named or self.opcode in ("fadd", "fsub", "fmul", "fdiv", "fcmp", "sitofp", "uitofp")
+
+    @property
     def is_call(self) -> bool:
         """Whether it is a call of another kernel."""
         return self.opcode == "call" and "@llvm." not in self.text
@@ -50,7 +56,7 @@ class Instruction:
     @property
     def bits(self) -> int:
         """Width of the value that it loads, stores, extends or computes."""
-        found = WIDTH.search(self.text)
+        found = WIDTH.search(self.text) if " float" not in self.text else None
         return int(found.group(1)) if found else 32
 
 
@@ -164,4 +170,4 @@ def _operands(opcode: str, body: str) -> tuple[str, ...]:
 
 
 def _is_constant(word: str) -> bool:
-    return bool(re.fullmatch(r"-?\d+|true|false|null|poison", word))
+    return bool(re.fullmatch(r"-?\d+|true|false|null|poison|-?\d+\.\d+e[+-]\d+|0x[0-9A-F]+", word))

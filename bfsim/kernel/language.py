@@ -20,8 +20,9 @@ from bfsim.errors import KernelError
 from bfsim.kernel import tree
 from bfsim.kernel.expressions import BINARY, Scope
 from bfsim.kernel.refusal import Source
-from bfsim.kernel.types import ArrayType, IntType, i32, u32
+from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, f32, i32, u32
 
+SCALARS = (i32, u32, f32)
 STATEMENTS = {"try": "tests with if", "with": "plain statements"}
 
 
@@ -129,11 +130,11 @@ def _parameters(scope: Scope, definition: ast.FunctionDef) -> tuple[tree.Paramet
     parameters = []
     for each in [*arguments.posonlyargs, *arguments.args]:
         kind = _annotation(scope.outer, each.annotation)
-        if not isinstance(kind, ArrayType) and kind not in (i32, u32):
+        if not isinstance(kind, ArrayType) and kind not in SCALARS:
             scope.source.refuse(
                 each,
                 f"the parameter {each.arg} needs a type",
-                "write i32, u32, or an array such as u8[:] or i16[:]",
+                "write i32, u32, f32, or an array such as u8[:] or i16[:]",
             )
         parameters.append(tree.Parameter(each.arg, kind))
         if isinstance(kind, ArrayType):
@@ -144,27 +145,27 @@ def _parameters(scope: Scope, definition: ast.FunctionDef) -> tuple[tree.Paramet
     return tuple(parameters)
 
 
-def _annotation(outer: Mapping[str, object], node: ast.expr | None) -> IntType | ArrayType | None:
+def _annotation(outer: Mapping[str, object], node: ast.expr | None) -> Number | ArrayType | None:
     """Type named by an annotation, or None when it names none."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         with suppress(SyntaxError):
             node = ast.parse(node.value, mode="eval").body
     if isinstance(node, ast.Subscript) and ast.unparse(node.slice) == ":":
         element = _annotation(outer, node.value)
-        return ArrayType(element) if isinstance(element, IntType) else None
-    if isinstance(node, ast.Name) and isinstance(named := outer.get(node.id), IntType):
+        return ArrayType(element) if isinstance(element, (IntType, FloatType)) else None
+    if isinstance(node, ast.Name) and isinstance(named := outer.get(node.id), (IntType, FloatType)):
         return named
     return None
 
 
-def _result_type(scope: Scope, definition: ast.FunctionDef) -> IntType | None:
+def _result_type(scope: Scope, definition: ast.FunctionDef) -> Number | None:
     node = definition.returns
     if node is None or (isinstance(node, ast.Constant) and node.value is None):
         return None
     kind = _annotation(scope.outer, node)
-    if isinstance(kind, IntType) and kind in (i32, u32):
+    if isinstance(kind, (IntType, FloatType)) and kind in SCALARS:
         return kind
-    scope.source.refuse(node, "a kernel returns i32, u32 or nothing", "write -> i32")
+    scope.source.refuse(node, "a kernel returns i32, u32, f32 or nothing", "write -> i32")
 
 
 def _without_docstring(body: list[ast.stmt]) -> list[ast.stmt]:
@@ -182,7 +183,7 @@ class _Reader:
     """Reads statements. `ended`: no way leads past the statement just read."""
 
     scope: Scope
-    result: IntType | None
+    result: Number | None
     ended: bool = False
     breaks: list[bool] = field(default_factory=list)
     """Of each open loop: whether a `break` leaves it."""
@@ -215,9 +216,11 @@ class _Reader:
 
     def _annassign(self, node: ast.AnnAssign) -> list[tree.Stmt]:
         kind = _annotation(self.scope.outer, node.annotation)
-        if kind not in (i32, u32) or node.value is None:
-            self.scope.source.refuse(node, "a local is an i32 or a u32 with a value", "write x: u32 = 0")
-        assert isinstance(kind, IntType)
+        if kind not in SCALARS or node.value is None:
+            self.scope.source.refuse(
+                node, "a local is an i32, a u32 or an f32 with a value", "write x: u32 = 0"
+            )
+        assert isinstance(kind, (IntType, FloatType))
         return self._set(node.target, node.value, kind)
 
     def _augassign(self, node: ast.AugAssign) -> list[tree.Stmt]:
@@ -233,11 +236,12 @@ class _Reader:
         value = ast.copy_location(ast.BinOp(old, node.op, node.value), node)
         return self._set(node.target, value, None)
 
-    def _set(self, target: ast.expr, value: ast.expr, kind: IntType | None) -> list[tree.Stmt]:
+    def _set(self, target: ast.expr, value: ast.expr, kind: Number | None) -> list[tree.Stmt]:
         scope = self.scope
         if isinstance(target, ast.Subscript):
             name, element = scope.array_of(target)
-            return [tree.Store(name, element, scope.index(target), scope.integer(value), target.lineno)]
+            stored = scope.number(value, f32) if element is f32 else scope.integer(value)
+            return [tree.Store(name, element, scope.index(target), stored, target.lineno)]
         if not isinstance(target, ast.Name) or target.id in scope.arrays:
             scope.source.refuse(
                 target, "only a local name or an array element can be assigned", "write x = or a[i] ="
@@ -245,7 +249,10 @@ class _Reader:
         known = scope.locals.get(target.id, kind)
         if kind is not None and known is not kind:
             scope.source.refuse(target, f"{target.id} is {known} already, not {kind}", "use another name")
-        result = scope.integer(value, known) if isinstance(known, IntType) else scope.expression(value)
+        if isinstance(known, (IntType, FloatType)):
+            result = scope.number(value, known)
+        else:
+            result = scope.expression(value)
         scope.locals.setdefault(target.id, result.type or i32)
         if scope.locals[target.id] != result.type:
             scope.source.refuse(
@@ -323,7 +330,7 @@ class _Reader:
         self.scope.assigned = before
         self.breaks.pop()
         self.ended = False
-        return [tree.For(name, start, stop, step.value, body, node.lineno)]
+        return [tree.For(name, start, stop, int(step.value), body, node.lineno)]
 
     def _no_else(self, node: ast.While | ast.For) -> None:
         if node.orelse:
@@ -348,6 +355,6 @@ class _Reader:
             self.scope.source.refuse(
                 node, f"this kernel {must}", "match the return line and the -> annotation"
             )
-        value = None if node.value is None else self.scope.integer(node.value, self.result)
+        value = None if node.value is None else self.scope.number(node.value, self.result)
         self.ended = True
         return [tree.Return(value, node.lineno)]

@@ -17,7 +17,8 @@ from bfsim.kernel import jit, tree
 from bfsim.kernel.counters import instrument
 from bfsim.kernel.emit import TRAP, TRAP_WORDS
 from bfsim.kernel.profile import VDSP_O2
-from bfsim.kernel.types import ArrayType
+from bfsim.kernel.types import ArrayType, FloatType
+from bfsim.kernel.work import BITS, FLOAT
 
 
 def check(function: tree.Function, arguments: Sequence[Any]) -> None:
@@ -30,7 +31,8 @@ def check(function: tree.Function, arguments: Sequence[Any]) -> None:
             before.append((argument, argument.copy()))
             words += [argument.ctypes.data, len(argument)]
         else:
-            words.append(int(argument))
+            is_float = isinstance(parameter.type, FloatType)
+            words.append(BITS.unpack(FLOAT.pack(argument))[0] if is_float else int(argument))
     block = (ctypes.c_int64 * (len(words) + 1))(*words)
     trap[0] = 0
     code.cell.value = ctypes.addressof(block)

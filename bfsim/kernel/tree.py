@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from bfsim.kernel.types import ArrayType, IntType, Value
+from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, Value
 
 
 @dataclass(frozen=True, slots=True)
 class Const:
-    value: int
-    type: IntType
+    value: int | float
+    type: Number
     line: int
 
 
@@ -30,9 +30,9 @@ class Load:
     """`array[index]`, extended to 32 bits."""
 
     array: str
-    element: IntType
+    element: Number
     index: Expr
-    type: IntType
+    type: Number
     line: int
 
 
@@ -45,22 +45,22 @@ class Length:
 
 @dataclass(frozen=True, slots=True)
 class Binary:
-    """Arithmetic: one of + - * // % << >> & | ^ min max, both sides of one type."""
+    """Arithmetic: one of + - * / // % << >> & | ^ min max, both sides of one type."""
 
     op: str
     left: Expr
     right: Expr
-    type: IntType
+    type: Number
     line: int
 
 
 @dataclass(frozen=True, slots=True)
 class Unary:
-    """One of - ~ abs."""
+    """One of - ~ abs sqrt."""
 
     op: str
     operand: Expr
-    type: IntType
+    type: Number
     line: int
 
 
@@ -104,11 +104,11 @@ class Choose:
 
 @dataclass(frozen=True, slots=True)
 class Cast:
-    """Keep the low bits of `operand` as `to`, then extend to 32 bits."""
+    """Keep the low bits of `operand` as `to`, then extend to 32 bits; or convert to or from f32."""
 
     operand: Expr
-    to: IntType
-    type: IntType
+    to: Number
+    type: Number
     line: int
 
 
@@ -118,7 +118,7 @@ class Call:
 
     callee: Function
     arguments: tuple[Expr | str, ...]
-    type: IntType | None
+    type: Number | None
     line: int
 
 
@@ -135,7 +135,7 @@ class Assign:
 @dataclass(frozen=True, slots=True)
 class Store:
     array: str
-    element: IntType
+    element: Number
     index: Expr
     value: Expr
     line: int
@@ -198,7 +198,7 @@ Stmt = Assign | Store | If | While | For | Return | Evaluate | Break | Continue
 @dataclass(frozen=True, slots=True)
 class Parameter:
     name: str
-    type: IntType | ArrayType
+    type: Number | ArrayType
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -214,9 +214,22 @@ class Function:
     first_line: int = field(repr=False)
     source: str = field(repr=False)
     parameters: tuple[Parameter, ...]
-    result: IntType | None
+    result: Number | None
     locals: tuple[tuple[str, Value], ...]
     body: tuple[Stmt, ...]
+
+    def first_float(self) -> int | None:
+        """Line of the first float in the kernel itself, counted like every `line`; None without floats."""
+        kinds = (Const, Local, Load, Binary, Unary, Choose, Cast, Call)
+        lines = [
+            each.line
+            for each in _parts(self.body)
+            if isinstance(each, kinds) and isinstance(each.type, FloatType)
+        ]
+        in_head = any(
+            FloatType in (type(p.type), type(getattr(p.type, "element", None))) for p in self.parameters
+        )
+        return 1 if in_head else min(lines, default=None)
 
     def callees(self) -> tuple[Function, ...]:
         """Kernels that this one calls, directly or not, each once, callees first."""

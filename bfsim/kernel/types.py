@@ -50,10 +50,39 @@ class IntType:
 
 
 @dataclass(frozen=True, slots=True)
+class FloatType:
+    """An IEEE single. The Blackfin has no floating-point unit: every operation is a call of the run-time library."""
+
+    name: str
+    bits: int
+
+    @property
+    def nbytes(self) -> int:
+        """Size of one element in bytes."""
+        return self.bits // 8
+
+    @property
+    def dtype(self) -> np.dtype[np.generic]:
+        """Element type of the numpy arrays that hold it."""
+        return np.dtype(f"f{self.nbytes}")
+
+    def __getitem__(self, item: object) -> ArrayType:
+        if item != slice(None):
+            raise TypeError(f"an array type must be written {self.name}[:], not {self.name}[{item!r}]")
+        return ArrayType(self)
+
+    def __call__(self, value: float) -> float:
+        return float(np.float32(value))
+
+    def __str__(self) -> str:
+        return self.name
+
+
+@dataclass(frozen=True, slots=True)
 class ArrayType:
     """A one-dimensional array in the chip's memory."""
 
-    element: IntType
+    element: Number
 
     def __str__(self) -> str:
         return f"{self.element}[:]"
@@ -73,13 +102,20 @@ i16 = IntType("i16", 16, signed=True)
 u16 = IntType("u16", 16, signed=False)
 i32 = IntType("i32", 32, signed=True)
 u32 = IntType("u32", 32, signed=False)
+f32 = FloatType("f32", 32)
 BOOL = BoolType()
 
 INT_TYPES = {each.name: each for each in (i8, u8, i16, u16, i32, u32)}
 
-Value = IntType | BoolType
+Number = IntType | FloatType
+Value = Number | BoolType
 
 
-def promoted(element: IntType) -> IntType:
+def promoted(element: Number) -> Number:
     """Type of `element` once loaded into a register: 32 bits wide, unsigned only for u32 (C's promotion)."""
-    return u32 if element is u32 else i32
+    return element if element is u32 or isinstance(element, FloatType) else i32
+
+
+def sqrt(value: float) -> float:
+    """Return the square root of an f32, rounded to an f32; in a kernel a call of the run-time library."""
+    return float(np.sqrt(np.float32(value)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import struct
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -12,7 +13,9 @@ from numpy.typing import NDArray
 from bfsim.kernel.entry import FIRST_ARGUMENT, STALL_SHIFT
 from bfsim.kernel.followers import Follower
 from bfsim.kernel.jit import Compiled
+from bfsim.kernel.types import FloatType, Number
 
+FLOAT, BITS = struct.Struct("<f"), struct.Struct("<I")
 ISSUE_MASK = (1 << STALL_SHIFT) - 1
 
 
@@ -26,7 +29,7 @@ class Work:
     __slots__ = ("accesses", "issue_cclk", "stall_cclk", "value")
 
     def __init__(
-        self, issue_cclk: int, stall_cclk: int, value: int | None = None, accesses: list[int] | None = None
+        self, issue_cclk: int, stall_cclk: int, value: float | None = None, accesses: list[int] | None = None
     ) -> None:
         self.issue_cclk = issue_cclk
         self.stall_cclk = stall_cclk
@@ -41,7 +44,8 @@ class PreparedCall:
     """
 
     __slots__ = (
-        "_at", "_block", "_cell", "_check", "_count", "_entry", "_follower", "_integers", "_is_plain", "_kept",
+        "_at", "_block", "_cell", "_check", "_count", "_entry", "_floats", "_follower", "_integers", "_is_float",
+        "_is_plain", "_kept",
         "_value_word",
     )  # fmt: skip
 
@@ -50,19 +54,22 @@ class PreparedCall:
         compiled: Compiled,
         arrays: Sequence[tuple[int, NDArray[Any]]],
         integers: Sequence[tuple[int, int]],
+        floats: Sequence[tuple[int, int]],
         check: Callable[[Sequence[object]], None],
         *,
-        has_value: bool,
+        result: Number | None,
         follower: Follower | None,
         totals: NDArray[np.int64],
     ) -> None:
-        """`arrays`: (word, array); `integers`: (word, position); `totals`: one word per counter.
+        """`arrays`: (word, array); `integers`, `floats`: (word, position); `totals`: one word per counter.
 
         `check` raises the error when the arguments of a call are wrong.
         """
-        self._count = len(arrays) + len(integers)
-        words = FIRST_ARGUMENT + 2 * len(arrays) + len(integers)
-        self._value_word = words + (follower is not None) if has_value else 0
+        scalars = len(integers) + len(floats)
+        self._count = len(arrays) + scalars
+        words = FIRST_ARGUMENT + 2 * len(arrays) + scalars
+        self._value_word = words + (follower is not None) if result else 0
+        self._is_float = isinstance(result, FloatType)
         self._block = (ctypes.c_int64 * (words + 2))()
         self._block[0] = totals.ctypes.data
         for word, array in arrays:
@@ -74,27 +81,40 @@ class PreparedCall:
         self._cell = compiled.cell
         self._entry = compiled.entry
         self._integers = tuple(integers)
+        self._floats = tuple(floats)
         self._check = check
         self._follower = follower
-        self._is_plain = not has_value and follower is None
+        self._is_plain = result is None and follower is None
 
     def run(self, arguments: Sequence[Any]) -> Work:
         """Run the kernel now and say what it cost. Of `arguments`, only the integers are read."""
         if self._integers:
             self._put(arguments)
+        if self._floats:
+            self._put_floats(arguments)
         self._cell.value = self._at
         cycles: int = self._entry()
         if cycles < 0 or len(arguments) != self._count:
             self._check(arguments)
         if self._is_plain:
             return Work(cycles & ISSUE_MASK, cycles >> STALL_SHIFT)
-        value = self._block[self._value_word] if self._value_word else None
+        value: float | None = self._block[self._value_word] if self._value_word else None
+        if self._is_float and value is not None:
+            value = FLOAT.unpack(BITS.pack(value))[0]
         return Work(
             cycles & ISSUE_MASK,
             cycles >> STALL_SHIFT,
             value,
             self._follower.take_counts() if self._follower else None,
         )
+
+    def _put_floats(self, arguments: Sequence[Any]) -> None:
+        """Put the bits of the floats where the kernel finds them; what is no number is refused."""
+        try:
+            for word, position in self._floats:
+                self._block[word] = BITS.unpack(FLOAT.pack(arguments[position]))[0]
+        except (struct.error, OverflowError, IndexError):
+            self._check(arguments)
 
     def _put(self, arguments: Sequence[Any]) -> None:
         """Put the integers where the kernel finds them; it refuses those that do not fit."""

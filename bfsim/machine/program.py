@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError
-from bfsim.kernel.types import IntType
+from bfsim.kernel.types import FloatType, Number
 from bfsim.trace import BudgetRow
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class Buffer:
     """
 
     name: str
-    element: IntType
+    element: Number
     columns: int
     section: str
     rows: int = 1
@@ -50,11 +50,15 @@ class Buffer:
             self._check_values(np.asarray(self.values))
 
     def _check_values(self, values: NDArray[Any]) -> None:
-        low, high = self.element.bounds
         if values.size != self.rows * self.columns:
             raise FirmwareError(
                 f"buffer {self.name} must have {self.rows * self.columns} values, not {values.size}"
             )
+        if isinstance(self.element, FloatType):
+            if values.dtype.kind not in "iuf":
+                raise FirmwareError(f"values of buffer {self.name} must be numbers, not {values.dtype}")
+            return
+        low, high = self.element.bounds
         if values.dtype.kind not in "iu" or values.min() < low or values.max() > high:
             raise FirmwareError(
                 f"values of buffer {self.name} must be integers in {low}..{high}, "

@@ -51,7 +51,11 @@ class Calls:
 
     def _intrinsic(self, each: Instruction) -> None:
         values = tuple((value, DATA) for value in each.operands if not value.startswith(("true", "false")))
-        if "@llvm.cttz" in each.text:
+        if "@llvm.sqrt" in each.text or "@llvm.fpto" in each.text:
+            self.float_operation(each)
+        elif "@llvm.fabs" in each.text:
+            self.sign(each)
+        elif "@llvm.cttz" in each.text:
             self._shift_by_zeros(each)
         elif "@llvm.bitreverse" in each.text or "@llvm.bswap" in each.text:
             self._swap_bits(each)
@@ -94,6 +98,27 @@ class Calls:
                     self.step(op, each, None, DATA, nbytes=0)
         else:
             self.step(Op.LIBRARY, each, None, DATA, cclk=routine.cclk, nbytes=0)
+
+    def float_operation(self, each: Instruction) -> None:
+        """A call of the soft-float library."""
+        library = self.context.profile.floats
+        assert library is not None
+        routine = {
+            "fadd": library.add, "fsub": library.subtract, "fmul": library.multiply, "fdiv": library.divide,
+            "fcmp": library.compare, "sitofp": library.from_integer, "uitofp": library.from_integer,
+        }.get(each.opcode)  # fmt: skip
+        if routine is None:
+            routine = library.square_root if "@llvm.sqrt" in each.text else library.to_integer
+        values = [operand for operand in each.operands if operand.startswith("%") or operand[:1].isdigit()]
+        self._pass(each, values[: isa.REGISTER_ARGUMENTS])
+        self.step(Op.CALL, each, each.result, DATA)
+        self._library(each, routine)
+        if each.opcode == "fcmp":
+            self.step(Op.COMPARE, each, None, DATA)  # of the integer that the library returns, with zero
+
+    def sign(self, each: Instruction) -> None:
+        """Changing the sign of a float flips a bit."""
+        self.step(Op.ALU, each, each.result, DATA, (each.operands[0], DATA))
 
     def divide(self, each: Instruction) -> None:
         library = self.context.profile.library

@@ -34,7 +34,10 @@ class Needs(Folding):
     def _turns_by_counter(self, loop: Loop) -> bool:
         """Counted, and without calls: a register counts the turns, not the program's variable."""
         inside = (each for label in self.flow.inside(loop) for each in self.flow.blocks[label].instructions)
-        library = any(each.is_call or (each.is_division and self.divides_by_call(each)) for each in inside)
+        library = any(
+            each.is_call or each.is_soft_float or (each.is_division and self.divides_by_call(each))
+            for each in inside
+        )
         turns = self.walks.turns(loop)
         many = turns is None or turns > FEWEST_TURNS
         return not library and many and self.walks.is_counted(loop) and not self._may_be_endless(loop)
