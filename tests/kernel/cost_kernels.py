@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.kernel import i32, kernel, u8, u32
+from bfsim.kernel import i16, i32, kernel, u8, u16, u32
 
 
 @kernel
@@ -121,3 +121,15 @@ def translate(row: u8[:], out: u32[:]):
         elif code == 5:
             value = 33
         out[i] = u32(value)
+
+
+@kernel
+def relabel(labels: u16[:], lut: u16[:]):
+    for i in range(len(labels)):
+        labels[i] = lut[labels[i]]
+
+
+@kernel
+def energies(x: i16[:], y: i16[:], out: i32[:]):
+    for i in range(len(x)):
+        out[i] = x[i] * x[i] + y[i] * y[i]

@@ -32,6 +32,6 @@ def line_executions(kernel: Kernel, *arguments: Any) -> dict[int, int]:
     found: dict[int, int] = {}
     for counter, events in zip(code.counters, totals.tolist(), strict=False):
         if counter.value is None and counter.routine == kernel.function.symbol:
-            for line, _ in counter.line_cclk:
+            for line, _, _ in counter.line_cclk:
                 found[line] = max(found.get(line, 0), events)
     return found

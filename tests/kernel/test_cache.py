@@ -108,7 +108,7 @@ def test_a_changed_callee_profile_or_variant_is_compiled_again(
         text = f"@kernel\ndef g(x: i32) -> i32:\n    return x * {factor}\n@kernel\ndef f(x: i32) -> i32:\n    return g(x)\n"
         module = import_text(text, tmp_path, "same")
         assert module.f(5) == 5 * factor
-    module.f.compiled(replace(VDSP_O2, divide_cclk=99))
+    module.f.compiled(replace(VDSP_O2, parallel_issue=False))
     module.f.compiled(VDSP_O2, counted=False)
     module.f.compiled(VDSP_O2, followed=True)
     assert compiles == ["f"] * 5

@@ -47,11 +47,11 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
 @pytest.mark.parametrize(
     ("line", "at", "what"),
     [
-        ("y = x * 0.5", "0.5", "cannot use floats; scale to integers"),
-        ("y = x / 2", "x / 2", "cannot use the float division /; write // (rounds down)"),
+        ("y = x * 0.5", "x * 0.5", "the two sides are i32 and f32; write f32(...) round the integer"),
+        ("y = x / 2", "x / 2", "cannot use the float division / on integers; write // (rounds down)"),
         ("y = x ** 2", "x ** 2", "cannot use **; write it with"),
         ("y = x @ x", "x @ x", "cannot use @; write it with"),
-        ("y = 'text'", "'text'", "cannot use the constant 'text'; use integers"),
+        ("y = 'text'", "'text'", "cannot use the constant 'text'; use numbers"),
         ("y = f'{x}'", "f'{x}'", "cannot use strings"),
         ("y = [x, x]", "[x, x]", "cannot use lists"),
         ("y = {x: 1}", "{x: 1}", "cannot use dictionaries"),
@@ -90,7 +90,7 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("for i in range(3):\n        pass\n    x = i", "i", "i may be used before it has a value"),
         ("while True:\n        y = 1\n        if y:\n            break\n    x = y", "y", "y may be used before it has a value"),
         ("x = SIZE\n    SIZE = 3", "SIZE", "SIZE may be used before it has a value"),
-        ("x = RATIO", "RATIO", "cannot read RATIO, which is a float"),
+        ("x = RATIO", "RATIO", "an integer is needed here, not an f32"),
         ("x = NAMES[0]", "NAMES[0]", "only array parameters can be indexed; pass the array as a parameter"),
         ("x = nothing", "nothing", "the name nothing is not defined"),
         ("x = x + w", "w", "the two sides are i32 and u32; write i32(...) or u32(...) round one of them"),
@@ -111,7 +111,7 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("y = x and x", "x and", "`and` needs truth values, not numbers; write a comparison, `x != 0`"),
         ("y = x < 1 or x", "x", "`or` needs truth values, not numbers"),
         ("y = x < 1\n    y = 2", "2", "y holds bool, not i32; use another name"),
-        ("y: u8 = 1", "y: u8", "a local is an i32 or a u32 with a value; write x: u32 = 0"),
+        ("y: u8 = 1", "y: u8", "a local is an i32, a u32 or an f32 with a value; write x: u32 = 0"),
         ("x: u32 = 1", "x: u32", "x is i32 already, not u32; use another name"),
         ("x = plain(x)", "plain(x)", "cannot call plain like this; make plain a @kernel, or inline it"),
         ("x = max(x, x, x)", "max(x", "cannot call max like this; make max a @kernel"),
@@ -145,7 +145,7 @@ def test_what_is_outside_the_language_is_refused_where_it_stands(
 @pytest.mark.parametrize(
     ("head", "at", "what"),
     [
-        ("def f(x):", "x)", "the parameter x needs a type; write i32, u32, or an array such as u8[:]"),
+        ("def f(x):", "x)", "the parameter x needs a type; write i32, u32, f32, or an array such as u8[:]"),
         ("def f(x: u8):", "x: u8", "the parameter x needs a type"),
         ("def f(x: float):", "x: float", "the parameter x needs a type"),
         ("def f(x: 'i32 +'):", "x: 'i32 +'", "the parameter x needs a type"),
@@ -154,8 +154,8 @@ def test_what_is_outside_the_language_is_refused_where_it_stands(
         ("def f(*x: i32):", "def f", "takes plain parameters only"),
         ("def f(**x: i32):", "def f", "takes plain parameters only"),
         ("def f(*, x: i32):", "def f", "takes plain parameters only"),
-        ("def f(x: i32) -> u8:", "u8", "returns i32, u32 or nothing; write -> i32"),
-        ("def f(x: i32) -> bool:", "bool", "returns i32, u32 or nothing"),
+        ("def f(x: i32) -> u8:", "u8", "returns i32, u32, f32 or nothing; write -> i32"),
+        ("def f(x: i32) -> bool:", "bool", "returns i32, u32, f32 or nothing"),
         ("def f(x: i32) -> i32:", "def f", "f can end without a value; return an i32 on every way"),
         ("async def f(x: i32):", "async def", "must be a plain `def`; write def, not lambda or async def"),
         ("def f(größe: i32):", "def f", "the name größe is not ASCII"),
@@ -170,13 +170,13 @@ def test_a_head_outside_the_language_is_refused(head: str, at: str, what: str, t
 
 def test_a_refusal_names_file_line_and_column(tmp_path: Path) -> None:
     """The place of a refusal is one that an editor can jump to, however the kernel is indented."""
-    text = "if True:\n    @kernel\n    def f(x: i32):\n        '''Text\nat the margin.'''\n        y = 0.5\n"
+    text = "if True:\n    @kernel\n    def f(x: i32):\n        '''Text\nat the margin.'''\n        y = None\n"
     message, shown, _ = refusal_of(text, tmp_path)
     place = re.match(r"(.*\.py):(\d+):(\d+): ", message)
     assert place
     line = Path(place[1]).read_text().splitlines()[int(place[2]) - 1]
     assert int(place[2]) == HEADER_LINES + 6
-    assert line[int(place[3]) - 1 :] == "0.5"
+    assert line[int(place[3]) - 1 :] == "None"
     assert shown.strip() == line.strip()
 
 

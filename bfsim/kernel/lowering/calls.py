@@ -44,8 +44,8 @@ class Calls:
         for number, value in enumerate(arguments):
             if number >= isa.REGISTER_ARGUMENTS:
                 self.step(Op.STORE32, each, None, DATA, (value, ANY))
-            elif value.startswith("%") and self.context.needs.ends_in(value, each):
-                continue  # computed right where it is passed
+            elif self.context.is_there(value, number, each):
+                continue  # computed right where it is passed, or passed on
             else:
                 self.step(Op.IMM if not value.startswith("%") else Op.MOVE, each, None, DATA, (value, ANY))
 

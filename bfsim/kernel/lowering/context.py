@@ -102,6 +102,14 @@ class Context:
         """Parameters of the C function, in order."""
         return [each for each in self.routine.parameters if not each.endswith(HIDDEN)]
 
+    def is_there(self, value: str, number: int, call: Instruction) -> bool:
+        """Whether a value is in the register of argument `number` already: computed there, or passed on in its place."""
+        if self.needs.ends_in(value, call):
+            return True
+        parameters, users = self.parameters(), self.flow.users.get(value)
+        repeats = any(call in self.flow.blocks[label].instructions for loop in self.flow.loops for label in loop.blocks)
+        return value in parameters[number : number + 1] and users == [call] and not repeats
+
     def arms(self, phi: Instruction) -> list[tuple[str, str]]:
         """(value, label of the block it comes from) of a phi."""
         return [(value, label[1:]) for value, label in PHI_ARM.findall(phi.text)]

@@ -143,6 +143,8 @@ class Needs(Folding):
         a byte or half-word that was just extended is not known to be positive there.
         """
         constant = each.operands[1].lstrip("-").isdigit()
+        if each.bits in NARROW and not constant:
+            return True  # C widens bytes and half-words to int before it divides them
         dividend = self.flow.instruction(each.operands[0])
         narrow = dividend is not None and dividend.opcode in ("zext", "load")
         if SIGNED in (each.result or "") or FLOOR in (each.result or "") or each.opcode[0] == "s":
