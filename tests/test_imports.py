@@ -23,11 +23,12 @@ MAY_IMPORT = {
     "api": {"kernel", "machine", "trace"},
     "recording": {"errors"},
     "report": {"errors", "clocks", "trace"},
-    "loading": {"errors", "machine"},
+    "loading": {"errors", "kernel", "machine"},
+    "explain": {"errors", "kernel", "loading", "trace"},
     "run": {"errors", "trace", "chip", "kernel", "linker", "machine", "recording", "loading"},
     "terminal": set(),
     "cli_record": {"recording", "terminal"},
-    "cli": {"errors", "trace", "report", "run", "cli_record", "terminal"},
+    "cli": {"errors", "trace", "report", "run", "explain", "cli_record", "terminal"},
     "__main__": {"cli"},
 }
 READ_VERSION = {"recording", "run", "cli"}  # these also read `bfsim.__version__`

@@ -10,7 +10,7 @@ def spin(turns: i32) -> i32:
     """Work that grows with `turns` and touches no memory; the recurrence keeps the compiler from leaving it out."""
     value = 1
     for turn in range(turns):
-        value = value * 5 ^ turn
+        value = (value << 3) ^ (value >> 5) ^ (value << 7) ^ turn
     return value
 
 
