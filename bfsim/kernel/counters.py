@@ -2,7 +2,8 @@
 
 Each counter is a local of its function until the function returns: LLVM keeps it in a register or folds it
 to the trip count, so that counting costs next to nothing. The kernel itself then adds its counts to the
-caller's totals; those of its callees wait in a table of the module until the entry point adds them.
+caller's totals; those of its callees go to a table on the entry point's stack, which every function is handed:
+once callees are inlined, the table dissolves into registers, and a loop around them can still be vectorised.
 Names that are added begin with a dot, which a name of the kernel cannot.
 """
 
@@ -13,12 +14,16 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from bfsim.kernel import tree
+from bfsim.kernel.derived import Sum, derived
 from bfsim.kernel.entry import entry_point, globals_of, settle
-from bfsim.kernel.ir_text import DEFINE, LABEL
+from bfsim.kernel.ir_text import DEFINE, LABEL, read_module
 from bfsim.kernel.schedule import Counter
 
 DIVISION = re.compile(r"^(  %[\w.$-]+ = )(sdiv|udiv|srem|urem)(?: exact)? (i\d+) ([^,]+), (.+)$")
 ACCESS = re.compile(r"^  (?:%[\w.$-]+ = load|store) (i\d+|float)(?: [^,]+)?, ptr (%[\w.$-]+)")
+CALL = re.compile(r"\bcall [^@]*@([\w.$-]+)\(")
+FLOAT_BYTES = 4
+TABLE = "%.bf.table"
 SWITCH = re.compile(r"^  switch (i\d+) ")
 NOISE = re.compile(r" local_unnamed_addr| #\d+| !dbg !\d+")
 LEFT_OUT = ("!", "attributes", "target", "source_filename", ";")
@@ -68,12 +73,19 @@ def instrument(
     return "\n".join(
         [
             globals_of(counters, entry, followed=followed),
-            _Rewriter(function.symbol, counters, followed).rewrite(text),
+            _Rewriter(function, counters, followed, _derived(text, counters)).rewrite(text),
             *(_safe_division(op, kind) for op, kind in divisions),
             FOLLOW if followed else "",
             entry_point(function, counters, entry, followed=followed),
         ]
     )
+
+
+def _derived(text: str, counters: Sequence[Counter]) -> dict[int, Sum]:
+    found: dict[int, Sum] = {}
+    for routine in read_module(text) if counters else ():
+        found |= derived(routine, counters)
+    return found
 
 
 def _safe_division(op: str, kind: str) -> str:
@@ -83,11 +95,14 @@ def _safe_division(op: str, kind: str) -> str:
 
 @dataclass(slots=True)
 class _Rewriter:
-    """Rewrites the functions of a module row by row; `top` is the one that the entry point calls."""
+    """Rewrites the functions of a module row by row; `function` is the one that the entry point calls."""
 
-    top: str
+    function: tree.Function
     counters: Sequence[Counter]
     followed: bool
+    derived: dict[int, Sum]
+    top: str = field(init=False)
+    routines: set[str] = field(init=False)
     places: dict[tuple[str, str], list[_Place]] = field(init=False)
     routine: str = field(init=False, default="")
     here: list[_Place] = field(init=False, default_factory=list)
@@ -98,6 +113,8 @@ class _Rewriter:
 
     def __post_init__(self) -> None:
         self.places = {}
+        self.routines = {each.symbol for each in (*self.function.callees(), self.function)}
+        self.top = self.function.symbol
         for number, counter in enumerate(self.counters):
             self.places.setdefault((counter.routine, counter.label), []).append(_Place(number, counter))
 
@@ -109,11 +126,11 @@ class _Rewriter:
     def _row(self, row: str) -> Iterator[str]:
         if found := DEFINE.match(row):
             self.routine, self.at_first_block = found.group(1), True
-            yield re.sub(r"^define ", "define internal ", row)
+            yield _with_table(re.sub(r"^define ", "define internal ", row), f"@{self.routine}(")
         elif found := LABEL.match(row):
             yield row.split(";", maxsplit=1)[0]
             if self.at_first_block:
-                yield from _allocations(self.routine, self.counters)
+                yield from self._allocations()
             self.here = self.places.get((self.routine, found.group(1)), [])
             self.at_first_block = self.behind_phis = False
         elif row.startswith("  "):
@@ -125,23 +142,80 @@ class _Rewriter:
         if not self.behind_phis and " = phi " not in row:
             self.behind_phis = True
             for each in self.here:
-                if each.counter.value is None:
+                if each.counter.value is None and each.number not in self.derived:
                     yield from _add(each.number, "1")
         if row.startswith(TERMINATORS):
-            yield from _tests(self.here, row)
+            yield from _tests([each for each in self.here if each.number not in self.derived], row)
         if row.startswith("  ret "):
             self.exits += 1
             is_top = self.routine == self.top
-            yield from _leave(self.routine, self.counters, f".exit{self.exits}", is_top=is_top)
+            yield from self._leave(f".exit{self.exits}", is_top=is_top)
         if self.followed:
             yield from _access(row)
+        if (call := CALL.search(row)) and call.group(1) in self.routines:
+            row = _with_table(row, f"@{call.group(1)}(")
         yield DIVISION.sub(r"\1call \3 @bfsim.\2.\3(\3 \4, \3 \5)", row)
 
+    def _allocations(self) -> list[str]:
+        mine = [number for number, _ in self._mine() if number not in self.derived]
+        slots = [f"  %.bf.{number} = alloca i64" for number in mine]
+        return slots + [f"  store i64 0, ptr %.bf.{number}" for number in mine]
 
-def _allocations(routine: str, counters: Sequence[Counter]) -> list[str]:
-    mine = [number for number, each in enumerate(counters) if each.routine == routine]
-    slots = [f"  %.bf.{number} = alloca i64" for number in mine]
-    return slots + [f"  store i64 0, ptr %.bf.{number}" for number in mine]
+    def _mine(self) -> list[tuple[int, Counter]]:
+        return [(number, each) for number, each in enumerate(self.counters) if each.routine == self.routine]
+
+    def _leave(self, place: str, *, is_top: bool) -> list[str]:
+        """Hand over the counts of one run of the routine, at one of its exits."""
+        mine = [(number, each, f"%{place}.mine.{number}") for number, each in self._mine()]
+        rows = [
+            f"  {events} = load i64, ptr %.bf.{number}"
+            for number, _, events in mine
+            if number not in self.derived
+        ]
+        for number, _, events in mine:
+            if number in self.derived:
+                rows += _sum(
+                    events, [(factor, f"%{place}.mine.{other}") for factor, other in self.derived[number]]
+                )
+        if is_top:
+            return rows + settle(mine, place)
+        for number, _, events in mine:
+            name = f"%{place}.{number}"
+            rows += [
+                f"  {name}.slot = getelementptr i64, ptr {TABLE}, i64 {number}",
+                f"  {name}.old = load i64, ptr {name}.slot",
+                f"  {name}.new = add i64 {name}.old, {events}",
+                f"  store i64 {name}.new, ptr {name}.slot",
+            ]
+        return rows
+
+
+def _sum(result: str, terms: Sequence[tuple[int, str]]) -> list[str]:
+    """Add up counts, each taken once or subtracted once."""
+    rows, before = [], "0"
+    for step, (factor, name) in enumerate(terms):
+        total = result if step == len(terms) - 1 else f"{result}.{step}"
+        rows.append(f"  {total} = {'add' if factor > 0 else 'sub'} i64 {before}, {name}")
+        before = total
+    return rows
+
+
+def _with_table(row: str, head: str) -> str:
+    """Hand the table of counts to a function, behind its other arguments."""
+    start = row.index(head) + len(head)
+    end = _closing(row, start)
+    separator = ", " if row[start:end].strip() else ""
+    return f"{row[:end]}{separator}ptr {TABLE}{row[end:]}"
+
+
+def _closing(row: str, start: int) -> int:
+    """Position of the parenthesis that closes the one before `start`."""
+    depth = 1
+    for position in range(start, len(row)):
+        depth += {"(": 1, ")": -1}.get(row[position], 0)
+        if depth == 0:
+            return position
+    raise AssertionError(row)
 
 
 def _add(number: int, amount: str) -> list[str]:
@@ -167,32 +241,11 @@ def _tests(here: list[_Place], terminator: str) -> list[str]:
     return rows
 
 
-def _leave(routine: str, counters: Sequence[Counter], place: str, *, is_top: bool) -> list[str]:
-    """Hand over the counts of one run of `routine`, at one of its exits."""
-    mine = [
-        (number, each, f"%{place}.mine.{number}")
-        for number, each in enumerate(counters)
-        if each.routine == routine
-    ]
-    rows = [f"  {events} = load i64, ptr %.bf.{number}" for number, _, events in mine]
-    if is_top:
-        return rows + settle(mine, place)
-    for number, _, events in mine:
-        name = f"%{place}.{number}"
-        rows += [
-            f"  {name}.slot = getelementptr i64, ptr @bfsim.counts, i64 {number}",
-            f"  {name}.old = load i64, ptr {name}.slot",
-            f"  {name}.new = add i64 {name}.old, {events}",
-            f"  store i64 {name}.new, ptr {name}.slot",
-        ]
-    return rows
-
-
 def _access(row: str) -> list[str]:
     """Tell the follower about an access: bytes, and 256 more for a write."""
     found = ACCESS.match(row)
     if not found:
         return []
-    nbytes = int(found.group(1)[1:]) // 8
+    nbytes = FLOAT_BYTES if found.group(1) == "float" else int(found.group(1)[1:]) // 8
     write = 256 if row.startswith("  store") else 0
     return [f"  call void @bfsim.follow(ptr {found.group(2)}, i64 {nbytes + write})"]

@@ -27,12 +27,11 @@ def cell_name(entry: str) -> str:
 
 
 def globals_of(counters: Sequence[Counter], entry: str, *, followed: bool) -> str:
-    """Return the variables of a counted module: the cell, the totals, the counts of callees and the cycles."""
+    """Return the variables of a counted module: the cell, the totals and the cycles."""
     rows = [
         f"@{cell_name(entry)} = global ptr null",
         "@bfsim.totals = internal global ptr null",
         "@bfsim.cclk = internal global i64 0",
-        f"@bfsim.counts = internal global [{max(1, len(counters))} x i64] zeroinitializer",
     ]
     return "\n".join([*rows, "@bfsim.state = internal global ptr null"] if followed else rows)
 
@@ -98,7 +97,12 @@ def entry_point(function: tree.Function, counters: Sequence[Counter], entry: str
     rows += [f"  br i1 {refused}, label %refuse, label %run", "refuse:", f"  ret i64 {REFUSED}", "run:"]
     if followed:
         rows.append(f"  store ptr {take('ptr')}, ptr @bfsim.state")
-    call = f"@{function.symbol}({', '.join(values)})"
+    called = [number for number, each in enumerate(counters) if each.routine != function.symbol]
+    rows.append(f"  %counts = alloca [{max(1, len(counters))} x i64]")
+    for number in called:
+        rows.append(f"  %count.{number} = getelementptr i64, ptr %counts, i64 {number}")
+        rows.append(f"  store i64 0, ptr %count.{number}")
+    call = f"@{function.symbol}({', '.join([*values, 'ptr %counts'])})"
     if isinstance(function.result, FloatType):
         rows.append(f"  %value = call float {call}")
         rows.append("  %bits = bitcast float %value to i32")
@@ -111,19 +115,12 @@ def entry_point(function: tree.Function, counters: Sequence[Counter], entry: str
     if function.result:
         rows.append(f"  %result = getelementptr i64, ptr %arguments, i64 {slot}")
         rows.append("  store i64 %wide, ptr %result")
-    body = "\n".join([*rows, *_callees(function, counters)])
+    body = "\n".join([*rows, *_callees(called, counters)])
     return f"define i64 @{entry}() {{\n{body}\n  %cclk = load i64, ptr @bfsim.cclk\n  ret i64 %cclk\n}}\n"
 
 
-def _callees(function: tree.Function, counters: Sequence[Counter]) -> list[str]:
-    """Settle and clear the counts that callees left in the module's table."""
-    rows, settled = [], []
-    for number, counter in enumerate(counters):
-        if counter.routine != function.symbol:
-            rows += [
-                f"  %count.{number} = getelementptr i64, ptr @bfsim.counts, i64 {number}",
-                f"  %events.{number} = load i64, ptr %count.{number}",
-                f"  store i64 0, ptr %count.{number}",
-            ]
-            settled.append((number, counter, f"%events.{number}"))
+def _callees(called: Sequence[int], counters: Sequence[Counter]) -> list[str]:
+    """Settle the counts that callees left in the table."""
+    rows = [f"  %events.{number} = load i64, ptr %count.{number}" for number in called]
+    settled = [(number, counters[number], f"%events.{number}") for number in called]
     return [*rows, *settle(settled, "callees")]

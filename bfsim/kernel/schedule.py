@@ -66,9 +66,10 @@ def cost(routine: Routine, profile: CompilerProfile) -> tuple[Counter, ...]:
     for block in routine.blocks:
         found = blocks[block.label]
         place, depth = (routine.symbol, block.label), len(flow.loops_of(block.label))
-        counters.append(
-            Counter(*place, None, None, _merged(found.charges), _accesses(flow, block), found.nbytes, depth)
-        )
+        accesses, charges = _accesses(flow, block), _merged(found.charges)
+        if not charges and not accesses and not found.tests and block is not routine.blocks[0]:
+            continue  # nothing to count: the block holds no code
+        counters.append(Counter(*place, None, None, charges, accesses, found.nbytes, depth))
         for test in found.tests:
             charges = _merged(test.charges)
             if any(each.issue_cclk for each in charges):

@@ -107,7 +107,9 @@ class Context:
         if self.needs.ends_in(value, call):
             return True
         parameters, users = self.parameters(), self.flow.users.get(value)
-        repeats = any(call in self.flow.blocks[label].instructions for loop in self.flow.loops for label in loop.blocks)
+        repeats = any(
+            call in self.flow.blocks[label].instructions for loop in self.flow.loops for label in loop.blocks
+        )
         return value in parameters[number : number + 1] and users == [call] and not repeats
 
     def arms(self, phi: Instruction) -> list[tuple[str, str]]:
