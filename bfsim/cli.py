@@ -170,8 +170,8 @@ def explain(kernel: str, runs: bool, as_json: bool, **what: Any) -> None:
 
     \b
     Examples:
-      bfsim explain sobel
-      bfsim explain sobel --run --frames 2
+      bfsim explain sobel_row
+      bfsim explain sobel_row --run --frames 2
       bfsim explain my_kernels:convolve --profile gcc-O2 --json
     """
     from bfsim.explain import explain_named

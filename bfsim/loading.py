@@ -48,10 +48,10 @@ def load_kernel(name: str, firmware: str) -> Kernel:
     """
     package, _, attribute = name.rpartition(":")
     if package:
-        found = {getattr(_import(package), attribute, None)}
+        found = [getattr(_import(package), attribute, None)]
     else:
         load_firmware(firmware)
-        found = {each for each in kernels_of(firmware) if each.name == attribute}
+        found = [each for each in kernels_of(firmware) if each.name == attribute]
     kernels = [each for each in found if isinstance(each, Kernel)]
     if len(kernels) != 1:
         known = ", ".join(sorted({each.name for each in kernels_of(package or firmware)})) or "none"

@@ -41,7 +41,7 @@ def test_the_commands_of_the_readme_exist() -> None:
     """Every command and option that the README names has a help text with it."""
     helps = {
         name: bfsim(*name.split(), "--help")
-        for name in ("run", "profile", "check", "record import", "record info")
+        for name in ("run", "profile", "explain", "check", "record import", "record info")
     }
     for name in helps:
         assert f"`bfsim {name} " in README

@@ -106,4 +106,7 @@ def test_totals_add_up_over_calls() -> None:
     call = total.prepare(code, [row], totals)
     cycles = {call.run((row,)).issue_cclk for _ in range(5)}
     assert cycles == {run(total, row).issue_cclk}
-    assert sum(int(n) * each.issue_cclk for n, each in zip(totals, code.counters, strict=True)) == 5 * cycles.pop()
+    assert (
+        sum(int(n) * each.issue_cclk for n, each in zip(totals, code.counters, strict=True))
+        == 5 * cycles.pop()
+    )

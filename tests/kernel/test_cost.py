@@ -149,6 +149,7 @@ def test_interlocks_are_counted_apart() -> None:
 
 def test_a_product_takes_a_load_along_where_the_compiler_bundles() -> None:
     """In vdsp-O2 a 16-bit product and a load of the next operands share an instruction of 64 bits."""
+
     def operations(profile: Any) -> list[int]:
         counters = cost_kernels.energies.compiled(profile).counters
         return [each.issue_cclk for counter in counters for each in counter.charges if each.op is Op.LOAD16]

@@ -117,7 +117,9 @@ def test_an_operation_is_a_call_of_the_library() -> None:
 def test_a_profile_without_a_library_refuses_floats() -> None:
     """The refusal names the profile, the kernel and the line of the first float, also in a callee."""
     bare = dataclasses.replace(GCC_O2, floats=None)
-    with pytest.raises(KernelError, match=r"norm must do without floats, for the profile gcc-O2 has no library"):
+    with pytest.raises(
+        KernelError, match=r"norm must do without floats, for the profile gcc-O2 has no library"
+    ):
         norm.compiled(bare)
     with pytest.raises(KernelError, match="gcc-O0"):
         product.compiled(GCC_O0)

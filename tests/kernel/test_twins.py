@@ -29,7 +29,8 @@ def errors(role: Role, level: str) -> dict[str, float]:
     profile = {"O0": GCC_O0, "O2": GCC_O2}[level]
     cases = [each for each in CASES if MEASURED[each.name].role is role]
     return {
-        each.name: abs(100 * (predict(each, profile).cycles / MEASURED[each.name].cycles[level] - 1)) for each in cases
+        each.name: abs(100 * (predict(each, profile).cycles / MEASURED[each.name].cycles[level] - 1))
+        for each in cases
     }
 
 

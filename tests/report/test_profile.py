@@ -11,7 +11,10 @@ from tests.report.records import edge_run, kernel, traffic
 
 def two_core_run() -> RunRecord:
     """Sobel on both cores, a Gauss on core A, an erosion in the next stage; the run takes 1000 cycles."""
-    lines = (LineCost(line=10, executions=5, issue_cclk=10, stall_cclk=0), LineCost(line=11, executions=4, issue_cclk=40, stall_cclk=0))
+    lines = (
+        LineCost(line=10, executions=5, issue_cclk=10, stall_cclk=0),
+        LineCost(line=11, executions=4, issue_cclk=40, stall_cclk=0),
+    )
     return replace(
         edge_run(450, 450),
         kernels=(
@@ -19,8 +22,12 @@ def two_core_run() -> RunRecord:
             kernel(
                 "Edge detection", "sobel_row", *lines, core="B", accesses={"L1_DATA_A": (4, 2), "L2": (1, 0)}
             ),
-            kernel("Edge detection", "gauss_row", LineCost(line=11, executions=9, issue_cclk=300, stall_cclk=0)),
-            kernel("Open & closing", "erode_row", LineCost(line=10, executions=1, issue_cclk=7, stall_cclk=0)),
+            kernel(
+                "Edge detection", "gauss_row", LineCost(line=11, executions=9, issue_cclk=300, stall_cclk=0)
+            ),
+            kernel(
+                "Open & closing", "erode_row", LineCost(line=10, executions=1, issue_cclk=7, stall_cclk=0)
+            ),
         ),
         traffic=(traffic("SDRAM", "MDMA1", 250),),
     )

@@ -131,7 +131,9 @@ def test_reports_fit_with_all_seven_rows(width: int) -> None:
         rows=tuple(BudgetRow(stage=name, thesis_ms=87.5) for name in names),
         kernels=(
             kernel(
-                names[0], "non_maximum_suppression_row", LineCost(line=11, executions=10**7, issue_cclk=10**9, stall_cclk=0)
+                names[0],
+                "non_maximum_suppression_row",
+                LineCost(line=11, executions=10**7, issue_cclk=10**9, stall_cclk=0),
             ),
         ),
         traffic=(traffic("SDRAM", "MDMA1 D0", 9),),

@@ -1,0 +1,223 @@
+"""What a compiler for the Blackfin makes of small kernels: branches, minima, loops, spills, flags."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections import Counter as Tally
+from pathlib import Path
+
+import pytest
+
+from benchmarks.twins.lines import grow_segments
+from bfsim.errors import ConfigError
+from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel, profile_named
+from bfsim.kernel.ir_text import read_module
+from bfsim.kernel.isa import COSTS, Op
+from bfsim.kernel.jit import optimised
+from bfsim.kernel.learnt import Learnt
+from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.interlocks import issues
+from bfsim.kernel.lowering.multiples import multiple
+from bfsim.kernel.lowering.predict import combined
+from bfsim.kernel.lowering.steps import Bank, Step
+from tests.kernel.modules import import_text
+
+
+def lowered(text: str, folder: Path, profile: CompilerProfile = GCC_O2) -> Tally[Op]:
+    """Compile the only kernel of `text`, and count the operations of its blocks, each block once."""
+    kernel: Kernel = import_text(f"@kernel\n{text}", folder).f
+    counts: Tally[Op] = Tally()
+    for counter in kernel.compiled(profile).counters:
+        if counter.value is None:
+            counts.update({each.op: each.count for each in counter.charges})
+    return counts
+
+
+def context(text: str, folder: Path) -> Context:
+    """What the lowering knows about the only kernel of `text`."""
+    kernel: Kernel = import_text(f"@kernel\n{text}", folder).f
+    (routine,) = read_module(optimised(kernel.function, GCC_O2))
+    return Context(routine, GCC_O2)
+
+
+@pytest.mark.parametrize(
+    "body", ["y = x if x < 9 else 9", "y = x\n    if y > 9:\n        y = 9", "y = min(x, 9)"]
+)
+def test_a_minimum_is_one_operation_however_it_is_written(body: str, tmp_path: Path) -> None:
+    """MIN and its constant; no comparison and no branch."""
+    found = lowered(f"def f(x: i32) -> i32:\n    {body}\n    return y\n", tmp_path)
+    assert found == {Op.DSP_ALU: 1, Op.IMM: 1, Op.RETURN: 1}
+
+
+def test_an_absolute_value_is_one_operation_but_not_of_a_difference(tmp_path: Path) -> None:
+    """-(x - y) has become y - x before anyone looks for an absolute value, so that stays a branch."""
+    text = "def f(x: i32, y: i32) -> i32:\n    z = {0}\n    if z < 0:\n        z = -z\n    return z\n"
+    assert Op.DSP_ALU in lowered(text.format("x ^ y"), tmp_path)
+    difference = lowered(text.format("x - y"), tmp_path)
+    assert Op.DSP_ALU not in difference
+    assert difference[Op.COMPARE] == 1
+
+
+def test_a_choice_of_two_values_that_are_there_is_a_conditional_move(tmp_path: Path) -> None:
+    """An arm that must be computed first makes it a branch."""
+    found = lowered("def f(a: i32, b: i32, c: i32) -> i32:\n    return c if a < b else a\n", tmp_path)
+    assert found[Op.COND_MOVE] == 1
+    branched = lowered("def f(a: i32, b: i32, c: i32) -> i32:\n    return c * 3 if a < b else a\n", tmp_path)
+    assert branched[Op.COND_MOVE] == 0
+
+
+def test_values_are_guessed_to_be_positive_and_unequal(tmp_path: Path) -> None:
+    """GCC's heuristics: 59 % against x < 0, 66 % against x == 7, nothing about x == 0."""
+    for test, chance in (
+        ("x < 0", 0.41),
+        ("x >= 0", 0.59),
+        ("x == 7", 0.34),
+        ("x == 0", 0.5),
+        ("x < 40", 0.5),
+    ):
+        text = f"def f(x: i32, a: i32[:]):\n    if {test}:\n        a[0] = 1\n    else:\n        a[1] = a[2]\n    a[3] = 5\n"
+        known = context(text, tmp_path)
+        block = known.flow.routine.blocks[0]
+        first = known.flow.blocks[block.successors[0]]
+        stores_first = any(each.opcode == "store" and each.operands[0] == "1" for each in first.instructions)
+        found = known.likelihood.taken[block.label, block.successors[0]]
+        assert found == pytest.approx(chance if stores_first else 1 - chance), test
+
+
+def test_two_heuristics_are_combined() -> None:
+    """Dempster and Shafer's rule; even votes change nothing."""
+    assert combined([]) == combined([0.5]) == 0.5
+    assert combined([0.8, 0.8]) == pytest.approx(0.64 / (0.64 + 0.04))
+    assert combined([0.7, 0.3]) == pytest.approx(0.5)
+
+
+def test_what_does_not_change_in_a_loop_is_computed_before_it(tmp_path: Path) -> None:
+    """Arithmetic moves out; a load moves only if nothing in the loop may write what it reads."""
+    moved = context(
+        "def f(a: i32[:], b: u16[:], n: i32):\n    for i in range(n):\n        a[i] = b[3] + n * 7\n",
+        tmp_path,
+    )
+    kept = context(
+        "def f(a: i32[:], b: i32[:], n: i32):\n    for i in range(n):\n        a[i] = b[3]\n", tmp_path
+    )
+
+    def places(known: Context, opcode: str) -> set[bool]:
+        (loop,) = known.flow.loops
+        return {
+            known.places.of[each.result or ""] in loop.blocks
+            for label in loop.blocks
+            for each in known.flow.blocks[label].instructions
+            if each.opcode == opcode
+        }
+
+    assert places(moved, "load") == {False}
+    assert places(kept, "load") == {True}  # both are words: they may be the same array
+    assert places(moved, "mul") <= {False}
+
+
+def test_pointers_walk_along_for_nothing_or_for_an_addition(tmp_path: Path) -> None:
+    """A step as wide as the access is a post-increment; another step is one addition a turn."""
+    text = "def f(a: u8[:], out: u8[:], n: i32):\n    for i in range(n):\n        out[i] = a[{0}]\n"
+    groups = context(text.format("i"), tmp_path).groups.all
+    assert [each.steps_free for each in groups] == [True, True]
+    strided = context(text.format("3 * i + 1"), tmp_path).groups.all
+    assert sorted((each.advance.constant, each.steps_free) for each in strided) == [(1, True), (3, False)]
+
+
+def test_a_flag_that_ends_a_loop_is_threaded_away() -> None:
+    """`while j < n and found == 0`: who sets the flag jumps out, division and all, and the loop counts its turns."""
+    (routine,) = read_module(optimised(grow_segments.function, GCC_O2))
+    known = Context(routine, GCC_O2)
+    assert known.flags.names
+    inner, _ = known.flow.loops
+    inside = [each for label in inner.blocks for each in known.flow.blocks[label].instructions]
+    assert inner.header in known.needs.counted
+    assert not any(each.is_division for each in inside)
+
+
+def test_few_turns_and_calls_keep_a_loop_from_being_counted(tmp_path: Path) -> None:
+    """Three turns are too few for a hardware loop; four are enough; a division by a variable calls the library."""
+    text = "def f(a: i32[:], b: u32):\n    for i in range({0}):\n        a[i] = a[i] {1}\n"
+    for turns, rest, counted in ((3, "^ 5", False), (4, "^ 5", True), (9, "+ i32(b // u32(a[i]))", False)):
+        known = context(text.format(turns, rest), tmp_path)
+        assert {loop.header in known.needs.counted for loop in known.flow.loops} == {counted}
+
+
+def test_counting_bits_is_one_operation(tmp_path: Path) -> None:
+    """`while x: x &= x - 1` has no turns on the Blackfin: ONES counts the bits."""
+    kernel: Kernel = import_text(
+        "@kernel\ndef f(x: u32) -> i32:\n    n = 0\n    while x != 0:\n        x = x & (x - 1)\n        n += 1\n    return n\n",
+        tmp_path,
+    ).f
+    code = kernel.compiled(GCC_O2)
+    cost = {
+        x: kernel.prepare(code, [], code.new_totals()).run((x,)).issue_cclk for x in (1, 0xFFFF, 0xFFFFFFFF)
+    }
+    assert len(set(cost.values())) == 1
+    assert kernel(0xFFFF) == 16
+
+
+def test_products_with_a_constant_are_shifts_and_sums() -> None:
+    """At most four operations; beyond that the multiplier is as good."""
+    assert multiple(8) == (Op.SHIFT,)
+    assert multiple(5) == (Op.ADD_SHIFT,)
+    assert multiple(10) == (Op.ADD_SHIFT, Op.SHIFT)
+    assert multiple(15) in ((Op.SHIFT, Op.ALU), (Op.ADD_SHIFT, Op.ADD_SHIFT))
+    assert multiple(0x12345) is None
+
+
+def test_more_values_than_registers_are_reloaded(tmp_path: Path) -> None:
+    """Sixteen sums in one loop do not fit in eight data registers; six do, and cost nothing but their start."""
+
+    def moves(count: int) -> int:
+        names = [f"s{each}" for each in range(count)]
+        start = "".join(f"    {name} = {number}\n" for number, name in enumerate(names))
+        turn = "".join(
+            f"        {name} = ({name} ^ x) & ({name} | {number})\n" for number, name in enumerate(names)
+        )
+        ends = " ^ ".join(names)
+        text = f"def f(a: i32[:]) -> i32:\n{start}    for i in range(len(a)):\n        x = a[i]\n{turn}    return {ends}\n"
+        found = lowered(text, tmp_path)
+        return found[Op.LOAD32] + found[Op.STORE32] + found[Op.IMM]
+
+    assert moves(6) - moves(3) == 3  # only their starts
+    assert moves(16) - moves(12) > 2 * 4
+
+
+def test_an_independent_operation_hides_a_wait() -> None:
+    """A value moved to a pointer register is awaited four cycles; each operation in between takes one off."""
+
+    def banks(name: str) -> Bank:
+        return Bank.POINTER if name.startswith("p") else Bank.DATA
+
+    move = Step(Op.MOVE, 1, "p0", Bank.POINTER, (("r0", Bank.DATA),))
+    other = Step(Op.ALU, 2, "r5", Bank.DATA, (("r6", Bank.DATA),))
+    load = Step(Op.LOAD16, 3, "r1", Bank.DATA, (("p0", Bank.POINTER),))
+    assert sum(each.stall_cclk for each in issues([move, load], banks, parallel=False)) == 4
+    assert sum(each.stall_cclk for each in issues([move, load, other], banks, parallel=False)) == 3
+
+
+def test_a_fitted_rule_can_be_left_out(tmp_path: Path) -> None:
+    """Without the rule about differences, an absolute difference is one operation: what it is worth can be seen."""
+    text = "def f(x: i32, y: i32) -> i32:\n    z = x - y\n    if z < 0:\n        z = -z\n    return z\n"
+    without = dataclasses.replace(GCC_O2, without=(Learnt.DIFFERENCE,))
+    assert lowered(text, tmp_path, without)[Op.DSP_ALU] == 1
+    assert lowered(text, tmp_path, GCC_O2)[Op.DSP_ALU] == 0
+
+
+def test_a_kernel_has_a_size(tmp_path: Path) -> None:
+    """Bytes of code per routine, callees by themselves; a library's are not counted."""
+    module = import_text(
+        "@kernel\ndef g(x: i32) -> i32:\n    return x ^ 5\n@kernel\ndef f(x: i32) -> i32:\n    return g(x) + g(x + 1)\n",
+        tmp_path,
+    )
+    sizes = module.f.code_bytes(VDSP_O2)
+    assert set(sizes) == {module.f.function.symbol, module.g.function.symbol}
+    assert sizes[module.g.function.symbol] == sum(COSTS[op].nbytes for op in (Op.IMM, Op.ALU, Op.RETURN))
+
+
+def test_profiles_have_names() -> None:
+    """An unknown one is told what there is."""
+    assert profile_named("gcc-O2") is GCC_O2
+    with pytest.raises(ConfigError, match="must be one of gcc-O0, gcc-O2, vdsp-O2, not 'icc'"):
+        profile_named("icc")
