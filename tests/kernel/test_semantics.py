@@ -16,7 +16,7 @@ from tests.kernel.programs import ARRAYS, ELEMENTS, programs
 from tests.kernel.words import NAMES, Row, Word
 
 
-def _arrays(seed: int) -> dict[str, NDArray[Any]]:
+def arrays_of(seed: int) -> dict[str, NDArray[Any]]:
     random = np.random.default_rng(seed)
     kinds = {name: np.dtype(f"{kind[0]}{int(kind[1:]) // 8}") for name, kind in ARRAYS.items()}
     return {
@@ -45,7 +45,7 @@ def test_random_programs_compute_what_plain_python_computes(
 ) -> None:
     """A random kernel leaves the same arrays and value as its text run by Python on wrapping integers."""
     program: Kernel = import_text(text, tmp_path_factory.mktemp("program")).program
-    expected, found = _arrays(seed), _arrays(seed)
+    expected, found = arrays_of(seed), arrays_of(seed)
     value = _plain_run(text, expected, x, y)
     assert program(*found.values(), x, y) == value
     for name, array in expected.items():

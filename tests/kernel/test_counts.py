@@ -1,0 +1,96 @@
+"""What is counted is what ran: line by line as often as plain Python runs it."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections import Counter as Tally
+from types import FrameType
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from bfsim.kernel import GCC_O0, Kernel
+from tests.kernel.modules import import_text
+from tests.kernel.programs import programs
+from tests.kernel.test_semantics import arrays_of
+from tests.kernel.words import NAMES, Row, Word
+
+OFFSET = 1  # of the line that makes annotations strings
+
+
+def plain_lines(text: str, arrays: dict[str, Any], x: int, y: int) -> Tally[int]:
+    """Run `program` in plain Python and count how often each of its lines begins."""
+    names = dict(NAMES)
+    exec(compile("from __future__ import annotations\n" + text, "<plain>", "exec"), names)
+    found: Tally[int] = Tally()
+
+    def trace(frame: FrameType, event: str, _argument: object) -> Any:
+        if frame.f_code.co_filename != "<plain>" or frame.f_code.co_name != "program":
+            return None
+        if event == "line":
+            found[frame.f_lineno - OFFSET] += 1
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        names["program"](
+            *(Row(each) for each in arrays.values()), Word(x, signed=True), Word(y, signed=False)
+        )
+    finally:
+        sys.settrace(before)
+    return found
+
+
+def counted_lines(program: Kernel, arrays: dict[str, Any], x: int, y: int) -> dict[int, int]:
+    """Run the kernel in gcc-O0, where no block is merged with another, and count its lines from its decorator."""
+    code = program.compiled(GCC_O0)
+    totals = code.new_totals()
+    program.prepare(code, list(arrays.values()), totals).run((*arrays.values(), x, y))
+    found: dict[int, int] = {}
+    for counter, events in zip(code.counters, totals.tolist(), strict=False):
+        if counter.value is None and counter.routine == program.function.symbol:
+            for line, _, _ in counter.line_cclk:
+                found[line] = max(found.get(line, 0), events)
+    return found
+
+
+def simple_statements(text: str) -> tuple[int, list[int]]:
+    """Line of the decorator of `program`, and the lines of its statements without a body."""
+    definition = next(
+        each for each in ast.parse(text).body if isinstance(each, ast.FunctionDef) and each.name == "program"
+    )
+    simple = (ast.Assign, ast.AugAssign, ast.AnnAssign, ast.Expr, ast.Return)
+    lines = [each.lineno for each in ast.walk(definition) if isinstance(each, simple)]
+    return definition.decorator_list[0].lineno, lines
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@given(
+    text=programs(),
+    seed=st.integers(0, 1000),
+    x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
+    y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
+)
+def test_every_statement_of_a_random_program_is_counted_as_often_as_it_ran(
+    text: str, seed: int, x: int, y: int, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """The blocks that are costed are the statements that ran: the counts are those of a traced run by Python."""
+    program: Kernel = import_text(text, tmp_path_factory.mktemp("program")).program
+    first, statements = simple_statements(text)
+    expected = plain_lines(text, arrays_of(seed), x, y)
+    found = counted_lines(program, arrays_of(seed), x, y)
+    assert statements
+    for line in statements:
+        assert found.get(line - first + 1, 0) == expected[line], text.splitlines()[line - 1]
+
+
+def test_a_traced_run_sees_both_sides_of_a_test() -> None:
+    """The ruler itself: plain Python's own count of a loop with a test in it."""
+    text = "\n@kernel\ndef program(a: u8[:], x: i32, y: u32) -> i32:\n    p = i32(0)\n    for i in range(5):\n        if i < 2:\n            p = p + i\n    return p\n"
+    found = plain_lines(text, {"a": np.zeros(16, np.uint8)}, 1, 2)
+    assert (found[4], found[6], found[7], found[8]) == (1, 5, 2, 1)
