@@ -64,6 +64,8 @@ class CompilerProfile:
     """Whether waits for pointer registers are counted."""
     parallel_issue: bool
     """Whether the compiler bundles memory accesses with 32-bit DSP operations (counts with `interlocks` only)."""
+    accumulates: bool
+    """Whether sums of 16-bit products stay in an accumulator: A0 += R.L * R.L."""
     push_multiple_cclk: int | None
     """Cycles of a push of several registers; None: one per register."""
     pop_multiple_cclk: int | None
@@ -124,15 +126,15 @@ ADI_FLOATS = FloatLibrary(     # the manual counts the call: 5 cycles less here
 )  # fmt: skip
 
 GCC_O0 = CompilerProfile(
-    name="gcc-O0", optimises=False, interlocks=False, parallel_issue=False, push_multiple_cclk=14, pop_multiple_cclk=11,  # [SIM]
+    name="gcc-O0", optimises=False, interlocks=False, parallel_issue=False, accumulates=False, push_multiple_cclk=14, pop_multiple_cclk=11,  # [SIM]
     library=LIBGCC, floats=None,
 )  # fmt: skip
 GCC_O2 = CompilerProfile(
-    name="gcc-O2", optimises=True, interlocks=False, parallel_issue=False, push_multiple_cclk=14, pop_multiple_cclk=11,  # [SIM]
+    name="gcc-O2", optimises=True, interlocks=False, parallel_issue=False, accumulates=False, push_multiple_cclk=14, pop_multiple_cclk=11,  # [SIM]
     library=LIBGCC, floats=LIBGCC_FLOATS,
 )  # fmt: skip
 VDSP_O2 = CompilerProfile(
-    name="vdsp-O2", optimises=True, interlocks=True, parallel_issue=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]
+    name="vdsp-O2", optimises=True, interlocks=True, parallel_issue=True, accumulates=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]
     library=ADI, floats=ADI_FLOATS,
 )  # fmt: skip
 PROFILES = {each.name: each for each in (GCC_O0, GCC_O2, VDSP_O2)}

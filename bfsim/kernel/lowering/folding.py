@@ -51,6 +51,29 @@ class Folding:
             return None
         return source.operands[0], source.operands[1]
 
+    def accumulated(self, product: Instruction) -> Instruction | None:
+        """The addition of a 16-bit product to a sum that a loop carries, where the compiler has one operation for both."""
+        users = self.users(product.result or "")
+        if (
+            not self.profile.accumulates
+            or product.opcode != "mul"
+            or len(users) != 1
+            or users[0].opcode != "add"
+        ):
+            return None
+        others = [self.flow.instruction(each) for each in users[0].operands if each != product.result]
+        carried = any(
+            each is not None and each.opcode == "phi" and users[0].result in each.operands for each in others
+        )
+        return users[0] if carried and all(self.is_short(each) for each in product.operands[:2]) else None
+
+    def accumulates(self, addition: Instruction) -> Instruction | None:
+        """The product that an addition takes in as a multiply-accumulate."""
+        products = (self.flow.instruction(each) for each in addition.operands)
+        return next(
+            (each for each in products if each is not None and self.accumulated(each) is addition), None
+        )
+
     def in_shifted_sum(self, each: Instruction) -> bool:
         """Whether an addition is done by the shift that uses it."""
         users = self.users(each.result or "")

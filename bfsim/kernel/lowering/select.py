@@ -126,6 +126,11 @@ class _Selector(Calls):
     def add(self, each: Instruction) -> None:
         if self.context.needs.in_shifted_sum(each):
             return
+        if (product := self.context.needs.accumulates(each)) is not None:
+            sum_before = next(operand for operand in each.operands if operand != product.result)
+            factors = ((operand, DATA) for operand in product.operands[:2])
+            self.step(Op.MAC, each, each.result, DATA, (sum_before, DATA), *factors)
+            return
         if (plan := self.context.needs.shift_add(each)) is not None:
             shifted, other = plan
             self.step(Op.ADD_SHIFT, each, each.result, POINTER, (other, POINTER), (shifted, POINTER))
@@ -181,7 +186,7 @@ class _Selector(Calls):
 
     def multiply(self, each: Instruction) -> None:
         left, right = each.operands[:2]
-        if self._steps_along(each):
+        if self._steps_along(each) or self.context.needs.accumulated(each) is not None:
             return
         if (
             right.lstrip("-").isdigit()
