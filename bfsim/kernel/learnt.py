@@ -21,6 +21,9 @@ class Learnt(StrEnum):
     SUNK_MASK = "16-bit masks that end both sides of a test are done once behind them"
     NARROW_SUMS = "a sum that is stored as narrow and used as wide is computed twice"
     RAW_BYTE = "the low byte of a half-word is extended from the half-word as it was loaded"
+    FACTORS = "a byte that is a factor of a 16-bit product and used in another way is extended for each"
+    COMPARED = "a constant that is compared with is loaded where it is, not before the loop"
+    GUARDS = "a condition that does not change in a loop is kept in a register, and moved to CC and back"
     ACCUMULATORS = "what a loop only adds to may live in another bank, for one move"
     DIFFERENCE = "the absolute value of a difference, written as an `if`, is a branch"
     COMMON_LOADS = "what both sides of a test load first is loaded before it"
@@ -36,6 +39,9 @@ LEARNT_FROM: dict[Learnt, tuple[str, ...]] = {
     Learnt.SUNK_MASK: ("crc16_bits",),
     Learnt.NARROW_SUMS: ("flood_fill",),
     Learnt.RAW_BYTE: ("bilinear_row",),
+    Learnt.FACTORS: ("alpha_blend", "variance_blocks"),
+    Learnt.COMPARED: ("match_lines", "alpha_blend", "conv3x3"),
+    Learnt.GUARDS: ("circle_vote", "cordic_atan"),
     Learnt.ACCUMULATORS: ("moments",),
     Learnt.DIFFERENCE: ("sad_search",),
     Learnt.COMMON_LOADS: ("cordic_atan",),

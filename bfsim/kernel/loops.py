@@ -12,6 +12,10 @@ from functools import cached_property
 
 from bfsim.kernel.ir_text import Block, Instruction, Routine
 
+NEAR_OVERFLOW = (1 << 31) - (
+    1 << 16
+)  # who compares with so large a number asks whether an i32 is about to wrap
+
 
 @dataclass(slots=True)
 class Loop:
@@ -142,6 +146,15 @@ class Flow:
                 seen.add(following)
                 open_visits.append((following, iter(reversed(self.blocks[following].successors))))
         return tuple(reversed(found))
+
+    def is_overflow_guard(self, block: Block) -> bool:
+        """Whether a block only tests if a sum would wrap: in C, where signed sums may not, there is no such test."""
+        operands = block.terminator.operands
+        test = self.instruction(operands[0]) if block.terminator.opcode == "br" and operands else None
+        if test is None or test.opcode != "icmp" or not {"eq", "ne"} & set(test.text.split()[:3]):
+            return False
+        bound = test.operands[1].lstrip("-")
+        return bound.isdigit() and int(bound) >= NEAR_OVERFLOW
 
     def around(self, loop: Loop) -> Loop | None:
         """The loop directly around `loop`."""

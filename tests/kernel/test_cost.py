@@ -57,8 +57,9 @@ def test_a_loop_whose_end_is_empty_counts_in_a_register() -> None:
     """A hardware loop needs an operation before its end: the outer loop, which only turns the inner one, has none."""
     row = words(50)
     per_line = cclk(cost_kernels.flip_grid, row, 9, 20) - cclk(cost_kernels.flip_grid, row, 8, 20)
-    set_up = 1 + 1 + 1 + 3 + 1 + 1  # bank of the constant, pointer, count (4), LSETUP, guard not taken
-    assert per_line == 20 * 3 + set_up - 1 + COUNT_DOWN
+    guard = 1 + 1  # whether there are columns is known before: CC gets it back; branch not taken
+    set_up = 1 + (1 + 3) + 1  # pointer; count of words, to a P register and from bytes; LSETUP
+    assert per_line == 20 * 3 + guard + set_up + COUNT_DOWN
 
 
 def test_the_third_loop_is_not_a_hardware_loop() -> None:

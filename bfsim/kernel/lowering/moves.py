@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import Loop
+from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.steps import Bank, Step
 from bfsim.kernel.lowering.webs import Webs
 
@@ -140,14 +140,3 @@ class Moves:
                         self.steps.add(place, load_constant(name, step.line))
                 block.append(step)
             self.steps.of[label] = block
-
-
-def load_constant(constant: str, line: int, result: str | None = None, bank: Bank = Bank.ANY) -> Step:
-    """Return the operation that loads a constant, written #5."""
-    digits = constant[1:].lstrip("-")
-    number = int(constant[1:]) if digits.isdigit() else 0
-    if number in isa.SHORT_IMMEDIATE:
-        return Step(Op.IMM, line, result, bank)
-    if number in isa.LONG_IMMEDIATE:
-        return Step(Op.IMM, line, result, bank, nbytes=isa.LONG_FORM_BYTES)
-    return Step(Op.IMM32, line, result, bank)

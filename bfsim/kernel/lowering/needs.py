@@ -5,6 +5,7 @@ Post-increments, hardware loops, folded offsets and extending loads do much of w
 
 from __future__ import annotations
 
+from enum import Enum, auto
 from functools import cached_property
 
 from bfsim.kernel.emit import FLOOR, SIGNED
@@ -18,7 +19,16 @@ from bfsim.kernel.lowering.shapes import Kind, Shapes
 from bfsim.kernel.lowering.walks import Walks
 from bfsim.kernel.profile import CompilerProfile
 
+BYTE = 8
 FEWEST_TURNS = 3  # a loop of so few turns keeps its branch ["too few iterations" in loop-doloop.cc of GCC 12]
+
+
+class Use(Enum):
+    """How a narrow value is used: as it was loaded, extended as a factor of a 16-bit product, or extended to a word."""
+
+    RAW = auto()
+    FACTOR = auto()
+    WIDE = auto()
 
 
 class Needs(Folding):
@@ -87,13 +97,19 @@ class Needs(Folding):
         if each.opcode in ("load", "store") and id(each) in self.groups.of:
             return each.operands[:-1]
         if each.opcode == "br":
-            return () if self.flags.decides(each) else self._of_branch(each)
+            return () if self.flags.decides(each) or self._is_guard(each) else self._of_branch(each)
         if each.opcode == "icmp":
             return self._of_compare(each)
         if each.opcode in ("select", "and", "or") and each.bits == 1:
             counting = {self.walks.exit_test(loop) for loop in self.flow.loops if loop.header in self.counted}
             return tuple(operand for operand in each.operands if operand not in counting)
         return each.operands
+
+    def _is_guard(self, branch: Instruction) -> bool:
+        return any(
+            block.terminator is branch and self.flow.is_overflow_guard(block)
+            for block in self.flow.routine.blocks
+        )
 
     def _of_branch(self, each: Instruction) -> tuple[str, ...]:
         """The test of a loop that a counter ends is not made, nor that of a minimum or an absolute value."""
@@ -168,12 +184,43 @@ class Needs(Folding):
     # Narrow values
 
     def extended_apart(self, load: Instruction) -> bool:
-        """Whether a narrow value is stored as it is and computed with: it is loaded, then extended."""
-        if load.bits not in NARROW:
+        """Whether a narrow value is taken as it is, or by a product, and computed with: it is loaded, then extended."""
+        uses = self._uses(load)
+        return Use.WIDE in uses and len(uses) > 1
+
+    def extended_for_product(self, operand: str) -> bool:
+        """Whether a factor is a byte that is also used in another way: it is extended once more, for the product."""
+        each = self.flow.instruction(operand)
+        if each is None or each.opcode != "zext":
             return False
-        users = self._wide_users(load)
-        raw = any(self._is_raw(user) for user in users)
-        return raw and any(not self._is_raw(user) and self.emits(user) for user in users)
+        load = self.flow.instruction(each.operands[0])
+        return (
+            load is not None
+            and load.opcode == "load"
+            and Use.FACTOR in (uses := self._uses(load))
+            and len(uses) > 1
+        )
+
+    def _uses(self, load: Instruction) -> set[Use]:
+        """The ways in which a narrow value is used; none if it is a word."""
+        if load.opcode != "load" or load.bits not in NARROW:
+            return set()
+        return {
+            self._use(load, user)
+            for user in self._wide_users(load)
+            if user.result is None or self.emits(user)
+        }
+
+    def _use(self, load: Instruction, user: Instruction) -> Use:
+        if self._is_raw(user):
+            return Use.RAW
+        if (
+            user.opcode == "mul"
+            and self.profile.applies(Learnt.FACTORS)
+            and all(map(self.is_short, user.operands[:2]))
+        ):
+            return Use.FACTOR if load.bits == BYTE else Use.RAW  # a product takes the low half of a register
+        return Use.WIDE
 
     def _wide_users(self, load: Instruction) -> list[Instruction]:
         """Users of a loaded value, through its extension."""

@@ -51,7 +51,11 @@ class _Lowering:
         """A counted loop, at most two deep, with an operation before its end [GCC: hwloop_optimize in bfin.cc]."""
         if loop.header not in self.context.needs.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
             return False
-        before = self.flow.predecessors[loop.latch]
+        before = [
+            each
+            for each in self.flow.predecessors[loop.latch]
+            if not self.flow.is_overflow_guard(self.flow.blocks[each])
+        ]
         copied = any(len(inner.blocks & set(before)) > 1 for inner in loop.inner)
         if copied and self.profile.applies(Learnt.COPIED_END):
             return False  # the end of the loop is copied behind each exit of the inner one, so there are two ends
@@ -158,11 +162,26 @@ class _Lowering:
 
     def _conditional(self, block: Block, cost: BlockCost) -> None:
         label, line = block.label, block.terminator.line
-        if self.context.flags.decides(block.terminator):
+        if self.context.flags.decides(block.terminator) or self.flow.is_overflow_guard(block):
             sides = tuple(self.layout.on(label, way, line) for way in block.successors)
         else:
+            if self._is_kept(block):
+                cost.charges.append(charge(Op.CC_MOVE, line))
+                cost.nbytes += COSTS[Op.CC_MOVE].nbytes
             sides = self._branch(label, line)
         cost.branch(block.terminator.operands[0], tuple(sides[0]), tuple(sides[1]))
+
+    def _is_kept(self, block: Block) -> bool:
+        """Whether a condition was computed before the loop: a register keeps it, and CC gets it back."""
+        condition = block.terminator.operands[0]
+        moved = self.context.places.of.get(condition, block.label) != block.label
+        tested = self.flow.innermost(block.label)
+        hoisted = moved and tested is not None and self.context.places.is_invariant(condition, tested)
+        return (
+            hoisted
+            and self.profile.applies(Learnt.GUARDS)
+            and block.label not in self.context.shapes.by_label
+        )
 
     def _branch(self, label: str, line: int) -> tuple[list[Charge], list[Charge]]:
         loop = next(

@@ -67,6 +67,8 @@ class Likelihood:
 
     def _of_true_side(self, block: Block) -> float:
         yes, no = block.successors
+        if self.flow.is_overflow_guard(block):
+            return float("icmp ne" in self._text_of_test(block))
         loop = self.flow.innermost(block.label)
         if loop is not None:
             leaves = [way not in loop.blocks for way in (yes, no)]
@@ -81,6 +83,10 @@ class Likelihood:
             *_by_hint(block),
         ]
         return combined(votes)
+
+    def _text_of_test(self, block: Block) -> str:
+        test = self.flow.instruction(block.terminator.operands[0])
+        return test.text if test else ""
 
     def _only_exit(self, loop: Loop) -> bool:
         return len(self.flow.exits(loop)) == 1

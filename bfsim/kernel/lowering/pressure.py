@@ -6,7 +6,7 @@ from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import Loop
-from bfsim.kernel.lowering.moves import load_constant
+from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.steps import Bank, Step
 from bfsim.kernel.lowering.webs import Webs
 

@@ -13,6 +13,7 @@ from bfsim.kernel.isa import Op
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import pointee_nbytes
 from bfsim.kernel.lowering.calls import Calls
+from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.multiples import multiple
 from bfsim.kernel.lowering.predict import predicate
@@ -200,6 +201,9 @@ class _Selector(Calls):
                 self.step(op, each, result, bank, (value, bank), (left, bank))
                 value = result or ""
         elif self._short(each):
+            for factor in dict.fromkeys((left, right)):
+                if self.context.needs.extended_for_product(factor):
+                    self.step(Op.EXTEND, each, None, DATA, (factor, DATA))
             self.step(Op.MUL16, each, each.result, DATA, (left, DATA), (right, DATA))
         else:
             self.step(
@@ -237,6 +241,9 @@ class _Selector(Calls):
         left, right = each.operands[:2]
         if right.lstrip("-").isdigit() and _is_near(predicate(each), int(right)):
             self.step(Op.COMPARE, each, None, DATA, (left, ANY))
+        elif right.lstrip("-").isdigit() and self.context.profile.applies(Learnt.COMPARED):
+            self.steps.add(self.label, load_constant(f"#{right}", each.line, f"{each.result}.bound"))
+            self.step(Op.COMPARE, each, None, DATA, (left, ANY), (f"{each.result}.bound", ANY))
         else:
             self.step(Op.COMPARE, each, None, DATA, (left, ANY), (right, ANY))
 
