@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from llvmlite import ir
 
-from bfsim.kernel import floats, tree
+from bfsim.kernel import divisions, floats, tree
 from bfsim.kernel.floats import register_type
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, u32
 
@@ -21,8 +21,6 @@ SIMPLE = {"+": "add", "-": "sub", "*": "mul", "&": "and_", "|": "or_", "^": "xor
 # [predict.def of GCC 12] hit rates 67 % (continue) and 66 % (early return); both sides even otherwise
 CONTINUES, RETURNS, GOES_ON = 33, 34, 67
 EVEN = (GOES_ON, GOES_ON)
-SIGNED = "signed"  # names divisions of i32: LLVM may make them unsigned, the run-time library's routine stays
-FLOOR = "floor"  # names remainders that only round a quotient down
 WORD_BITS = 32
 SHIFT_MASK = 31  # a shift count uses its low five bits; the language refuses constants outside 0..31
 
@@ -62,10 +60,6 @@ def _weight(body: tuple[tree.Stmt, ...]) -> int:
         if isinstance(last, tree.Return)
         else GOES_ON
     )
-
-
-def _is_power_of_two(value: float) -> bool:
-    return value > 0 and int(value).bit_count() == 1
 
 
 def _declare(module: ir.Module, function: tree.Function) -> None:
@@ -341,9 +335,8 @@ class _Emitter:
             return self._intrinsic(f"llvm.{'u' if unsigned else 's'}{node.op}.i32", [I32, I32], [left, right])
         if unsigned:
             return (self.builder.udiv if node.op == "//" else self.builder.urem)(left, right)
-        if isinstance(node.right, tree.Const) and _is_power_of_two(node.right.value):
-            return self._power_of_two_division(node.op, left, int(node.right.value))
-        return self._floor_division(node.op, left, right)
+        constant = int(node.right.value) if isinstance(node.right, tree.Const) else None
+        return divisions.signed(self.builder, node.op, left, right, constant)
 
     def _shift(self, node: tree.Binary, left: ir.Value, right: ir.Value) -> ir.Value:
         if not isinstance(node.right, tree.Const):
@@ -351,26 +344,6 @@ class _Emitter:
         if node.op == "<<":
             return self.builder.shl(left, right)
         return (self.builder.lshr if node.type is u32 else self.builder.ashr)(left, right)
-
-    def _power_of_two_division(self, op: str, left: ir.Value, divisor: int) -> ir.Value:
-        """Rounding down is what a shift does, so no compiler calls the library here."""
-        if op == "//":
-            return self.builder.ashr(left, I32(divisor.bit_length() - 1))
-        return self.builder.and_(left, I32(divisor - 1))
-
-    def _floor_division(self, op: str, left: ir.Value, right: ir.Value) -> ir.Value:
-        """Python rounds down, the chip towards zero; LLVM drops the correction where the signs are known.
-
-        Where both are left, LLVM makes the rest from the quotient: there is one division.
-        """
-        builder = self.builder
-        rest_name = FLOOR if op == "//" else SIGNED
-        quotient, rest = builder.sdiv(left, right, name=SIGNED), builder.srem(left, right, name=rest_name)
-        signs_differ = builder.icmp_signed("<", builder.xor(rest, right), I32(0))
-        down = builder.and_(signs_differ, builder.icmp_signed("!=", rest, I32(0)))
-        if op == "//":
-            return builder.sub(quotient, builder.zext(down, I32))
-        return builder.add(rest, builder.select(down, right, I32(0)))
 
     def _compare(self, node: tree.Compare) -> ir.Value:
         left, right = self.value(node.left), self.value(node.right)

@@ -8,10 +8,11 @@ because the conversion is a call that should be seen.
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from bfsim.kernel import tree
+from bfsim.kernel.operators import BINARY, COMPARE, FOLD, ON_FLOATS, in_words
 from bfsim.kernel.refusal import Source
 from bfsim.kernel.types import (
     BOOL,
@@ -26,20 +27,6 @@ from bfsim.kernel.types import (
     sqrt,
     u32,
 )
-
-BINARY = {
-    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.FloorDiv: "//", ast.Mod: "%",
-    ast.LShift: "<<", ast.RShift: ">>", ast.BitAnd: "&", ast.BitOr: "|", ast.BitXor: "^",
-}  # fmt: skip
-ON_FLOATS = ("+", "-", "*", "/", "min", "max")
-COMPARE = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
-
-FOLD: dict[str, Callable[[int, int], int]] = {
-    "+": lambda a, b: a + b, "-": lambda a, b: a - b, "*": lambda a, b: a * b,
-    "//": lambda a, b: a // b, "%": lambda a, b: a % b, "<<": lambda a, b: a << b,
-    ">>": lambda a, b: a >> b, "&": lambda a, b: a & b, "|": lambda a, b: a | b,
-    "^": lambda a, b: a ^ b, "min": min, "max": max,
-}  # fmt: skip
 
 
 @dataclass(slots=True)
@@ -64,7 +51,7 @@ class Scope:
         if method is None:
             self.source.refuse(
                 node,
-                f"a kernel cannot use {_plain(node)}",
+                f"a kernel cannot use {in_words(node)}",
                 "write it with numbers, array elements, + - * // % << >> & | ^ ~, comparisons, min, max and abs",
             )
         result: tree.Expr = method(node)
@@ -183,7 +170,7 @@ class Scope:
         op = BINARY.get(type(node.op))
         if op is None:
             self.source.refuse(
-                node, f"a kernel cannot use {_plain(node.op)}", "write it with + - * // % << >> & | ^"
+                node, f"a kernel cannot use {in_words(node.op)}", "write it with + - * // % << >> & | ^"
             )
         if op in ("<<", ">>"):
             return self._shift(node, op)
@@ -285,7 +272,7 @@ class Scope:
         ):
             op = COMPARE.get(type(operator))
             if op is None:
-                self.source.refuse(node, f"a kernel cannot use {_plain(operator)}", "write < <= > >= == !=")
+                self.source.refuse(node, f"a kernel cannot use {in_words(operator)}", "write < <= > >= == !=")
             left, right, _ = self._pair(left_node, right_node)
             if right_node is not node.comparators[-1] and tree.calls_in(right):
                 self.source.refuse(
@@ -343,7 +330,7 @@ class Scope:
         if not isinstance(node.func, ast.Name) or node.keywords:
             self.source.refuse(
                 node,
-                "a kernel can only call kernels, len, min, max, abs and casts",
+                "a kernel can only call kernels, len, min, max, abs, sqrt and casts",
                 "call by name, without keywords",
             )
         name = node.func.id
@@ -423,12 +410,3 @@ class Scope:
 
 def _are_ints(*values: tree.Expr) -> bool:
     return all(isinstance(each, tree.Const) for each in values)
-
-
-def _plain(node: ast.AST) -> str:
-    """What `node` is, in words."""
-    names = {"listcomp": "comprehensions", "joinedstr": "strings", "tuple": "tuples", "list": "lists",
-             "dict": "dictionaries", "attribute": "attributes", "lambda": "lambda", "namedexpr": "`:=`",
-             "pow": "**", "matmult": "@", "is": "`is`", "in": "`in`"}  # fmt: skip
-    name = type(node).__name__.lower()
-    return names.get(name, f"`{name}`")

@@ -18,7 +18,8 @@ from typing import Any
 
 from bfsim.errors import KernelError
 from bfsim.kernel import tree
-from bfsim.kernel.expressions import BINARY, Scope
+from bfsim.kernel.expressions import Scope
+from bfsim.kernel.operators import BINARY
 from bfsim.kernel.refusal import Source
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, f32, i32, u32
 

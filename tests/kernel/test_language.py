@@ -116,7 +116,7 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("x = plain(x)", "plain(x)", "cannot call plain like this; make plain a @kernel, or inline it"),
         ("x = max(x, x, x)", "max(x", "cannot call max like this; make max a @kernel"),
         ("x = min(x, 1, 2)", "min(x", "cannot call min like this; give min two arguments"),
-        ("x = row.sum()", "row.sum()", "can only call kernels, len, min, max, abs and casts"),
+        ("x = row.sum()", "row.sum()", "can only call kernels, len, min, max, abs, sqrt and casts"),
         ("x = other(x, row=row)", "other(x", "call by name, without keywords"),
         ("x = other(x)", "other(x)", "other takes 2 arguments, not 1; match its def"),
         ("x = other(w, row)", "w, row", "i32 is needed here, not u32"),

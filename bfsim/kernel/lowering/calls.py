@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bfsim.kernel import isa
-from bfsim.kernel.emit import FLOOR
+from bfsim.kernel.divisions import FLOOR
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.context import Context

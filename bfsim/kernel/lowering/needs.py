@@ -8,7 +8,7 @@ from __future__ import annotations
 from enum import Enum, auto
 from functools import cached_property
 
-from bfsim.kernel.emit import FLOOR, SIGNED
+from bfsim.kernel.divisions import FLOOR, SIGNED
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import Flow, Loop

@@ -1,0 +1,34 @@
+"""Division of i32 in LLVM IR: Python rounds down, the chip towards zero."""
+
+from __future__ import annotations
+
+from llvmlite import ir
+
+I32 = ir.IntType(32)
+SIGNED = "signed"  # names divisions: LLVM may make them unsigned, the run-time library's routine stays
+FLOOR = "floor"  # names remainders that only round a quotient down
+
+
+def signed(builder: ir.IRBuilder, op: str, left: ir.Value, right: ir.Value, constant: int | None) -> ir.Value:
+    """Return `left // right` or `left % right`; `constant` is the divisor if it is one."""
+    if constant is not None and constant > 0 and constant.bit_count() == 1:
+        return _by_power_of_two(builder, op, left, constant)
+    return _rounded_down(builder, op, left, right)
+
+
+def _by_power_of_two(builder: ir.IRBuilder, op: str, left: ir.Value, divisor: int) -> ir.Value:
+    """Rounding down is what a shift does, so no compiler calls the library here."""
+    if op == "//":
+        return builder.ashr(left, I32(divisor.bit_length() - 1))
+    return builder.and_(left, I32(divisor - 1))
+
+
+def _rounded_down(builder: ir.IRBuilder, op: str, left: ir.Value, right: ir.Value) -> ir.Value:
+    """LLVM drops the correction where the signs are known; where it is left, the rest is made from the quotient."""
+    rest_name = FLOOR if op == "//" else SIGNED
+    quotient, rest = builder.sdiv(left, right, name=SIGNED), builder.srem(left, right, name=rest_name)
+    signs_differ = builder.icmp_signed("<", builder.xor(rest, right), I32(0))
+    down = builder.and_(signs_differ, builder.icmp_signed("!=", rest, I32(0)))
+    if op == "//":
+        return builder.sub(quotient, builder.zext(down, I32))
+    return builder.add(rest, builder.select(down, right, I32(0)))
