@@ -13,7 +13,9 @@ from rich.text import Text
 from bfsim.report.tables import new_table, percent, stacked
 from bfsim.trace import ExplainedLine, ExplainedOperation, Explanation
 
+LOOP_SETUP = "loop_setup"
 SCHEMA = "bfsim.explain/1"
+DEAR_SHARE = 0.1  # lines that cost so much of the kernel are bold
 SHORT = {"branch_taken": "taken", "branch_not_taken": "not taken"}
 
 
@@ -54,7 +56,8 @@ def _add(table: Table, line: ExplainedLine, whole_cclk: int) -> None:
             f"{line.total_cclk:,}" if counted else "",
             percent(line.total_cclk or 0, whole_cclk) if counted else "",
         ]
-    table.add_row(*cells, ", ".join(_operation(each) for each in line.operations))
+    dear = whole_cclk and (line.total_cclk or 0) >= DEAR_SHARE * whole_cclk
+    table.add_row(*cells, ", ".join(_operation(each) for each in line.operations), style="bold" if dear else None)
 
 
 def _cycles(line: ExplainedLine) -> str:
@@ -70,6 +73,8 @@ def _operation(each: ExplainedOperation) -> str:
     name = each.operation.removesuffix("_bp")
     if each.conditional:
         return f"{SHORT[name]} {each.cclk}"
+    if each.operation == LOOP_SETUP:
+        return "hardware loop"
     times = f"{each.count} " if each.count > 1 else ""
     cycles = f" {each.cclk}" if each.cclk != 1 else ""
     return f"{times}{name}{cycles}"
