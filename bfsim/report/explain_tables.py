@@ -57,7 +57,9 @@ def _add(table: Table, line: ExplainedLine, whole_cclk: int) -> None:
             percent(line.total_cclk or 0, whole_cclk) if counted else "",
         ]
     dear = whole_cclk and (line.total_cclk or 0) >= DEAR_SHARE * whole_cclk
-    table.add_row(*cells, ", ".join(_operation(each) for each in line.operations), style="bold" if dear else None)
+    table.add_row(
+        *cells, ", ".join(_operation(each) for each in line.operations), style="bold" if dear else None
+    )
 
 
 def _cycles(line: ExplainedLine) -> str:
