@@ -93,11 +93,19 @@ class Groups:
         return before[0] if both and len({where for where, _ in alike}) == 2 else label
 
     def _steps_free(self, group: Group) -> bool:
-        """A post-increment: all accesses in one block of every turn, and the step is the width of one access."""
+        """A post-increment: the step is the width of an access that is made in every turn.
+
+        Either all accesses are in one block, or the first at the lowest address is made in every turn of a loop that
+        walks upwards; the others then reach back from the stepped pointer [autoinc candidates in tree-ssa-loop-ivopts.cc].
+        """
+        step = group.advance.constant
         labels = {self._hoisted(label, group) for label, _, _ in group.accesses}
-        if len(labels) != 1 or group.advance.symbolic or not self.flow.every_turn(labels.pop(), group.loop):
+        if group.advance.symbolic:
             return False
-        return any(abs(group.advance.constant) == each.bits // 8 for _, each, _ in group.accesses)
+        if len(labels) == 1 and self.flow.every_turn(next(iter(labels)), group.loop):
+            return any(abs(step) == each.bits // 8 for _, each, _ in group.accesses)
+        label, lowest, _ = min(group.accesses, key=lambda access: access[2])
+        return step == lowest.bits // 8 and self.flow.every_turn(label, group.loop)
 
 
 def is_merged_pointer(each: Instruction) -> bool:
