@@ -19,6 +19,8 @@ CM_BF561 = BoardSpec(
     clocks=Clocks(cclk_hz=Fraction(600 * MHZ), sclk_hz=Fraction(120 * MHZ)),
     sdram=MT48LC8M32B2,
     sensor=OV9650,
+    dma_over_core=True,  # u-boot cm-bf561.h: EBIU_AMGCTL with CDPRIO
+    spi_clk_hz=Fraction(10 * MHZ),  # [assumed] practical range 10..20 MHz; the chip's limit is SCLK/4
 )
 
 CM_BF561_RATINGS = BoardSpec(
@@ -28,6 +30,8 @@ CM_BF561_RATINGS = BoardSpec(
     clocks=Clocks(cclk_hz=Fraction(600 * MHZ), sclk_hz=Fraction(400 * MHZ, 3)),
     sdram=MT48LC8M32B2,
     sensor=OV9650,
+    dma_over_core=True,  # u-boot cm-bf561.h: EBIU_AMGCTL with CDPRIO
+    spi_clk_hz=Fraction(10 * MHZ),  # [assumed] practical range 10..20 MHz; the chip's limit is SCLK/4
 )
 
 BOARDS = {each.name: each for each in (CM_BF561, CM_BF561_RATINGS)}

@@ -15,12 +15,20 @@ from bfsim.clocks import Clocks
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SdramSpec:
-    """An SDRAM part as the board's boot code sets its controller up."""
+    """An SDRAM part as the board's boot code sets its controller up. `word_bytes`: width of the data bus.
+
+    `rows_refreshed` rows are refreshed every `refresh_ms`, one at a time.
+    """
 
     part: str
     nCL: int
     nRCD: int
     nRP: int
+    nRAS: int
+    nWR: int
+    turn_round_sclk: int
+    refresh_ms: int
+    rows_refreshed: int
     word_bytes: int
     page_bytes: int
     bank_bytes: int
@@ -36,27 +44,103 @@ class SdramSpec:
         """Extra cycles when another page is open: precharge, then activate."""
         return self.nRP + self.nRCD
 
+    @property
+    def refresh_sclk(self) -> int:
+        """Cycles of one refresh: precharge all banks, refresh a row, and precharge it."""
+        return self.nRP + self.nRAS + self.nRP
+
+    def refresh_interval_sclk(self, sclk_hz: Fraction) -> int:
+        """Cycles from one refresh to the next: EBIU_SDRRC of u-boot's formula, plus the cycles it leaves out."""
+        return int(sclk_hz * self.refresh_ms / (1000 * self.rows_refreshed))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class L1Spec:
+    """L1 data memory: `subbank_bytes` that take one access a cycle. `conflict_cclk`: what the second one waits."""
+
+    subbank_bytes: int
+    conflict_cclk: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CacheSpec:
+    """A cache in L1: what it takes of each memory that can be cache, and how it is divided."""
+
+    line_bytes: int
+    data_ways: int
+    data_bytes_per_bank: int
+    code_ways: int
+    code_bytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class L2Spec:
+    """Shared L2: latency of a core's read, and how long each 64 bits hold the port that both cores share."""
+
+    read_cclk: int
+    next_cclk: int
+    port_bytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExternalSpec:
+    """A core's way to SDRAM through the EBIU.
+
+    `core_sync_sclk`: what a read takes beside the SDRAM's own cycles, to the bus and back; a store is posted
+    into a buffer of `store_buffer` words.
+    """
+
+    core_sync_sclk: int
+    store_buffer: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DmaSpec:
+    """The DMA controllers. A work unit starts in `startup_sclk`; a descriptor costs `descriptor_sclk` an element.
+
+    `read_word_sclk` and `write_word_sclk`: memory DMA, cycles per word from and to SDRAM on an open page;
+    `on_chip_word_sclk`: between L1 and L2; `imdma_word_cclk`: the internal DMA.
+    """
+
+    fifo_words: int
+    startup_sclk: int
+    descriptor_sclk: int
+    read_word_sclk: Fraction
+    write_word_sclk: Fraction
+    on_chip_word_sclk: Fraction
+    imdma_word_cclk: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EventSpec:
+    """Interrupts, registers and locks. Entry: from the request to the handler's first line; exit: the way back.
+
+    `mmr_*_cclk`: an access to a register of a device. `testset_cclk`: TESTSET without its memory; `spin_cclk`: a turn
+    of a spin loop without its TESTSET.
+    """
+
+    interrupt_entry_cclk: int
+    interrupt_exit_cclk: int
+    mmr_read_cclk: int
+    mmr_write_cclk: int
+    testset_cclk: int
+    spin_cclk: int
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChipSpec:
-    """Timing of the chip's own blocks.
-
-    `core_sdram_read_sclk`: an uncached 32-bit read of an open page, as the core sees it. A store is posted and
-    holds the bus for `core_sdram_write_sclk`. `mdma_read_sclk` and `mdma_write_sclk`: cycles per 32-bit word of
-    a memory DMA from and to SDRAM on an open page; `mdma_startup_sclk`: one work unit's start.
-    """
+    """A chip: its cores, its memories, and the timing of its own blocks. Without L2 `l2` is None."""
 
     name: str
     cores: tuple[str, ...]
     regions: tuple[Region, ...]
-    l2_read_cclk: int
-    core_sdram_read_sclk: int
-    core_sdram_write_sclk: int
-    mdma_startup_sclk: int
-    mdma_read_sclk: Fraction
-    mdma_write_sclk: Fraction
-    ppi_word_sclk: Fraction
-    semaphore_issue_cclk: int
+    l1: L1Spec
+    cache: CacheSpec
+    l2: L2Spec | None
+    external: ExternalSpec
+    dma: DmaSpec
+    ppi_fifo_words: int
+    events: EventSpec
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,7 +185,11 @@ class SensorSpec:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoardSpec:
-    """A board: the chip, how it is clocked, its SDRAM and its cameras."""
+    """A board: the chip, how it is clocked, its SDRAM and its cameras.
+
+    `dma_over_core`: CDPRIO of EBIU_AMGCTL, DMA before the cores at the EBIU. `deb_period` and `mdma_period`: fields of DMA_TC_PER,
+    transfers in one direction, and of one MDMA stream, before the other has its turn; 0 switches the rule off.
+    """
 
     name: str
     title: str
@@ -109,3 +197,7 @@ class BoardSpec:
     clocks: Clocks
     sdram: SdramSpec
     sensor: SensorSpec
+    dma_over_core: bool
+    deb_period: int = 0
+    mdma_period: int = 0
+    spi_clk_hz: Fraction
