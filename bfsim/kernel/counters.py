@@ -47,7 +47,8 @@ FOLLOW = """
 define internal void @bfsim.follow(ptr %address, i64 %access) alwaysinline {
   %state = load ptr, ptr @bfsim.state
   %function = load ptr, ptr %state
-  call void %function(ptr %state, ptr %address, i64 %access)
+  %stamp = load i64, ptr @bfsim.clock
+  call void %function(ptr %state, ptr %address, i64 %access, i64 %stamp)
   ret void
 }
 """
@@ -146,6 +147,8 @@ class _Rewriter:
                     yield from _add(each.number, "1")
         if row.startswith(TERMINATORS):
             yield from _tests([each for each in self.here if each.number not in self.derived], row)
+            if self.followed:
+                yield from _pass_time(self.here, row)
         if row.startswith("  ret "):
             self.exits += 1
             is_top = self.routine == self.top
@@ -226,16 +229,41 @@ def _add(number: int, amount: str) -> list[str]:
     ]
 
 
+def _pass_time(here: list[_Place], terminator: str) -> list[str]:
+    """Move the clock of a followed call past a block: its cycles, and those of the edge that it leaves by."""
+    rows = []
+    for place in here:
+        cclk = place.counter.issue_cclk + place.counter.stall_cclk
+        name, amount = f"%.bf.{place.number}.clock", str(cclk)
+        if place.counter.value is not None:
+            truth, before = _truth(place, terminator, f"{name}.is")
+            amount = f"{name}.amount"
+            rows += [*before, f"  {amount} = select i1 {truth}, i64 {cclk}, i64 0"]
+        rows += [
+            f"  {name}.old = load i64, ptr @bfsim.clock",
+            f"  {name}.new = add i64 {name}.old, {amount}",
+            f"  store i64 {name}.new, ptr @bfsim.clock",
+        ]
+    return rows
+
+
+def _truth(place: _Place, terminator: str, name: str) -> tuple[str, list[str]]:
+    """Return what is true when the edge of a counter is taken, and the rows that compute it into `name`."""
+    value, equals = place.counter.value, place.counter.equals
+    assert value is not None
+    if equals is not None and (kind := SWITCH.match(terminator)):
+        return name, [f"  {name} = icmp eq {kind.group(1)} {value}, {equals}"]
+    return value, []
+
+
 def _tests(here: list[_Place], terminator: str) -> list[str]:
     rows = []
     for place in here:
-        number, value, equals = place.number, place.counter.value, place.counter.equals
-        if value is None:
+        number = place.number
+        if place.counter.value is None:
             continue
-        truth = value
-        if equals is not None and (kind := SWITCH.match(terminator)):
-            truth = f"%.bf.{number}.is"
-            rows.append(f"  {truth} = icmp eq {kind.group(1)} {value}, {equals}")
+        truth, before = _truth(place, terminator, f"%.bf.{number}.is")
+        rows += before
         rows.append(f"  %.bf.{number}.true = zext i1 {truth} to i64")
         rows.extend(_add(number, f"%.bf.{number}.true"))
     return rows

@@ -33,7 +33,9 @@ def globals_of(counters: Sequence[Counter], entry: str, *, followed: bool) -> st
         "@bfsim.totals = internal global ptr null",
         "@bfsim.cclk = internal global i64 0",
     ]
-    return "\n".join([*rows, "@bfsim.state = internal global ptr null"] if followed else rows)
+    if followed:
+        rows += ["@bfsim.state = internal global ptr null", "@bfsim.clock = internal global i64 0"]
+    return "\n".join(rows)
 
 
 def settle(counters: Sequence[tuple[int, Counter, str]], place: str) -> list[str]:
@@ -97,6 +99,7 @@ def entry_point(function: tree.Function, counters: Sequence[Counter], entry: str
     rows += [f"  br i1 {refused}, label %refuse, label %run", "refuse:", f"  ret i64 {REFUSED}", "run:"]
     if followed:
         rows.append(f"  store ptr {take('ptr')}, ptr @bfsim.state")
+        rows.append("  store i64 0, ptr @bfsim.clock")
     called = [number for number, each in enumerate(counters) if each.routine != function.symbol]
     rows.append(f"  %counts = alloca [{max(1, len(counters))} x i64]")
     for number in called:

@@ -1,61 +1,105 @@
-"""The memory follower of the bound phase: what each access of a kernel outside L1 meets, access by access.
+"""The memory follower of the bound phase: what each access of a kernel outside L1 asks of the memories, access by access.
 
-It runs inside the compiled kernel and only classifies and counts (L2, or SDRAM page hit, miss or conflict);
-what a class costs is data of the chip, applied by the core. The open pages are the SDRAM device's own
-table, so DMA bursts between two calls are seen; those during a call are not: they are weaved in later.
+It runs inside the compiled kernel and writes a log; the machine plays the log against the rest of the chip and adds the waiting.
+Where a region is cached it keeps the tags of the core's data cache, and logs line fills and write-backs only.
+The stamp of an access is the cycle at which its block began, without any of the waiting.
 """
 
 from __future__ import annotations
 
-import importlib
-from enum import IntEnum
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
 from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bfsim.errors import KernelError
+
 WRITE = 256  # `counters` adds it to an access's byte count when it writes
-MAX_BANKS = 8
+
+# An entry of the log: `stamp << STAMP_BIT | kind << KIND_BIT | offset in the arena`
+KIND_BIT, STAMP_BIT = 28, 31
+OFFSET_MASK, KIND_MASK = (1 << KIND_BIT) - 1, 7
+LOAD, STORE, FILL, WRITE_BACK, FETCH, FETCH_LINE = range(6)
+
+# Words of the state; the log stands behind them.
+(
+    FUNCTION,  # address of the follower; compiled kernels call it
+    ARENA, END,  # host address of the arena, and of what is behind SDRAM and L2
+    ENTRIES,  # how many accesses there were
+    ROOM,  # how many entries the log can have
+    REGIONS,  # how many regions are cached
+    LINE_BITS, SETS, WAYS,
+) = range(9)  # fmt: skip
+MAX_REGIONS = 8
+FIRST_REGION = 9  # first offset, end and policy of each
+TAGS = FIRST_REGION + 3 * MAX_REGIONS  # of each set, the line used last first: number << 1 | is it changed; or EMPTY
+MAX_LINES = 2048
+LOG = TAGS + MAX_LINES
+EMPTY = -1
+WRITE_THROUGH, WRITE_BACK_POLICY = 0, 1
 
 
-class Access(IntEnum):
-    """Classes of accesses outside L1."""
+class Policy(StrEnum):
+    """How a cached region is written: at once and without allocation, or when a changed line leaves the cache."""
 
-    L2_READ = 0
-    L2_WRITE = 1
-    PAGE_HIT_READ = 2
-    PAGE_MISS_READ = 3
-    PAGE_CONFLICT_READ = 4
-    PAGE_HIT_WRITE = 5
-    PAGE_MISS_WRITE = 6
-    PAGE_CONFLICT_WRITE = 7
+    WRITE_THROUGH = "write-through"
+    WRITE_BACK = "write-back"
 
 
-# Words of the state.
-FUNCTION, L2_FIRST, L2_END, SDRAM_FIRST, SDRAM_END, PAGE_BITS, BANK_BITS = range(7)
-PAGES = 7
-COUNTS = PAGES + MAX_BANKS
-WORDS = COUNTS + len(Access)
+@dataclass(frozen=True, slots=True)
+class CachedRegion:
+    """Part of the arena that a data cache holds lines of."""
+
+    first: int
+    end: int
+    policy: Policy
+
+
+@dataclass(frozen=True, slots=True)
+class CacheSize:
+    """A data cache: `nbytes` in all, in lines of `line_bytes`, `ways` of them in a set."""
+
+    nbytes: int
+    line_bytes: int
+    ways: int
+
+    @property
+    def sets(self) -> int:
+        """Number of sets."""
+        return self.nbytes // (self.line_bytes * self.ways)
 
 
 class Follower:
-    """State of the follower of one board. Compiling it waits until a kernel touches memory outside L1."""
+    """The follower of one core. Compiling it waits until a kernel touches memory outside L1."""
 
     def __init__(
-        self, l2: NDArray[np.uint8], sdram: NDArray[np.uint8], page_bits: int, bank_bits: int
+        self,
+        arena: NDArray[np.uint8],
+        followed_nbytes: int,
+        room: NDArray[np.int64],
+        cached: Sequence[CachedRegion] = (),
+        size: CacheSize | None = None,
     ) -> None:
-        """`l2` and `sdram` are the host arrays that stand for the memories.
+        """`arena`: the host array of all memories; the first `followed_nbytes` of it are outside L1.
 
-        A page is `2**page_bits` bytes and an SDRAM bank `2**bank_bits`.
+        `room`: where the state and the log go, LOG words and as many as the log can have entries.
         """
-        self._state = np.zeros(WORDS, np.int64)
-        self._state[L2_FIRST], self._state[L2_END] = l2.ctypes.data, l2.ctypes.data + l2.nbytes
-        self._state[SDRAM_FIRST], self._state[SDRAM_END] = sdram.ctypes.data, sdram.ctypes.data + sdram.nbytes
-        self._state[PAGE_BITS], self._state[BANK_BITS] = page_bits, bank_bits
-        self.open_pages = self._state[PAGES:COUNTS]
-        """Open page of each SDRAM bank, or -1; shared with the SDRAM device."""
-        self.open_pages[:] = -1
+        self._arena = arena  # the state has its address only
+        self._state = room
+        self._state[TAGS:LOG] = EMPTY
+        self._state[ARENA], self._state[END] = arena.ctypes.data, arena.ctypes.data + followed_nbytes
+        self._state[ROOM] = len(room) - LOG
+        if size and cached:
+            self._state[LINE_BITS], self._state[SETS], self._state[WAYS] = size.line_bytes.bit_length() - 1, size.sets, size.ways
+            self._state[REGIONS] = len(cached)
+            for number, each in enumerate(cached):
+                policy = WRITE_BACK_POLICY if each.policy is Policy.WRITE_BACK else WRITE_THROUGH
+                at = FIRST_REGION + 3 * number
+                self._state[at : at + 3] = each.first, each.end, policy
 
     def address(self) -> int:
         """Return the host address of the state, ready to be followed."""
@@ -63,34 +107,88 @@ class Follower:
             self._state[FUNCTION] = _function_address()
         return int(self._state.ctypes.data)
 
-    def take_counts(self) -> list[int]:
-        """Return how many accesses of each class there were since the last call, in the order of `Access`."""
-        counts = self._state[COUNTS:]
-        taken: list[int] = counts.tolist()
-        counts[:] = 0
-        return taken
+    def take_count(self) -> int:
+        """Return how many accesses the last call logged, and begin the log anew."""
+        count = int(self._state[ENTRIES])
+        self._state[ENTRIES] = 0
+        if count > self._state[ROOM]:
+            raise KernelError(
+                f"a kernel call must access memory outside L1 at most {self._state[ROOM]} times, not {count} times: split it"
+            )
+        return count
+
+    def entries(self, count: int) -> NDArray[np.int64]:
+        """Return the first `count` entries of the log."""
+        return self._state[LOG : LOG + count]
+
+    def forget(self, first: int, nbytes: int) -> int:
+        """Invalidate the cached lines of `nbytes` from `first`, which are not written back; return how many that can be."""
+        if not self._state[SETS]:
+            return 0
+        bits = int(self._state[LINE_BITS])
+        low, high = first >> bits, (first + nbytes - 1) >> bits
+        tags = self._state[TAGS:LOG]
+        tags[(tags != EMPTY) & (tags >> 1 >= low) & (tags >> 1 <= high)] = EMPTY
+        return high - low + 1
 
 
 @cache
 def _function_address() -> int:
-    """Compile the follower, in half a second. numba is imported here: a run with every buffer in L1 needs none."""
-    numba: Any = importlib.import_module("numba")
-    carray, cfunc, types = numba.carray, numba.cfunc, numba.types
+    """Compile the follower. numba is imported here: kernels that stay in L1 need none."""
+    from numba import carray, types
+
+    from bfsim.kernel.compiled import callback, compiled
+
+    @compiled
+    def log(state: Any, kind: int, offset: int, stamp: int) -> None:
+        if state[ENTRIES] < state[ROOM]:
+            state[LOG + state[ENTRIES]] = stamp << STAMP_BIT | kind << KIND_BIT | offset
+        state[ENTRIES] += 1
+
+    @compiled
+    def policy_of(state: Any, offset: int) -> int:
+        for number in range(state[REGIONS]):
+            at = FIRST_REGION + 3 * number
+            if state[at] <= offset < state[at + 1]:
+                return int(state[at + 2])
+        return EMPTY
+
+    @compiled
+    def look_up(state: Any, line: int, write: int, allocate: bool) -> tuple[bool, int]:
+        """Return whether the line is there, and the changed line that has to leave for it, or EMPTY."""
+        first, way = TAGS + line % state[SETS] * state[WAYS], 0
+        last = state[WAYS] - 1
+        while way < last and state[first + way] >> 1 != line:
+            way += 1
+        tag = state[first + way]
+        hit = tag >> 1 == line
+        if not hit and not allocate:
+            return False, EMPTY
+        left = tag >> 1 if not hit and tag != EMPTY and tag & 1 else EMPTY
+        while way > 0:  # the line used last comes first
+            state[first + way] = state[first + way - 1]
+            way -= 1
+        state[first] = (tag if hit else line << 1) | write
+        return hit, left
+
+    def follow(at: Any, address: int, access: int, stamp: int) -> None:
+        state = carray(at, LOG)
+        if not state[ARENA] <= address < state[END]:
+            return
+        state = carray(at, LOG + state[ROOM])
+        write, offset = access >= WRITE, address - state[ARENA]
+        policy = policy_of(state, offset)
+        if policy == EMPTY:
+            log(state, STORE if write else LOAD, offset, stamp)
+            return
+        bits, changes = state[LINE_BITS], write and policy == WRITE_BACK_POLICY
+        hit, left = look_up(state, offset >> bits, 1 if changes else 0, changes or not write)
+        if left != EMPTY:
+            log(state, WRITE_BACK, left << bits, stamp)
+        if write and policy == WRITE_THROUGH:
+            log(state, STORE, offset, stamp)
+        elif not hit:
+            log(state, FILL, offset >> bits << bits, stamp)
 
     word = types.int64
-
-    @cfunc(types.void(types.CPointer(word), word, word))  # type: ignore[untyped-decorator]
-    def follow(at: Any, address: int, access: int) -> None:
-        state = carray(at, WORDS)
-        write = access >= WRITE
-        if state[SDRAM_FIRST] <= address < state[SDRAM_END]:
-            offset = address - state[SDRAM_FIRST]
-            page = offset >> state[PAGE_BITS]
-            bank = PAGES + (offset >> state[BANK_BITS])
-            kind = 0 if state[bank] == page else (1 if state[bank] < 0 else 2)
-            state[bank] = page
-            state[COUNTS + (5 if write else 2) + kind] += 1
-        elif state[L2_FIRST] <= address < state[L2_END]:
-            state[COUNTS + (1 if write else 0)] += 1
-
-    return int(follow.address)
+    return callback(types.void(types.CPointer(word), word, word, word), follow)

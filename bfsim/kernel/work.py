@@ -22,14 +22,14 @@ ISSUE_MASK = (1 << STALL_SHIFT) - 1
 class Work:
     """One kernel call, done natively: pixels are written already, time has not passed yet.
 
-    `stall_cclk` are interlocks: cycles in which one operation waits for another. `value` is what the kernel returned. `accesses` counts its accesses outside L1 by class, in the order of
-    `followers.Access`, or is None when every array lies in L1.
+    `stall_cclk` are interlocks: cycles in which one operation waits for another. `value` is what the kernel returned. `accesses`
+    is how many accesses outside L1 the follower logged for it.
     """
 
     __slots__ = ("accesses", "issue_cclk", "stall_cclk", "value")
 
     def __init__(
-        self, issue_cclk: int, stall_cclk: int, value: float | None = None, accesses: list[int] | None = None
+        self, issue_cclk: int, stall_cclk: int, value: float | None = None, accesses: int = 0
     ) -> None:
         self.issue_cclk = issue_cclk
         self.stall_cclk = stall_cclk
@@ -105,7 +105,7 @@ class PreparedCall:
             cycles & ISSUE_MASK,
             cycles >> STALL_SHIFT,
             value,
-            self._follower.take_counts() if self._follower else None,
+            self._follower.take_count() if self._follower else 0,
         )
 
     def _put_floats(self, arguments: Sequence[Any]) -> None:

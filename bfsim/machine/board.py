@@ -14,20 +14,22 @@ from bfsim.machine.calls import CallBook
 from bfsim.machine.capture import Capture, Feed, Pair, StereoPictures
 from bfsim.machine.code import code_records, code_symbols
 from bfsim.machine.core import Core
-from bfsim.machine.direct import DirectAccess
-from bfsim.machine.ebiu import Ebiu
+from bfsim.machine import bus_state as w
+from bfsim.machine.bus import Bus
 from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.ppi import Ppi
 from bfsim.machine.program import Buffer, Firmware, FrameSize
 from bfsim.machine.records import kernel_records
-from bfsim.machine.sdram import Sdram
 from bfsim.machine.semaphore import Semaphore
 from bfsim.machine.simulation import Simulation
-from bfsim.machine.traffic import Traffic
+from bfsim.machine.traffic import traffic_records
 from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, TrafficRecord
 
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
+
+PPI_MASTERS = (w.PPI0, w.PPI1)
+MDMA_MASTERS = ((w.MDMA1_0, w.MDMA1_1), (w.MDMA2_0, w.MDMA2_1))  # of each core: for its input and its output rings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,20 +77,14 @@ class Board:
 
     def __post_init__(self) -> None:
         self._env = Simulation()
-        self._memories = Memories(self.spec)
-        self._traffic = Traffic()
-        self._sdram = Sdram(self.spec.sdram)
-        self._ebiu = Ebiu(self.spec.clocks, self._sdram)
-        self._follower = self._new_follower()
+        picture_nbytes = 2 * self.size.width_px * self.size.height_px
+        self._memories = Memories(self.spec, outside_nbytes=len(PPI_MASTERS) * picture_nbytes)
+        self._outside = [self._memories.outside + number * picture_nbytes for number in range(len(PPI_MASTERS))]
+        self._bus = Bus(self._env, self.spec, self._memories)
         self._semaphores: dict[str, Semaphore] = {}
         self._calls: dict[str, CallBook] = {}
         self._frames: list[FrameRecord] = []
         self._buffers = self._load()
-
-    def _new_follower(self) -> Follower:
-        sdram = self.spec.sdram
-        page_bits, bank_bits = sdram.page_bytes.bit_length() - 1, sdram.bank_bytes.bit_length() - 1
-        return Follower(self._memories.host("L2"), self._memories.host("SDRAM"), page_bits, bank_bits)
 
     def _load(self) -> dict[str, dict[str, tuple[Row, ...]]]:
         """Place every buffer in memory; return the rows that each core knows by name."""
@@ -122,7 +118,6 @@ class Board:
             interrupted = True
         if not interrupted:
             self._check_end()
-        self._env.settle()
         return self._outcome(capture, interrupted)
 
     def _check_end(self) -> None:
@@ -139,8 +134,8 @@ class Board:
     def _capture(self, pictures: Iterator[StereoPictures]) -> Capture:
         mode = self.spec.sensor.mode(self.size.width_px, self.size.height_px)
         ppis = {
-            name: Ppi(self._env, self.spec, mode, self._ebiu, self._traffic.account("SDRAM", f"PPI{index}"))
-            for index, name in enumerate(self.spec.chip.cores)
+            name: Ppi(self._env, self.spec, mode, self._bus, self._memories, master=master, outside=outside)
+            for name, master, outside in zip(self.spec.chip.cores, PPI_MASTERS, self._outside, strict=False)
         }
         return Capture(self._env, self.spec.clocks, ppis, self._frame_buffers(), pictures, self.feed)
 
@@ -166,18 +161,18 @@ class Board:
         return [Pair(each) for each in split]
 
     def _core(self, index: int, name: str, capture: Capture, on_finished: Callable[[], None]) -> Core:
-        book = self._calls[name] = CallBook(
-            name, self.profile, self._follower, self._sdram, sanitize=self.sanitize
-        )
-        accounts = [self._traffic.account("SDRAM", f"MDMA{index + 1} stream {number}") for number in range(2)]
-        inward, outward = (MdmaStream(self._env, self.spec, self._ebiu, each) for each in accounts)
+        memories = self._memories
+        follower = Follower(memories.arena, memories.l2_end, self._bus.room_of(index))
+        book = self._calls[name] = CallBook(name, self.profile, follower, sanitize=self.sanitize)
+        inward, outward = (MdmaStream(self._bus, self.spec, each) for each in MDMA_MASTERS[index])
         return Core(
             self._env,
             name,
             self.spec,
             buffers=self._buffers[name],
             calls=book,
-            direct=DirectAccess(name, self.spec, self._ebiu, self._traffic),
+            bus=self._bus,
+            number=index,
             capture=capture,
             streams=(inward, outward),
             semaphores=self._semaphores,
@@ -207,7 +202,7 @@ class Board:
             missed=tuple(sorted(capture.missed)),
             interrupted=interrupted,
             kernels=tuple(each for name, book in self._calls.items() for each in kernel_records(name, book)),
-            traffic=self._traffic.records(self.spec.clocks.cclk_ticks),
+            traffic=traffic_records(self._bus.words, self.spec.clocks.cclk_ticks),
             code=code_records(self.link_map, PROCESSORS, self.spec.chip.regions),
             events=self._env.count_events(),
         )

@@ -13,7 +13,6 @@ from bfsim.kernel import CompilerProfile, Kernel, PreparedCall, Work
 from bfsim.kernel.followers import Follower
 from bfsim.kernel.jit import Compiled
 from bfsim.machine.memories import Row
-from bfsim.machine.sdram import Sdram
 from bfsim.trace import REST
 
 
@@ -29,40 +28,28 @@ class CallGroup:
 
 
 @dataclass(frozen=True, slots=True)
-class SpecialCall:
-    """A call that is checked before it runs (`sanitized`), or that sees and changes the open pages (`follower`)."""
+class CheckedCall:
+    """A call that is checked before it runs."""
 
     call: PreparedCall
-    sanitized: Kernel | None
-    follower: Follower | None
-    sdram: Sdram
+    kernel: Kernel
 
     def run(self, arguments: tuple[Row | int, ...]) -> Work:
-        """Run the kernel now and say what it cost."""
-        if self.sanitized:
-            self.sanitized.sanitize([each.array if isinstance(each, Row) else each for each in arguments])
-        if not self.follower:
-            return self.call.run(arguments)
-        pages = self.sdram.open_pages
-        self.follower.open_pages[: len(pages)] = pages
-        work = self.call.run(arguments)
-        pages[:] = self.follower.open_pages[: len(pages)].tolist()
-        return work
+        """Run the kernel, if its indexes are right, and say what it cost."""
+        self.kernel.sanitize([each.array if isinstance(each, Row) else each for each in arguments])
+        return self.call.run(arguments)
 
 
 class CallBook:
     """Runs kernels for one core, and counts them under the stage that was entered last."""
 
-    def __init__(
-        self, core: str, profile: CompilerProfile, follower: Follower, sdram: Sdram, *, sanitize: bool
-    ) -> None:
+    def __init__(self, core: str, profile: CompilerProfile, follower: Follower, *, sanitize: bool) -> None:
         self._core = core
         self._profile = profile
         self._follower = follower
-        self._sdram = sdram
         self._sanitize = sanitize
         self._groups: dict[tuple[str, Kernel, tuple[str, ...]], CallGroup] = {}
-        self._calls: dict[str, dict[tuple[Kernel, object], PreparedCall | SpecialCall]] = {}
+        self._calls: dict[str, dict[tuple[Kernel, object], PreparedCall | CheckedCall]] = {}
         self.enter(REST)
 
     def enter(self, stage: str) -> None:
@@ -71,7 +58,7 @@ class CallBook:
         self.known = self._calls.setdefault(stage, {})
         """Calls of this stage by kernel and rows, ready to run."""
 
-    def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> PreparedCall | SpecialCall:
+    def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> PreparedCall | CheckedCall:
         """Prepare a call for the first time, and know it from now on. Rows outside of L1 are followed."""
         call = self.known[kernel, kernel.arrays_of(arguments)] = self._prepared(kernel, arguments)
         return call
@@ -80,7 +67,7 @@ class CallBook:
         """Return every group of calls, in the order of their first call."""
         return self._groups.values()
 
-    def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> PreparedCall | SpecialCall:
+    def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> PreparedCall | CheckedCall:
         kernel.check(arguments)
         rows = []
         for position in kernel.array_positions:
@@ -95,9 +82,7 @@ class CallBook:
         group = self._group(kernel, tuple(each.memory for each in rows), followed)
         follower = self._follower if followed else None
         call = kernel.prepare(group.code, [each.array for each in rows], group.totals, follower)
-        if followed or self._sanitize:
-            return SpecialCall(call, kernel if self._sanitize else None, follower, self._sdram)
-        return call
+        return CheckedCall(call, kernel) if self._sanitize else call
 
     def _is_followed(self, row: Row) -> bool:
         """Whether accesses to `row` take longer than one cycle. Another core's L1 cannot be reached at all."""

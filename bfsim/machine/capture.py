@@ -204,7 +204,6 @@ class Capture:
         yield self._env.all_of(
             [ppi.receive(images[core], pair.rows[core], starts[core]) for core, ppi in self._ppis.items()]
         )
-        self._env.settle()
         pair.state = State.FULL
         pair.full_at_ticks = self._env.tick
         self._notify()

@@ -24,8 +24,8 @@ from bfsim.kernel import Kernel, Work
 from bfsim.machine.accounts import FrameAccounts
 from bfsim.machine.calls import CallBook
 from bfsim.machine.capture import Capture
-from bfsim.machine.direct import DirectAccess
-from bfsim.machine.mdma import MdmaStream, Transfer
+from bfsim.machine.bus import Bus, Transfer
+from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.machine.program import Main
 from bfsim.machine.ring import InputRing, OutputRing
@@ -35,6 +35,14 @@ from bfsim.trace import REST, CoreFrame, StallReason
 
 NOT_FIRMWARE = (str(Path(__file__).parent.parent) + os.sep, contextlib.__file__)
 """Where the code lies that firmware calls; a mistake is told with the line of the firmware itself."""
+
+
+BUS_STALLS = (
+    StallReason.L2_LATENCY, StallReason.L2_PORT, StallReason.SDRAM_PAGE_HIT, StallReason.SDRAM_PAGE_MISS,
+    StallReason.SDRAM_PAGE_CONFLICT, StallReason.SDRAM_REFRESH, StallReason.EBIU_ARBITRATION, StallReason.STORE_BUFFER,
+    StallReason.CACHE_FILL, StallReason.CODE_FETCH,
+)  # fmt: skip
+"""What the bus stalls a core for, in the order of its counters (`bus_state`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +76,8 @@ class Core:
         *,
         buffers: Mapping[str, tuple[Row, ...]],
         calls: CallBook,
-        direct: DirectAccess,
+        bus: Bus,
+        number: int,
         capture: Capture,
         streams: tuple[MdmaStream, MdmaStream],
         semaphores: dict[str, Semaphore],
@@ -91,7 +100,8 @@ class Core:
         self._on_finished = on_finished
         self._buffers = buffers
         self._calls = calls
-        self._direct = direct
+        self._bus = bus
+        self._number = number
         self._capture = capture
         self._streams = streams
         self._semaphores = semaphores
@@ -198,22 +208,24 @@ class Core:
         return self._env.after(ahead_ticks) if ahead_ticks > 0 else None
 
     def settle(self) -> None:
-        """Let everything happen that is due; the core's clock must have been caught up with."""
-        self._env.settle()
+        """Let everything on the bus happen that is due; the core's clock must have been caught up with."""
+        self._bus.settle()
 
     def has(self, transfer: Transfer) -> bool:
         """Whether `transfer` is done by the core's clock."""
-        return transfer.end is not None and transfer.end <= self._cclk * self._cclk_ticks
+        end = transfer.end
+        return end is not None and end <= self._cclk * self._cclk_ticks
 
     def wait_transfer(self, transfer: Transfer, reason: StallReason) -> Generator[Any, Any, None]:
         """Stall for `reason` until `transfer` is done."""
         if transfer.end is None:
             yield from self._sync()
-            self._env.settle()
-            while transfer.end is None:
-                yield self._env.until_next_note()
-                self._env.settle()
-        late_ticks = transfer.end - self._cclk * self._cclk_ticks
+            self._bus.settle()
+            if transfer.end is None:
+                yield self._bus.when_done(transfer)
+        end = transfer.end
+        assert end is not None
+        late_ticks = end - self._cclk * self._cclk_ticks
         if late_ticks > 0:
             self._stall(reason, -(-late_ticks // self._cclk_ticks))
 
@@ -234,13 +246,13 @@ class Core:
                 raise self._told(error) from error
             if item is self._unclaimed and item is not None:
                 self._unclaimed = None
+                if item.accesses:
+                    yield from self._outside_l1(item)
                 self._cclk += item.issue_cclk + item.stall_cclk
                 self._account.issue_cclk += item.issue_cclk
                 if item.stall_cclk:
                     stalls = self._account.stall_cclk
                     stalls[StallReason.INTERLOCK] = stalls.get(StallReason.INTERLOCK, 0) + item.stall_cclk
-                if item.accesses is not None:
-                    yield from self._outside_l1(item.accesses)
                 value = item.value
             elif isinstance(item, simpy.Event):
                 value = yield item
@@ -320,19 +332,20 @@ class Core:
         self.waiting_for = None
         return result
 
-    def _outside_l1(self, accesses: list[int]) -> Generator[Any, Any, None]:
-        for reason, cclk in self._direct.stalls(accesses):
-            self._stall(reason, cclk)
-        if self._direct.uses_bus(accesses):
-            yield from self._sync()
-            self._env.settle()
-            self._stall(StallReason.EBIU_ARBITRATION, self._direct.arbitrate(accesses, self.now_ticks))
+    def _outside_l1(self, work: Work) -> Generator[Any, Any, None]:
+        """Play the accesses of a call outside L1 from the core's clock on, and charge what they stall."""
+        yield from self._sync()
+        begin, cclk = self.now_ticks, work.issue_cclk + work.stall_cclk
+        yield self._bus.access(self._number, begin, cclk, work.accesses)
+        for reason, stalled in zip(BUS_STALLS, self._bus.stalls_of(self._number), strict=True):
+            if stalled:
+                self._stall(reason, stalled)
 
     def _test_and_set(self) -> Generator[Any, Any, None]:
         chip = self._board.chip
-        self._cclk += chip.semaphore_issue_cclk
-        self._account.issue_cclk += chip.semaphore_issue_cclk
-        self._stall(StallReason.L2_LATENCY, chip.l2_read_cclk)
+        self._cclk += chip.events.testset_cclk
+        self._account.issue_cclk += chip.events.testset_cclk
+        self._stall(StallReason.L2_LATENCY, chip.l2.read_cclk)
         yield from self._sync()
 
     def _semaphore(self, name: str) -> Semaphore:

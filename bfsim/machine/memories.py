@@ -1,4 +1,4 @@
-"""The memories themselves: host bytes that stand for each memory of the chip, and the rows placed in them."""
+"""The memories themselves: one host array, the arena, that stands for all memory of the chip, and the rows placed in it."""
 
 from __future__ import annotations
 
@@ -7,64 +7,80 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.chip.memory_map import region_of
+from bfsim.chip.memory_map import Region, region_of
 from bfsim.chip.spec import BoardSpec
+from bfsim.errors import LinkError
 from bfsim.linker import Placement
 from bfsim.machine.program import Buffer
 
-WORD_BYTES = 4  # DMA moves 32-bit words between memories
+ARENA_ALIGN = 4096
 
 
 class Row:
     """One row of a buffer where the linker put it. A row is the unit of DMA and the argument of kernels.
 
-    `pages` splits it at SDRAM page borders: (bank, page, words) of each piece; empty outside SDRAM.
-    Kernels see its elements in `array`, DMA its bytes in `octets`; `words` are the 32-bit words that a DMA moves.
+    Kernels see its elements in `array`, DMA its bytes from `offset` in the arena.
     """
 
-    __slots__ = ("address", "array", "buffer", "memory", "nbytes", "octets", "pages", "words")
+    __slots__ = ("address", "array", "buffer", "memory", "nbytes", "octets", "offset")
 
-    def __init__(
-        self,
-        buffer: str,
-        memory: str,
-        address: int,
-        array: NDArray[Any],
-        pages: tuple[tuple[int, int, int], ...],
-    ) -> None:
+    def __init__(self, buffer: str, memory: str, address: int, offset: int, array: NDArray[Any]) -> None:
         self.buffer = buffer
         self.memory = memory
         self.address = address
+        self.offset = offset
         self.array = array
         self.octets = array.view(np.uint8).data  # copies in a third of numpy's time
         self.nbytes: int = array.nbytes
-        self.pages = pages
-        self.words = sum(words for _, _, words in pages) or -(-self.nbytes // WORD_BYTES)
 
     def __repr__(self) -> str:
         return f"<row of {self.buffer} at 0x{self.address:08X} in {self.memory}>"
 
 
 class Memories:
-    """All memories of one board, zeroed. SDRAM that is never touched costs the host nothing."""
+    """All memories of one board, zeroed. What is never touched costs the host nothing.
 
-    def __init__(self, board: BoardSpec) -> None:
-        self._board = board
-        self._sizes = {each.name: each.nbytes for each in board.chip.regions}
-        self._bytes: dict[str, NDArray[np.uint8]] = {}
+    In the arena SDRAM comes first, then L2, then what cameras and links keep of the world outside, then the cores' own.
+    """
 
-    def host(self, memory: str) -> NDArray[np.uint8]:
-        """Return the bytes that stand for `memory`, zeros at the first time."""
-        if memory not in self._bytes:
-            self._bytes[memory] = np.zeros(self._sizes[memory], np.uint8)
-        return self._bytes[memory]
+    def __init__(self, board: BoardSpec, outside_nbytes: int = 0) -> None:
+        """`outside_nbytes`: room for pictures and messages on their way in or out."""
+        self._regions = board.chip.regions
+        self.first: dict[str, int] = {}
+        """Offset of each region's first byte in the arena, by name."""
+        self.outside = 0
+        end = 0
+        for memory in ("SDRAM", "L2", "L1"):
+            if memory == "L1":
+                self.outside, end = end, _round_up(end + outside_nbytes)
+                self.l1 = end
+            for region in self._regions:
+                if _kind(region) == memory:
+                    self.first[region.name] = end
+                    end = _round_up(end + region.nbytes)
+            if memory == "SDRAM":
+                self.sdram_end = end
+            elif memory == "L2":
+                self.l2_end = end
+        self.arena: NDArray[np.uint8] = np.zeros(end, np.uint8)
+
+    def bytes_from(self, offset: int, nbytes: int) -> NDArray[np.uint8]:
+        """Return `nbytes` of the arena from `offset`, to be read and written."""
+        return self.arena[offset : offset + nbytes]
 
     def place(self, buffer: Buffer, placement: Placement) -> tuple[Row, ...]:
         """Lay `buffer` out where the linker placed it, with its initial contents, and return its rows."""
-        region = region_of(placement.address, buffer.nbytes, self._board.chip.regions)
-        offset = placement.address - region.start
-        view = self.host(region.name)[offset : offset + buffer.nbytes].view(buffer.element.dtype)
-        grid = view.reshape(buffer.rows, buffer.columns)
+        region = region_of(placement.address, buffer.nbytes, self._regions)
+        if region.name not in self.first:
+            raise LinkError(
+                f"buffer {buffer.name} must lie in data memory of the board, not in {region.name} (0x{placement.address:08X})"
+            )
+        offset = self.first[region.name] + placement.address - region.start
+        grid = (
+            self.bytes_from(offset, buffer.nbytes)
+            .view(buffer.element.dtype)
+            .reshape(buffer.rows, buffer.columns)
+        )
         if buffer.values is not None:
             grid[:] = np.reshape(buffer.values, grid.shape)
         stride = buffer.columns * buffer.element.nbytes
@@ -73,18 +89,19 @@ class Memories:
                 buffer.name,
                 region.name,
                 placement.address + number * stride,
+                offset + number * stride,
                 grid[number],
-                self._pages(offset + number * stride, stride) if region.memory == "SDRAM" else (),
             )
             for number in range(buffer.rows)
         )
 
-    def _pages(self, offset: int, nbytes: int) -> tuple[tuple[int, int, int], ...]:
-        sdram = self._board.sdram
-        pieces = []
-        while nbytes > 0:
-            piece = min(nbytes, sdram.page_bytes - offset % sdram.page_bytes)
-            words = -(-piece // sdram.word_bytes)
-            pieces.append((offset // sdram.bank_bytes, offset // sdram.page_bytes, words))
-            offset, nbytes = offset + piece, nbytes - piece
-        return tuple(pieces)
+
+def _kind(region: Region) -> str:
+    """Part of the arena that a region belongs to: SDRAM, L2, L1, or none for code and for banks with nothing on them."""
+    if region.memory in ("SDRAM", "L2"):
+        return region.memory
+    return "L1" if region.memory in ("L1_DATA_A", "L1_DATA_B", "SCRATCH") else ""
+
+
+def _round_up(offset: int) -> int:
+    return -(-offset // ARENA_ALIGN) * ARENA_ALIGN

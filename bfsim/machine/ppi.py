@@ -1,9 +1,9 @@
-"""PPI and camera: a picture arrives line by line, at the sensor's pace, in a frame buffer in memory."""
+"""PPI and camera: a picture arrives word by word, at the sensor's pace, in a frame buffer in memory."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
+from fractions import Fraction
 
 import numpy as np
 import simpy
@@ -11,43 +11,44 @@ from numpy.typing import NDArray
 
 from bfsim.chip.spec import BoardSpec, SensorMode
 from bfsim.clocks import PeriodicEdges
-from bfsim.machine.ebiu import BurstRate, Ebiu
-from bfsim.machine.memories import Row
+from bfsim.machine.bus import Bus, Pace, Walk
+from bfsim.machine.memories import Memories, Row
 from bfsim.machine.simulation import Simulation
-from bfsim.machine.traffic import Account
+
+WORD_BYTES = 4  # PPI_CONTROL with PACK_EN and DMA32
 
 
 class Ppi:
     """One parallel peripheral interface with the camera on it."""
 
     def __init__(
-        self, env: Simulation, board: BoardSpec, mode: SensorMode, ebiu: Ebiu, account: Account
+        self, env: Simulation, board: BoardSpec, mode: SensorMode, bus: Bus, memories: Memories, *, master: int, outside: int
     ) -> None:
-        """`account`: what it writes to SDRAM."""
-        self._account = account
+        """`outside`: where in the arena a picture stands while it comes in."""
         self._env = env
-        self._rate = BurstRate(board.chip.ppi_word_sclk)
-        self._ebiu = ebiu
-        lines = PeriodicEdges.of(board.clocks, mode.ppi_clk_hz, every=mode.line_clocks)
-        self._line_ends = [lines.after(number + 1) for number in range(mode.height_px)]
-        self.picture_ticks = self._line_ends[-1]
-        """Ticks from the start of a picture to the end of its last line."""
+        self._bus = bus
+        self._memories = memories
+        self._master = master
+        self._outside = outside
+        ppi_clk_ticks = board.clocks.tick_hz / mode.ppi_clk_hz
+        self._word_ticks = ppi_clk_ticks * WORD_BYTES
+        self._line_ticks: Fraction = ppi_clk_ticks * mode.line_clocks
+        lines = PeriodicEdges(self._line_ticks)
+        self.picture_ticks = lines.after(mode.height_px - 1) + PeriodicEdges(self._word_ticks).after(2 * mode.width_px // WORD_BYTES)
+        """Ticks from the start of a picture to its last byte."""
         self.frame_ticks = lines.after(mode.frame_lines)
         """Ticks from one picture's first line to the next one's, vertical blanking included."""
 
     def receive(self, picture: NDArray[np.uint8], rows: Sequence[Row], start: int) -> simpy.Event:
-        """Write `picture` (height, 2 · width) to `rows`, line n at the end of its time; its first line begins at `start`.
-
-        Return the event at the end of the last line.
-        """
-
-        def line(number: int, now: int) -> None:
-            row = rows[number]
-            row.octets[:] = picture[number]
-            if row.pages:
-                self._ebiu.burst(self._account, now, row, self._rate, write=True)
-            if number + 1 < len(rows):
-                self._env.note(start + self._line_ends[number + 1], partial(line, number + 1))
-
-        self._env.note(start + self._line_ends[0], partial(line, 0))
-        return self._env.after(start + self.picture_ticks - self._env.tick)
+        """Write `picture` (height, 2 · width) to `rows`; its first line begins at tick `start`. Return the event at its end."""
+        words = picture.shape[1] // WORD_BYTES
+        self._memories.bytes_from(self._outside, picture.nbytes)[:] = picture.reshape(-1)
+        transfer = self._bus.receive(
+            self._master,
+            Walk(self._outside, words, WORD_BYTES, WORD_BYTES),
+            Walk(rows[0].offset, words, WORD_BYTES, WORD_BYTES),
+            words * len(rows),
+            element_bytes=WORD_BYTES,
+            pace=Pace(start, words, self._word_ticks, self._line_ticks),
+        )
+        return self._bus.when_done(transfer)

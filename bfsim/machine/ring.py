@@ -9,7 +9,8 @@ from collections.abc import Generator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from bfsim.errors import FirmwareError
-from bfsim.machine.mdma import MdmaStream, Transfer
+from bfsim.machine.bus import Transfer
+from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.trace import StallReason
 

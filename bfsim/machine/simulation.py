@@ -1,25 +1,41 @@
-"""SimPy's environment with time in whole ticks, and an agenda for what must happen in order but need not be an event.
+"""SimPy's environment with time in whole ticks, which plays the bus up to each of its events.
 
-The start of a DMA burst has no one who waits for it; only what it does to the bus matters to whoever comes next.
-Such things are noted on the agenda with their tick, and done in order of time as soon as anyone looks at the
-state they change. That gives the same result as an event each, at a fraction of the cost.
+A word on a bus has no one who waits for it; only what it does to the bus matters to whoever comes next. So the bus is no
+process: before each event everything on it that comes earlier is played, and the end of a transfer becomes an event only
+if somebody waits for it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from heapq import heappop, heappush
+from typing import Protocol
 
 import simpy
 
 
+class Followed(Protocol):
+    """What keeps its own time behind the simulation's."""
+
+    @property
+    def is_awaited(self) -> bool:
+        """Whether somebody waits for one of its ends."""
+
+    def play_until(self, tick: int) -> bool:
+        """Play up to `tick`; return True when it stopped at an end, whose event is on the queue."""
+
+
+END_OF_TIME = 1 << 62
+
+
 class Simulation(simpy.Environment):
-    """The one queue of events of a board, and its agenda."""
+    """The one queue of events of a board."""
 
     def __init__(self) -> None:
         super().__init__()
-        self._agenda: list[tuple[int, int, Callable[[int], None]]] = []
-        self._noted = 0
+        self._bus: Followed | None = None
+
+    def follow(self, bus: Followed) -> None:
+        """Play `bus` up to each event from now on."""
+        self._bus = bus
 
     @property
     def tick(self) -> int:
@@ -30,21 +46,19 @@ class Simulation(simpy.Environment):
         """Return the event that happens in so many ticks (as `timeout`, without its detour through a descriptor)."""
         return simpy.Timeout(self, ticks)
 
-    def note(self, tick: int, action: Callable[[int], None]) -> None:
-        """Have `action(tick)` done at `tick`; of several at one tick, the first noted is the first done."""
-        self._noted += 1
-        heappush(self._agenda, (tick, self._noted, action))
+    def trigger_at(self, event: simpy.Event, tick: int) -> None:
+        """Let `event` happen at `tick`, which is not over yet."""
+        event._ok = True  # noqa: SLF001  # as simpy.Timeout does
+        event._value = None  # noqa: SLF001
+        self.schedule(event, delay=max(0, tick - self.tick))
 
-    def settle(self) -> None:
-        """Do what was noted up to now, in order. Call it before looking at, or adding to, what actions change."""
-        agenda, now = self._agenda, self._now
-        while agenda and agenda[0][0] <= now:
-            tick, _, action = heappop(agenda)
-            action(tick)
-
-    def until_next_note(self) -> simpy.Timeout:
-        """Return the event at which the next action is due; there must be one."""
-        return self.after(self._agenda[0][0] - self.tick)
+    def step(self) -> None:
+        """Play the bus up to the next event, or to an end before it that somebody waits for; then process the event."""
+        bus = self._bus
+        if bus is not None and bus.is_awaited:
+            while bus.play_until(self._queue[0][0] if self._queue else END_OF_TIME):  # type: ignore[arg-type]
+                pass
+        super().step()
 
     def count_events(self) -> int:
         """Return how many events were scheduled so far. Call it once, at the end: asking counts as one."""

@@ -1,58 +1,50 @@
-"""Who moved how much to and from which memory: counted as it happens, reported as records."""
+"""Who moved how much to and from which memory, from the counters of the bus."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from bfsim.machine import bus_state as w
 from bfsim.trace import TrafficRecord
 
-
-class Account:
-    """What one master moved to and from one memory."""
-
-    __slots__ = ("busy_ticks", "page_conflicts", "page_hits", "page_misses", "read_bytes", "written_bytes")
-
-    def __init__(self) -> None:
-        self.read_bytes = 0
-        self.written_bytes = 0
-        self.page_hits = 0
-        self.page_misses = 0
-        self.page_conflicts = 0
-        self.busy_ticks = 0
-
-    def add(self, nbytes: int, write: bool, hits: int, misses: int, conflicts: int, busy_ticks: int) -> None:
-        """Count one burst."""
-        if write:
-            self.written_bytes += nbytes
-        else:
-            self.read_bytes += nbytes
-        self.page_hits += hits
-        self.page_misses += misses
-        self.page_conflicts += conflicts
-        self.busy_ticks += busy_ticks
+MASTERS = {
+    "PPI0": (w.PPI0,),
+    "PPI1": (w.PPI1,),
+    "SPI": (w.SPI,),
+    "MDMA1 stream 0": (w.MDMA1_0,),
+    "MDMA1 stream 1": (w.MDMA1_1,),
+    "MDMA2 stream 0": (w.MDMA2_0,),
+    "MDMA2 stream 1": (w.MDMA2_1,),
+    "IMDMA stream 0": (w.IMDMA_0,),
+    "IMDMA stream 1": (w.IMDMA_1,),
+    "core A": (w.CORE_A, w.STORES_A),
+    "core B": (w.CORE_B, w.STORES_B),
+}
+MEMORIES = {"L2": w.IN_L2, "SDRAM": w.IN_SDRAM}
 
 
-class Traffic:
-    """The accounts of a board, by memory and master."""
-
-    def __init__(self) -> None:
-        self._accounts: dict[tuple[str, str], Account] = {}
-
-    def account(self, memory: str, master: str) -> Account:
-        """Return the account of `master` at `memory`, opening it at the first time."""
-        return self._accounts.setdefault((memory, master), Account())
-
-    def records(self, cclk_ticks: int) -> tuple[TrafficRecord, ...]:
-        """Return what was counted, sorted by memory and master; who moved nothing is left out."""
-        return tuple(
-            TrafficRecord(
-                memory=memory,
-                master=master,
-                read_bytes=each.read_bytes,
-                written_bytes=each.written_bytes,
-                page_hits=each.page_hits,
-                page_misses=each.page_misses,
-                page_conflicts=each.page_conflicts,
-                busy_cclk=each.busy_ticks // cclk_ticks,
-            )
-            for (memory, master), each in sorted(self._accounts.items())
-            if each.read_bytes or each.written_bytes
-        )
+def traffic_records(words: Sequence[int], cclk_ticks: int) -> tuple[TrafficRecord, ...]:
+    """Return what was counted in the state `words` of the bus, by memory and master; who moved nothing is left out."""
+    records = []
+    for memory, number in MEMORIES.items():
+        for name, masters in MASTERS.items():
+            total = [0] * w.TRAFFIC_WORDS
+            for master in masters:
+                first = w.TRAFFIC_AT + (master * w.MEMORIES + number) * w.TRAFFIC_WORDS
+                for word in range(w.TRAFFIC_WORDS):
+                    total[word] += words[first + word]
+            read, written, hits, misses, conflicts, busy = total
+            if read or written:
+                records.append(
+                    TrafficRecord(
+                        memory=memory,
+                        master=name,
+                        read_bytes=read,
+                        written_bytes=written,
+                        page_hits=hits,
+                        page_misses=misses,
+                        page_conflicts=conflicts,
+                        busy_cclk=busy // cclk_ticks,
+                    )
+                )
+    return tuple(records)

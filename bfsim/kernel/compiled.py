@@ -1,0 +1,53 @@
+"""Compiled Python: what looks at every access to a memory or at every word on a bus, through numba.
+
+The machine code is kept in the cache of bfsim, in a folder named after the sources around it: a change in one file never
+meets code that another file was compiled against.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+
+from bfsim.kernel import store
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+@cache
+def _folder(room: Path) -> str:
+    digest = hashlib.sha256(b"".join(path.read_bytes() for path in sorted(room.glob("*.py"))))
+    return str(store.folder() / f"{room.name}-{digest.hexdigest()[:24]}")
+
+
+def compiled(function: Function) -> Function:
+    """Compile `function` for the host, as a part of those that call it. `.py_func` is the plain one."""
+    return numba.njit(no_cfunc_wrapper=True)(function)  # type: ignore[no-any-return]
+
+
+def entry(function: Function) -> Function:
+    """Compile `function` and all that it calls at its first call from Python, or take it from the cache."""
+    numba.config.CACHE_DIR = _folder(Path(function.__code__.co_filename).parent)
+    try:
+        return numba.njit(cache=True, no_cfunc_wrapper=True)(function)  # type: ignore[no-any-return]
+    except RuntimeError:  # no folder can be written: compile in every process
+        return compiled(function)
+
+
+def callback(signature: Any, function: Callable[..., None]) -> int:
+    """Compile `function` for calls from machine code, or take it from the cache; return its host address."""
+    numba.config.CACHE_DIR = _folder(Path(function.__code__.co_filename).parent)
+    try:
+        made = numba.cfunc(signature, cache=True)(function)
+    except RuntimeError:
+        made = numba.cfunc(signature)(function)
+    _kept.append(made)  # the code lives as long as this object
+    return int(made.address)
+
+
+_kept: list[Any] = []

@@ -1,0 +1,138 @@
+"""Layout of the state that the compiled weave works on: 64-bit words in one array, and what each of them means.
+
+All times are ticks; all addresses are offsets into the arena, the one host array that holds every memory.
+"""
+
+from __future__ import annotations
+
+from bfsim.kernel.followers import (
+    FETCH, FETCH_LINE, FILL, KIND_BIT, KIND_MASK, LOAD, LOG, OFFSET_MASK, STAMP_BIT, STORE, WRITE_BACK,
+)  # fmt: skip
+
+NEVER = 1 << 62
+NONE = -1
+
+# ---- The SDRAM controller and its banks. The words up to WORD_BITS never change during a run.
+(
+    SCLK, CL, RCD, RP, RAS, WR, TURN, REFRESH, REFRESH_INTERVAL, PAGE_BITS, BANK_BITS, WORD_BITS,
+    COMMAND_FREE,   # when the next command may be given
+    DATA_FREE,      # when the data bus is free
+    LAST_WRITE,     # whether the last data were written
+    NEXT_REFRESH,
+    REFRESHES,
+    PAGE_CLASS,     # of the last access: 0 hit, 1 miss, 2 conflict
+    BEGAN,          # when the last access began
+    REFRESH_WAIT,   # what it waited for a refresh
+) = range(20)  # fmt: skip
+MAX_BANKS = 8
+OPEN_PAGE = 20
+ACTIVATED = OPEN_PAGE + MAX_BANKS
+WRITTEN = ACTIVATED + MAX_BANKS
+SDRAM_WORDS = WRITTEN + MAX_BANKS
+
+# ---- What all masters share. The words up to LINE_BYTES never change.
+BUS_AT = SDRAM_WORDS
+(
+    CCLK, SDRAM_END, L2_FIRST, L2_END, L1_FIRST, SUBBANK_BITS, L2_READ, L2_NEXT, L2_PORT_BITS, CORE_SYNC, STORE_DEPTH,
+    DEB_PERIOD, MDMA_PERIOD, LINE_BYTES,
+    L2_FREE,        # when the port of L2 is free
+    DEB_LEFT,       # transfers in the present direction that still have preference
+    LAST_CORE,      # the core that had the bus last: the other one comes first
+    FREE_SLOTS,     # how many slots are on the stack
+    DONE_AT,        # tick of the completion that `advance` returned with
+) = range(BUS_AT, BUS_AT + 19)  # fmt: skip
+BUS_WORDS = 19
+
+# ---- A master: who can ask for the bus.
+(
+    RANK,           # lower is served first
+    READY,          # when its next request can be granted, NEVER if it has none
+    USES_BUS,       # whether that request needs the SDRAM bus
+    WRITES,         # whether it writes
+    SLOT,           # the transfer it works on, or NONE
+    LAST_SLOT,      # the last one in its queue
+    FREE_AT,        # when its last transfer ended
+    FIFO,           # elements that wait in it before any is lost
+    GAP_NUMERATOR, GAP_DENOMINATOR,  # cycles beyond one a word that a memory DMA takes to read, as a fraction
+    GAP,            # of that fraction: what has added up
+    IN_FIFO,        # elements that were read and not yet written
+    PARTNER,        # the other stream of its controller, or NONE
+    SERVED,         # elements since the partner had its turn
+) = range(14)  # fmt: skip
+MASTER_WORDS = 14
+
+# The masters in the order of their rows. Cores have one for what they wait for and one for their store buffer.
+PPI0, PPI1, SPI, MDMA1_0, MDMA1_1, MDMA2_0, MDMA2_1, IMDMA_0, IMDMA_1, STORES_A, STORES_B, CORE_A, CORE_B = range(13)
+MASTERS = 13
+
+# ---- A slot: one transfer of a DMA.
+(
+    IDENTITY,       # number of the transfer
+    NEXT,           # slot of the next transfer of the same master, or NONE
+    AT,             # it begins at this tick or later,
+    SETUP,          # and takes so many ticks to start
+    WAKE,           # whom it wakes: AT_END, AT_ROWS
+    MODE,
+    ELEMENT_BITS,   # an element is 1 << so many bytes
+    LEFT,           # elements still to move
+    MOVED,          # elements moved, or lost
+    LOST,           # elements that found the FIFO full, or the line empty
+    FROM, FROM_X_COUNT, FROM_X_MODIFY, FROM_Y_MODIFY, FROM_X_LEFT,
+    TO, TO_X_COUNT, TO_X_MODIFY, TO_Y_MODIFY, TO_X_LEFT,
+    START, LINE_ELEMENTS, ELEMENT_TICKS, ELEMENT_PARTS, LINE_TICKS, LINE_PARTS,  # pace: ticks / parts per element and line
+) = range(26)  # fmt: skip
+SLOT_WORDS = 26
+SLOTS = 256
+ENDS = 1 << 16
+"""Transfers whose end is remembered: the latest so many."""
+
+# Modes of a transfer: which of its sides is in SDRAM; or that a device sets its pace.
+READ, WRITE, BOTH, ON_CHIP, PACED_IN, PACED_OUT = range(6)
+
+AT_END, AT_ROWS = 1, 2  # what wakes somebody
+
+# ---- A job: what one core accesses outside L1 in one kernel call.
+(
+    STATE,
+    ENTRY, END,     # next entry of the core's log, and where the log ends
+    BEGIN,          # tick at which the call began
+    TOTAL,          # cycles of the call without these stalls
+    STALLED,        # ticks that it was stalled
+    ISSUED_AT,      # tick of the present access
+    STORE_HEAD, STORES,  # store buffer: the oldest, and how many
+) = range(9)  # fmt: skip
+IDLE, RUNNING, BUFFER_FULL, BUFFER_NOT_EMPTY = range(4)
+STALL = 9
+(
+    L2_LATENCY, L2_PORT, PAGE_HIT, PAGE_MISS, PAGE_CONFLICT, REFRESHING, ARBITRATION, STORE_BUFFER, CACHE_FILL, CODE_FETCH,
+) = range(10)  # fmt: skip
+STALLS = 10
+STORE_QUEUE = STALL + STALLS
+MAX_STORES = 16
+JOB_WORDS = STORE_QUEUE + MAX_STORES
+CORES = 2
+
+FETCH_BYTES = 8  # of an instruction fetch that no cache serves: one 64-bit word
+
+# ---- Traffic: by master, memory, and what.
+IN_SDRAM, IN_L2 = range(2)
+MEMORIES = 2
+READ_BYTES, WRITTEN_BYTES, HITS, MISSES, CONFLICTS, BUSY = range(6)
+TRAFFIC_WORDS = 6
+MAX_SUBBANKS = 64
+
+# ---- Where each part begins in the one array; the SDRAM controller and the bus begin it.
+MASTERS_AT = BUS_AT + BUS_WORDS
+JOBS_AT = MASTERS_AT + MASTERS * MASTER_WORDS
+TRAFFIC_AT = JOBS_AT + CORES * JOB_WORDS
+SUBBANKS_AT = TRAFFIC_AT + MASTERS * MEMORIES * TRAFFIC_WORDS
+SLOTS_AT = SUBBANKS_AT + MAX_SUBBANKS
+FREE_AT_STACK = SLOTS_AT + SLOTS * SLOT_WORDS
+ENDS_AT = FREE_AT_STACK + SLOTS
+LOGS_AT = ENDS_AT + ENDS
+LOG_ENTRIES = 1 << 23
+"""Accesses outside L1 that one kernel call may make; the host has memory for those that are made only."""
+FOLLOWER_WORDS = LOG + LOG_ENTRIES
+STATE_WORDS = LOGS_AT + CORES * FOLLOWER_WORDS
+
+__all__ = [name for name in globals() if name.isupper()]

@@ -1,0 +1,278 @@
+"""DMA on the bus, compiled: when a transfer's next element can move, and what moves with it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.machine import bus_state as w
+from bfsim.kernel.compiled import compiled, entry
+from bfsim.machine.sdram import access, hits_ahead, stream
+from bfsim.machine.walk import move, step_from
+
+State = NDArray[np.int64]
+Memory = NDArray[np.uint32]
+
+
+@compiled
+def aligned(tick: int, period: int) -> int:
+    """Return the first edge of a clock of `period` ticks at or after `tick`."""
+    return (tick + period - 1) // period * period
+
+
+@compiled
+def arrival(state: State, slot: int, element: int) -> int:
+    """Return when a device has element number `element`, or has sent it: the end of its time on the wire."""
+    line, place = element // state[slot + w.LINE_ELEMENTS], element % state[slot + w.LINE_ELEMENTS]
+    return (
+        state[slot + w.START]
+        + (line * state[slot + w.LINE_TICKS] + state[slot + w.LINE_PARTS] - 1) // state[slot + w.LINE_PARTS]
+        + ((place + 1) * state[slot + w.ELEMENT_TICKS] + state[slot + w.ELEMENT_PARTS] - 1) // state[slot + w.ELEMENT_PARTS]
+    )
+
+
+@compiled
+def count_traffic(state: State, master: int, memory: int, write: bool, nbytes: int) -> None:
+    """Count bytes that a master moved to or from a memory."""
+    at = w.TRAFFIC_AT + (master * w.MEMORIES + memory) * w.TRAFFIC_WORDS
+    state[at + (w.WRITTEN_BYTES if write else w.READ_BYTES)] += nbytes
+
+
+@compiled
+def count_access(state: State, master: int, elements: int) -> None:
+    """Count `elements` accesses of SDRAM, the first of which was the controller's last one, and the time they took."""
+    at = w.TRAFFIC_AT + (master * w.MEMORIES + w.IN_SDRAM) * w.TRAFFIC_WORDS
+    state[at + w.HITS + state[w.PAGE_CLASS]] += 1
+    state[at + w.HITS] += elements - 1
+    state[at + w.BUSY] += state[w.COMMAND_FREE] - state[w.BEGAN] - state[w.REFRESH_WAIT]
+
+
+@compiled
+def next_paced(state: State, master: int, slot: int) -> None:
+    """Set when the device's next element wants to move."""
+    sclk = state[w.SCLK]
+    if state[slot + w.MODE] == w.PACED_IN:
+        state[master + w.READY] = aligned(arrival(state, slot, state[slot + w.MOVED]), sclk)
+    else:
+        room = state[slot + w.MOVED] - state[master + w.FIFO]
+        state[master + w.READY] = aligned(arrival(state, slot, room) if room >= 0 else state[slot + w.START], sclk)
+
+
+@compiled
+def begin(state: State, master: int, slot: int, at: int) -> None:
+    """Start a transfer at tick `at`, or at its own time if that is later."""
+    mode, end = state[slot + w.MODE], state[w.SDRAM_END]
+    start = aligned(max(at, state[slot + w.AT]) + state[slot + w.SETUP], state[w.SCLK])
+    state[master + w.USES_BUS] = 1
+    state[master + w.WRITES] = mode == w.WRITE
+    state[master + w.IN_FIFO] = 0
+    if mode == w.PACED_IN:
+        state[master + w.USES_BUS] = state[slot + w.TO] < end
+        state[master + w.WRITES] = 1
+        next_paced(state, master, slot)
+    elif mode == w.PACED_OUT:
+        state[master + w.USES_BUS] = state[slot + w.FROM] < end
+        next_paced(state, master, slot)
+    elif mode == w.ON_CHIP:
+        state[master + w.USES_BUS] = 0
+        state[master + w.READY] = start + (state[slot + w.LEFT] * state[slot + w.ELEMENT_TICKS] + state[slot + w.ELEMENT_PARTS] - 1) // state[slot + w.ELEMENT_PARTS]
+    else:
+        state[master + w.READY] = start
+
+
+@entry
+def post(state: State, number: int, place: int, now: int) -> None:
+    """Put the transfer in slot `place` behind those of a master; it begins at once when there are none."""
+    master = w.MASTERS_AT + number * w.MASTER_WORDS
+    if state[master + w.SLOT] == w.NONE:
+        state[master + w.SLOT] = place
+        begin(state, master, w.SLOTS_AT + place * w.SLOT_WORDS, now)
+    else:
+        state[w.SLOTS_AT + state[master + w.LAST_SLOT] * w.SLOT_WORDS + w.NEXT] = place
+    state[master + w.LAST_SLOT] = place
+
+
+@compiled
+def finish(state: State, master: int, slot: int, at: int) -> int:
+    """End a transfer at tick `at` and begin the next one; return its number if it wakes somebody."""
+    number, wakes = state[slot + w.IDENTITY], state[slot + w.WAKE]
+    state[w.ENDS_AT + number % w.ENDS] = at
+    state[master + w.FREE_AT] = at
+    state[w.FREE_AT_STACK + state[w.FREE_SLOTS]] = state[master + w.SLOT]
+    state[w.FREE_SLOTS] += 1
+    state[master + w.SLOT] = state[slot + w.NEXT]
+    if state[slot + w.NEXT] == w.NONE:
+        state[master + w.LAST_SLOT] = w.NONE
+        state[master + w.READY] = w.NEVER
+    else:
+        begin(state, master, w.SLOTS_AT + state[slot + w.NEXT] * w.SLOT_WORDS, at)
+    if wakes == 0:
+        return w.NONE
+    state[w.DONE_AT] = at
+    return number
+
+
+@compiled
+def moved(state: State, memory: Memory, slot: int, count: int) -> None:
+    """Move the bytes of `count` elements, and count what goes to and from the sub-banks of L1."""
+    first, bits = state[w.L1_FIRST], state[w.SUBBANK_BITS]
+    if state[slot + w.FROM] >= first:
+        state[w.SUBBANKS_AT + ((state[slot + w.FROM] - first) >> bits)] += count
+    if state[slot + w.TO] >= first:
+        state[w.SUBBANKS_AT + ((state[slot + w.TO] - first) >> bits)] += count
+    move(state, memory, slot, count)
+
+
+@compiled
+def run_ahead(state: State, number: int, slot: int, offset: int, step: int, until: int) -> int:
+    """How many more elements a memory DMA can move before anybody else may have the bus, or before it pauses itself."""
+    if state[w.DEB_PERIOD] or state[w.MDMA_PERIOD]:
+        return 0
+    limit = min(until, state[w.NEXT_REFRESH])
+    rank = state[w.MASTERS_AT + number * w.MASTER_WORDS + w.RANK]
+    began = state[w.BEGAN]
+    for other in range(w.MASTERS):
+        at = w.MASTERS_AT + other * w.MASTER_WORDS
+        if other != number and state[at + w.READY] < limit:
+            waits = state[at + w.READY] <= began and state[at + w.USES_BUS] and state[at + w.RANK] > rank
+            if not waits:
+                limit = state[at + w.READY]
+    beats = max(1, 1 << (state[slot + w.ELEMENT_BITS] - state[w.WORD_BITS]))
+    ticks = beats * state[w.SCLK]
+    count = min(state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT]) - 1
+    count = min(count, hits_ahead(state, offset + step, step))
+    return max(0, min(count, (limit - state[w.COMMAND_FREE] + ticks - 1) // ticks))
+
+
+@compiled
+def burst(state: State, memory: Memory, number: int, at: int, until: int) -> int:
+    """Move the next elements of a memory DMA with one side in SDRAM; return who is woken."""
+    master = w.MASTERS_AT + number * w.MASTER_WORDS
+    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
+    write = state[slot + w.MODE] == w.WRITE
+    offset, step = (state[slot + w.TO], state[slot + w.TO_X_MODIFY]) if write else (state[slot + w.FROM], state[slot + w.FROM_X_MODIFY])
+    beats = max(1, 1 << (state[slot + w.ELEMENT_BITS] - state[w.WORD_BITS]))
+    through = access(state, at, offset, write)
+    if beats > 1:
+        through = stream(state, beats - 1, write, offset)
+    more = run_ahead(state, number, slot, offset, step, until)
+    if not write and state[master + w.GAP_NUMERATOR]:
+        more = min(more, (state[master + w.GAP_DENOMINATOR] - 1 - state[master + w.GAP]) // state[master + w.GAP_NUMERATOR])
+    if more:
+        through = stream(state, more * beats, write, offset)
+    count_access(state, number, 1 + more)
+    count_traffic(state, number, w.IN_SDRAM, write, (1 + more) << state[slot + w.ELEMENT_BITS])
+    on_chip = state[slot + w.FROM] if write else state[slot + w.TO]
+    if state[w.L2_FIRST] <= on_chip < state[w.L2_END]:
+        count_traffic(state, number, w.IN_L2, not write, (1 + more) << state[slot + w.ELEMENT_BITS])
+    moved(state, memory, slot, 1 + more)
+    state[master + w.SERVED] += 1 + more
+    state[master + w.READY] = state[w.COMMAND_FREE]
+    if not write:
+        state[master + w.GAP] += (1 + more) * state[master + w.GAP_NUMERATOR]
+        while state[master + w.GAP] >= state[master + w.GAP_DENOMINATOR]:
+            state[master + w.GAP] -= state[master + w.GAP_DENOMINATOR]
+            state[master + w.READY] += state[w.SCLK]
+    return after_move(state, master, slot, through)
+
+
+@compiled
+def after_move(state: State, master: int, slot: int, through: int) -> int:
+    """See whether the transfer is done, or a row of it, with the elements that just moved; return who is woken."""
+    if state[slot + w.LEFT] == 0:
+        return finish(state, master, slot, through)
+    if state[slot + w.WAKE] == w.AT_ROWS and state[slot + w.TO_X_LEFT] == state[slot + w.TO_X_COUNT]:
+        state[w.DONE_AT] = through
+        return state[slot + w.IDENTITY]
+    return w.NONE
+
+
+@compiled
+def exchange(state: State, memory: Memory, number: int, at: int) -> int:
+    """Move a FIFO full of elements within SDRAM: first all are read, the next time they are written."""
+    master = w.MASTERS_AT + number * w.MASTER_WORDS
+    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
+    write = state[master + w.IN_FIFO] > 0
+    count = state[master + w.IN_FIFO] if write else min(state[master + w.FIFO], state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT])
+    offset, step = (state[slot + w.TO], state[slot + w.TO_X_MODIFY]) if write else (state[slot + w.FROM], state[slot + w.FROM_X_MODIFY])
+    beats = max(1, 1 << (state[slot + w.ELEMENT_BITS] - state[w.WORD_BITS]))
+    through = at
+    for element in range(count):
+        through = access(state, at, offset + element * step, write)
+        if beats > 1:
+            through = stream(state, beats - 1, write, offset)
+        count_access(state, number, 1)
+    count_traffic(state, number, w.IN_SDRAM, write, count << state[slot + w.ELEMENT_BITS])
+    state[master + w.SERVED] += count
+    state[master + w.WRITES] = not write
+    if not write:
+        state[master + w.IN_FIFO] = count
+        state[master + w.READY] = aligned(through, state[w.SCLK])
+        return w.NONE
+    state[master + w.IN_FIFO] = 0
+    state[master + w.READY] = state[w.COMMAND_FREE]
+    moved(state, memory, slot, count)
+    return after_move(state, master, slot, through)
+
+
+@compiled
+def copy_on_chip(state: State, memory: Memory, number: int, at: int) -> int:
+    """End a transfer between L1 and L2: all of it moves at its end."""
+    master = w.MASTERS_AT + number * w.MASTER_WORDS
+    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
+    first, end = state[w.L2_FIRST], state[w.L2_END]
+    nbytes = state[slot + w.LEFT] << state[slot + w.ELEMENT_BITS]
+    if first <= state[slot + w.FROM] < end:
+        count_traffic(state, number, w.IN_L2, False, nbytes)
+    if first <= state[slot + w.TO] < end:
+        count_traffic(state, number, w.IN_L2, True, nbytes)
+    while state[slot + w.LEFT]:
+        moved(state, memory, slot, min(state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT]))
+    return finish(state, master, slot, at)
+
+
+@compiled
+def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> int:
+    """Move the next element to or from a device that sets the pace, and lose what came too late."""
+    master = w.MASTERS_AT + number * w.MASTER_WORDS
+    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
+    write = state[slot + w.MODE] == w.PACED_IN
+    while write and state[slot + w.LEFT] > 1 and state[slot + w.LEFT] > state[master + w.FIFO] and arrival(state, slot, state[slot + w.MOVED] + state[master + w.FIFO]) < at:
+        # the FIFO was full when this element came: the picture goes on without it
+        step_from(state, slot, 1)
+        state[slot + w.MOVED] += 1
+        state[slot + w.LEFT] -= 1
+        state[slot + w.LOST] += 1
+    offset = state[slot + w.TO] if write else state[slot + w.FROM]
+    through = at
+    if state[master + w.USES_BUS]:
+        through = access(state, at, offset, write)
+        beats = max(1, 1 << (state[slot + w.ELEMENT_BITS] - state[w.WORD_BITS]))
+        if beats > 1:
+            through = stream(state, beats - 1, write, offset)
+        count_access(state, number, 1)
+        count_traffic(state, number, w.IN_SDRAM, write, 1 << state[slot + w.ELEMENT_BITS])
+    elif state[w.L2_FIRST] <= offset < state[w.L2_END]:
+        count_traffic(state, number, w.IN_L2, write, 1 << state[slot + w.ELEMENT_BITS])
+    moved(state, memory, slot, 1)
+    if state[slot + w.LEFT]:
+        next_paced(state, master, slot)
+    elif not write:
+        through = max(through, arrival(state, slot, state[slot + w.MOVED] - 1))
+    return after_move(state, master, slot, through)
+
+
+@compiled
+def serve_dma(state: State, memory: Memory, number: int, at: int, until: int) -> int:
+    """Grant the request of a DMA at tick `at`; return the number of the transfer that wakes somebody, or NONE."""
+    where = w.MASTERS_AT + number * w.MASTER_WORDS
+    mode = state[w.SLOTS_AT + state[where + w.SLOT] * w.SLOT_WORDS + w.MODE]
+    if state[where + w.PARTNER] != w.NONE:
+        state[w.MASTERS_AT + state[where + w.PARTNER] * w.MASTER_WORDS + w.SERVED] = 0
+    if mode == w.BOTH:
+        return exchange(state, memory, number, at)
+    if mode == w.ON_CHIP:
+        return copy_on_chip(state, memory, number, at)
+    if mode in (w.PACED_IN, w.PACED_OUT):
+        return exchange_with_device(state, memory, number, at)
+    return burst(state, memory, number, at, until)

@@ -1,0 +1,59 @@
+"""How a transfer walks through memory: the next elements of both its sides, and their bytes moved from one to the other."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.machine import bus_state as w
+from bfsim.kernel.compiled import compiled
+
+State = NDArray[np.int64]
+Memory = NDArray[np.uint32]
+
+WORD_BYTES, WORD_BITS = 4, 2  # the arena is an array of 32-bit words
+
+
+@compiled
+def step_from(state: State, slot: int, count: int) -> None:
+    """Move the source on by `count` elements of its line. Behind a line's last one Y_MODIFY stands in for X_MODIFY."""
+    state[slot + w.FROM] += count * state[slot + w.FROM_X_MODIFY]
+    state[slot + w.FROM_X_LEFT] -= count
+    if state[slot + w.FROM_X_LEFT] == 0:
+        state[slot + w.FROM] += state[slot + w.FROM_Y_MODIFY] - state[slot + w.FROM_X_MODIFY]
+        state[slot + w.FROM_X_LEFT] = state[slot + w.FROM_X_COUNT]
+
+
+@compiled
+def step_to(state: State, slot: int, count: int) -> None:
+    """Move the destination on by `count` elements of its line."""
+    state[slot + w.TO] += count * state[slot + w.TO_X_MODIFY]
+    state[slot + w.TO_X_LEFT] -= count
+    if state[slot + w.TO_X_LEFT] == 0:
+        state[slot + w.TO] += state[slot + w.TO_Y_MODIFY] - state[slot + w.TO_X_MODIFY]
+        state[slot + w.TO_X_LEFT] = state[slot + w.TO_X_COUNT]
+
+
+@compiled
+def move(state: State, memory: Memory, slot: int, count: int) -> None:
+    """Move `count` elements, none beyond the end of either side's line, and step both sides on."""
+    source, target, bits = state[slot + w.FROM], state[slot + w.TO], state[slot + w.ELEMENT_BITS]
+    source_step, target_step = state[slot + w.FROM_X_MODIFY], state[slot + w.TO_X_MODIFY]
+    if bits == WORD_BITS:
+        for _ in range(count):
+            memory[target >> WORD_BITS] = memory[source >> WORD_BITS]
+            source += source_step
+            target += target_step
+    else:
+        mask = (1 << (8 << bits)) - 1
+        for _ in range(count):
+            value = memory[source >> WORD_BITS] >> (source % WORD_BYTES * 8) & mask
+            shift = target % WORD_BYTES * 8
+            kept = memory[target >> WORD_BITS] & ~(mask << shift)
+            memory[target >> WORD_BITS] = kept | value << shift
+            source += source_step
+            target += target_step
+    step_from(state, slot, count)
+    step_to(state, slot, count)
+    state[slot + w.MOVED] += count
+    state[slot + w.LEFT] -= count

@@ -1,0 +1,92 @@
+"""The weave, compiled: every word that a DMA, a camera or a core moves over the SDRAM bus or the port of L2, in order of time.
+
+`advance` plays the masters against each other up to a tick. The one whose request comes first has the bus; of several, the
+one with the best rank. Runs of words that nobody can interrupt are done at once, which saves the host's time only.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.machine import bus_state as w
+from bfsim.kernel.compiled import compiled, entry
+from bfsim.machine.core_requests import serve_core, serve_stores
+from bfsim.machine.dma_requests import arrival, serve_dma
+
+State = NDArray[np.int64]
+Memory = NDArray[np.uint32]
+
+# What changes a rank (HRM of the BF537, 5-50 to 5-54): an urgent request comes before everything else, one against the
+# direction of the traffic behind all of its kind. A request that needs no bus cannot keep anybody waiting.
+NO_BUS, URGENT, AGAINST, HAD_ITS_TURN, HAD_THE_BUS = -10_000, -1_000, 100, 2, 2
+
+
+@compiled
+def rank_of(state: State, number: int, at: int) -> int:
+    """Return the rank of a master's request at tick `at`."""
+    master = w.MASTERS_AT + number * w.MASTER_WORDS
+    rank = state[master + w.RANK]
+    if not state[master + w.USES_BUS]:
+        return rank + NO_BUS
+    if number >= w.CORE_A:
+        return rank + (HAD_THE_BUS if state[w.LAST_CORE] == number - w.CORE_A else 0)
+    if number >= w.STORES_A:
+        return rank
+    if state[w.DEB_LEFT] > 0 and state[master + w.WRITES] != state[w.LAST_WRITE]:
+        rank += AGAINST
+    if state[master + w.PARTNER] != w.NONE and 0 < state[w.MDMA_PERIOD] <= state[master + w.SERVED]:
+        rank += HAD_ITS_TURN
+    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
+    if state[slot + w.MODE] in (w.PACED_IN, w.PACED_OUT) and arrival(state, slot, state[slot + w.MOVED] + state[master + w.FIFO] // 2) <= at:
+        rank += URGENT  # half of the FIFO waits
+    return rank
+
+
+@compiled
+def count_direction(state: State, before: int) -> None:
+    """Begin the period in which requests of the same direction are preferred, or use up a transfer of it."""
+    if state[w.LAST_WRITE] != before:
+        state[w.DEB_LEFT] = state[w.DEB_PERIOD]
+    elif state[w.DEB_LEFT] > 0:
+        state[w.DEB_LEFT] -= 1
+
+
+@entry
+def advance(state: State, memory: Memory, until: int) -> int:
+    """Grant all requests before tick `until`, in order; return early with who is woken, at tick DONE_AT, else NONE.
+
+    A transfer is woken by its number, the job of core c by NONE - 1 - c.
+    """
+    while True:
+        free = state[w.COMMAND_FREE]
+        first, first_at, first_rank = w.NONE, w.NEVER, 0
+        for number in range(w.MASTERS):
+            master = w.MASTERS_AT + number * w.MASTER_WORDS
+            at = state[master + w.READY]
+            if at >= until:
+                continue
+            if at < free and state[master + w.USES_BUS]:
+                at = free
+            if at < first_at:
+                first, first_at = number, at
+                first_rank = w.NEVER  # not known yet
+            elif at == first_at:
+                if first_rank == w.NEVER:
+                    first_rank = rank_of(state, first, at)
+                rank = rank_of(state, number, at)
+                if rank < first_rank:
+                    first, first_rank = number, rank
+        if first == w.NONE or first_at >= until:
+            return w.NONE
+        before = state[w.LAST_WRITE]
+        if first >= w.CORE_A:
+            woken = serve_core(state, first - w.CORE_A, first_at)
+        elif first >= w.STORES_A:
+            woken = serve_stores(state, first - w.STORES_A, first_at)
+        else:
+            woken = serve_dma(state, memory, first, first_at, until)
+        if state[w.DEB_PERIOD]:
+            count_direction(state, before)
+        if woken != w.NONE:
+            return woken
