@@ -27,14 +27,14 @@ def _folder(room: Path) -> str:
 
 def compiled(function: Function) -> Function:
     """Compile `function` for the host, as a part of those that call it. `.py_func` is the plain one."""
-    return numba.njit(no_cfunc_wrapper=True)(function)  # type: ignore[no-any-return]
+    return numba.njit(no_cfunc_wrapper=True, error_model="numpy")(function)  # type: ignore[no-any-return]
 
 
 def entry(function: Function) -> Function:
     """Compile `function` and all that it calls at its first call from Python, or take it from the cache."""
     numba.config.CACHE_DIR = _folder(Path(function.__code__.co_filename).parent)
     try:
-        return numba.njit(cache=True, no_cfunc_wrapper=True)(function)  # type: ignore[no-any-return]
+        return numba.njit(cache=True, no_cfunc_wrapper=True, error_model="numpy")(function)  # type: ignore[no-any-return]
     except RuntimeError:  # no folder can be written: compile in every process
         return compiled(function)
 

@@ -10,12 +10,14 @@ import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import lcm
 
 import numpy as np
 import simpy
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import BoardSpec
+from bfsim.errors import FirmwareError
 from bfsim.machine import bus_state as w
 from bfsim.machine.core_requests import start_job
 from bfsim.machine.dma_requests import post
@@ -57,6 +59,14 @@ class Pace:
     line_ticks: Fraction
 
 
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A transfer of one master, ready to be posted as often as needed. `words`: the slot's, from SETUP on."""
+
+    master: int
+    words: tuple[int, ...]
+
+
 class Transfer:
     """One transfer of a DMA on its way. `end` is the tick at which it is done, or None as long as nobody can know."""
 
@@ -72,11 +82,6 @@ class Transfer:
         """Tick at which it is done."""
         tick = self._bus.words[w.ENDS_AT + self.number % w.ENDS]
         return None if tick == w.NONE else tick
-
-    @property
-    def is_here(self) -> bool:
-        """Whether it still has its slot: it is not done yet."""
-        return self.end is None
 
 
 class Bus:
@@ -117,6 +122,7 @@ class Bus:
             w.DEB_PERIOD: board.deb_period,
             w.MDMA_PERIOD: board.mdma_period,
             w.LINE_BYTES: chip.cache.line_bytes,
+            w.LOT: chip.dma.fifo_words,
             w.LAST_CORE: w.NONE,
             w.FREE_SLOTS: w.SLOTS,
         }
@@ -124,21 +130,20 @@ class Bus:
             self._state[word] = value
 
     def _set_masters(self, board: BoardSpec) -> None:
-        masters = self._state[w.MASTERS_AT : w.JOBS_AT].reshape(w.MASTERS, w.MASTER_WORDS)
-        masters[:, w.READY] = w.NEVER
-        masters[:, [w.SLOT, w.LAST_SLOT, w.PARTNER]] = w.NONE
-        gap = board.chip.dma.read_word_sclk - 1
-        masters[:, w.GAP_NUMERATOR], masters[:, w.GAP_DENOMINATOR] = gap.numerator, gap.denominator
-        masters[:, w.FIFO] = board.chip.dma.fifo_words
-        masters[[w.PPI0, w.PPI1], w.FIFO] += board.chip.ppi_fifo_words
-        for number, rank in RANKS.items():
-            masters[number, w.RANK] = rank
-        for one, other in PARTNERS:
-            masters[one, w.PARTNER], masters[other, w.PARTNER] = other, one
+        chip = board.chip
+        gap = chip.dma.read_word_sclk - 1
         cores = CORE_LAST if board.dma_over_core else CORE_FIRST
-        for core in range(w.CORES):
-            masters[w.CORE_A + core, w.RANK] = cores + core
-            masters[w.STORES_A + core, w.RANK] = cores + STORES_AFTER + core
+        ranks = RANKS | {w.CORE_A + core: cores + core for core in range(w.CORES)}
+        ranks |= {w.STORES_A + core: cores + STORES_AFTER + core for core in range(w.CORES)}
+        partners = dict(PARTNERS) | {other: one for one, other in PARTNERS}
+        for number, rank in ranks.items():
+            fields = {
+                w.RANK: rank, w.READY: w.NEVER, w.SLOT: w.NONE, w.LAST_SLOT: w.NONE, w.PARTNER: partners.get(number, w.NONE),
+                w.FIFO: chip.dma.fifo_words + (chip.ppi_fifo_words if number in (w.PPI0, w.PPI1) else 0),
+                w.GAP_NUMERATOR: gap.numerator, w.GAP_DENOMINATOR: gap.denominator * chip.dma.fifo_words,
+            }  # fmt: skip
+            for field, value in fields.items():
+                self._state[w.MASTERS_AT + number + field] = value
 
     # ---- time
 
@@ -165,19 +170,15 @@ class Bus:
 
     # ---- transfers
 
-    def copy(
-        self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, at: int, setup: int
-    ) -> Transfer:
-        """Let a memory DMA move `count` elements, not before tick `at`, after all that it was given before.
-
-        `setup`: ticks that the unit takes to start.
-        """
+    def plan_copy(
+        self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, setup: int
+    ) -> Plan:
+        """Plan to move `count` elements by a memory DMA that takes `setup` ticks to start."""
         end = self.words[w.SDRAM_END]
         reads, writes = source.offset < end, destination.offset < end
         mode = w.BOTH if reads and writes else w.READ if reads else w.WRITE if writes else w.ON_CHIP
         word = self._on_chip_ticks(master) if mode == w.ON_CHIP else Fraction(1)
-        pace = Pace(0, 1, word, Fraction(1))
-        return self._post(master, mode, source, destination, count, element_bytes, at, setup, pace)
+        return self._plan(master, mode, source, destination, count, element_bytes, setup, Pace(0, 1, word, Fraction(1)))
 
     def _on_chip_ticks(self, master: int) -> Fraction:
         dma = self._chip.dma
@@ -185,35 +186,47 @@ class Bus:
             return Fraction(dma.imdma_word_cclk * self._clocks.cclk_ticks)
         return dma.on_chip_word_sclk * self._clocks.sclk_ticks
 
-    def receive(self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, pace: Pace) -> Transfer:
-        """Let a peripheral's DMA write `count` elements as the device delivers them."""
-        return self._post(master, w.PACED_IN, source, destination, count, element_bytes, 0, 0, pace)
+    def plan_receive(
+        self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, pace: Pace
+    ) -> Plan:
+        """Plan to write `count` elements as a device delivers them."""
+        return self._plan(master, w.PACED_IN, source, destination, count, element_bytes, 0, pace)
 
-    def send(self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, pace: Pace) -> Transfer:
-        """Let a peripheral's DMA read `count` elements as the device takes them."""
-        return self._post(master, w.PACED_OUT, source, destination, count, element_bytes, 0, 0, pace)
+    def plan_send(
+        self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, pace: Pace
+    ) -> Plan:
+        """Plan to read `count` elements as a device takes them."""
+        return self._plan(master, w.PACED_OUT, source, destination, count, element_bytes, 0, pace)
 
-    def _post(
-        self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, at: int,
-        setup: int, pace: Pace,
-    ) -> Transfer:  # fmt: skip
-        self.settle()
-        words = self.words
+    def _plan(
+        self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, setup: int, pace: Pace
+    ) -> Plan:  # fmt: skip
+        parts = lcm(pace.element_ticks.denominator, pace.line_ticks.denominator)
+        element, line = int(pace.element_ticks * parts), int(pace.line_ticks * parts)
+        return Plan(
+            master,
+            (
+                setup, 0, mode, element_bytes.bit_length() - 1, count, 0, 0,
+                source.offset, source.x_count, source.x_modify, source.y_modify, source.x_count,
+                destination.offset, destination.x_count, destination.x_modify, destination.y_modify, destination.x_count,
+                pace.start, parts, element, line, pace.line_elements, 0, 0,
+            ),
+        )  # fmt: skip
+
+    def post(self, plan: Plan, at: int = 0) -> Transfer:
+        """Put a transfer behind those that its master has already; it begins at tick `at` or later."""
+        words, now = self.words, self._env.tick
         top = words[w.FREE_SLOTS] - 1
+        if top < 0:
+            raise FirmwareError(f"DMA must have at most {w.SLOTS} transfers to do at a time")
         words[w.FREE_SLOTS] = top
         place = words[w.FREE_AT_STACK + top]
         number = self._transfers
-        self._transfers += 1
+        self._transfers = number + 1
         words[w.ENDS_AT + number % w.ENDS] = w.NONE
-        element, line = pace.element_ticks, pace.line_ticks
-        SLOT.pack_into(
-            words, 8 * (w.SLOTS_AT + place * w.SLOT_WORDS),
-            number, w.NONE, at, setup, 0, mode, element_bytes.bit_length() - 1, count, 0, 0,
-            source.offset, source.x_count, source.x_modify, source.y_modify, source.x_count,
-            destination.offset, destination.x_count, destination.x_modify, destination.y_modify, destination.x_count,
-            pace.start, pace.line_elements, element.numerator, element.denominator, line.numerator, line.denominator,
-        )  # fmt: skip
-        post(self._state, master, place, self._env.tick)
+        # the bus may still be behind the simulated time; the transfer is not
+        SLOT.pack_into(words, 8 * (w.SLOTS_AT + place * w.SLOT_WORDS), number, w.NONE, max(at, now), *plan.words)
+        post(self._state, plan.master, place, now)
         return Transfer(self, number, place)
 
     def when_done(self, transfer: Transfer) -> simpy.Event:

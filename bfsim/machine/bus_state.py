@@ -35,15 +35,20 @@ BUS_AT = SDRAM_WORDS
 (
     CCLK, SDRAM_END, L2_FIRST, L2_END, L1_FIRST, SUBBANK_BITS, L2_READ, L2_NEXT, L2_PORT_BITS, CORE_SYNC, STORE_DEPTH,
     DEB_PERIOD, MDMA_PERIOD, LINE_BYTES,
+    LOT,            # words that a DMA moves at once, from or to its FIFO
     L2_FREE,        # when the port of L2 is free
     DEB_LEFT,       # transfers in the present direction that still have preference
     LAST_CORE,      # the core that had the bus last: the other one comes first
     FREE_SLOTS,     # how many slots are on the stack
     DONE_AT,        # tick of the completion that `advance` returned with
-) = range(BUS_AT, BUS_AT + 19)  # fmt: skip
-BUS_WORDS = 19
+) = range(BUS_AT, BUS_AT + 20)  # fmt: skip
+BUS_WORDS = 20
 
-# ---- A master: who can ask for the bus.
+# The masters in the order of their rows. Cores have one for what they wait for and one for their store buffer.
+PPI0, PPI1, SPI, MDMA1_0, MDMA1_1, MDMA2_0, MDMA2_1, IMDMA_0, IMDMA_1, STORES_A, STORES_B, CORE_A, CORE_B = range(13)
+MASTERS = 13
+
+# ---- A master: who can ask for the bus. Word n of all masters stands together, since all are looked at in every step.
 (
     RANK,           # lower is served first
     READY,          # when its next request can be granted, NEVER if it has none
@@ -58,12 +63,8 @@ BUS_WORDS = 19
     IN_FIFO,        # elements that were read and not yet written
     PARTNER,        # the other stream of its controller, or NONE
     SERVED,         # elements since the partner had its turn
-) = range(14)  # fmt: skip
+) = range(0, 14 * MASTERS, MASTERS)  # fmt: skip
 MASTER_WORDS = 14
-
-# The masters in the order of their rows. Cores have one for what they wait for and one for their store buffer.
-PPI0, PPI1, SPI, MDMA1_0, MDMA1_1, MDMA2_0, MDMA2_1, IMDMA_0, IMDMA_1, STORES_A, STORES_B, CORE_A, CORE_B = range(13)
-MASTERS = 13
 
 # ---- A slot: one transfer of a DMA.
 (
@@ -79,9 +80,11 @@ MASTERS = 13
     LOST,           # elements that found the FIFO full, or the line empty
     FROM, FROM_X_COUNT, FROM_X_MODIFY, FROM_Y_MODIFY, FROM_X_LEFT,
     TO, TO_X_COUNT, TO_X_MODIFY, TO_Y_MODIFY, TO_X_LEFT,
-    START, LINE_ELEMENTS, ELEMENT_TICKS, ELEMENT_PARTS, LINE_TICKS, LINE_PARTS,  # pace: ticks / parts per element and line
-) = range(26)  # fmt: skip
-SLOT_WORDS = 26
+    # The pace of a device, in parts of a tick: an element and a line take so many PARTS, PARTS make a tick.
+    START, PARTS, ELEMENT, LINE, LINE_ELEMENTS,
+    PLACE, LINE_BEGAN,  # where the next element is: in its line, and when that began, in parts from the start
+) = range(27)  # fmt: skip
+SLOT_WORDS = 27
 SLOTS = 256
 ENDS = 1 << 16
 """Transfers whose end is remembered: the latest so many."""

@@ -30,7 +30,7 @@ def bytes_of(state: State, kind: int) -> int:
 def next_entry(state: State, core: int, not_before: int) -> int:
     """Set the core's next access up; after the last one end the job and return its number, NONE - 1 - core."""
     job = w.JOBS_AT + core * w.JOB_WORDS
-    master = w.MASTERS_AT + (w.CORE_A + core) * w.MASTER_WORDS
+    master = w.MASTERS_AT + w.CORE_A + core
     cclk = state[w.CCLK]
     if state[job + w.ENTRY] == state[job + w.END]:
         state[job + w.STATE] = w.IDLE
@@ -71,7 +71,7 @@ def stall(state: State, job: int, cclk: int, done: int, reason: int) -> int:
 def wait_for_buffer(state: State, core: int, what: int) -> int:
     """Let the core wait until its store buffer has room, or is empty."""
     state[w.JOBS_AT + core * w.JOB_WORDS + w.STATE] = what
-    state[w.MASTERS_AT + (w.CORE_A + core) * w.MASTER_WORDS + w.READY] = w.NEVER
+    state[w.MASTERS_AT + w.CORE_A + core + w.READY] = w.NEVER
     return w.NONE
 
 
@@ -93,7 +93,7 @@ def store(state: State, core: int, at: int, entry: int) -> int:
 def prepare_drain(state: State, core: int, at: int) -> None:
     """Let the oldest store ask for its bus from tick `at` on."""
     job = w.JOBS_AT + core * w.JOB_WORDS
-    master = w.MASTERS_AT + (w.STORES_A + core) * w.MASTER_WORDS
+    master = w.MASTERS_AT + w.STORES_A + core
     if state[job + w.STORES] == 0:
         state[master + w.READY] = w.NEVER
         return

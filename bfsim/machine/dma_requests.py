@@ -21,14 +21,28 @@ def aligned(tick: int, period: int) -> int:
 
 
 @compiled
-def arrival(state: State, slot: int, element: int) -> int:
-    """Return when a device has element number `element`, or has sent it: the end of its time on the wire."""
-    line, place = element // state[slot + w.LINE_ELEMENTS], element % state[slot + w.LINE_ELEMENTS]
-    return (
-        state[slot + w.START]
-        + (line * state[slot + w.LINE_TICKS] + state[slot + w.LINE_PARTS] - 1) // state[slot + w.LINE_PARTS]
-        + ((place + 1) * state[slot + w.ELEMENT_TICKS] + state[slot + w.ELEMENT_PARTS] - 1) // state[slot + w.ELEMENT_PARTS]
-    )
+def arrival(state: State, slot: int, ahead: int) -> int:
+    """Return when a device has the element `ahead` of the next one, or has sent it: the end of its time on the wire."""
+    place, began = state[slot + w.PLACE] + ahead, state[slot + w.LINE_BEGAN]
+    while place >= state[slot + w.LINE_ELEMENTS]:
+        place -= state[slot + w.LINE_ELEMENTS]
+        began += state[slot + w.LINE]
+    while place < 0:
+        place += state[slot + w.LINE_ELEMENTS]
+        began -= state[slot + w.LINE]
+    ticks, parts = began + (place + 1) * state[slot + w.ELEMENT], state[slot + w.PARTS]
+    if parts > 1:
+        ticks = (ticks + parts - 1) // parts
+    return state[slot + w.START] + ticks
+
+
+@compiled
+def step_device(state: State, slot: int, count: int) -> None:
+    """Go on by `count` elements of the device's line."""
+    state[slot + w.PLACE] += count
+    if state[slot + w.PLACE] == state[slot + w.LINE_ELEMENTS]:
+        state[slot + w.PLACE] = 0
+        state[slot + w.LINE_BEGAN] += state[slot + w.LINE]
 
 
 @compiled
@@ -48,14 +62,21 @@ def count_access(state: State, master: int, elements: int) -> None:
 
 
 @compiled
+def lot_of(state: State, slot: int) -> int:
+    """How many elements a device's DMA moves at once: a lot, or what is left of the line on either side."""
+    left = min(state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT])
+    return min(state[w.LOT], left, state[slot + w.LINE_ELEMENTS] - state[slot + w.PLACE])
+
+
+@compiled
 def next_paced(state: State, master: int, slot: int) -> None:
-    """Set when the device's next element wants to move."""
-    sclk = state[w.SCLK]
+    """Set when the device's next lot wants to move: when it is there, or when the FIFO has room for it."""
+    ready = state[slot + w.START]
     if state[slot + w.MODE] == w.PACED_IN:
-        state[master + w.READY] = aligned(arrival(state, slot, state[slot + w.MOVED]), sclk)
-    else:
-        room = state[slot + w.MOVED] - state[master + w.FIFO]
-        state[master + w.READY] = aligned(arrival(state, slot, room) if room >= 0 else state[slot + w.START], sclk)
+        ready = arrival(state, slot, lot_of(state, slot) - 1)
+    elif state[slot + w.MOVED] >= state[master + w.FIFO]:
+        ready = arrival(state, slot, lot_of(state, slot) - 1 - state[master + w.FIFO])
+    state[master + w.READY] = aligned(ready, state[w.SCLK])
 
 
 @compiled
@@ -75,7 +96,9 @@ def begin(state: State, master: int, slot: int, at: int) -> None:
         next_paced(state, master, slot)
     elif mode == w.ON_CHIP:
         state[master + w.USES_BUS] = 0
-        state[master + w.READY] = start + (state[slot + w.LEFT] * state[slot + w.ELEMENT_TICKS] + state[slot + w.ELEMENT_PARTS] - 1) // state[slot + w.ELEMENT_PARTS]
+        state[master + w.READY] = start + (
+            state[slot + w.LEFT] * state[slot + w.ELEMENT] + state[slot + w.PARTS] - 1
+        ) // state[slot + w.PARTS]
     else:
         state[master + w.READY] = start
 
@@ -83,7 +106,7 @@ def begin(state: State, master: int, slot: int, at: int) -> None:
 @entry
 def post(state: State, number: int, place: int, now: int) -> None:
     """Put the transfer in slot `place` behind those of a master; it begins at once when there are none."""
-    master = w.MASTERS_AT + number * w.MASTER_WORDS
+    master = w.MASTERS_AT + number
     if state[master + w.SLOT] == w.NONE:
         state[master + w.SLOT] = place
         begin(state, master, w.SLOTS_AT + place * w.SLOT_WORDS, now)
@@ -124,55 +147,95 @@ def moved(state: State, memory: Memory, slot: int, count: int) -> None:
 
 
 @compiled
-def run_ahead(state: State, number: int, slot: int, offset: int, step: int, until: int) -> int:
-    """How many more elements a memory DMA can move before anybody else may have the bus, or before it pauses itself."""
+def alone_until(state: State, number: int, until: int) -> int:
+    """Until when a master has the bus to itself: nobody else asks for it before, or does anything that needs none of it."""
+    limit = min(until, state[w.NEXT_REFRESH])
+    for other in range(w.MASTERS):
+        if other != number:
+            limit = min(limit, state[w.MASTERS_AT + other + w.READY])
+    return limit
+
+
+@compiled
+def preferred_until(state: State, number: int, until: int) -> int:
+    """Until when a master that just had the bus has it again whenever it asks, if it leaves no gap."""
+    limit = min(until, state[w.NEXT_REFRESH])
+    rank = state[w.MASTERS_AT + number + w.RANK]
+    for other in range(w.MASTERS):
+        at = w.MASTERS_AT + other
+        ready = state[at + w.READY]
+        if other != number and ready < limit:
+            waits = ready <= state[w.BEGAN] and state[at + w.USES_BUS] and state[at + w.RANK] > rank
+            if not waits:
+                limit = ready
+    return limit
+
+
+@compiled
+def run_ahead(state: State, number: int, slot: int, ahead: int, ticks: int, until: int) -> int:
+    """How many of `ahead` more elements of `ticks` each, all page hits, nobody can come between.
+
+    Where nobody else wants the bus the pauses of a memory DMA that reads are part of the run; else a run ends with the first.
+    """
+    master = w.MASTERS_AT + number
     if state[w.DEB_PERIOD] or state[w.MDMA_PERIOD]:
         return 0
-    limit = min(until, state[w.NEXT_REFRESH])
-    rank = state[w.MASTERS_AT + number * w.MASTER_WORDS + w.RANK]
-    began = state[w.BEGAN]
-    for other in range(w.MASTERS):
-        at = w.MASTERS_AT + other * w.MASTER_WORDS
-        if other != number and state[at + w.READY] < limit:
-            waits = state[at + w.READY] <= began and state[at + w.USES_BUS] and state[at + w.RANK] > rank
-            if not waits:
-                limit = state[at + w.READY]
-    beats = max(1, 1 << (state[slot + w.ELEMENT_BITS] - state[w.WORD_BITS]))
-    ticks = beats * state[w.SCLK]
-    count = min(state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT]) - 1
-    count = min(count, hits_ahead(state, offset + step, step))
-    return max(0, min(count, (limit - state[w.COMMAND_FREE] + ticks - 1) // ticks))
+    ahead = min(ahead, min(state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT]) - 1)
+    reads = state[slot + w.MODE] == w.READ and state[master + w.GAP_NUMERATOR] > 0
+    if not reads:
+        room = preferred_until(state, number, until) - state[w.COMMAND_FREE]
+        return max(0, min(ahead, (room + ticks - 1) // ticks))
+    parts = state[master + w.GAP_DENOMINATOR]
+    room = alone_until(state, number, until) - state[w.COMMAND_FREE]
+    longest = ticks * parts + state[w.LOT] * state[w.SCLK] * state[master + w.GAP_NUMERATOR]
+    alone = max(0, min(ahead, (room - state[w.LOT] * state[w.SCLK]) * parts // longest))
+    if alone:
+        return alone
+    room = preferred_until(state, number, until) - state[w.COMMAND_FREE]
+    to_gap = (parts - 1 - state[master + w.GAP]) // state[master + w.GAP_NUMERATOR] - 1
+    return max(0, min(ahead, to_gap, (room + ticks - 1) // ticks))
+
+
+@compiled
+def pause(state: State, master: int, elements: int) -> int:
+    """Add up what a memory DMA pauses for `elements` that it reads; return the ticks that are due, whole lots of them."""
+    state[master + w.GAP] += elements * state[master + w.GAP_NUMERATOR]
+    lots = state[master + w.GAP] // state[master + w.GAP_DENOMINATOR]
+    state[master + w.GAP] -= lots * state[master + w.GAP_DENOMINATOR]
+    return lots * state[w.LOT] * state[w.SCLK]
 
 
 @compiled
 def burst(state: State, memory: Memory, number: int, at: int, until: int) -> int:
     """Move the next elements of a memory DMA with one side in SDRAM; return who is woken."""
-    master = w.MASTERS_AT + number * w.MASTER_WORDS
+    master = w.MASTERS_AT + number
     slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
     write = state[slot + w.MODE] == w.WRITE
-    offset, step = (state[slot + w.TO], state[slot + w.TO_X_MODIFY]) if write else (state[slot + w.FROM], state[slot + w.FROM_X_MODIFY])
-    beats = max(1, 1 << (state[slot + w.ELEMENT_BITS] - state[w.WORD_BITS]))
+    offset, step = state[slot + w.FROM], state[slot + w.FROM_X_MODIFY]
+    if write:
+        offset, step = state[slot + w.TO], state[slot + w.TO_X_MODIFY]
+    beats = max(1, 1 << state[slot + w.ELEMENT_BITS] >> state[w.WORD_BITS])
     through = access(state, at, offset, write)
     if beats > 1:
         through = stream(state, beats - 1, write, offset)
-    more = run_ahead(state, number, slot, offset, step, until)
-    if not write and state[master + w.GAP_NUMERATOR]:
-        more = min(more, (state[master + w.GAP_DENOMINATOR] - 1 - state[master + w.GAP]) // state[master + w.GAP_NUMERATOR])
+    ahead = hits_ahead(state, offset + step, step)
+    more = run_ahead(state, number, slot, ahead, beats * state[w.SCLK], until)
+    paused = 0
     if more:
+        paused = 0 if write else pause(state, master, more)
+        state[w.COMMAND_FREE] += paused
+        state[w.DATA_FREE] += paused
         through = stream(state, more * beats, write, offset)
+    state[master + w.READY] = state[w.COMMAND_FREE] + (0 if write else pause(state, master, 1))
     count_access(state, number, 1 + more)
-    count_traffic(state, number, w.IN_SDRAM, write, (1 + more) << state[slot + w.ELEMENT_BITS])
+    state[w.TRAFFIC_AT + (number * w.MEMORIES + w.IN_SDRAM) * w.TRAFFIC_WORDS + w.BUSY] -= paused
+    nbytes = (1 + more) << state[slot + w.ELEMENT_BITS]
+    count_traffic(state, number, w.IN_SDRAM, write, nbytes)
     on_chip = state[slot + w.FROM] if write else state[slot + w.TO]
     if state[w.L2_FIRST] <= on_chip < state[w.L2_END]:
-        count_traffic(state, number, w.IN_L2, not write, (1 + more) << state[slot + w.ELEMENT_BITS])
+        count_traffic(state, number, w.IN_L2, not write, nbytes)
     moved(state, memory, slot, 1 + more)
     state[master + w.SERVED] += 1 + more
-    state[master + w.READY] = state[w.COMMAND_FREE]
-    if not write:
-        state[master + w.GAP] += (1 + more) * state[master + w.GAP_NUMERATOR]
-        while state[master + w.GAP] >= state[master + w.GAP_DENOMINATOR]:
-            state[master + w.GAP] -= state[master + w.GAP_DENOMINATOR]
-            state[master + w.READY] += state[w.SCLK]
     return after_move(state, master, slot, through)
 
 
@@ -188,20 +251,28 @@ def after_move(state: State, master: int, slot: int, through: int) -> int:
 
 
 @compiled
-def exchange(state: State, memory: Memory, number: int, at: int) -> int:
-    """Move a FIFO full of elements within SDRAM: first all are read, the next time they are written."""
-    master = w.MASTERS_AT + number * w.MASTER_WORDS
-    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
-    write = state[master + w.IN_FIFO] > 0
-    count = state[master + w.IN_FIFO] if write else min(state[master + w.FIFO], state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT])
-    offset, step = (state[slot + w.TO], state[slot + w.TO_X_MODIFY]) if write else (state[slot + w.FROM], state[slot + w.FROM_X_MODIFY])
-    beats = max(1, 1 << (state[slot + w.ELEMENT_BITS] - state[w.WORD_BITS]))
+def access_lot(state: State, number: int, at: int, offset: int, step: int, count: int, write: bool) -> int:
+    """Access `count` elements, `step` bytes apart, one after the other; return when the last one is through."""
+    slot = w.SLOTS_AT + state[w.MASTERS_AT + number + w.SLOT] * w.SLOT_WORDS
+    beats = max(1, 1 << state[slot + w.ELEMENT_BITS] >> state[w.WORD_BITS])
     through = at
     for element in range(count):
         through = access(state, at, offset + element * step, write)
         if beats > 1:
             through = stream(state, beats - 1, write, offset)
         count_access(state, number, 1)
+    return through
+
+
+@compiled
+def exchange(state: State, memory: Memory, number: int, at: int) -> int:
+    """Move a FIFO full of elements within SDRAM: first all are read, the next time they are written."""
+    master = w.MASTERS_AT + number
+    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
+    write = state[master + w.IN_FIFO] > 0
+    count = state[master + w.IN_FIFO] if write else min(state[w.LOT], state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT])
+    offset, step = (state[slot + w.TO], state[slot + w.TO_X_MODIFY]) if write else (state[slot + w.FROM], state[slot + w.FROM_X_MODIFY])
+    through = access_lot(state, number, at, offset, step, count, write)
     count_traffic(state, number, w.IN_SDRAM, write, count << state[slot + w.ELEMENT_BITS])
     state[master + w.SERVED] += count
     state[master + w.WRITES] = not write
@@ -218,7 +289,7 @@ def exchange(state: State, memory: Memory, number: int, at: int) -> int:
 @compiled
 def copy_on_chip(state: State, memory: Memory, number: int, at: int) -> int:
     """End a transfer between L1 and L2: all of it moves at its end."""
-    master = w.MASTERS_AT + number * w.MASTER_WORDS
+    master = w.MASTERS_AT + number
     slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
     first, end = state[w.L2_FIRST], state[w.L2_END]
     nbytes = state[slot + w.LEFT] << state[slot + w.ELEMENT_BITS]
@@ -234,41 +305,41 @@ def copy_on_chip(state: State, memory: Memory, number: int, at: int) -> int:
 @compiled
 def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> int:
     """Move the next element to or from a device that sets the pace, and lose what came too late."""
-    master = w.MASTERS_AT + number * w.MASTER_WORDS
+    master = w.MASTERS_AT + number
     slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
     write = state[slot + w.MODE] == w.PACED_IN
-    while write and state[slot + w.LEFT] > 1 and state[slot + w.LEFT] > state[master + w.FIFO] and arrival(state, slot, state[slot + w.MOVED] + state[master + w.FIFO]) < at:
+    late, fifo = at - state[master + w.READY], state[master + w.FIFO]
+    while write and late > 0 and state[slot + w.LEFT] > fifo and arrival(state, slot, fifo) < at:
         # the FIFO was full when this element came: the picture goes on without it
         step_from(state, slot, 1)
+        step_device(state, slot, 1)
         state[slot + w.MOVED] += 1
         state[slot + w.LEFT] -= 1
         state[slot + w.LOST] += 1
+    count = lot_of(state, slot)
     offset = state[slot + w.TO] if write else state[slot + w.FROM]
-    through = at
+    through, nbytes = at, count << state[slot + w.ELEMENT_BITS]
     if state[master + w.USES_BUS]:
-        through = access(state, at, offset, write)
-        beats = max(1, 1 << (state[slot + w.ELEMENT_BITS] - state[w.WORD_BITS]))
-        if beats > 1:
-            through = stream(state, beats - 1, write, offset)
-        count_access(state, number, 1)
-        count_traffic(state, number, w.IN_SDRAM, write, 1 << state[slot + w.ELEMENT_BITS])
+        through = access_lot(state, number, at, offset, state[slot + (w.TO_X_MODIFY if write else w.FROM_X_MODIFY)], count, write)
+        count_traffic(state, number, w.IN_SDRAM, write, nbytes)
     elif state[w.L2_FIRST] <= offset < state[w.L2_END]:
-        count_traffic(state, number, w.IN_L2, write, 1 << state[slot + w.ELEMENT_BITS])
-    moved(state, memory, slot, 1)
+        count_traffic(state, number, w.IN_L2, write, nbytes)
+    if not write:
+        through = max(through, arrival(state, slot, count - 1))
+    moved(state, memory, slot, count)
+    step_device(state, slot, count)
     if state[slot + w.LEFT]:
         next_paced(state, master, slot)
-    elif not write:
-        through = max(through, arrival(state, slot, state[slot + w.MOVED] - 1))
     return after_move(state, master, slot, through)
 
 
 @compiled
 def serve_dma(state: State, memory: Memory, number: int, at: int, until: int) -> int:
     """Grant the request of a DMA at tick `at`; return the number of the transfer that wakes somebody, or NONE."""
-    where = w.MASTERS_AT + number * w.MASTER_WORDS
+    where = w.MASTERS_AT + number
     mode = state[w.SLOTS_AT + state[where + w.SLOT] * w.SLOT_WORDS + w.MODE]
     if state[where + w.PARTNER] != w.NONE:
-        state[w.MASTERS_AT + state[where + w.PARTNER] * w.MASTER_WORDS + w.SERVED] = 0
+        state[w.MASTERS_AT + state[where + w.PARTNER] + w.SERVED] = 0
     if mode == w.BOTH:
         return exchange(state, memory, number, at)
     if mode == w.ON_CHIP:

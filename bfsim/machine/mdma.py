@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.machine.bus import Bus, Transfer, Walk
+from bfsim.machine.bus import Bus, Plan, Transfer, Walk
 from bfsim.machine.memories import Row
 
 WORD_BYTES = 4  # the widest element of a DMA
@@ -24,20 +24,20 @@ class MdmaStream:
         self._bus = bus
         self._master = master
         self._startup_ticks = board.chip.dma.startup_sclk * board.clocks.sclk_ticks
+        self._plans: dict[tuple[Row, Row], Plan] = {}
 
     def copy(self, source: Row, destination: Row, at: int) -> Transfer:
         """Copy `source` to `destination`, not before tick `at`, after all copies asked for before.
 
         The bytes move when the bus moves them: the source must stay as it is until then.
         """
+        plan = self._plans.get((source, destination))
+        if plan is None:
+            plan = self._plans[source, destination] = self._plan(source, destination)
+        return self._bus.post(plan, at)
+
+    def _plan(self, source: Row, destination: Row) -> Plan:
         size = element_bytes(source.offset, destination.offset, source.nbytes)
         count = source.nbytes // size
-        return self._bus.copy(
-            self._master,
-            Walk(source.offset, count, size, size),
-            Walk(destination.offset, count, size, size),
-            count,
-            element_bytes=size,
-            at=at,
-            setup=self._startup_ticks,
-        )
+        walks = (Walk(each.offset, count, size, size) for each in (source, destination))
+        return self._bus.plan_copy(self._master, *walks, count, element_bytes=size, setup=self._startup_ticks)

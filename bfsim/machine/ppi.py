@@ -43,7 +43,7 @@ class Ppi:
         """Write `picture` (height, 2 · width) to `rows`; its first line begins at tick `start`. Return the event at its end."""
         words = picture.shape[1] // WORD_BYTES
         self._memories.bytes_from(self._outside, picture.nbytes)[:] = picture.reshape(-1)
-        transfer = self._bus.receive(
+        plan = self._bus.plan_receive(
             self._master,
             Walk(self._outside, words, WORD_BYTES, WORD_BYTES),
             Walk(rows[0].offset, words, WORD_BYTES, WORD_BYTES),
@@ -51,4 +51,4 @@ class Ppi:
             element_bytes=WORD_BYTES,
             pace=Pace(start, words, self._word_ticks, self._line_ticks),
         )
-        return self._bus.when_done(transfer)
+        return self._bus.when_done(self._bus.post(plan))

@@ -25,7 +25,7 @@ NO_BUS, URGENT, AGAINST, HAD_ITS_TURN, HAD_THE_BUS = -10_000, -1_000, 100, 2, 2
 @compiled
 def rank_of(state: State, number: int, at: int) -> int:
     """Return the rank of a master's request at tick `at`."""
-    master = w.MASTERS_AT + number * w.MASTER_WORDS
+    master = w.MASTERS_AT + number
     rank = state[master + w.RANK]
     if not state[master + w.USES_BUS]:
         return rank + NO_BUS
@@ -38,7 +38,7 @@ def rank_of(state: State, number: int, at: int) -> int:
     if state[master + w.PARTNER] != w.NONE and 0 < state[w.MDMA_PERIOD] <= state[master + w.SERVED]:
         rank += HAD_ITS_TURN
     slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
-    if state[slot + w.MODE] in (w.PACED_IN, w.PACED_OUT) and arrival(state, slot, state[slot + w.MOVED] + state[master + w.FIFO] // 2) <= at:
+    if state[slot + w.MODE] in (w.PACED_IN, w.PACED_OUT) and arrival(state, slot, state[master + w.FIFO] // 2) <= at:
         rank += URGENT  # half of the FIFO waits
     return rank
 
@@ -62,7 +62,7 @@ def advance(state: State, memory: Memory, until: int) -> int:
         free = state[w.COMMAND_FREE]
         first, first_at, first_rank = w.NONE, w.NEVER, 0
         for number in range(w.MASTERS):
-            master = w.MASTERS_AT + number * w.MASTER_WORDS
+            master = w.MASTERS_AT + number
             at = state[master + w.READY]
             if at >= until:
                 continue
