@@ -46,7 +46,7 @@ def _board(
 
 CM_BF561 = _board(
     "cm-bf561",
-    "Bluetechnix CM-BF561 at 600 MHz",
+    "Bluetechnix CM-BF561",
     BF561,
     # [assumed] setting of the thesis: the core at its rating, and ssel the smallest that keeps SCLK within its own
     Pll(clkin_hz=CM_CLKIN_HZ, vco_multiplier=24, csel=1, ssel=5),
@@ -57,14 +57,15 @@ CM_BF561 = _board(
 CM_BF561_RATINGS = replace(
     CM_BF561,
     name="cm-bf561-ratings",
-    title="CM-BF561 at both ratings of thesis Table 1.1, a pair that no PLL setting gives",
+    title="CM-BF561, ratings that no PLL can pair",
     pll=None,
+    # thesis, Table 1.1
     clocks=Clocks(cclk_hz=BF561.max_vco_hz, sclk_hz=BF561.max_sclk_hz),
 )
 
 CM_BF561_525_131 = _board(
     "cm-bf561-525-131",
-    "CM-BF561 with SCLK as close to its rating as the PLL comes",
+    "CM-BF561, SCLK nearest to its rating",
     BF561,
     Pll(
         clkin_hz=CM_CLKIN_HZ, vco_multiplier=21, csel=1, ssel=4
@@ -75,7 +76,7 @@ CM_BF561_525_131 = _board(
 
 CM_BF561_500_125 = _board(
     "cm-bf561-500-125",
-    "CM-BF561 as Linux of 2006 set it up",
+    "CM-BF561 as Linux set it up in 2006",
     BF561,
     Pll(clkin_hz=CM_CLKIN_HZ, vco_multiplier=20, csel=1, ssel=4),  # Linux commit 407d3cce1a
     CM_BF561_32_MB,
@@ -85,7 +86,7 @@ CM_BF561_500_125 = _board(
 
 CM_BF561_550_110 = _board(
     "cm-bf561-550-110",
-    "CM-BF561 with 64 MB as u-boot of 2008 set it up",
+    "CM-BF561, 64 MB, u-boot of 2008",
     BF561,
     Pll(clkin_hz=CM_CLKIN_HZ, vco_multiplier=22, csel=1, ssel=5),  # u-boot's cm-bf561.h, 2008-10
     CM_BF561_64_MB,
@@ -94,7 +95,7 @@ CM_BF561_550_110 = _board(
 
 CM_BF561_500_100 = _board(
     "cm-bf561-500-100",
-    "CM-BF561 with 64 MB as later u-boot set it up",
+    "CM-BF561, 64 MB, later u-boot",
     BF561,
     Pll(clkin_hz=CM_CLKIN_HZ, vco_multiplier=20, csel=1, ssel=5),  # u-boot's cm-bf561.h, later
     CM_BF561_64_MB,
@@ -113,7 +114,7 @@ BF561_EZKIT = _board(
 
 CM_BF533 = _board(
     "cm-bf533",
-    "Bluetechnix CM-BF533, one core and one camera, as u-boot set it up",
+    "Bluetechnix CM-BF533, one core, u-boot",
     BF533,
     Pll(clkin_hz=CM_CLKIN_HZ, vco_multiplier=22, csel=1, ssel=5),  # u-boot's cm-bf533.h
     CM_BF533_32_MB,
