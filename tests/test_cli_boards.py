@@ -62,7 +62,7 @@ def test_values_are_readable() -> None:
 
 
 def test_unknown_board_is_told_the_known_ones() -> None:
-    """The same message as for --board, and the exit code of a mistake."""
+    """The same message as for the option, and the exit code of a mistake."""
     result = call("cm-bf562")
     assert result.exit_code == 2
     assert result.stderr.startswith("bfsim: error: --board must be one of cm-bf561, ")

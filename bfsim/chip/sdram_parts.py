@@ -38,7 +38,8 @@ BF561_EZKIT_64_MB = SdramSpec(
     **sdram_timing_of(0x0091_998F),
     turn_round_sclk=TURN_ROUND_SCLK,
     refresh_ms=REFRESH_MS,
-    rows_refreshed=8192,  # Linux mem_init.h, SDRAM_NRA of this part
+    # Linux mem_init.h, SDRAM_NRA of this part; the project's EBIU_SDRRC, 0x3A9, is 120 MHz x 64 ms / 8192, too
+    rows_refreshed=8192,
     **sdram_geometry_of(sdbctl=0x15, word_bytes=4),
 )
 

@@ -193,13 +193,10 @@ class ChipSpec:
         ):
             if hz > most_hz:
                 raise ConfigError(
-                    f"{name} of an {self.name} must be at most {_mhz(most_hz)}, not {_mhz(hz)} ({pll})"
+                    f"{name} of an {self.name} must be at most {float(most_hz):,.0f} Hz, not {float(hz):,.0f} Hz "
+                    f"(CLKIN x {pll.vco_multiplier}, csel {pll.csel}, ssel {pll.ssel})"
                 )
         return clocks
-
-
-def _mhz(hz: Fraction) -> str:
-    return f"{float(hz) / 1e6:g} MHz"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
