@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from bfsim import __version__
+from bfsim.cli_boards import boards
 from bfsim.cli_record import record
 from bfsim.errors import BfsimError, ConfigError
 from bfsim.terminal import print_report, progress_bar
@@ -50,6 +51,7 @@ def main() -> None:
 
 
 main.add_command(record)
+main.add_command(boards)
 
 _RUN_PARAMETERS = (
     click.argument("recording", required=False, type=click.Path(path_type=Path)),
@@ -60,7 +62,13 @@ _RUN_PARAMETERS = (
         show_default=True,
         help="Firmware to run: NAME in the importable PACKAGE.",
     ),
-    click.option("--board", metavar="NAME", default="cm-bf561", show_default=True, help="Board to run on."),
+    click.option(
+        "--board",
+        metavar="NAME",
+        default="cm-bf561",
+        show_default=True,
+        help="Board to run on; `bfsim boards` lists them.",
+    ),
     click.option(
         "--ldf",
         metavar="FILE",

@@ -27,8 +27,9 @@ MAY_IMPORT = {
     "explain": {"errors", "kernel", "loading", "trace"},
     "run": {"errors", "trace", "chip", "kernel", "linker", "machine", "recording", "loading"},
     "terminal": set(),
+    "cli_boards": {"chip", "report", "terminal"},
     "cli_record": {"recording", "terminal"},
-    "cli": {"errors", "trace", "report", "run", "explain", "cli_record", "terminal"},
+    "cli": {"errors", "trace", "report", "run", "explain", "cli_boards", "cli_record", "terminal"},
     "__main__": {"cli"},
 }
 READ_VERSION = {"recording", "run", "cli"}  # these also read `bfsim.__version__`

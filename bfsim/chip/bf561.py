@@ -1,16 +1,20 @@
-"""Timing of the ADSP-BF561. `grep assumed` lists every number without a document behind it."""
+"""The ADSP-BF561: ratings and timing. `grep assumed` lists every number without a document behind it."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 
-from bfsim.chip.memory_map import CM_BF561_REGIONS, KIB
+from bfsim.chip.interrupts import Bf561Interrupt
+from bfsim.chip.memory_map import BF561_REGIONS, CACHE_NBYTES, KIB
 from bfsim.chip.spec import CacheSpec, ChipSpec, DmaSpec, EventSpec, ExternalSpec, L1Spec, L2Spec
 
 BF561 = ChipSpec(
     name="ADSP-BF561",
     cores=("A", "B"),
-    regions=CM_BF561_REGIONS,
+    ppis=2,                             # Linux mach-bf561 irq.h
+    max_vco_hz=Fraction(600_000_000),   # Linux arch/blackfin/Kconfig, MAX_VCO_HZ
+    max_sclk_hz=Fraction(400_000_000, 3),  # the same, MAX_SCLK_HZ, which has 133333333
+    regions=BF561_REGIONS,
     l1=L1Spec(
         subbank_bytes=4 * KIB,          # bfin.sakura.ne.jp, l1_data_mem: a 16 KB block is four single-ported sub-banks
         conflict_cclk=1,                # the same, dual_access: two accesses to one sub-bank take turns
@@ -18,9 +22,9 @@ BF561 = ChipSpec(
     cache=CacheSpec(
         line_bytes=32,                  # Programming Reference p.243
         data_ways=2,                    # bfin.sakura.ne.jp; 16 KB of bank A, or of A and B
-        data_bytes_per_bank=16 * KIB,
+        data_bytes_per_bank=CACHE_NBYTES,
         code_ways=4,                    # Programming Reference p.243: 4 ways, LRU
-        code_bytes=16 * KIB,
+        code_bytes=CACHE_NBYTES,
     ),
     l2=L2Spec(
         read_cclk=9,                    # [assumed] first 64 bits of an access, range 7..11; writes are posted
@@ -32,6 +36,9 @@ BF561 = ChipSpec(
         store_buffer=5,                 # [assumed] range 4..8
     ),
     dma=DmaSpec(
+        controllers=2,                  # Linux defBF561.h: DMA1 and DMA2
+        mdma_streams=4,                 # the same: two of each controller
+        word_bytes=4,                   # BF561 HRM ch. 9, DMA1; [assumed] for the memory DMA of DMA2
         fifo_words=4,                   # [assumed] range 4..8
         startup_sclk=15,                # [assumed] start-up and turn-round of a work unit, range 10..20
         descriptor_sclk=2,              # [assumed] per 16-bit element, beside what its memory takes
@@ -49,4 +56,5 @@ BF561 = ChipSpec(
         testset_cclk=2,                 # GNU sim; its locked read of L2 comes on top
         spin_cclk=6,                    # branch back taken as predicted 5 (GNU sim), test of CC 1
     ),
+    interrupts=Bf561Interrupt,
 )  # fmt: skip

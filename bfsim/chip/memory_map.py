@@ -1,4 +1,4 @@
-"""The memories of the ADSP-BF561 by address: what lies where, how large it is, and which core reaches it.
+"""The memories of each chip by address: what lies where, how large it is, and which core reaches it.
 
 Latencies and banks are not here; nor are the memory-mapped registers, where nothing can be placed.
 """
@@ -14,17 +14,25 @@ from bfsim.errors import ConfigError
 KIB = 1024
 MIB = 1024 * KIB
 
+# Both chips: Linux mem_map.h, L1_DATA_A_LENGTH, L1_DATA_B_LENGTH and L1_CODE_LENGTH with and without caches
+CACHE_NBYTES = 16 * KIB
+"""What a data bank or the code memory gives up to be cache."""
+
 Owner = Literal["A", "B", "shared"]
 
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """One memory: `nbytes` from byte address `start`, reached by its owner's loads and stores alone."""
+    """One memory: `nbytes` from byte address `start`, reached by its owner's loads and stores alone.
+
+    Its last `cache_nbytes` can be cache instead.
+    """
 
     memory: str
     owner: Owner
     start: int
     nbytes: int
+    cache_nbytes: int = 0
 
     @property
     def name(self) -> str:
@@ -38,16 +46,16 @@ class Region:
 
 # Addresses and sizes: Linux arch/blackfin/mach-bf561/include/mach/mem_map.h; GNU sim/bfin/machs.c
 # bf561_mem[]; the memory map in the comments of the VisualDSP++ 5.0 default LDF of the ADSP-BF561.
-ON_CHIP = (
+BF561_REGIONS = (
     Region("L1_CODE", "A", 0xFFA0_0000, 16 * KIB),
-    Region("L1_CODE_CACHE", "A", 0xFFA1_0000, 16 * KIB),  # SRAM as long as the instruction cache is off
-    Region("L1_DATA_A", "A", 0xFF80_0000, 32 * KIB),  # the upper 16 KB can be cache instead
-    Region("L1_DATA_B", "A", 0xFF90_0000, 32 * KIB),  # the upper 16 KB can be cache instead
-    Region("SCRATCH", "A", 0xFFB0_0000, 4 * KIB),  # no DMA, no cache
+    Region("L1_CODE_CACHE", "A", 0xFFA1_0000, 16 * KIB, CACHE_NBYTES),
+    Region("L1_DATA_A", "A", 0xFF80_0000, 32 * KIB, CACHE_NBYTES),
+    Region("L1_DATA_B", "A", 0xFF90_0000, 32 * KIB, CACHE_NBYTES),
+    Region("SCRATCH", "A", 0xFFB0_0000, 4 * KIB),  # no DMA
     Region("L1_CODE", "B", 0xFF60_0000, 16 * KIB),
-    Region("L1_CODE_CACHE", "B", 0xFF61_0000, 16 * KIB),
-    Region("L1_DATA_A", "B", 0xFF40_0000, 32 * KIB),
-    Region("L1_DATA_B", "B", 0xFF50_0000, 32 * KIB),
+    Region("L1_CODE_CACHE", "B", 0xFF61_0000, 16 * KIB, CACHE_NBYTES),
+    Region("L1_DATA_A", "B", 0xFF40_0000, 32 * KIB, CACHE_NBYTES),
+    Region("L1_DATA_B", "B", 0xFF50_0000, 32 * KIB, CACHE_NBYTES),
     Region("SCRATCH", "B", 0xFF70_0000, 4 * KIB),
     Region("L2", "shared", 0xFEB0_0000, 128 * KIB),
     Region("ASYNC0", "shared", 0x2000_0000, 64 * MIB),
@@ -56,10 +64,28 @@ ON_CHIP = (
     Region("ASYNC3", "shared", 0x2C00_0000, 64 * MIB),
 )
 
+# Addresses and sizes: Linux arch/blackfin/mach-bf533/include/mach/mem_map.h
+BF533_REGIONS = (
+    Region("L1_CODE", "A", 0xFFA0_0000, 64 * KIB),
+    Region("L1_CODE_CACHE", "A", 0xFFA1_0000, 16 * KIB, CACHE_NBYTES),
+    Region("L1_DATA_A", "A", 0xFF80_0000, 32 * KIB, CACHE_NBYTES),
+    Region("L1_DATA_B", "A", 0xFF90_0000, 32 * KIB, CACHE_NBYTES),
+    Region("SCRATCH", "A", 0xFFB0_0000, 4 * KIB),  # no DMA
+    Region("ASYNC0", "shared", 0x2000_0000, 1 * MIB),
+    Region("ASYNC1", "shared", 0x2010_0000, 1 * MIB),
+    Region("ASYNC2", "shared", 0x2020_0000, 1 * MIB),
+    Region("ASYNC3", "shared", 0x2030_0000, 1 * MIB),
+)
+
+
+def with_sdram(regions: Sequence[Region], sdram_nbytes: int) -> tuple[Region, ...]:
+    """Return a chip's memories and a board's `sdram_nbytes` of SDRAM, which starts at address 0."""
+    return (*regions, Region("SDRAM", "shared", 0x0000_0000, sdram_nbytes))
+
 
 def bf561_regions(sdram_nbytes: int) -> tuple[Region, ...]:
-    """Return the memories of a BF561 board with `sdram_nbytes` of SDRAM, which starts at address 0."""
-    return (*ON_CHIP, Region("SDRAM", "shared", 0x0000_0000, sdram_nbytes))
+    """Return the memories of a BF561 board with `sdram_nbytes` of SDRAM."""
+    return with_sdram(BF561_REGIONS, sdram_nbytes)
 
 
 # One MT48LC8M32B2: Linux arch/blackfin/configs/CM-BF561_defconfig of 2008-02..04, CONFIG_MEM_SIZE=32

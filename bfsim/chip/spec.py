@@ -9,8 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
+from bfsim.chip.interrupts import SicInterrupt
 from bfsim.chip.memory_map import Region
 from bfsim.clocks import Clocks
+from bfsim.errors import ConfigError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,6 +35,11 @@ class SdramSpec:
     page_bytes: int
     bank_bytes: int
     banks: int
+
+    @property
+    def nbytes(self) -> int:
+        """Size of all banks."""
+        return self.banks * self.bank_bytes
 
     @property
     def miss_sclk(self) -> int:
@@ -98,10 +105,14 @@ class ExternalSpec:
 class DmaSpec:
     """The DMA controllers. A work unit starts in `startup_sclk`; a descriptor costs `descriptor_sclk` an element.
 
+    `word_bytes`: width of their buses, and the longest word; `mdma_streams`: memory DMA, of all controllers together.
     `read_word_sclk` and `write_word_sclk`: memory DMA, cycles per word from and to SDRAM on an open page;
-    `on_chip_word_sclk`: between L1 and L2; `imdma_word_cclk`: the internal DMA.
+    `on_chip_word_sclk`: between L1 and L2; `imdma_word_cclk`: the internal DMA, 0 without one.
     """
 
+    controllers: int
+    mdma_streams: int
+    word_bytes: int
     fifo_words: int
     startup_sclk: int
     descriptor_sclk: int
@@ -128,11 +139,41 @@ class EventSpec:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Pll:
+    """How PLL_CTL and PLL_DIV are set: VCO = CLKIN x `vco_multiplier`, CCLK = VCO / `csel`, SCLK = VCO / `ssel`.
+
+    Raises ConfigError for what the fields of the registers cannot hold.
+    """
+
+    clkin_hz: Fraction
+    vco_multiplier: int
+    csel: int
+    ssel: int
+
+    def __post_init__(self) -> None:
+        # ranges: comments on CONFIG_VCO_MULT, CCLK_DIV and SCLK_DIV in u-boot's include/configs/cm-bf561.h
+        if not 1 <= self.vco_multiplier <= 64:
+            raise ConfigError(f"vco_multiplier must be 1 to 64, not {self.vco_multiplier}")
+        if self.csel not in (1, 2, 4, 8):
+            raise ConfigError(f"csel must be 1, 2, 4 or 8, not {self.csel}")
+        if not 1 <= self.ssel <= 15:
+            raise ConfigError(f"ssel must be 1 to 15, not {self.ssel}")
+
+    @property
+    def vco_hz(self) -> Fraction:
+        """What both clocks are divided from."""
+        return self.clkin_hz * self.vco_multiplier
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ChipSpec:
-    """A chip: its cores, its memories, and the timing of its own blocks. Without L2 `l2` is None."""
+    """A chip: its cores, its memories, its ratings, and the timing of its own blocks. Without L2 `l2` is None."""
 
     name: str
     cores: tuple[str, ...]
+    ppis: int
+    max_vco_hz: Fraction
+    max_sclk_hz: Fraction
     regions: tuple[Region, ...]
     l1: L1Spec
     cache: CacheSpec
@@ -141,6 +182,21 @@ class ChipSpec:
     dma: DmaSpec
     ppi_fifo_words: int
     events: EventSpec
+    interrupts: type[SicInterrupt]
+
+    def clocks_of(self, pll: Pll) -> Clocks:
+        """Return the clocks that `pll` makes; raise ConfigError if the chip is not rated for them."""
+        clocks = Clocks(cclk_hz=pll.vco_hz / pll.csel, sclk_hz=pll.vco_hz / pll.ssel)
+        for name, hz, most_hz in (
+            ("VCO", pll.vco_hz, self.max_vco_hz),
+            ("SCLK", clocks.sclk_hz, self.max_sclk_hz),
+        ):
+            if hz > most_hz:
+                raise ConfigError(
+                    f"{name} of an {self.name} must be at most {float(most_hz):,.0f} Hz, not {float(hz):,.0f} Hz "
+                    f"(CLKIN x {pll.vco_multiplier}, csel {pll.csel}, ssel {pll.ssel})"
+                )
+        return clocks
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -185,18 +241,22 @@ class SensorSpec:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoardSpec:
-    """A board: the chip, how it is clocked, its SDRAM and its cameras.
+    """A board: the chip with the board's memories, how it is clocked, its SDRAM and its cameras.
 
-    `dma_over_core`: CDPRIO of EBIU_AMGCTL, DMA before the cores at the EBIU. `deb_period` and `mdma_period`: fields of DMA_TC_PER,
-    transfers in one direction, and of one MDMA stream, before the other has its turn; 0 switches the rule off.
+    `pll` is None where no setting of it makes these `clocks`. `cameras`: what PPI0, PPI1 and so on look at.
+    `dma_over_core`: CDPRIO of EBIU_AMGCTL, DMA before the cores at the EBIU. `deb_period` and `mdma_period`: fields
+    of DMA_TC_PER, transfers in one direction, and of one MDMA stream, before the other has its turn; 0 switches the
+    rule off.
     """
 
     name: str
     title: str
     chip: ChipSpec
+    pll: Pll | None
     clocks: Clocks
     sdram: SdramSpec
     sensor: SensorSpec
+    cameras: tuple[str, ...]
     dma_over_core: bool
     deb_period: int = 0
     mdma_period: int = 0

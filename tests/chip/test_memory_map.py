@@ -1,4 +1,4 @@
-"""The memories of the BF561: sizes that the data sheet states, no overlap, and look-up by address."""
+"""The memories of both chips: sizes that the data sheet states, no overlap, and look-up by address."""
 
 from __future__ import annotations
 
@@ -6,13 +6,22 @@ from itertools import pairwise
 
 import pytest
 
-from bfsim.chip.memory_map import CM_BF561_REGIONS, KIB, MIB, bf561_regions, region_of
+from bfsim.chip.memory_map import (
+    BF533_REGIONS,
+    CM_BF561_REGIONS,
+    KIB,
+    MIB,
+    Region,
+    bf561_regions,
+    region_of,
+    with_sdram,
+)
 from bfsim.errors import ConfigError
 
 
 def test_memories_do_not_overlap() -> None:
     """In order of address each memory ends before the next one starts, also with the largest SDRAM."""
-    for regions in (CM_BF561_REGIONS, bf561_regions(512 * MIB)):
+    for regions in (CM_BF561_REGIONS, bf561_regions(512 * MIB), with_sdram(BF533_REGIONS, 128 * MIB)):
         ordered = sorted(regions, key=lambda region: region.start)
         assert all(low.start + low.nbytes <= high.start for low, high in pairwise(ordered))
 
@@ -29,6 +38,27 @@ def test_core_b_lies_4_mb_below_core_a() -> None:
     for region in CM_BF561_REGIONS:
         if region.owner == "A":
             assert region.start - b_start[region.memory] == 0x40_0000
+
+
+def test_bf533_is_core_a_with_48_kb_more_code_and_no_l2() -> None:
+    """Data banks and scratchpad are core A's of the BF561, at the same addresses; code is 64 KB and 16 KB."""
+    bf533 = {region.memory: region for region in BF533_REGIONS}
+    core_a = {region.memory: region for region in CM_BF561_REGIONS if region.owner == "A"}
+    assert {region.owner for region in BF533_REGIONS} == {"A", "shared"}
+    assert {name for name in bf533 if not name.startswith("ASYNC")} == set(core_a)
+    assert {name for name in core_a if bf533[name] != core_a[name]} == {"L1_CODE"}
+    assert bf533["L1_CODE"] == Region("L1_CODE", "A", core_a["L1_CODE"].start, 64 * KIB)
+
+
+@pytest.mark.parametrize("regions", [CM_BF561_REGIONS, BF533_REGIONS])
+def test_what_can_be_cache(regions: tuple[Region, ...]) -> None:
+    """The upper half of each data bank, and the code block that has its name from it: 48 KB of each core."""
+    halves = {
+        (region.memory, region.nbytes - region.cache_nbytes) for region in regions if region.cache_nbytes
+    }
+    assert halves == {("L1_DATA_A", 16 * KIB), ("L1_DATA_B", 16 * KIB), ("L1_CODE_CACHE", 0)}
+    cores = {region.owner for region in regions} - {"shared"}
+    assert sum(region.cache_nbytes for region in regions) == len(cores) * 48 * KIB
 
 
 @pytest.mark.parametrize(
@@ -69,5 +99,6 @@ def test_what_lies_in_no_memory_is_an_error(address: int, nbytes: int, problem: 
 
 
 def test_sdram_is_the_boards() -> None:
-    """A board with 64 MB has an SDRAM twice as long."""
+    """A board with 64 MB has an SDRAM twice as long, on either chip."""
+    assert region_of(0x03FF_FFFF, 1, with_sdram(BF533_REGIONS, 64 * MIB)).nbytes == 64 * MIB
     assert region_of(0x03FF_FFFF, 1, bf561_regions(64 * MIB)).nbytes == 64 * MIB

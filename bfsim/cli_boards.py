@@ -1,0 +1,94 @@
+"""The command `bfsim boards`: every number in the dataclasses of a board, under its own name."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from bfsim.chip.interrupts import SicInterrupt
+from bfsim.terminal import print_report
+
+if TYPE_CHECKING:
+    from bfsim.chip.spec import BoardSpec
+    from bfsim.report.board_tables import Rows
+
+
+@click.command(short_help="List the boards, or print every number of one.")
+@click.argument("name", required=False)
+def boards(name: str | None) -> None:
+    """List the boards that --board takes; with NAME, print every number of that board.
+
+    Units are in the names: _cclk and _sclk are cycles of the core and of the bus, and nCL, nRAS, nRP, nRCD and nWR
+    are SCLK cycles, too.
+
+    \b
+    Examples:
+      bfsim boards
+      bfsim boards cm-bf561
+    """
+    from bfsim.chip.boards import BOARDS, board_named
+    from bfsim.report.board_tables import board_report, boards_report
+
+    if name is None:
+        print_report(boards_report([_summary(each) for each in BOARDS.values()]))
+    else:
+        board = board_named(name)
+        print_report(board_report(f"{board.name}: {board.title}", _blocks("board", board)))
+
+
+def _summary(board: BoardSpec) -> dict[str, str]:
+    sdram = board.sdram
+    return {
+        "Board": board.name,
+        "Chip": board.chip.name,
+        "CCLK/SCLK\nMHz": f"{_mhz(board.clocks.cclk_hz)}/{_mhz(board.clocks.sclk_hz)}",
+        "SDRAM": f"{sdram.nbytes >> 20} MB",
+        "CL-RCD-RP\n-RAS-WR": f"{sdram.nCL}-{sdram.nRCD}-{sdram.nRP}-{sdram.nRAS}-{sdram.nWR}",
+        "Title": board.title,
+    }
+
+
+def _mhz(hz: Fraction) -> str:
+    return f"{float(hz / 1_000_000):g}"
+
+
+def _blocks(path: str, record: Any) -> list[tuple[str, Rows]]:
+    """Return the numbers of a record, and after them those of each record in it, by their path."""
+    own = []
+    inner: list[tuple[str, Rows]] = []
+    for field in fields(record):
+        value = getattr(record, field.name)
+        where = f"{path}.{field.name}"
+        if is_dataclass(value):
+            inner += _blocks(where, value)
+        elif isinstance(value, tuple) and is_dataclass(value[0]):
+            inner.append((where, [_cells(each) for each in value]))
+        elif isinstance(value, type) and issubclass(value, SicInterrupt):
+            inner.append((where, [_interrupt(each) for each in value]))
+        else:
+            own.append({"": field.name, "value": _text(field.name, value)})
+    return [(path, own), *inner]
+
+
+def _cells(record: Any) -> dict[str, str]:
+    return {field.name: _text(field.name, getattr(record, field.name)) for field in fields(record)}
+
+
+def _interrupt(interrupt: SicInterrupt) -> dict[str, str]:
+    return {"source": interrupt.name, "number": f"{interrupt:d}", "ivg": f"{interrupt.ivg}"}
+
+
+def _text(name: str, value: object) -> str:
+    """Return a value as people read it: addresses in hexadecimal, other numbers with thousands apart."""
+    if name == "start":
+        return f"0x{value:08X}"
+    if value is None:
+        return "none"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, int | Fraction):
+        return f"{float(value):,.12g}"
+    return ", ".join(value) if isinstance(value, tuple) else str(value)
