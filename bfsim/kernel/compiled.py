@@ -7,15 +7,15 @@ meets code that another file was compiled against.
 from __future__ import annotations
 
 import hashlib
+import importlib
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-import numba
-
 from bfsim.kernel import store
 
+numba: Any = importlib.import_module("numba")  # its own types do not know all of its options
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -27,16 +27,18 @@ def _folder(room: Path) -> str:
 
 def compiled(function: Function) -> Function:
     """Compile `function` for the host, as a part of those that call it. `.py_func` is the plain one."""
-    return numba.njit(no_cfunc_wrapper=True, error_model="numpy")(function)  # type: ignore[no-any-return]
+    made: Function = numba.njit(no_cfunc_wrapper=True, error_model="numpy")(function)
+    return made
 
 
 def entry(function: Function) -> Function:
     """Compile `function` and all that it calls at its first call from Python, or take it from the cache."""
     numba.config.CACHE_DIR = _folder(Path(function.__code__.co_filename).parent)
     try:
-        return numba.njit(cache=True, no_cfunc_wrapper=True, error_model="numpy")(function)  # type: ignore[no-any-return]
+        made: Function = numba.njit(cache=True, no_cfunc_wrapper=True, error_model="numpy")(function)
     except RuntimeError:  # no folder can be written: compile in every process
         return compiled(function)
+    return made
 
 
 def callback(signature: Any, function: Callable[..., None]) -> int:

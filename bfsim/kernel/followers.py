@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +34,9 @@ LOAD, STORE, FILL, WRITE_BACK, FETCH, FETCH_LINE = range(6)
 ) = range(9)  # fmt: skip
 MAX_REGIONS = 8
 FIRST_REGION = 9  # first offset, end and policy of each
-TAGS = FIRST_REGION + 3 * MAX_REGIONS  # of each set, the line used last first: number << 1 | is it changed; or EMPTY
+TAGS = (
+    FIRST_REGION + 3 * MAX_REGIONS
+)  # of each set, the line used last first: number << 1 | is it changed; or EMPTY
 MAX_LINES = 2048
 LOG = TAGS + MAX_LINES
 EMPTY = -1
@@ -74,7 +74,7 @@ class CacheSize:
 
 
 class Follower:
-    """The follower of one core. Compiling it waits until a kernel touches memory outside L1."""
+    """The follower of one core; `follow.py` is its compiled part, which waits until a kernel touches memory outside L1."""
 
     def __init__(
         self,
@@ -94,7 +94,11 @@ class Follower:
         self._state[ARENA], self._state[END] = arena.ctypes.data, arena.ctypes.data + followed_nbytes
         self._state[ROOM] = len(room) - LOG
         if size and cached:
-            self._state[LINE_BITS], self._state[SETS], self._state[WAYS] = size.line_bytes.bit_length() - 1, size.sets, size.ways
+            self._state[LINE_BITS], self._state[SETS], self._state[WAYS] = (
+                size.line_bytes.bit_length() - 1,
+                size.sets,
+                size.ways,
+            )
             self._state[REGIONS] = len(cached)
             for number, each in enumerate(cached):
                 policy = WRITE_BACK_POLICY if each.policy is Policy.WRITE_BACK else WRITE_THROUGH
@@ -104,7 +108,9 @@ class Follower:
     def address(self) -> int:
         """Return the host address of the state, ready to be followed."""
         if not self._state[FUNCTION]:
-            self._state[FUNCTION] = _function_address()
+            from bfsim.kernel.follow import function_address  # numba is imported for it
+
+            self._state[FUNCTION] = function_address()
         return int(self._state.ctypes.data)
 
     def take_count(self) -> int:
@@ -130,65 +136,3 @@ class Follower:
         tags = self._state[TAGS:LOG]
         tags[(tags != EMPTY) & (tags >> 1 >= low) & (tags >> 1 <= high)] = EMPTY
         return high - low + 1
-
-
-@cache
-def _function_address() -> int:
-    """Compile the follower. numba is imported here: kernels that stay in L1 need none."""
-    from numba import carray, types
-
-    from bfsim.kernel.compiled import callback, compiled
-
-    @compiled
-    def log(state: Any, kind: int, offset: int, stamp: int) -> None:
-        if state[ENTRIES] < state[ROOM]:
-            state[LOG + state[ENTRIES]] = stamp << STAMP_BIT | kind << KIND_BIT | offset
-        state[ENTRIES] += 1
-
-    @compiled
-    def policy_of(state: Any, offset: int) -> int:
-        for number in range(state[REGIONS]):
-            at = FIRST_REGION + 3 * number
-            if state[at] <= offset < state[at + 1]:
-                return int(state[at + 2])
-        return EMPTY
-
-    @compiled
-    def look_up(state: Any, line: int, write: int, allocate: bool) -> tuple[bool, int]:
-        """Return whether the line is there, and the changed line that has to leave for it, or EMPTY."""
-        first, way = TAGS + line % state[SETS] * state[WAYS], 0
-        last = state[WAYS] - 1
-        while way < last and state[first + way] >> 1 != line:
-            way += 1
-        tag = state[first + way]
-        hit = tag >> 1 == line
-        if not hit and not allocate:
-            return False, EMPTY
-        left = tag >> 1 if not hit and tag != EMPTY and tag & 1 else EMPTY
-        while way > 0:  # the line used last comes first
-            state[first + way] = state[first + way - 1]
-            way -= 1
-        state[first] = (tag if hit else line << 1) | write
-        return hit, left
-
-    def follow(at: Any, address: int, access: int, stamp: int) -> None:
-        state = carray(at, LOG)
-        if not state[ARENA] <= address < state[END]:
-            return
-        state = carray(at, LOG + state[ROOM])
-        write, offset = access >= WRITE, address - state[ARENA]
-        policy = policy_of(state, offset)
-        if policy == EMPTY:
-            log(state, STORE if write else LOAD, offset, stamp)
-            return
-        bits, changes = state[LINE_BITS], write and policy == WRITE_BACK_POLICY
-        hit, left = look_up(state, offset >> bits, 1 if changes else 0, changes or not write)
-        if left != EMPTY:
-            log(state, WRITE_BACK, left << bits, stamp)
-        if write and policy == WRITE_THROUGH:
-            log(state, STORE, offset, stamp)
-        elif not hit:
-            log(state, FILL, offset >> bits << bits, stamp)
-
-    word = types.int64
-    return callback(types.void(types.CPointer(word), word, word, word), follow)

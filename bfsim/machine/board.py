@@ -10,12 +10,12 @@ from bfsim.errors import DeadlockError, FirmwareError
 from bfsim.kernel import VDSP_O2, CompilerProfile
 from bfsim.kernel.followers import Follower
 from bfsim.linker import LinkMap, Symbol
+from bfsim.machine import bus_state as w
+from bfsim.machine.bus import Bus
 from bfsim.machine.calls import CallBook
 from bfsim.machine.capture import Capture, Feed, Pair, StereoPictures
 from bfsim.machine.code import code_records, code_symbols
 from bfsim.machine.core import Core
-from bfsim.machine import bus_state as w
-from bfsim.machine.bus import Bus
 from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.ppi import Ppi
@@ -29,7 +29,10 @@ from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, TrafficRecord
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
 
 PPI_MASTERS = (w.PPI0, w.PPI1)
-MDMA_MASTERS = ((w.MDMA1_0, w.MDMA1_1), (w.MDMA2_0, w.MDMA2_1))  # of each core: for its input and its output rings
+MDMA_MASTERS = (
+    (w.MDMA1_0, w.MDMA1_1),
+    (w.MDMA2_0, w.MDMA2_1),
+)  # of each core: for its input and its output rings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,7 +82,9 @@ class Board:
         self._env = Simulation()
         picture_nbytes = 2 * self.size.width_px * self.size.height_px
         self._memories = Memories(self.spec, outside_nbytes=len(PPI_MASTERS) * picture_nbytes)
-        self._outside = [self._memories.outside + number * picture_nbytes for number in range(len(PPI_MASTERS))]
+        self._outside = [
+            self._memories.outside + number * picture_nbytes for number in range(len(PPI_MASTERS))
+        ]
         self._bus = Bus(self._env, self.spec, self._memories)
         self._semaphores: dict[str, Semaphore] = {}
         self._calls: dict[str, CallBook] = {}

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
+from typing import Any
 
 import numpy as np
 import simpy
@@ -21,7 +22,7 @@ from bfsim.errors import FirmwareError
 from bfsim.machine import bus_state as w
 from bfsim.machine.core_requests import start_job
 from bfsim.machine.dma_requests import post
-from bfsim.machine.memories import Memories, Row
+from bfsim.machine.memories import Memories
 from bfsim.machine.sdram import new_sdram
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.weave import advance
@@ -91,9 +92,9 @@ class Bus:
         self._env = env
         self._chip = board.chip
         self._clocks = board.clocks
-        self._state = np.zeros(w.STATE_WORDS, np.int64)
-        self._memory = memories.arena.view(np.uint32)
-        self.words = memoryview(self._state)
+        self._state: Any = np.zeros(w.STATE_WORDS, np.int64)
+        self._memory: Any = memories.arena.view(np.uint32)
+        self.words: Any = self._state.data
         """The whole state, word by word."""
         self._transfers = 0
         self._waiting: dict[int, simpy.Event] = {}
@@ -178,7 +179,9 @@ class Bus:
         reads, writes = source.offset < end, destination.offset < end
         mode = w.BOTH if reads and writes else w.READ if reads else w.WRITE if writes else w.ON_CHIP
         word = self._on_chip_ticks(master) if mode == w.ON_CHIP else Fraction(1)
-        return self._plan(master, mode, source, destination, count, element_bytes, setup, Pace(0, 1, word, Fraction(1)))
+        return self._plan(
+            master, mode, source, destination, count, element_bytes, setup, Pace(0, 1, word, Fraction(1))
+        )
 
     def _on_chip_ticks(self, master: int) -> Fraction:
         dma = self._chip.dma
@@ -225,7 +228,9 @@ class Bus:
         self._transfers = number + 1
         words[w.ENDS_AT + number % w.ENDS] = w.NONE
         # the bus may still be behind the simulated time; the transfer is not
-        SLOT.pack_into(words, 8 * (w.SLOTS_AT + place * w.SLOT_WORDS), number, w.NONE, max(at, now), *plan.words)
+        SLOT.pack_into(
+            words, 8 * (w.SLOTS_AT + place * w.SLOT_WORDS), number, w.NONE, max(at, now), *plan.words
+        )
         post(self._state, plan.master, place, now)
         return Transfer(self, number, place)
 
@@ -256,4 +261,5 @@ class Bus:
     def room_of(self, core: int) -> NDArray[np.int64]:
         """Return where a core's follower keeps its state and its log."""
         first = w.LOGS_AT + core * w.FOLLOWER_WORDS
-        return self._state[first : first + w.FOLLOWER_WORDS]
+        room: NDArray[np.int64] = self._state[first : first + w.FOLLOWER_WORDS]
+        return room

@@ -5,9 +5,14 @@ All times are ticks; all addresses are offsets into the arena, the one host arra
 
 from __future__ import annotations
 
-from bfsim.kernel.followers import (
-    FETCH, FETCH_LINE, FILL, KIND_BIT, KIND_MASK, LOAD, LOG, OFFSET_MASK, STAMP_BIT, STORE, WRITE_BACK,
-)  # fmt: skip
+from collections.abc import MutableSequence
+
+from bfsim.kernel import followers
+
+State = MutableSequence[int]
+"""The array, an int64 one, as compiled code sees it."""
+Memory = MutableSequence[int]
+"""The arena, as 32-bit words."""
 
 NEVER = 1 << 62
 NONE = -1
@@ -45,7 +50,9 @@ BUS_AT = SDRAM_WORDS
 BUS_WORDS = 20
 
 # The masters in the order of their rows. Cores have one for what they wait for and one for their store buffer.
-PPI0, PPI1, SPI, MDMA1_0, MDMA1_1, MDMA2_0, MDMA2_1, IMDMA_0, IMDMA_1, STORES_A, STORES_B, CORE_A, CORE_B = range(13)
+PPI0, PPI1, SPI, MDMA1_0, MDMA1_1, MDMA2_0, MDMA2_1, IMDMA_0, IMDMA_1, STORES_A, STORES_B, CORE_A, CORE_B = (
+    range(13)
+)
 MASTERS = 13
 
 # ---- A master: who can ask for the bus. Word n of all masters stands together, since all are looked at in every step.
@@ -135,7 +142,5 @@ ENDS_AT = FREE_AT_STACK + SLOTS
 LOGS_AT = ENDS_AT + ENDS
 LOG_ENTRIES = 1 << 23
 """Accesses outside L1 that one kernel call may make; the host has memory for those that are made only."""
-FOLLOWER_WORDS = LOG + LOG_ENTRIES
+FOLLOWER_WORDS = followers.LOG + LOG_ENTRIES
 STATE_WORDS = LOGS_AT + CORES * FOLLOWER_WORDS
-
-__all__ = [name for name in globals() if name.isupper()]

@@ -22,9 +22,9 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, FirmwareError
 from bfsim.kernel import Kernel, Work
 from bfsim.machine.accounts import FrameAccounts
+from bfsim.machine.bus import Bus, Transfer
 from bfsim.machine.calls import CallBook
 from bfsim.machine.capture import Capture
-from bfsim.machine.bus import Bus, Transfer
 from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.machine.program import Main
@@ -345,7 +345,7 @@ class Core:
         chip = self._board.chip
         self._cclk += chip.events.testset_cclk
         self._account.issue_cclk += chip.events.testset_cclk
-        self._stall(StallReason.L2_LATENCY, chip.l2.read_cclk)
+        self._stall(StallReason.L2_LATENCY, chip.l2.read_cclk if chip.l2 else 0)
         yield from self._sync()
 
     def _semaphore(self, name: str) -> Semaphore:

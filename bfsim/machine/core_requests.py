@@ -6,24 +6,22 @@ Loads overtake stores, except that a load from an address in the store buffer wa
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from bfsim.machine import bus_state as w
+from bfsim.kernel import followers as log
 from bfsim.kernel.compiled import compiled, entry
+from bfsim.machine import bus_state as w
+from bfsim.machine.bus_state import State
 from bfsim.machine.dma_requests import aligned, count_access, count_traffic
 from bfsim.machine.sdram import access, stream
 
-State = NDArray[np.int64]
 WORD_MASK = ~3
 
 
 @compiled
 def bytes_of(state: State, kind: int) -> int:
     """Return what an access of this kind moves: a 32-bit word whatever its width, a cache line, or 64 bits of code."""
-    if kind in (w.LOAD, w.STORE):
+    if kind in (log.LOAD, log.STORE):
         return 4
-    return w.FETCH_BYTES if kind == w.FETCH else state[w.LINE_BYTES]
+    return w.FETCH_BYTES if kind == log.FETCH else state[w.LINE_BYTES]
 
 
 @compiled
@@ -37,12 +35,12 @@ def next_entry(state: State, core: int, not_before: int) -> int:
         state[master + w.READY] = w.NEVER
         state[w.DONE_AT] = state[job + w.BEGIN] + state[job + w.TOTAL] * cclk + state[job + w.STALLED]
         return w.NONE - 1 - core
-    entry = state[w.LOGS_AT + core * w.FOLLOWER_WORDS + w.LOG + state[job + w.ENTRY]]
-    issued = max(not_before, state[job + w.BEGIN] + (entry >> w.STAMP_BIT) * cclk + state[job + w.STALLED])
-    kind = entry >> w.KIND_BIT & w.KIND_MASK
-    waits = kind not in (w.STORE, w.WRITE_BACK)
+    entry = state[w.LOGS_AT + core * w.FOLLOWER_WORDS + log.LOG + state[job + w.ENTRY]]
+    issued = max(not_before, state[job + w.BEGIN] + (entry >> log.STAMP_BIT) * cclk + state[job + w.STALLED])
+    kind = entry >> log.KIND_BIT & log.KIND_MASK
+    waits = kind not in (log.STORE, log.WRITE_BACK)
     state[job + w.ISSUED_AT] = issued
-    state[master + w.USES_BUS] = waits and entry & w.OFFSET_MASK < state[w.SDRAM_END]
+    state[master + w.USES_BUS] = waits and entry & log.OFFSET_MASK < state[w.SDRAM_END]
     state[master + w.READY] = aligned(issued, state[w.SCLK]) if state[master + w.USES_BUS] else issued
     return w.NONE
 
@@ -52,7 +50,13 @@ def start_job(state: State, core: int, begin: int, cclk: int, entries: int) -> N
     """Let a core make the first `entries` accesses of its log, from tick `begin` on, in a call of `cclk` cycles."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     state[job + w.STATE] = w.RUNNING
-    state[job + w.BEGIN], state[job + w.TOTAL], state[job + w.STALLED], state[job + w.ENTRY], state[job + w.END] = begin, cclk, 0, 0, entries
+    (
+        state[job + w.BEGIN],
+        state[job + w.TOTAL],
+        state[job + w.STALLED],
+        state[job + w.ENTRY],
+        state[job + w.END],
+    ) = begin, cclk, 0, 0, entries
     for reason in range(w.STALLS):
         state[job + w.STALL + reason] = 0
     next_entry(state, core, begin)
@@ -97,7 +101,7 @@ def prepare_drain(state: State, core: int, at: int) -> None:
     if state[job + w.STORES] == 0:
         state[master + w.READY] = w.NEVER
         return
-    uses_bus = state[job + w.STORE_QUEUE + state[job + w.STORE_HEAD]] & w.OFFSET_MASK < state[w.SDRAM_END]
+    uses_bus = state[job + w.STORE_QUEUE + state[job + w.STORE_HEAD]] & log.OFFSET_MASK < state[w.SDRAM_END]
     state[master + w.USES_BUS] = uses_bus
     state[master + w.READY] = aligned(at, state[w.SCLK]) if uses_bus else at
 
@@ -107,7 +111,7 @@ def serve_stores(state: State, core: int, at: int) -> int:
     """Write the oldest store of a core's buffer, and let the core go on if it waited for that."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     entry = state[job + w.STORE_QUEUE + state[job + w.STORE_HEAD]]
-    offset, nbytes = entry & w.OFFSET_MASK, bytes_of(state, entry >> w.KIND_BIT & w.KIND_MASK)
+    offset, nbytes = entry & log.OFFSET_MASK, bytes_of(state, entry >> log.KIND_BIT & log.KIND_MASK)
     if offset < state[w.SDRAM_END]:
         access(state, at, offset, True)
         more = (nbytes >> state[w.WORD_BITS]) - 1
@@ -136,7 +140,9 @@ def serve_stores(state: State, core: int, at: int) -> int:
 def is_in_buffer(state: State, job: int, offset: int) -> bool:
     """Whether the word at `offset` is in the store buffer."""
     for number in range(state[job + w.STORES]):
-        if (state[job + w.STORE_QUEUE + (state[job + w.STORE_HEAD] + number) % w.MAX_STORES] ^ offset) & w.OFFSET_MASK & WORD_MASK == 0:
+        if (
+            state[job + w.STORE_QUEUE + (state[job + w.STORE_HEAD] + number) % w.MAX_STORES] ^ offset
+        ) & log.OFFSET_MASK & WORD_MASK == 0:
             return True
     return False
 
@@ -145,10 +151,14 @@ def is_in_buffer(state: State, job: int, offset: int) -> bool:
 def serve_core(state: State, core: int, at: int) -> int:
     """Make the core's present access at tick `at`; return the number of its job when that is done, else NONE."""
     job = w.JOBS_AT + core * w.JOB_WORDS
-    entry = state[w.LOGS_AT + core * w.FOLLOWER_WORDS + w.LOG + state[job + w.ENTRY]] if state[job + w.ENTRY] < state[job + w.END] else w.NONE
-    kind, offset = entry >> w.KIND_BIT & w.KIND_MASK, entry & w.OFFSET_MASK
-    if kind in (w.STORE, w.WRITE_BACK):
-        return store(state, core, at, entry & ((1 << w.STAMP_BIT) - 1))
+    entry = (
+        state[w.LOGS_AT + core * w.FOLLOWER_WORDS + log.LOG + state[job + w.ENTRY]]
+        if state[job + w.ENTRY] < state[job + w.END]
+        else w.NONE
+    )
+    kind, offset = entry >> log.KIND_BIT & log.KIND_MASK, entry & log.OFFSET_MASK
+    if kind in (log.STORE, log.WRITE_BACK):
+        return store(state, core, at, entry & ((1 << log.STAMP_BIT) - 1))
     if is_in_buffer(state, job, offset):
         return wait_for_buffer(state, core, w.BUFFER_NOT_EMPTY)
     if offset < state[w.SDRAM_END]:
@@ -171,7 +181,13 @@ def read_l2(state: State, core: int, at: int, kind: int) -> int:
         stall(state, job, state[w.CCLK], start + state[w.CCLK], w.L2_PORT)
         state[job + w.ISSUED_AT] = start
     done = start + state[w.L2_READ]
-    stall(state, job, state[w.CCLK], done, w.L2_LATENCY if kind == w.LOAD else w.CACHE_FILL if kind == w.FILL else w.CODE_FETCH)
+    stall(
+        state,
+        job,
+        state[w.CCLK],
+        done,
+        w.L2_LATENCY if kind == log.LOAD else w.CACHE_FILL if kind == log.FILL else w.CODE_FETCH,
+    )
     return done
 
 
@@ -187,7 +203,7 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
     through = access(state, at, offset, False)
     nbytes = bytes_of(state, kind)
     more = max(0, (nbytes >> state[w.WORD_BITS]) - 1)
-    if kind == w.LOAD and more:
+    if kind == log.LOAD and more:
         through = stream(state, more, False, offset)  # a load needs all of its word
     elif more:
         stream(state, more, False, offset)  # of a line, the core goes on with the first word
@@ -199,12 +215,12 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
     done = through + state[w.CORE_SYNC] - state[w.SCLK] - (edge - state[job + w.ISSUED_AT])
     opening = 0 if page == 0 else state[w.RCD] if page == 1 else state[w.RP] + state[w.RCD]
     latency = state[w.CORE_SYNC] + state[w.CL] + opening
-    if kind == w.LOAD:
+    if kind == log.LOAD:
         latency += more * state[w.SCLK]
     cycles = stall(state, job, cclk, done, w.ARBITRATION)
     unloaded = min(cycles, (latency + cclk - 1) // cclk - 1)
     refreshed = min(cycles - unloaded, refresh_wait // cclk)
-    reason = w.PAGE_HIT + page if kind == w.LOAD else w.CACHE_FILL if kind == w.FILL else w.CODE_FETCH
+    reason = w.PAGE_HIT + page if kind == log.LOAD else w.CACHE_FILL if kind == log.FILL else w.CODE_FETCH
     state[job + w.STALL + reason] += unloaded
     state[job + w.STALL + w.REFRESHING] += refreshed
     state[job + w.STALL + w.ARBITRATION] -= unloaded + refreshed

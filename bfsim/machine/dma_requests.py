@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from bfsim.machine import bus_state as w
 from bfsim.kernel.compiled import compiled, entry
+from bfsim.machine import bus_state as w
+from bfsim.machine.bus_state import Memory, State
 from bfsim.machine.sdram import access, hits_ahead, stream
 from bfsim.machine.walk import move, step_from
-
-State = NDArray[np.int64]
-Memory = NDArray[np.uint32]
 
 
 @compiled
@@ -96,9 +91,11 @@ def begin(state: State, master: int, slot: int, at: int) -> None:
         next_paced(state, master, slot)
     elif mode == w.ON_CHIP:
         state[master + w.USES_BUS] = 0
-        state[master + w.READY] = start + (
-            state[slot + w.LEFT] * state[slot + w.ELEMENT] + state[slot + w.PARTS] - 1
-        ) // state[slot + w.PARTS]
+        state[master + w.READY] = (
+            start
+            + (state[slot + w.LEFT] * state[slot + w.ELEMENT] + state[slot + w.PARTS] - 1)
+            // state[slot + w.PARTS]
+        )
     else:
         state[master + w.READY] = start
 
@@ -270,8 +267,16 @@ def exchange(state: State, memory: Memory, number: int, at: int) -> int:
     master = w.MASTERS_AT + number
     slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
     write = state[master + w.IN_FIFO] > 0
-    count = state[master + w.IN_FIFO] if write else min(state[w.LOT], state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT])
-    offset, step = (state[slot + w.TO], state[slot + w.TO_X_MODIFY]) if write else (state[slot + w.FROM], state[slot + w.FROM_X_MODIFY])
+    count = (
+        state[master + w.IN_FIFO]
+        if write
+        else min(state[w.LOT], state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT])
+    )
+    offset, step = (
+        (state[slot + w.TO], state[slot + w.TO_X_MODIFY])
+        if write
+        else (state[slot + w.FROM], state[slot + w.FROM_X_MODIFY])
+    )
     through = access_lot(state, number, at, offset, step, count, write)
     count_traffic(state, number, w.IN_SDRAM, write, count << state[slot + w.ELEMENT_BITS])
     state[master + w.SERVED] += count
@@ -320,7 +325,15 @@ def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> 
     offset = state[slot + w.TO] if write else state[slot + w.FROM]
     through, nbytes = at, count << state[slot + w.ELEMENT_BITS]
     if state[master + w.USES_BUS]:
-        through = access_lot(state, number, at, offset, state[slot + (w.TO_X_MODIFY if write else w.FROM_X_MODIFY)], count, write)
+        through = access_lot(
+            state,
+            number,
+            at,
+            offset,
+            state[slot + (w.TO_X_MODIFY if write else w.FROM_X_MODIFY)],
+            count,
+            write,
+        )
         count_traffic(state, number, w.IN_SDRAM, write, nbytes)
     elif state[w.L2_FIRST] <= offset < state[w.L2_END]:
         count_traffic(state, number, w.IN_L2, write, nbytes)

@@ -39,5 +39,7 @@ class MdmaStream:
     def _plan(self, source: Row, destination: Row) -> Plan:
         size = element_bytes(source.offset, destination.offset, source.nbytes)
         count = source.nbytes // size
-        walks = (Walk(each.offset, count, size, size) for each in (source, destination))
-        return self._bus.plan_copy(self._master, *walks, count, element_bytes=size, setup=self._startup_ticks)
+        inward, outward = (Walk(each.offset, count, size, size) for each in (source, destination))
+        return self._bus.plan_copy(
+            self._master, inward, outward, count, element_bytes=size, setup=self._startup_ticks
+        )

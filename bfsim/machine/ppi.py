@@ -22,7 +22,15 @@ class Ppi:
     """One parallel peripheral interface with the camera on it."""
 
     def __init__(
-        self, env: Simulation, board: BoardSpec, mode: SensorMode, bus: Bus, memories: Memories, *, master: int, outside: int
+        self,
+        env: Simulation,
+        board: BoardSpec,
+        mode: SensorMode,
+        bus: Bus,
+        memories: Memories,
+        *,
+        master: int,
+        outside: int,
     ) -> None:
         """`outside`: where in the arena a picture stands while it comes in."""
         self._env = env
@@ -34,7 +42,9 @@ class Ppi:
         self._word_ticks = ppi_clk_ticks * WORD_BYTES
         self._line_ticks: Fraction = ppi_clk_ticks * mode.line_clocks
         lines = PeriodicEdges(self._line_ticks)
-        self.picture_ticks = lines.after(mode.height_px - 1) + PeriodicEdges(self._word_ticks).after(2 * mode.width_px // WORD_BYTES)
+        self.picture_ticks = lines.after(mode.height_px - 1) + PeriodicEdges(self._word_ticks).after(
+            2 * mode.width_px // WORD_BYTES
+        )
         """Ticks from the start of a picture to its last byte."""
         self.frame_ticks = lines.after(mode.frame_lines)
         """Ticks from one picture's first line to the next one's, vertical blanking included."""

@@ -11,13 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.machine import bus_state as w
 from bfsim.kernel.compiled import compiled
+from bfsim.machine import bus_state as w
+from bfsim.machine.bus_state import State
 
-State = NDArray[np.int64]
 
-
-def new_sdram(board: BoardSpec) -> State:
+def new_sdram(board: BoardSpec) -> NDArray[np.int64]:
     """Return the state of a board's SDRAM with every bank closed."""
     sdram, sclk_ticks = board.sdram, board.clocks.sclk_ticks
     state = np.zeros(w.SDRAM_WORDS, np.int64)
@@ -28,7 +27,11 @@ def new_sdram(board: BoardSpec) -> State:
     }  # fmt: skip
     for word, sclk in cycles.items():
         state[word] = sclk * sclk_ticks
-    for word, size in ((w.PAGE_BITS, sdram.page_bytes), (w.BANK_BITS, sdram.bank_bytes), (w.WORD_BITS, sdram.word_bytes)):
+    for word, size in (
+        (w.PAGE_BITS, sdram.page_bytes),
+        (w.BANK_BITS, sdram.bank_bytes),
+        (w.WORD_BITS, sdram.word_bytes),
+    ):
         state[word] = size.bit_length() - 1
     state[w.NEXT_REFRESH] = state[w.REFRESH_INTERVAL]
     state[w.OPEN_PAGE : w.OPEN_PAGE + w.MAX_BANKS] = -1
@@ -65,7 +68,9 @@ def access(state: State, now: int, offset: int, write: bool) -> int:
         state[w.PAGE_CLASS] = 1
         if before >= 0:
             state[w.PAGE_CLASS] = 2
-            precharge = max(command, state[w.ACTIVATED + bank] + state[w.RAS], state[w.WRITTEN + bank] + state[w.WR])
+            precharge = max(
+                command, state[w.ACTIVATED + bank] + state[w.RAS], state[w.WRITTEN + bank] + state[w.WR]
+            )
             command = precharge + state[w.RP]
         state[w.ACTIVATED + bank] = command
         state[w.OPEN_PAGE + bank] = page

@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from bfsim.machine import bus_state as w
 from bfsim.kernel.compiled import compiled
-
-State = NDArray[np.int64]
-Memory = NDArray[np.uint32]
+from bfsim.machine import bus_state as w
+from bfsim.machine.bus_state import Memory, State
 
 WORD_BYTES, WORD_BITS = 4, 2  # the arena is an array of 32-bit words
 

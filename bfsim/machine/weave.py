@@ -6,16 +6,11 @@ one with the best rank. Runs of words that nobody can interrupt are done at once
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from bfsim.machine import bus_state as w
 from bfsim.kernel.compiled import compiled, entry
+from bfsim.machine import bus_state as w
+from bfsim.machine.bus_state import Memory, State
 from bfsim.machine.core_requests import serve_core, serve_stores
 from bfsim.machine.dma_requests import arrival, serve_dma
-
-State = NDArray[np.int64]
-Memory = NDArray[np.uint32]
 
 # What changes a rank (HRM of the BF537, 5-50 to 5-54): an urgent request comes before everything else, one against the
 # direction of the traffic behind all of its kind. A request that needs no bus cannot keep anybody waiting.
@@ -38,7 +33,10 @@ def rank_of(state: State, number: int, at: int) -> int:
     if state[master + w.PARTNER] != w.NONE and 0 < state[w.MDMA_PERIOD] <= state[master + w.SERVED]:
         rank += HAD_ITS_TURN
     slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
-    if state[slot + w.MODE] in (w.PACED_IN, w.PACED_OUT) and arrival(state, slot, state[master + w.FIFO] // 2) <= at:
+    if (
+        state[slot + w.MODE] in (w.PACED_IN, w.PACED_OUT)
+        and arrival(state, slot, state[master + w.FIFO] // 2) <= at
+    ):
         rank += URGENT  # half of the FIFO waits
     return rank
 
@@ -52,6 +50,39 @@ def count_direction(state: State, before: int) -> None:
         state[w.DEB_LEFT] -= 1
 
 
+@compiled
+def first_request(state: State, until: int) -> tuple[int, int]:
+    """Return who can be served first, and when; NONE if nobody before tick `until`."""
+    free = state[w.COMMAND_FREE]
+    first, first_at, first_rank = w.NONE, until, w.NEVER
+    for number in range(w.MASTERS):
+        master = w.MASTERS_AT + number
+        at = state[master + w.READY]
+        if at >= until:
+            continue
+        if at < free and state[master + w.USES_BUS]:
+            at = free
+        if at < first_at:
+            first, first_at, first_rank = number, at, w.NEVER
+        elif at == first_at and first != w.NONE:
+            if first_rank == w.NEVER:
+                first_rank = rank_of(state, first, at)
+            rank = rank_of(state, number, at)
+            if rank < first_rank:
+                first, first_rank = number, rank
+    return first, first_at
+
+
+@compiled
+def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int:
+    """Serve the request of a master; return who is woken."""
+    if number >= w.CORE_A:
+        return serve_core(state, number - w.CORE_A, at)
+    if number >= w.STORES_A:
+        return serve_stores(state, number - w.STORES_A, at)
+    return serve_dma(state, memory, number, at, until)
+
+
 @entry
 def advance(state: State, memory: Memory, until: int) -> int:
     """Grant all requests before tick `until`, in order; return early with who is woken, at tick DONE_AT, else NONE.
@@ -59,33 +90,11 @@ def advance(state: State, memory: Memory, until: int) -> int:
     A transfer is woken by its number, the job of core c by NONE - 1 - c.
     """
     while True:
-        free = state[w.COMMAND_FREE]
-        first, first_at, first_rank = w.NONE, w.NEVER, 0
-        for number in range(w.MASTERS):
-            master = w.MASTERS_AT + number
-            at = state[master + w.READY]
-            if at >= until:
-                continue
-            if at < free and state[master + w.USES_BUS]:
-                at = free
-            if at < first_at:
-                first, first_at = number, at
-                first_rank = w.NEVER  # not known yet
-            elif at == first_at:
-                if first_rank == w.NEVER:
-                    first_rank = rank_of(state, first, at)
-                rank = rank_of(state, number, at)
-                if rank < first_rank:
-                    first, first_rank = number, rank
-        if first == w.NONE or first_at >= until:
+        first, at = first_request(state, until)
+        if first == w.NONE:
             return w.NONE
         before = state[w.LAST_WRITE]
-        if first >= w.CORE_A:
-            woken = serve_core(state, first - w.CORE_A, first_at)
-        elif first >= w.STORES_A:
-            woken = serve_stores(state, first - w.STORES_A, first_at)
-        else:
-            woken = serve_dma(state, memory, first, first_at, until)
+        woken = serve(state, memory, first, at, until)
         if state[w.DEB_PERIOD]:
             count_direction(state, before)
         if woken != w.NONE:

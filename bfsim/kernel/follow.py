@@ -1,0 +1,84 @@
+"""The compiled part of the memory follower: called by a kernel's machine code at every access that may leave L1."""
+
+from __future__ import annotations
+
+from collections.abc import MutableSequence
+from functools import cache
+from typing import Any
+
+from bfsim.kernel import followers as log
+from bfsim.kernel.compiled import callback, compiled, numba
+
+State = MutableSequence[int]
+carray = numba.carray
+
+
+@compiled
+def write_entry(state: State, kind: int, offset: int, stamp: int) -> None:
+    """Log an access, or only count it when the log is full."""
+    if state[log.ENTRIES] < state[log.ROOM]:
+        state[log.LOG + state[log.ENTRIES]] = stamp << log.STAMP_BIT | kind << log.KIND_BIT | offset
+    state[log.ENTRIES] += 1
+
+
+@compiled
+def policy_of(state: State, offset: int) -> int:
+    """Return how the region at `offset` is cached, or EMPTY."""
+    for number in range(state[log.REGIONS]):
+        at = log.FIRST_REGION + 3 * number
+        if state[at] <= offset < state[at + 1]:
+            return state[at + 2]
+    return log.EMPTY
+
+
+@compiled
+def look_up(state: State, line: int, changed: int, allocate: bool) -> tuple[bool, int]:
+    """Look for a line and make it the one used last; return whether it was there, and the changed line that left for it."""
+    first, way = log.TAGS + line % state[log.SETS] * state[log.WAYS], 0
+    last = state[log.WAYS] - 1
+    while way < last and state[first + way] >> 1 != line:
+        way += 1
+    tag = state[first + way]
+    hit = tag >> 1 == line
+    if not hit and not allocate:
+        return False, log.EMPTY
+    left = tag >> 1 if not hit and tag != log.EMPTY and tag & 1 else log.EMPTY
+    while way > 0:
+        state[first + way] = state[first + way - 1]
+        way -= 1
+    state[first] = (tag if hit else line << 1) | changed
+    return hit, left
+
+
+@compiled
+def follow_cached(state: State, offset: int, write: bool, policy: int, stamp: int) -> None:
+    """Log what the data cache asks of the memories for an access."""
+    bits, changes = state[log.LINE_BITS], write and policy == log.WRITE_BACK_POLICY
+    hit, left = look_up(state, offset >> bits, 1 if changes else 0, changes or not write)
+    if left != log.EMPTY:
+        write_entry(state, log.WRITE_BACK, left << bits, stamp)
+    if write and not changes:
+        write_entry(state, log.STORE, offset, stamp)
+    elif not hit:
+        write_entry(state, log.FILL, offset >> bits << bits, stamp)
+
+
+def follow(at: Any, address: int, access: int, stamp: int) -> None:
+    """Follow an access of `access` bytes, WRITE more if it writes, at a host address and a cycle of the call."""
+    head = carray(at, log.LOG)
+    if not head[log.ARENA] <= address < head[log.END]:
+        return
+    state = carray(at, log.LOG + head[log.ROOM])
+    write, offset = access >= log.WRITE, address - head[log.ARENA]
+    policy = policy_of(state, offset)
+    if policy == log.EMPTY:
+        write_entry(state, log.STORE if write else log.LOAD, offset, stamp)
+    else:
+        follow_cached(state, offset, write, policy, stamp)
+
+
+@cache
+def function_address() -> int:
+    """Return the host address of `follow`, compiled."""
+    word = numba.types.int64
+    return callback(numba.types.void(numba.types.CPointer(word), word, word, word), follow)
