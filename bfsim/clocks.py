@@ -45,7 +45,9 @@ class PeriodicEdges:
     offset_ticks: Fraction = Fraction(0)
 
     @classmethod
-    def of(cls, clocks: Clocks, hz: Fraction, every: int = 1, offset_cycles: Fraction = Fraction(0)) -> PeriodicEdges:
+    def of(
+        cls, clocks: Clocks, hz: Fraction, every: int = 1, offset_cycles: Fraction = Fraction(0)
+    ) -> PeriodicEdges:
         """Edges at every `every`-th cycle of a clock of `hz`, the first one after `offset_cycles` of it."""
         cycle_ticks = clocks.tick_hz / hz
         return cls(cycle_ticks * every, cycle_ticks * offset_cycles)

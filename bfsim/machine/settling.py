@@ -48,9 +48,7 @@ class Settling:
         return sent
 
 
-def settled(
-    picture: NDArray[np.uint8], frames_since_change: int, camera: CameraSpec
-) -> NDArray[np.uint8]:
+def settled(picture: NDArray[np.uint8], frames_since_change: int, camera: CameraSpec) -> NDArray[np.uint8]:
     """Return a UYVY picture (height, 2 \u00b7 width) as `camera` sends it so many frames after new settings.
 
     Integers throughout, clipped to 0..255. From `camera.settling_frames` on it is `picture` itself.
