@@ -80,7 +80,7 @@ class SpiControl:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpiRate:
-    """How fast a master clocks words: SCK = SCLK / (2 \u00b7 `baud`), and `gap_sck` idle SCK cycles between two words.
+    """How fast a master clocks words: SCK = SCLK / (2 · `baud`), and `gap_sck` idle SCK cycles between two words.
 
     Raises ConfigError for a BAUD that the chip does not have.
     """

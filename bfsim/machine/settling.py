@@ -42,14 +42,14 @@ class Settling:
             self.frames_since_change = 0
 
     def next_picture(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        """Return the next UYVY picture (height, 2 \u00b7 width) as the camera sends it."""
+        """Return the next UYVY picture (height, 2 · width) as the camera sends it."""
         sent = settled(picture, self.frames_since_change, self.camera)
         self.frames_since_change += 1
         return sent
 
 
 def settled(picture: NDArray[np.uint8], frames_since_change: int, camera: CameraSpec) -> NDArray[np.uint8]:
-    """Return a UYVY picture (height, 2 \u00b7 width) as `camera` sends it so many frames after new settings.
+    """Return a UYVY picture (height, 2 · width) as `camera` sends it so many frames after new settings.
 
     Integers throughout, clipped to 0..255. From `camera.settling_frames` on it is `picture` itself.
     """
@@ -58,11 +58,15 @@ def settled(picture: NDArray[np.uint8], frames_since_change: int, camera: Camera
         return picture
     pairs = picture.view("<u2")  # a colour byte below, its Y above
     luma = pairs >> 8
-    luma += (luma * np.uint16(frames_left * camera.y_step_256ths)) >> 8
-    np.minimum(luma, 255, out=luma)
-    chroma = (pairs & 0xFF).view(np.int16)
-    chroma[:, 0::2] += frames_left * camera.u_step_levels
-    chroma[:, 1::2] += frames_left * camera.v_step_levels
+    spare = luma * np.uint16(
+        frames_left * camera.y_step_256ths
+    )  # one array beside the result: fresh pages cost most
+    spare >>= 8
+    luma += spare
+    np.clip(luma, 0, 255, out=luma)
+    offsets = np.array([camera.u_step_levels, camera.v_step_levels], np.int16) * frames_left
+    chroma = np.bitwise_and(pairs, 0xFF, out=spare).view(np.int16)
+    chroma += np.resize(offsets, chroma.shape[1])
     np.clip(chroma, 0, 255, out=chroma)
     luma <<= 8
     luma |= chroma.view(np.uint16)
