@@ -1,7 +1,7 @@
 """Camera sensors of the time: line and frame timing of each picture size; and the robot's two cameras.
 
 Sensors that skip lines send every second or fourth one of a full frame; where that leaves half a line, the frame is
-rounded up to whole ones.
+rounded up to whole ones. [assumed] two thirds of the blank lines come before the picture, where nothing is said.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ MHZ = 1_000_000
 
 _OV965X_MODES = (
     # OV9650 implementation guide 1.1: VGA YUV 30 fps with PCLK 24 MHz (Table 3-1); a line is 1600 PCLK, a frame
-    # 500 lines (the dummy pixels and lines of Table 6-4). [assumed] blank lines before and after as the OV7670's
+    # 500 lines (the dummy pixels and lines of Table 6-4).
     SensorMode(
         width_px=640,
         height_px=480,
@@ -140,7 +140,7 @@ OV7725 = SensorSpec(
 
 SENSORS = (OV7648, OV7660, OV7670, OV7725, OV9650, OV9655)
 
-# Oscillators: makers sell quartz of +-10 to +-50 ppm, +-30 being the usual one. [assumed] one of each limit, and a third
+# Oscillators: makers of quartz grade it as +-10, 20, 30 and 50 ppm. [assumed] one camera at each limit of +-30, and a third
 # of a frame between their syncs: two cameras with nothing in common but the power switch.
 # Settling: T Figure 6.8 and its text: five to ten pictures until the settings work, and a drift towards yellow (low U,
 # somewhat high V). The brightness goes by 1/16 a frame: step of the exposure loop, OV9650 implementation guide p.16.

@@ -58,9 +58,8 @@ def settled(picture: NDArray[np.uint8], frames_since_change: int, camera: Camera
         return picture
     pairs = picture.view("<u2")  # a colour byte below, its Y above
     luma = pairs >> 8
-    spare = luma * np.uint16(
-        frames_left * camera.y_step_256ths
-    )  # one array beside the result: fresh pages cost most
+    # one more array beside the result, and no third: fresh pages cost more than the arithmetic
+    spare = luma * np.uint16(frames_left * camera.y_step_256ths)
     spare >>= 8
     luma += spare
     np.clip(luma, 0, 255, out=luma)
