@@ -66,3 +66,21 @@ def test_a_thousand_lines_of_a_camera() -> None:
     clocks = Clocks(Fraction(600 * MHZ), Fraction(120 * MHZ))
     assert PeriodicEdges.of(clocks, Fraction(12 * MHZ), every=800).after(1000) == 40_000_000
     assert PeriodicEdges.of(clocks, Fraction(7 * MHZ), every=800).after(1000) == 68_571_429
+
+
+@given(st.integers(0, 10**12), RATES_HZ, st.fractions(0, 10**6, max_denominator=1000))
+def test_first_edge_from_a_tick_is_the_first(tick: int, hz: Fraction, offset_cycles: Fraction) -> None:
+    """The edge found is not before the tick, and the one before it is, unless there is none."""
+    clocks = Clocks(Fraction(600 * MHZ), Fraction(120 * MHZ))
+    edges = PeriodicEdges.of(clocks, hz, offset_cycles=offset_cycles)
+    number = edges.first_from(tick)
+    assert edges.after(number) >= tick
+    assert number == 0 or edges.after(number - 1) < tick
+
+
+def test_edges_start_where_the_offset_says() -> None:
+    """A third of a cycle of 1 MHz is 200 ticks of 600 MHz, before the first edge and no other."""
+    clocks = Clocks(Fraction(600 * MHZ), Fraction(120 * MHZ))
+    edges = PeriodicEdges.of(clocks, Fraction(MHZ), offset_cycles=Fraction(1, 3))
+    assert [edges.after(number) for number in range(3)] == [200, 800, 1400]
+    assert [edges.first_from(tick) for tick in (0, 200, 201, 800, 801)] == [0, 0, 1, 1, 2]

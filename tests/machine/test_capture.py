@@ -24,7 +24,9 @@ from tests.machine.rig import Bench, Picture
 
 GHZ = 10**9
 CLOCKS = Clocks(cclk_hz=Fraction(GHZ), sclk_hz=Fraction(GHZ, 5))
-MODE = SensorMode(width_px=4, height_px=2, ppi_clk_hz=Fraction(GHZ, 10), line_clocks=10, frame_lines=3)
+MODE = SensorMode(
+    width_px=4, height_px=2, ppi_clk_hz=Fraction(GHZ, 10), line_clocks=10, frame_lines=3, lines_before=0
+)
 Stamps = Sequence[tuple[int, int]]
 
 

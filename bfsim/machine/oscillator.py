@@ -1,0 +1,48 @@
+"""A camera's own oscillator: when its frames and lines come, in ticks of the board. Nothing locks two cameras together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from bfsim.chip.spec import CameraSpec, SensorMode
+from bfsim.clocks import Clocks, PeriodicEdges
+
+
+@dataclass(frozen=True, slots=True)
+class Oscillator:
+    """The free-running time of one camera in one mode. Frames are counted from 0, lines of a picture too.
+
+    Every time is a tick, each rounded up by itself from an exact fraction, so nothing drifts.
+    """
+
+    clocks: Clocks
+    mode: SensorMode
+    camera: CameraSpec
+    ppi_clk_hz: Fraction = field(init=False)
+    """The rate at which PPI_CLK really runs."""
+    _cycles: PeriodicEdges = field(init=False)
+
+    def __post_init__(self) -> None:
+        hz = self.mode.ppi_clk_hz * (1 + self.camera.offset_ppm / 1_000_000)
+        phase_cycles = self.camera.phase_frames * self.mode.frame_clocks
+        object.__setattr__(self, "ppi_clk_hz", hz)
+        object.__setattr__(self, "_cycles", PeriodicEdges.of(self.clocks, hz, offset_cycles=phase_cycles))
+
+    @property
+    def frames(self) -> PeriodicEdges:
+        """The frame syncs: `frames.first_from(tick)` is the number of the next frame."""
+        period_ticks = self.mode.frame_clocks * self._cycles.period_ticks
+        return PeriodicEdges(period_ticks, self._cycles.offset_ticks)
+
+    def line_start(self, frame: int, line: int) -> int:
+        """Return the tick of the first byte of a line of the picture."""
+        return self._cycles.after(self._cycles_before(frame, line))
+
+    def line_end(self, frame: int, line: int) -> int:
+        """Return the tick at which the last byte of a line of the picture is through, its blanking not."""
+        return self._cycles.after(self._cycles_before(frame, line) + self.mode.active_clocks)
+
+    def _cycles_before(self, frame: int, line: int) -> int:
+        lines = frame * self.mode.frame_lines + self.mode.lines_before + line
+        return lines * self.mode.line_clocks

@@ -1,0 +1,77 @@
+"""What a PPI notices about its camera and its DMA: frame tracking, and the sticky bits of PPI_STATUS.
+
+Only modes with external frame syncs: no field bit and no preambles of ITU-R 656.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from bfsim.chip.ppi_registers import PpiStatusBit
+
+
+class PpiStatus:
+    """PPI_STATUS of one PPI, and the counters that PPI_COUNT and PPI_FRAME are compared with.
+
+    Until the first frame sync the PPI takes nothing. From then on it takes `frame_lines` lines a frame and
+    `line_samples` samples a line, and ignores what comes beyond. A frame that ends early sets FT_ERR, and the
+    next one is counted from 0 again; the DMA goes on where it was, so that its pictures are shifted from there.
+    """
+
+    def __init__(self, name: str, frame_lines: int, line_samples: int) -> None:
+        """`name`: PPI0 or PPI1. `frame_lines` is what PPI_FRAME holds, `line_samples` PPI_COUNT + 1."""
+        self._name = name
+        self._frame_lines = frame_lines
+        self._line_samples = line_samples
+        self._lines = frame_lines
+        self._causes: dict[PpiStatusBit, str] = {}
+
+    @property
+    def causes(self) -> Mapping[PpiStatusBit, str]:
+        """Each bit that is set, and a sentence about what set it first. Any of them asserts the error interrupt."""
+        return MappingProxyType(self._causes)
+
+    def frame_sync(self) -> None:
+        """Begin a frame. FT_ERR if the one before had too few lines."""
+        if self._lines < self._frame_lines:
+            self._set(
+                PpiStatusBit.FT_ERR,
+                f"a frame must have PPI_FRAME = {self._frame_lines} lines, not {self._lines}",
+            )
+        self._lines = 0
+
+    def line(self, samples: int) -> int:
+        """Count a line of `samples` and return how many the PPI takes of it. FT_ERR if they are too few."""
+        if self._lines == self._frame_lines:
+            return 0
+        self._lines += 1
+        if samples < self._line_samples:
+            self._set(
+                PpiStatusBit.FT_ERR,
+                f"a line must have PPI_COUNT + 1 = {self._line_samples} samples, not {samples} (line {self._lines - 1})",
+            )
+        return min(samples, self._line_samples)
+
+    def overrun(self, lost_samples: int) -> None:
+        """Set OVR: the FIFO was full and samples are lost, since the DMA did not get its bus in time."""
+        self._set(
+            PpiStatusBit.OVR,
+            f"the FIFO must be emptied in time, but {lost_samples} samples found no room in it",
+        )
+
+    def underrun(self) -> None:
+        """Set UNDR: the FIFO of a transmitting PPI was empty."""
+        self._set(
+            PpiStatusBit.UNDR, "the FIFO must be filled in time, but it was empty when a sample was due"
+        )
+
+    def read(self) -> int:
+        """Return the register; the read clears it."""
+        word = int(sum(self._causes))
+        self._causes.clear()
+        return word
+
+    def _set(self, bit: PpiStatusBit, cause: str) -> None:
+        """Set a bit; one that is set already keeps its cause."""
+        self._causes.setdefault(bit, f"{self._name}_STATUS {bit.name}: {cause}")

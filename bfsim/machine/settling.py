@@ -1,0 +1,72 @@
+"""What a camera does after its settings change: its loops need some frames, whose colours and brightness are off.
+
+This is done to recorded pictures, which were taken with settled cameras. What the settings themselves do to a
+picture is not modelled: they are in the recording.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.chip.spec import CameraSpec
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CameraSettings:
+    """What the strategy unit sets in a camera (T §5.1.2), in units of the sensor's registers.
+
+    `exposure_lines`: shutter time in lines. `gain`, `red_gain`, `blue_gain`: register values, 0..255.
+    """
+
+    exposure_lines: int
+    gain: int
+    red_gain: int
+    blue_gain: int
+
+
+@dataclass(slots=True)
+class Settling:
+    """A camera between a change of its settings and the frame where they have worked."""
+
+    camera: CameraSpec
+    settings: CameraSettings
+    frames_since_change: int = 0
+
+    def change(self, settings: CameraSettings) -> None:
+        """Take new settings. Writing the same ones again changes nothing."""
+        if settings != self.settings:
+            self.settings = settings
+            self.frames_since_change = 0
+
+    def next_picture(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        """Return the next UYVY picture (height, 2 · width) as the camera sends it."""
+        sent = settled(picture, self.frames_since_change, self.camera)
+        self.frames_since_change += 1
+        return sent
+
+
+def settled(picture: NDArray[np.uint8], frames_since_change: int, camera: CameraSpec) -> NDArray[np.uint8]:
+    """Return a UYVY picture (height, 2 · width) as `camera` sends it so many frames after new settings.
+
+    Integers throughout, clipped to 0..255. From `camera.settling_frames` on it is `picture` itself.
+    """
+    frames_left = camera.settling_frames - frames_since_change
+    if frames_left <= 0:
+        return picture
+    pairs = picture.view("<u2")  # a colour byte below, its Y above
+    luma = pairs >> 8
+    # one more array beside the result, and no third: fresh pages cost more than the arithmetic
+    spare = luma * np.uint16(frames_left * camera.y_step_256ths)
+    spare >>= 8
+    luma += spare
+    np.clip(luma, 0, 255, out=luma)
+    offsets = np.array([camera.u_step_levels, camera.v_step_levels], np.int16) * frames_left
+    chroma = np.bitwise_and(pairs, 0xFF, out=spare).view(np.int16)
+    chroma += np.resize(offsets, chroma.shape[1])
+    np.clip(chroma, 0, 255, out=chroma)
+    luma <<= 8
+    luma |= chroma.view(np.uint16)
+    return luma.astype("<u2", copy=False).view(np.uint8)
