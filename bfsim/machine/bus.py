@@ -256,7 +256,8 @@ class Bus:
     def stalls_of(self, core: int) -> Sequence[int]:
         """Return what the accesses of the core's last call stalled, in cycles, in the order of `bus_state`."""
         first = w.JOBS_AT + core * w.JOB_WORDS + w.STALL
-        return self.words[first : first + w.STALLS].tolist()
+        stalls: list[int] = self.words[first : first + w.STALLS].tolist()
+        return stalls
 
     def room_of(self, core: int) -> NDArray[np.int64]:
         """Return where a core's follower keeps its state and its log."""
