@@ -117,15 +117,26 @@ class Follower:
         """Return how many accesses the last call logged, and begin the log anew."""
         count = int(self._state[ENTRIES])
         self._state[ENTRIES] = 0
-        if count > self._state[ROOM]:
-            raise KernelError(
-                f"a kernel call must access memory outside L1 at most {self._state[ROOM]} times, not {count} times: split it"
-            )
+        self._check_room(count)
         return count
 
     def entries(self, count: int) -> NDArray[np.int64]:
         """Return the first `count` entries of the log."""
         return self._state[LOG : LOG + count]
+
+    def insert(self, count: int, entries: NDArray[np.int64]) -> int:
+        """Add `entries` to the first `count` of the log, in order of time; return how many there are then."""
+        total = count + len(entries)
+        self._check_room(total)
+        self._state[LOG + count : LOG + total] = entries
+        self._state[LOG : LOG + total].sort()  # the stamp is what weighs most in an entry
+        return total
+
+    def _check_room(self, count: int) -> None:
+        if count > self._state[ROOM]:
+            raise KernelError(
+                f"a kernel call must access memory outside L1 at most {self._state[ROOM]} times, not {count} times: split it"
+            )
 
     def forget(self, first: int, nbytes: int) -> int:
         """Invalidate the cached lines of `nbytes` from `first`, which are not written back; return how many that can be."""

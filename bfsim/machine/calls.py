@@ -18,13 +18,17 @@ from bfsim.trace import REST
 
 @dataclass(slots=True)
 class CallGroup:
-    """Calls of one kernel in one stage with its arrays in the same memories. `totals`: events of each counter."""
+    """Calls of one kernel in one stage with its arrays in the same memories. `totals`: events of each counter.
+
+    `subbanks`: the sub-banks of L1 that the rows of each array have lain in.
+    """
 
     stage: str
     kernel: Kernel
     memories: tuple[str, ...]
     code: Compiled
     totals: NDArray[np.int64]
+    subbanks: list[set[int]]
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 from bfsim.kernel import Kernel, tree
 from bfsim.machine.calls import CallBook, CallGroup
 from bfsim.trace import KernelRecord, LineCost
+
+Label = TypeVar("Label")
 
 
 @dataclass(slots=True)
@@ -55,7 +58,7 @@ def kernel_records(core: str, book: CallBook) -> Iterator[KernelRecord]:
 def _add(group: CallGroup, tallies: dict[tuple[str, str], _Tally]) -> None:
     top = group.kernel.function
     functions = {each.symbol: each for each in (*top.callees(), top)}
-    memory_of = _memories_of_arrays(group.kernel, group.memories)
+    memory_of = arrays_of_callees(group.kernel, group.memories)
     entered: set[str] = set()
     executions: dict[tuple[str, int], int] = {}
     for counter, events in zip(group.code.counters, group.totals.tolist(), strict=False):
@@ -77,10 +80,13 @@ def _add(group: CallGroup, tallies: dict[tuple[str, str], _Tally]) -> None:
         tallies[group.stage, routine].executions[line] += events
 
 
-def _memories_of_arrays(kernel: Kernel, memories: tuple[str, ...]) -> dict[tuple[str, str], str]:
-    """Memory of each array parameter, by (routine, parameter): what a callee gets comes from its first call."""
+def arrays_of_callees(kernel: Kernel, labels: tuple[Label, ...]) -> dict[tuple[str, str], Label]:
+    """Hand the labels of a kernel's arrays on to the kernels it calls: label by (routine, parameter).
+
+    What a callee gets comes from its first call.
+    """
     names = [kernel.function.parameters[each].name for each in kernel.array_positions]
-    found = {(kernel.function.symbol, name): memory for name, memory in zip(names, memories, strict=True)}
+    found = {(kernel.function.symbol, name): label for name, label in zip(names, labels, strict=True)}
     waiting = [kernel.function]
     while waiting:
         caller = waiting.pop()

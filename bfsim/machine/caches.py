@@ -1,0 +1,73 @@
+"""The caches that an LDF switches on: what they hold, and what they take from L1.
+
+VisualDSP++ asks for them through symbols of the LDF; the start-up code does the rest. Here the data caches hold SDRAM, written
+back, as its default protection table has it; the code cache holds whatever code lies outside L1. There is no coherence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from bfsim.chip.memory_map import Region
+from bfsim.chip.spec import CacheSpec
+from bfsim.errors import LinkError
+from bfsim.kernel.followers import CachedRegion, CacheSize, Policy
+from bfsim.linker import LinkMap, Placement
+from bfsim.machine.memories import Memories
+
+DATA_SYMBOLS = {"___l1_data_cache_a": "L1_DATA_A", "___l1_data_cache_b": "L1_DATA_B"}
+CODE_SYMBOL = "___l1_code_cache"
+
+
+@dataclass(frozen=True, slots=True)
+class Caches:
+    """The caches of one core: `data` memories of L1 whose upper part is cache, and whether code is cached."""
+
+    data: tuple[str, ...]
+    code: bool
+
+    def data_size(self, spec: CacheSpec) -> CacheSize | None:
+        """Return the size of the data cache, or None without one."""
+        if not self.data:
+            return None
+        return CacheSize(spec.data_bytes_per_bank * len(self.data), spec.line_bytes, spec.data_ways)
+
+    def regions(self, memories: Memories, policy: Policy = Policy.WRITE_BACK) -> tuple[CachedRegion, ...]:
+        """Return what the data cache holds lines of: SDRAM."""
+        return (CachedRegion(0, memories.sdram_end, policy),) if self.data else ()
+
+
+def caches_of(link_map: LinkMap, processor: str | None) -> Caches:
+    """Return the caches that the LDF asks for on a processor."""
+
+    def is_on(symbol: str) -> bool:
+        values = link_map.values
+        return bool(values.get((processor, symbol), values.get((None, symbol), 0)))
+
+    data = tuple(memory for symbol, memory in DATA_SYMBOLS.items() if is_on(symbol))
+    return Caches(data, is_on(CODE_SYMBOL))
+
+
+def check_caches(link_map: LinkMap, core: str, caches: Caches, regions: Sequence[Region]) -> None:
+    """Raise LinkError if something lies in the part of the core's L1 that is cache."""
+    for region, first in _cached_parts(core, caches, regions):
+        for placed in link_map.placements:
+            end = placed.address + placed.symbol.nbytes
+            if placed.symbol.nbytes and placed.address < region.start + region.nbytes and end > first:
+                raise LinkError(_message(placed, region, first))
+
+
+def _cached_parts(core: str, caches: Caches, regions: Sequence[Region]) -> Iterator[tuple[Region, int]]:
+    """Yield each memory with a part that is cache, and the address where that begins."""
+    for region in regions:
+        is_cache = region.memory in caches.data or (caches.code and region.memory == "L1_CODE_CACHE")
+        if region.owner == core and is_cache:
+            yield region, region.start + region.nbytes - region.cache_nbytes
+
+
+def _message(placed: Placement, region: Region, first: int) -> str:
+    return (
+        f"{placed.symbol} (section {placed.symbol.section}) must lie outside of 0x{first:08X}-"
+        f"0x{region.start + region.nbytes - 1:08X} of {region.name}, which the LDF makes a cache, not at 0x{placed.address:08X}"
+    )
