@@ -68,7 +68,7 @@ def check_config(channel: ChannelSpec, config: DmaConfig, direction: Direction, 
             f"not {8 * config.WDSIZE.word_bytes}",
             where,
         )
-    if direction is not Direction.EITHER and config.WNR != direction.value:
+    if direction is not Direction.EITHER and direction.value != config.WNR:
         does = "writes" if direction is Direction.TO_MEMORY else "reads"
         refuse(
             f"{register}: WNR must be {direction.value}, not {config.WNR:d}: "

@@ -16,7 +16,6 @@ from bfsim.chip.dma_registers import (
 )
 from bfsim.machine.mmr import check_value, refuse
 
-
 Code = TypeVar("Code", Flow, WdSize)
 
 
