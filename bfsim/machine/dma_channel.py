@@ -67,16 +67,17 @@ class DmaChannel:
         self._read16 = read16
         self.direction = spec.direction
         """Which way the peripheral moves words; a PPI and the SPI set it when they are enabled."""
-        self.config = DmaConfig(DMAEN=False)
+        self.CONFIG = 0
+        self.config = DmaConfig.decode(0)
         """CONFIG, taken apart."""
         self.unit: WorkUnit | None = None
         """The work unit under way."""
         self.where = ""
-        """Where the registers were set, for messages."""
+        """Where the work unit comes from, for messages: the line that started the channel, or a descriptor."""
         self._started = ""
         self._row = 0
         self.NEXT_DESC_PTR = self.START_ADDR = 0
-        self.CONFIG = self.X_COUNT = self.X_MODIFY = self.Y_COUNT = self.Y_MODIFY = 0
+        self.X_COUNT = self.X_MODIFY = self.Y_COUNT = self.Y_MODIFY = 0
         self.CURR_DESC_PTR = self.CURR_ADDR = self.CURR_X_COUNT = self.CURR_Y_COUNT = 0
         self.IRQ_STATUS = IrqStatus(0)
         self.PERIPHERAL_MAP = spec.peripheral_map
@@ -88,7 +89,7 @@ class DmaChannel:
 
     def write(self, register: str, value: int, place: str = "") -> None:
         """Set one of the registers in WRITABLE, at `place` of the firmware, such as firmware/core_a.py:41."""
-        where = _set_at(place)
+        where = _at("set", place)
         name = f"{self.spec.name}_{register}"
         if register not in WRITABLE:
             refuse(
@@ -102,7 +103,7 @@ class DmaChannel:
 
     def start(self, config: DmaConfig | int, place: str = "") -> Step:
         """Write CONFIG with DMAEN set, at `place` of the firmware, and return the first step."""
-        where = _set_at(place)
+        where = _at("set", place)
         with self._flagging():
             if self.running:
                 refuse(
@@ -111,7 +112,7 @@ class DmaChannel:
             self._configure(config.encode() if isinstance(config, DmaConfig) else config, where)
             if not self.config.DMAEN:
                 refuse(f"{self.spec.name}_CONFIG: DMAEN must be 1 to start the channel, not 0", where)
-            self._started, self.where = place, where
+            self._started = self.where = _at("started", place)
             self.IRQ_STATUS |= IrqStatus.DMA_RUN
             return self._next(interrupt=False)
 
@@ -140,7 +141,7 @@ class DmaChannel:
             return self._next(interrupt)
 
     def stop(self) -> None:
-        """End the work: what a write of CONFIG with DMAEN=0 does."""
+        """End the work at once, as a write of CONFIG with DMAEN=0 does; the registers keep what they are."""
         self.IRQ_STATUS &= ~(IrqStatus.DMA_RUN | IrqStatus.DFETCH)
         self.unit = None
 
@@ -180,7 +181,7 @@ class DmaChannel:
         self._space.check(self.spec, register, pointer, (pointer, end - 1), self.where)
         elements = read_descriptor(self._read16, pointer, flow, ndsize)
         loaded = load({each: getattr(self, each) for each in LOADED}, elements)
-        chain = f" of the chain started at {self._started}" if self._started else ""
+        chain = f" of the chain {self._started}" if self._started else ""
         self.where = f"in the descriptor at 0x{pointer:08X}{chain}"
         self._configure(loaded["CONFIG"], self.where)
         for each, value in loaded.items():
@@ -190,9 +191,10 @@ class DmaChannel:
         return Fetch(pointer, ndsize)
 
     def _configure(self, value: int, where: str) -> None:
-        config = DmaConfig.decode(value, f"{self.spec.name}_CONFIG", where)
-        check_config(self.spec, config, self.direction, where)
-        self.CONFIG, self.config = value, config
+        if value != self.CONFIG:
+            self.config = DmaConfig.decode(value, f"{self.spec.name}_CONFIG", where)
+            self.CONFIG = value
+        check_config(self.spec, self.config, self.direction, where)
 
     @contextmanager
     def _flagging(self) -> Iterator[None]:
@@ -223,5 +225,5 @@ def check_pair(source: DmaChannel, destination: DmaChannel) -> None:
         )
 
 
-def _set_at(place: str) -> str:
-    return f"set at {place}" if place else ""
+def _at(verb: str, place: str) -> str:
+    return f"{verb} at {place}" if place else ""

@@ -10,6 +10,7 @@ different memory spaces can hang on early revisions; keep both chains in the sam
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NoReturn
 
 from bfsim.chip.dma_channels import ChannelSpec, Direction
 from bfsim.chip.memory_map import Region
@@ -79,19 +80,21 @@ def check_config(channel: ChannelSpec, config: DmaConfig, direction: Direction, 
 
 def check_unit(channel: ChannelSpec, unit: WorkUnit, space: DmaSpace, where: str) -> None:
     """Raise MmrError unless each word of `unit` is aligned and in a memory that `channel` reaches."""
-    steps = {
-        "START_ADDR": (True, unit.start_address, f"0x{unit.start_address:08X}"),
-        "X_MODIFY": (unit.x_count > 1, unit.x_modify, str(unit.x_modify)),
-        "Y_MODIFY": (unit.y_count > 1, unit.y_modify, str(unit.y_modify)),
-    }
-    for register, (used, value, shown) in steps.items():
-        if used and value % unit.word_bytes:
-            refuse(
-                f"{channel.name}_{register} must be a multiple of {unit.word_bytes} bytes "
-                f"with WDSIZE_{8 * unit.word_bytes}, not {shown}",
-                where,
-            )
+    if unit.start_address % unit.word_bytes:
+        _refuse_step(channel, "START_ADDR", unit, f"0x{unit.start_address:08X}", where)
+    if unit.x_count > 1 and unit.x_modify % unit.word_bytes:
+        _refuse_step(channel, "X_MODIFY", unit, str(unit.x_modify), where)
+    if unit.y_count > 1 and unit.y_modify % unit.word_bytes:
+        _refuse_step(channel, "Y_MODIFY", unit, str(unit.y_modify), where)
     space.check(channel, "START_ADDR", unit.start_address, unit.span, where)
+
+
+def _refuse_step(channel: ChannelSpec, register: str, unit: WorkUnit, shown: str, where: str) -> NoReturn:
+    refuse(
+        f"{channel.name}_{register} must be a multiple of {unit.word_bytes} bytes "
+        f"with WDSIZE_{8 * unit.word_bytes}, not {shown}",
+        where,
+    )
 
 
 def _bytes(lowest: int, highest: int) -> str:
