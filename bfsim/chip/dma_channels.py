@@ -51,7 +51,8 @@ class ChannelSpec:
 L1_AND_L2 = frozenset({"L1_CODE", "L1_CODE_CACHE", "L1_DATA_A", "L1_DATA_B", "L2"})
 EXTERNAL = frozenset({"SDRAM", "ASYNC0", "ASYNC1", "ASYNC2", "ASYNC3"})
 
-# No DMA reaches a scratchpad (VisualDSP++ default LDF), and the IMDMA no external memory (BF561 HRM chapter 9)
+# No DMA reaches a scratchpad (VisualDSP++ default LDF), and the IMDMA no external memory (BF561 HRM chapter 9);
+# that each of the three reaches the code memories of both cores, too, is [assumed]
 DMA1 = DmaController(name="DMA1", reaches=L1_AND_L2 | EXTERNAL)
 DMA2 = DmaController(name="DMA2", reaches=L1_AND_L2 | EXTERNAL)
 IMDMA = DmaController(name="IMDMA", reaches=L1_AND_L2)

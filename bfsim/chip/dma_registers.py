@@ -112,7 +112,7 @@ DESCRIPTOR_ELEMENTS = {
 
 
 class IrqStatus(IntFlag):
-    """Bits of IRQ_STATUS."""
+    """Bits of IRQ_STATUS. That DMA_DONE needs CONFIG.DI_EN is [assumed], as in the HRM recalled."""
 
     DMA_DONE = 0x1  # a row or a work unit has asked for its interrupt; write 1 to clear
     DMA_ERR = 0x2  # the channel has stopped over an error; write 1 to clear

@@ -133,6 +133,7 @@ class DmaChannel:
         done = self.unit
         assert done is not None, "a stopped channel has no work unit"
         interrupt = self._interrupt(done.row_interrupt or done.block_interrupt)
+        # [assumed] what the counters read at the end: the HRM as recalled
         self.CURR_ADDR, self.CURR_X_COUNT, self.CURR_Y_COUNT = done.end_address, 0, 1
         if self.config.FLOW is Flow.STOP:
             self.stop()

@@ -57,6 +57,7 @@ def test_without_dma2d_the_y_registers_are_ignored() -> None:
     """One row, one interrupt at its end, whatever DI_SEL says."""
     flat = unit_of(DmaConfig(WDSIZE=WdSize.WDSIZE_16, DI_EN=True, DI_SEL=True))
     assert flat.addresses().tolist() == [0x100, 0x102, 0x104, 0x106]
+    assert (flat.y_count, flat.y_modify) == (1, 0)
     assert (flat.row_interrupt, flat.block_interrupt) == (False, True)
 
 
