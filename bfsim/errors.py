@@ -33,3 +33,7 @@ class FirmwareError(BfsimError, RuntimeError):
 
 class DeadlockError(FirmwareError):
     """Raised when every core waits for something that can no longer happen."""
+
+
+class MmrError(BfsimError, ValueError):
+    """Raised when firmware programs a memory-mapped register with what the chip would flag."""

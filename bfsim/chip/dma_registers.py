@@ -1,0 +1,148 @@
+"""Registers of a DMA channel of the Blackfin: where they lie, what their bits say, and how a descriptor fills them.
+
+Names are the manual's. Which channels a chip has is in `dma_channels`.
+Sources: Linux arch/blackfin/mach-bf561/include/mach/defBF561.h for offsets and bits; GNU sim/bfin/dv-bfin_dma.c
+for the order of a descriptor's elements and the NDSIZE that each FLOW allows; the rest is said where it stands.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum, IntFlag
+
+
+@dataclass(frozen=True, slots=True)
+class Register:
+    """One register of a channel: `offset` bytes from the channel's first, `bits` wide, two's complement if `signed`."""
+
+    offset: int
+    bits: int
+    signed: bool = False
+
+    @property
+    def lowest(self) -> int:
+        """The least value that it holds."""
+        return -(1 << self.bits - 1) if self.signed else 0
+
+    @property
+    def highest(self) -> int:
+        """The greatest value that it holds."""
+        return self.lowest + (1 << self.bits) - 1
+
+
+REGISTERS = {
+    "NEXT_DESC_PTR": Register(0x00, 32),
+    "START_ADDR": Register(0x04, 32),
+    "CONFIG": Register(0x08, 16),
+    "X_COUNT": Register(0x10, 16),
+    "X_MODIFY": Register(0x14, 16, signed=True),
+    "Y_COUNT": Register(0x18, 16),
+    "Y_MODIFY": Register(0x1C, 16, signed=True),
+    "CURR_DESC_PTR": Register(0x20, 32),
+    "CURR_ADDR": Register(0x24, 32),
+    "IRQ_STATUS": Register(0x28, 16),
+    "PERIPHERAL_MAP": Register(0x2C, 16),
+    "CURR_X_COUNT": Register(0x30, 16),
+    "CURR_Y_COUNT": Register(0x38, 16),
+}
+
+COUNT_OF_ZERO = 0x1_0000
+"""What X_COUNT = 0 and Y_COUNT = 0 mean: HRM of the ADSP-BF537, chapter 5."""
+
+
+class Flow(IntEnum):
+    """CONFIG.FLOW: what the channel does after a work unit. 2, 3 and 5 are reserved."""
+
+    STOP = 0
+    AUTO = 1
+    ARRAY = 4
+    SMALL = 6
+    LARGE = 7
+
+
+class WdSize(IntEnum):
+    """CONFIG.WDSIZE: how wide a word is. 3 is reserved."""
+
+    WDSIZE_8 = 0
+    WDSIZE_16 = 1
+    WDSIZE_32 = 2
+
+    @property
+    def word_bytes(self) -> int:
+        """Bytes of a word."""
+        return 1 << self
+
+
+# Bits of CONFIG: the flags by position, the fields as (position, bits). Bit 15 is reserved and 0.
+CONFIG_FLAGS = {"DMAEN": 0, "WNR": 1, "DMA2D": 4, "RESTART": 5, "DI_SEL": 6, "DI_EN": 7}
+WDSIZE_FIELD = (2, 2)
+NDSIZE_FIELD = (8, 4)
+FLOW_FIELD = (12, 3)
+
+NDSIZE_LIMITS = {
+    Flow.STOP: (0, 0),
+    Flow.AUTO: (0, 0),
+    Flow.ARRAY: (1, 7),
+    Flow.SMALL: (1, 8),
+    Flow.LARGE: (1, 9),
+}
+"""Least and greatest NDSIZE, in 16-bit elements, by FLOW."""
+
+ELEMENTS = {
+    "NDPL": ("NEXT_DESC_PTR", 0),
+    "NDPH": ("NEXT_DESC_PTR", 16),
+    "SAL": ("START_ADDR", 0),
+    "SAH": ("START_ADDR", 16),
+    "CONFIG": ("CONFIG", 0),
+    "X_COUNT": ("X_COUNT", 0),
+    "X_MODIFY": ("X_MODIFY", 0),
+    "Y_COUNT": ("Y_COUNT", 0),
+    "Y_MODIFY": ("Y_MODIFY", 0),
+}
+"""16-bit elements of a large-list descriptor in their order: which register they fill, from which bit on."""
+
+ELEMENT_BYTES = 2
+
+DESCRIPTOR_ELEMENTS = {
+    Flow.ARRAY: tuple(ELEMENTS)[2:],
+    Flow.SMALL: ("NDPL", *tuple(ELEMENTS)[2:]),
+    Flow.LARGE: tuple(ELEMENTS),
+}
+"""The elements that a descriptor may have, by FLOW: an array's has no pointer, a small list's only half of one."""
+
+
+class IrqStatus(IntFlag):
+    """Bits of IRQ_STATUS. That DMA_DONE needs CONFIG.DI_EN is [assumed], as in the HRM recalled."""
+
+    DMA_DONE = 0x1  # a row or a work unit has asked for its interrupt; write 1 to clear
+    DMA_ERR = 0x2  # the channel has stopped over an error; write 1 to clear
+    DFETCH = 0x4  # a descriptor is on its way
+    DMA_RUN = 0x8  # the channel is at work, or its FIFO not yet empty
+
+
+IRQ_WRITE_1_TO_CLEAR = IrqStatus.DMA_DONE | IrqStatus.DMA_ERR
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrafficControl:
+    """DMAx_TC_PER: for how long each bus keeps its direction, and how long an MDMA stream keeps its turn. 0 is off.
+
+    `dcb_sclk`: bus to L1; `deb_sclk`: bus to external memory; `dab_sclk`: bus to the peripherals.
+    `mdma_transfers`: transfers of one MDMA stream before the other one's turn.
+    Fields: Linux arch/blackfin/mach-bf548/include/mach/defBF54x_base.h; units as in the HRM [assumed: recalled].
+    """
+
+    dcb_sclk: int
+    deb_sclk: int
+    dab_sclk: int
+    mdma_transfers: int
+
+    @classmethod
+    def decode(cls, tc_per: int) -> TrafficControl:
+        """Take the 16 bits of the register apart."""
+        return cls(
+            dcb_sclk=tc_per & 0xF,
+            deb_sclk=tc_per >> 4 & 0xF,
+            dab_sclk=tc_per >> 8 & 0x7,
+            mdma_transfers=tc_per >> 11 & 0x1F,
+        )

@@ -1,0 +1,169 @@
+"""CONFIG and TC_PER, bit by bit, and the table of channels with their addresses."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bfsim.chip.dma_channels import BF561_CHANNELS, DMA1, DMA2, TC_PER_ADDRESSES, Direction, register_address
+from bfsim.chip.dma_registers import REGISTERS, Flow, TrafficControl, WdSize
+from bfsim.errors import BfsimError, MmrError
+from bfsim.machine.dma_config import DmaConfig
+
+configs = st.builds(
+    DmaConfig,
+    **{flag: st.booleans() for flag in ("DMAEN", "WNR", "DMA2D", "RESTART", "DI_SEL", "DI_EN")},
+    WDSIZE=st.sampled_from(WdSize),
+    NDSIZE=st.integers(0, 15),
+    FLOW=st.sampled_from(Flow),
+)
+
+
+@given(configs)
+def test_what_is_encoded_is_decoded(config: DmaConfig) -> None:
+    """Every combination of fields comes back."""
+    assert DmaConfig.decode(config.encode()) == config
+
+
+def test_what_is_decoded_is_encoded() -> None:
+    """All 16-bit values either come back or are refused, and three quarters times five eighths of one half are good."""
+    good = 0
+    for value in range(1 << 16):
+        try:
+            config = DmaConfig.decode(value)
+        except MmrError:
+            continue
+        assert config.encode() == value
+        good += 1
+    assert good == (1 << 15) * 3 // 4 * 5 // 8
+
+
+EZ_KIT_PPI = {"DMAEN": False, "WNR": True, "DMA2D": True, "DI_EN": True, "NDSIZE": 4, "FLOW": Flow.LARGE}
+
+
+@pytest.mark.parametrize(
+    ("value", "config"),
+    [
+        # a public dual-core video project for the BF561 EZ-KIT: 0x7000 | 0x400 | DI_EN | DMA2D | WDSIZE_32 | WNR
+        (0x7000 | 0x400 | 0x80 | 0x10 | 0x08 | 0x02, DmaConfig(**EZ_KIT_PPI)),
+        (0x749B, DmaConfig(**EZ_KIT_PPI | {"DMAEN": True})),
+        # a public BF537 camera robot: large list, NDSIZE 5, 16 bits, 2-D, no interrupt
+        (
+            0x7517,
+            DmaConfig(WNR=True, WDSIZE=WdSize.WDSIZE_16, DMA2D=True, NDSIZE=5, FLOW=Flow.LARGE),
+        ),
+        (0x0000, DmaConfig(DMAEN=False, WDSIZE=WdSize.WDSIZE_8)),
+        (0x1061, DmaConfig(WDSIZE=WdSize.WDSIZE_8, RESTART=True, DI_SEL=True, FLOW=Flow.AUTO)),
+    ],
+)
+def test_values_that_firmware_wrote(value: int, config: DmaConfig) -> None:
+    """CONFIG values from public firmware, field by field."""
+    assert DmaConfig.decode(value) == config
+    assert config.encode() == value
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        (0x000D, "CONFIG: WDSIZE must be 0 (WDSIZE_8), 1 (WDSIZE_16), 2 (WDSIZE_32), not the reserved 3"),
+        *(
+            (
+                code << 12 | 1,
+                f"CONFIG: FLOW must be 0 (STOP), 1 (AUTO), 4 (ARRAY), 6 (SMALL), 7 (LARGE), not the reserved {code}",
+            )
+            for code in (2, 3, 5)
+        ),
+        (0x8001, "CONFIG: bit 15 must be 0, not 1 in 0x8001"),
+        (0x1_0000, "CONFIG must be 0..65535, not 65536"),
+    ],
+)
+def test_reserved_codes_are_refused(value: int, message: str) -> None:
+    """Codes without a meaning name their field; the register and the place are the caller's."""
+    with pytest.raises(MmrError, match=f"^{re.escape(message)}$"):
+        DmaConfig.decode(value)
+    with pytest.raises(
+        MmrError, match=re.escape(message.replace("CONFIG", "DMA1_0_CONFIG") + " (set at a.py:1)")
+    ):
+        DmaConfig.decode(value, "DMA1_0_CONFIG", "set at a.py:1")
+
+
+def test_ndsize_has_four_bits() -> None:
+    """16 elements cannot be written down."""
+    with pytest.raises(MmrError, match=r"^CONFIG: NDSIZE must be 0\.\.15, not 16$"):
+        DmaConfig(NDSIZE=16)
+
+
+def test_programming_errors_are_value_errors_of_bfsim() -> None:
+    """Callers may catch either parent."""
+    assert issubclass(MmrError, BfsimError)
+    assert issubclass(MmrError, ValueError)
+
+
+@pytest.mark.parametrize(
+    ("tc_per", "fields"),
+    [(0x0770, (0, 7, 7, 0)), (0x0111, (1, 1, 1, 0)), (0xFFFF, (15, 15, 7, 31)), (0x0800, (0, 0, 0, 1))],
+)
+def test_traffic_control(tc_per: int, fields: tuple[int, int, int, int]) -> None:
+    """The values of the EZ-KIT project and of Linux, all ones, and the lowest bit of the round robin."""
+    control = TrafficControl.decode(tc_per)
+    assert (control.dcb_sclk, control.deb_sclk, control.dab_sclk, control.mdma_transfers) == fields
+
+
+@pytest.mark.parametrize(
+    ("channel", "register", "address"),
+    [
+        ("DMA1_0", "NEXT_DESC_PTR", 0xFFC0_1C00),
+        ("DMA1_1", "CONFIG", 0xFFC0_1C48),
+        ("DMA1_11", "CURR_Y_COUNT", 0xFFC0_1EF8),
+        ("MDMA1_D0", "CONFIG", 0xFFC0_1F08),
+        ("MDMA1_S0", "START_ADDR", 0xFFC0_1F44),
+        ("MDMA1_D1", "IRQ_STATUS", 0xFFC0_1FA8),
+        ("MDMA1_S1", "CURR_ADDR", 0xFFC0_1FE4),
+        ("DMA2_4", "X_MODIFY", 0xFFC0_0D14),
+        ("MDMA2_S1", "PERIPHERAL_MAP", 0xFFC0_0FEC),
+        ("IMDMA_D0", "CONFIG", 0xFFC0_1808),
+        ("IMDMA_S1", "Y_COUNT", 0xFFC0_18D8),
+    ],
+)
+def test_register_addresses(channel: str, register: str, address: int) -> None:
+    """Addresses as defBF561.h has them."""
+    assert register_address(BF561_CHANNELS[channel], register) == address
+
+
+def test_no_two_registers_share_an_address() -> None:
+    """36 channels of 13 registers, four of them without PERIPHERAL_MAP."""
+    addresses = [
+        register_address(channel, register)
+        for channel in BF561_CHANNELS.values()
+        for register in channel.registers
+    ]
+    assert len(set(addresses)) == len(addresses) == 36 * len(REGISTERS) - 4
+
+
+def test_a_register_that_a_channel_lacks_has_no_address() -> None:
+    """The IMDMA has no PERIPHERAL_MAP."""
+    with pytest.raises(
+        MmrError, match=r"^a register of IMDMA_D1 must be one of NEXT_DESC_PTR, .*, not PERIPHERAL_MAP$"
+    ):
+        register_address(BF561_CHANNELS["IMDMA_D1"], "PERIPHERAL_MAP")
+
+
+def test_channels_in_order_of_priority() -> None:
+    """Peripherals by number, then memory stream 0 before 1; the PPIs come first, the SPI is the fifth of DMA2."""
+    names = list(BF561_CHANNELS)
+    assert names[:2] == ["DMA1_0", "DMA1_1"]
+    assert names[12:16] == ["MDMA1_D0", "MDMA1_S0", "MDMA1_D1", "MDMA1_S1"]
+    assert names[16:21] == ["DMA2_0", "DMA2_1", "DMA2_2", "DMA2_3", "DMA2_4"]
+    assert [BF561_CHANNELS[each].serves for each in ("DMA1_0", "DMA1_1", "DMA2_4")] == ["PPI0", "PPI1", "SPI"]
+    assert names[-4:] == ["IMDMA_D0", "IMDMA_S0", "IMDMA_D1", "IMDMA_S1"]
+    assert TC_PER_ADDRESSES == {DMA1: 0xFFC0_1B0C, DMA2: 0xFFC0_0B0C}
+
+
+def test_destinations_write_and_sources_read() -> None:
+    """The two halves of each memory stream."""
+    for name, channel in BF561_CHANNELS.items():
+        if channel.serves == "memory":
+            assert channel.direction is (Direction.TO_MEMORY if "_D" in name else Direction.FROM_MEMORY)
