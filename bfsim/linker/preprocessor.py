@@ -164,7 +164,9 @@ class _Preprocessor:
             yield from self.pieces(File(path, written, place), (*active, path.resolve()))
             return
         searched = ", ".join(map(str, folders)) or "no folder"
-        raise file.error_at(offset, f"included file must be a readable one, not '{wanted}' (sought in {searched})")
+        raise file.error_at(
+            offset, f"included file must be a readable one, not '{wanted}' (sought in {searched})"
+        )
 
 
 def preprocess(path: Path, macros: Mapping[str, str], include_dirs: Sequence[Path]) -> Source:

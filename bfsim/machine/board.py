@@ -12,10 +12,13 @@ from bfsim.kernel.followers import Follower
 from bfsim.linker import LinkMap, Symbol
 from bfsim.machine import bus_state as w
 from bfsim.machine.bus import Bus
+from bfsim.machine.caches import caches_of, check_caches
 from bfsim.machine.calls import CallBook
 from bfsim.machine.capture import Capture, Feed, Pair, StereoPictures
-from bfsim.machine.code import code_records, code_symbols
+from bfsim.machine.code import code_outside_l1, code_records, code_symbols
+from bfsim.machine.conflicts import SubBanks
 from bfsim.machine.core import Core
+from bfsim.machine.fetch import CodeCache, CodeOutside
 from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.ppi import Ppi
@@ -89,6 +92,9 @@ class Board:
         self._semaphores: dict[str, Semaphore] = {}
         self._calls: dict[str, CallBook] = {}
         self._frames: list[FrameRecord] = []
+        self._caches = {core: caches_of(self.link_map, PROCESSORS[core]) for core in self.spec.chip.cores}
+        for core, caches in self._caches.items():
+            check_caches(self.link_map, core, caches, self.spec.chip.regions)
         self._buffers = self._load()
 
     def _load(self) -> dict[str, dict[str, tuple[Row, ...]]]:
@@ -166,9 +172,20 @@ class Board:
         return [Pair(each) for each in split]
 
     def _core(self, index: int, name: str, capture: Capture, on_finished: Callable[[], None]) -> Core:
-        memories = self._memories
-        follower = Follower(memories.arena, memories.l2_end, self._bus.room_of(index))
-        book = self._calls[name] = CallBook(name, self.profile, follower, sanitize=self.sanitize)
+        chip, memories, caches = self.spec.chip, self._memories, self._caches[name]
+        follower = Follower(
+            memories.arena,
+            memories.l2_end,
+            self._bus.room_of(index),
+            caches.regions(memories),
+            caches.data_size(chip.cache),
+        )
+        places = code_outside_l1(self.link_map, PROCESSORS[name], chip.regions, memories)
+        code = CodeOutside(places, CodeCache(chip.cache) if caches.code else None)
+        subbanks = SubBanks(chip, memories, self._bus.words)
+        book = self._calls[name] = CallBook(
+            name, self.profile, follower, code, subbanks, sanitize=self.sanitize
+        )
         inward, outward = (MdmaStream(self._bus, self.spec, each) for each in MDMA_MASTERS[index])
         return Core(
             self._env,
@@ -206,7 +223,9 @@ class Board:
             frames=tuple(self._frames),
             missed=tuple(sorted(capture.missed)),
             interrupted=interrupted,
-            kernels=tuple(each for name, book in self._calls.items() for each in kernel_records(name, book)),
+            kernels=tuple(
+                each for name, book in self._calls.items() for each in kernel_records(name, book.groups())
+            ),
             traffic=traffic_records(self._bus.words, self.spec.clocks.cclk_ticks),
             code=code_records(self.link_map, PROCESSORS, self.spec.chip.regions),
             events=self._env.count_events(),

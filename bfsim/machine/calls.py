@@ -4,38 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Protocol
 
 from bfsim.errors import FirmwareError, KernelError
-from bfsim.kernel import CompilerProfile, Kernel, PreparedCall, Work
+from bfsim.kernel import CompilerProfile, Kernel, Work
 from bfsim.kernel.followers import Follower
-from bfsim.kernel.jit import Compiled
+from bfsim.machine.call_groups import CallGroup
+from bfsim.machine.conflicts import SubBanks
+from bfsim.machine.fetch import CodeOutside, FetchedCall
 from bfsim.machine.memories import Row
 from bfsim.trace import REST
 
 
-@dataclass(slots=True)
-class CallGroup:
-    """Calls of one kernel in one stage with its arrays in the same memories. `totals`: events of each counter.
+class Call(Protocol):
+    """A kernel bound to its rows, ready to run."""
 
-    `subbanks`: the sub-banks of L1 that the rows of each array have lain in.
-    """
-
-    stage: str
-    kernel: Kernel
-    memories: tuple[str, ...]
-    code: Compiled
-    totals: NDArray[np.int64]
-    subbanks: list[set[int]]
+    def run(self, arguments: tuple[Row | int, ...]) -> Work:
+        """Run the kernel now and say what it cost."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckedCall:
     """A call that is checked before it runs."""
 
-    call: PreparedCall
+    call: Call
     kernel: Kernel
 
     def run(self, arguments: tuple[Row | int, ...]) -> Work:
@@ -47,13 +39,24 @@ class CheckedCall:
 class CallBook:
     """Runs kernels for one core, and counts them under the stage that was entered last."""
 
-    def __init__(self, core: str, profile: CompilerProfile, follower: Follower, *, sanitize: bool) -> None:
+    def __init__(
+        self,
+        core: str,
+        profile: CompilerProfile,
+        follower: Follower,
+        code: CodeOutside,
+        subbanks: SubBanks,
+        *,
+        sanitize: bool,
+    ) -> None:
         self._core = core
         self._profile = profile
         self._follower = follower
+        self._code = code
+        self._subbanks = subbanks
         self._sanitize = sanitize
         self._groups: dict[tuple[str, Kernel, tuple[str, ...]], CallGroup] = {}
-        self._calls: dict[str, dict[tuple[Kernel, object], PreparedCall | CheckedCall]] = {}
+        self._calls: dict[str, dict[tuple[Kernel, object], Call]] = {}
         self.enter(REST)
 
     def enter(self, stage: str) -> None:
@@ -62,7 +65,13 @@ class CallBook:
         self.known = self._calls.setdefault(stage, {})
         """Calls of this stage by kernel and rows, ready to run."""
 
-    def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> PreparedCall | CheckedCall:
+    def conflicts_cclk(self, elapsed_cclk: int) -> int:
+        """Return what conflicts in L1 cost the present stage in its `elapsed_cclk`, since it was asked last."""
+        return self._subbanks.since(
+            (each for each in self._groups.values() if each.stage == self.stage), elapsed_cclk
+        )
+
+    def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> Call:
         """Prepare a call for the first time, and know it from now on. Rows outside of L1 are followed."""
         call = self.known[kernel, kernel.arrays_of(arguments)] = self._prepared(kernel, arguments)
         return call
@@ -71,7 +80,7 @@ class CallBook:
         """Return every group of calls, in the order of their first call."""
         return self._groups.values()
 
-    def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> PreparedCall | CheckedCall:
+    def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> Call:
         kernel.check(arguments)
         rows = []
         for position in kernel.array_positions:
@@ -84,8 +93,14 @@ class CallBook:
             rows.append(row)
         followed = sum(map(self._is_followed, rows)) > 0  # of every row, since some cannot be reached at all
         group = self._group(kernel, tuple(each.memory for each in rows), followed)
+        for seen, row in zip(group.subbanks, rows, strict=True):
+            seen.update(self._subbanks.of(row))
         follower = self._follower if followed else None
-        call = kernel.prepare(group.code, [each.array for each in rows], group.totals, follower)
+        call: Call = kernel.prepare(group.code, [each.array for each in rows], group.totals, follower)
+        if outside := self._code.of(group.code.counters):
+            call = FetchedCall(
+                call, outside, group.code.counters, group.totals, self._follower, self._code.cache
+            )
         return CheckedCall(call, kernel) if self._sanitize else call
 
     def _is_followed(self, row: Row) -> bool:
@@ -105,5 +120,7 @@ class CallBook:
         key = (self.stage, kernel, memories)
         if key not in self._groups:
             code = kernel.compiled(self._profile, followed=followed)
-            self._groups[key] = CallGroup(self.stage, kernel, memories, code, code.new_totals())
+            self._groups[key] = CallGroup(
+                self.stage, kernel, memories, code, code.new_totals(), [set() for _ in memories]
+            )
         return self._groups[key]

@@ -9,6 +9,7 @@ from typing import Any
 from bfsim.chip.memory_map import Region
 from bfsim.kernel import CompilerProfile, Kernel
 from bfsim.linker import LinkMap, Placement, Symbol
+from bfsim.machine.memories import Memories
 from bfsim.machine.program import Main
 from bfsim.trace import CodeRecord
 
@@ -52,6 +53,19 @@ def code_records(
         )
         for (core, segment), placements in found.items()
     )
+
+
+def code_outside_l1(
+    link_map: LinkMap, processor: str | None, regions: Sequence[Region], memories: Memories
+) -> dict[str, tuple[int, int]]:
+    """Return (offset in the arena, bytes) of every routine of a processor that lies in L2 or SDRAM, by its symbol."""
+    return {
+        placed.symbol.name: (memories.offset_of(placed.address, placed.symbol.nbytes), placed.symbol.nbytes)
+        for placed in link_map.placements
+        if placed.symbol.section == SECTION
+        and placed.symbol.processor == processor
+        and not _in_l1(placed, regions)
+    }
 
 
 def _in_l1(placed: Placement, regions: Sequence[Region]) -> bool:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from bfsim.chip.spec import ChipSpec
 from bfsim.machine import bus_state as w
-from bfsim.machine.calls import CallGroup
+from bfsim.machine.call_groups import CallGroup
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.records import arrays_of_callees
 

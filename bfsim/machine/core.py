@@ -94,6 +94,7 @@ class Core:
         self._board = board
         self._cclk_ticks = board.clocks.cclk_ticks
         self._cclk = 0
+        self._entered_at_cclk = 0
         self._accounts = FrameAccounts(name, stages)
         self._account = self._accounts.now
         self._stages = stages
@@ -153,13 +154,9 @@ class Core:
         if name not in self._stages:
             raise FirmwareError(f"stage must be one of {', '.join(self._stages)}, not {name!r}")
         before = self._calls.stage
-        self._accounts.enter(name)
-        self._account = self._accounts.now
-        self._calls.enter(name)
+        self._enter(name)
         yield
-        self._accounts.enter(before)
-        self._account = self._accounts.now
-        self._calls.enter(before)
+        self._enter(before)
 
     def next_frame(self) -> Generator[Any, Any, Frame | None]:
         """Finish the current frame and wait for the next picture; None when the recording is over."""
@@ -194,6 +191,17 @@ class Core:
         if turn is not None:
             yield from self._blocked(iter([turn]), f"semaphore {name!r}")
             self._wake(StallReason.SEMAPHORE)
+
+    def _enter(self, stage: str) -> None:
+        """Go over to another row of the budget, and charge the one that ends what conflicts in L1 cost it."""
+        self._bus.settle()
+        conflicts_cclk = self._calls.conflicts_cclk(self._cclk - self._entered_at_cclk)
+        if conflicts_cclk:
+            self._stall(StallReason.L1_CONFLICT, conflicts_cclk)
+        self._entered_at_cclk = self._cclk
+        self._accounts.enter(stage)
+        self._account = self._accounts.now
+        self._calls.enter(stage)
 
     # What rings use
 

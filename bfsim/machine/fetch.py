@@ -9,17 +9,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import CacheSpec
-from bfsim.kernel import PreparedCall, Work
+from bfsim.kernel import Work
 from bfsim.kernel import followers as log
 from bfsim.kernel.followers import Follower
 from bfsim.kernel.schedule import Counter
 from bfsim.machine.bus_state import FETCH_BYTES
 from bfsim.machine.memories import Row
+
+
+class Runnable(Protocol):
+    """A kernel bound to its rows."""
+
+    def run(self, arguments: tuple[Row | int, ...]) -> Work:
+        """Run it."""
 
 
 class CodeCache:
@@ -60,11 +68,26 @@ class Code:
         ]
 
 
+class CodeOutside:
+    """The kernels of one core whose code lies outside L1, and the cache that holds it, if the LDF has one."""
+
+    def __init__(self, places: Mapping[str, tuple[int, int]], cache: CodeCache | None) -> None:
+        """`places`: (offset in the arena, bytes) of each routine outside L1."""
+        self.cache = cache
+        self._places = places
+
+    def of(self, counters: Iterable[Counter]) -> Code | None:
+        """Return what of a kernel and its callees lies outside L1, None if nothing does."""
+        routines = {each.routine: None for each in counters}
+        places = {routine: self._places[routine] for routine in routines if routine in self._places}
+        return Code(places) if places else None
+
+
 class FetchedCall:
     """A call whose code lies outside L1: its fetches are added to what its follower logged."""
 
     def __init__(
-        self, call: PreparedCall, code: Code, counters: Iterable[Counter], totals: NDArray[np.int64],
+        self, call: Runnable, code: Code, counters: Iterable[Counter], totals: NDArray[np.int64],
         follower: Follower, cache: CodeCache | None,
     ) -> None:  # fmt: skip
         self._call = call

@@ -68,14 +68,17 @@ class Memories:
         """Return `nbytes` of the arena from `offset`, to be read and written."""
         return self.arena[offset : offset + nbytes]
 
+    def offset_of(self, address: int, nbytes: int) -> int:
+        """Return where in the arena the chip's `address` is. LinkError where the board has no data memory there."""
+        region = region_of(address, nbytes, self._regions)
+        if region.name not in self.first:
+            raise LinkError(f"0x{address:08X} must be in data memory of the board, not in {region.name}")
+        return self.first[region.name] + address - region.start
+
     def place(self, buffer: Buffer, placement: Placement) -> tuple[Row, ...]:
         """Lay `buffer` out where the linker placed it, with its initial contents, and return its rows."""
         region = region_of(placement.address, buffer.nbytes, self._regions)
-        if region.name not in self.first:
-            raise LinkError(
-                f"buffer {buffer.name} must lie in data memory of the board, not in {region.name} (0x{placement.address:08X})"
-            )
-        offset = self.first[region.name] + placement.address - region.start
+        offset = self.offset_of(placement.address, buffer.nbytes)
         grid = (
             self.bytes_from(offset, buffer.nbytes)
             .view(buffer.element.dtype)

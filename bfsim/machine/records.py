@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import TypeVar
 
 from bfsim.kernel import Kernel, tree
-from bfsim.machine.calls import CallBook, CallGroup
+from bfsim.machine.call_groups import CallGroup
 from bfsim.trace import KernelRecord, LineCost
 
 Label = TypeVar("Label")
@@ -26,10 +26,10 @@ class _Tally:
     accesses: dict[str, list[int]] = field(default_factory=lambda: defaultdict(lambda: [0, 0]))
 
 
-def kernel_records(core: str, book: CallBook) -> Iterator[KernelRecord]:
+def kernel_records(core: str, groups: Iterable[CallGroup]) -> Iterator[KernelRecord]:
     """Return one record per stage and kernel of one core."""
     tallies: dict[tuple[str, str], _Tally] = {}
-    for group in book.groups():
+    for group in groups:
         _add(group, tallies)
     for (stage, _), tally in tallies.items():
         function = tally.function
