@@ -1,0 +1,204 @@
+"""Lays a link out by address: what the linker says, the board's memories and the LDF's switches → a MemoryMap."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from bfsim.chip.memory_map import KIB, Region
+from bfsim.linker import CORE_OF_PROCESSOR, LinkerScript, LinkMap, Placement, SegmentUsage
+from bfsim.linker.script import InputSections, Segment
+from bfsim.report.ldf_map import (
+    SHARED,
+    CacheRange,
+    Kind,
+    MapSection,
+    MapSegment,
+    MapSymbol,
+    MemoryMap,
+    Piece,
+)
+
+CACHE_SWITCHES = {
+    "___l1_data_cache_a": "L1_DATA_A",
+    "___l1_data_cache_b": "L1_DATA_B",
+    "___l1_code_cache": "L1_CODE_CACHE",
+}
+"""Symbols by which an LDF of VisualDSP++ turns the upper half of an L1 memory into cache, if they are not 0."""
+
+CACHE_BYTES = 16 * KIB
+"""What a cache takes from the end of its memory: ADSP-BF561, and ADSP-BF533 alike."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Memories:
+    """What the map must know of a board: its memories, and how its SDRAM is divided."""
+
+    board: str
+    regions: Sequence[Region]
+    bank_bytes: int
+
+
+def memory_map(
+    script: LinkerScript,
+    link_map: LinkMap | None,
+    memories: Memories,
+    kinds: Mapping[tuple[str | None, str], Kind],
+    *,
+    firmware: str,
+    width_px: int,
+    height_px: int,
+) -> MemoryMap:
+    """Return the map of `script` as `link_map` fills it, or empty without one.
+
+    `kinds`: what the symbols are, by processor (None: both) and name; every other one is code.
+    """
+    usages = {each.name: each for each in link_map.segments} if link_map else {}
+    placements = link_map.placements if link_map else ()
+    builder = _Builder(script, memories, kinds)
+    return MemoryMap(
+        ldf=script.path.name,
+        firmware=firmware,
+        board=memories.board,
+        width_px=width_px,
+        height_px=height_px,
+        segments=tuple(
+            builder.segment(each, usages.get(each.name), [p for p in placements if p.segment == each.name])
+            for each in script.segments
+        ),
+        caches=tuple(_caches(script, memories.regions)),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Builder:
+    """Makes the parts of one map."""
+
+    script: LinkerScript
+    memories: Memories
+    kinds: Mapping[tuple[str | None, str], Kind]
+
+    def segment(
+        self, segment: Segment, usage: SegmentUsage | None, placements: Sequence[Placement]
+    ) -> MapSegment:
+        """Return one segment with what was placed in it."""
+        region = next((r for r in self.memories.regions if r.holds(segment.start, segment.nbytes)), None)
+        memory, owner = (region.name, str(region.owner)) if region else ("no memory of the board", SHARED)
+        symbols = tuple(self.symbol(each, memory) for each in sorted(placements, key=lambda p: p.address))
+        used = usage.used_bytes if usage else sum(each.nbytes for each in self.fixed(segment))
+        return MapSegment(
+            name=segment.name,
+            memory=memory,
+            owner=owner,
+            start=segment.start,
+            nbytes=segment.nbytes,
+            used_bytes=used,
+            sections=tuple(self.sections(segment, placements)),
+            symbols=symbols,
+            pieces=tuple(_pieces(segment, used, symbols, self.fixed(segment))),
+        )
+
+    def symbol(self, placed: Placement, memory: str) -> MapSymbol:
+        """Return one symbol in its place."""
+        symbol, bank_bytes = placed.symbol, self.memories.bank_bytes
+        last = placed.address + max(symbol.nbytes, 1) - 1
+        in_sdram = memory == "SDRAM"
+        return MapSymbol(
+            name=symbol.name,
+            kind=self.kinds.get((symbol.processor, symbol.name), Kind.CODE),
+            owner=CORE_OF_PROCESSOR[symbol.processor] if symbol.processor else SHARED,
+            section=symbol.section,
+            nbytes=symbol.nbytes,
+            address=placed.address,
+            output_section=placed.output_section,
+            line=placed.line,
+            banks=tuple(range(placed.address // bank_bytes, last // bank_bytes + 1)) if in_sdram else (),
+        )
+
+    def sections(self, segment: Segment, placements: Sequence[Placement]) -> Iterator[MapSection]:
+        """Yield the output sections that fill a segment, in the order in which they do."""
+        for block in self.script.blocks:
+            for output in block.output_sections:
+                if output.segment != segment.name:
+                    continue
+                statements = [each for each in output.statements if isinstance(each, InputSections)]
+                lines = {each.line for each in statements}
+                inside = [p for p in placements if p.output_section == output.name and p.line in lines]
+                yield MapSection(
+                    name=output.name,
+                    block=block.title,
+                    line=output.line,
+                    takes=tuple(_takes(statements)),
+                    symbols=len(inside),
+                    nbytes=sum(each.symbol.nbytes for each in inside),
+                )
+
+    def fixed(self, segment: Segment) -> list[Piece]:
+        """Return the reserves that have an address in a segment."""
+        return [
+            Piece(name=each.name, kind=Kind.RESERVED, start=each.start, nbytes=each.nbytes)
+            for each in self.script.reserves
+            if segment.start <= each.start <= segment.end
+        ]
+
+
+def _takes(statements: Sequence[InputSections]) -> Iterator[str]:
+    """Yield each input section once, where it is first asked for; those of one list in the order of their names."""
+    names = [name for each in statements for part in each.inputs for name in sorted(part.sections)]
+    yield from dict.fromkeys(names)
+
+
+def _pieces(
+    segment: Segment, used_bytes: int, symbols: Sequence[MapSymbol], fixed: Sequence[Piece]
+) -> Iterator[Piece]:
+    """Yield what fills a segment. What is used and has no name lies before a symbol, or after the last one."""
+    named = _merged([*(_piece(each) for each in symbols if each.nbytes), *fixed])
+    last = max((each.address + each.nbytes for each in symbols), default=segment.start)
+    unnamed = used_bytes - sum(each.nbytes for each in named)
+    here = segment.start
+    for piece in [*named, Piece(name="", kind=Kind.FREE, start=segment.end + 1, nbytes=0)]:
+        gap = piece.start - here
+        reserved = gap if here < last else min(gap, unnamed)
+        unnamed -= reserved
+        if reserved:
+            yield Piece(name="reserved", kind=Kind.RESERVED, start=here, nbytes=reserved)
+        if gap > reserved:
+            yield Piece(name="free", kind=Kind.FREE, start=here + reserved, nbytes=gap - reserved)
+        if piece.nbytes:
+            yield piece
+        here = max(here, piece.start + piece.nbytes)
+
+
+def _piece(symbol: MapSymbol) -> Piece:
+    return Piece(name=symbol.name, kind=symbol.kind, start=symbol.address, nbytes=symbol.nbytes)
+
+
+def _merged(pieces: Iterable[Piece]) -> list[Piece]:
+    """Return the pieces by address, code that lies side by side as one."""
+    merged: list[Piece] = []
+    for kind, group in groupby(sorted(pieces, key=lambda piece: piece.start), key=lambda piece: piece.kind):
+        run = list(group)
+        if kind is Kind.CODE and len(run) > 1:
+            start, last = run[0].start, run[-1]
+            nbytes = last.start + last.nbytes - start
+            run = [Piece(name=f"{len(run)} kernels", kind=kind, start=start, nbytes=nbytes)]
+        merged.extend(run)
+    return merged
+
+
+def _caches(script: LinkerScript, regions: Sequence[Region]) -> Iterator[CacheRange]:
+    """Yield what the LDF's switches turn into cache, core by core."""
+    for block in script.blocks:
+        for name, memory in CACHE_SWITCHES.items():
+            if not getattr(block, "assignments", {}).get(name):
+                continue
+            for region in regions:
+                cores = {CORE_OF_PROCESSOR[each] for each in block.processors}
+                if region.memory == memory and region.owner in cores:
+                    yield CacheRange(
+                        memory=region.name,
+                        owner=region.owner,
+                        start=region.start + region.nbytes - CACHE_BYTES,
+                        nbytes=CACHE_BYTES,
+                    )
