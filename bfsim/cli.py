@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from bfsim import __version__
+from bfsim.cli_ldf import ldf
 from bfsim.cli_record import record
 from bfsim.errors import BfsimError, ConfigError
 from bfsim.terminal import print_report, progress_bar
@@ -50,6 +51,7 @@ def main() -> None:
 
 
 main.add_command(record)
+main.add_command(ldf)
 
 _RUN_PARAMETERS = (
     click.argument("recording", required=False, type=click.Path(path_type=Path)),

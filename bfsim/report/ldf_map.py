@@ -51,6 +51,11 @@ class Piece:
     start: int
     nbytes: int
 
+    @property
+    def is_named(self) -> bool:
+        """Say whether there is a symbol in it."""
+        return self.kind not in (Kind.FREE, Kind.RESERVED)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapSection:
