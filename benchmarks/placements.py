@@ -22,6 +22,9 @@ from bfsim.trace import RunRecord, StallReason
 PLACEMENTS = ("thesis", "l2", "cache", "sdram")
 """Files of ldf/; the first is what the others are compared with."""
 
+TRACE = 0.0005
+"""Shares of the frame up to this print as 0.0 %; a reason without more is left out."""
+
 
 def run_all(recording: Path | None, frames: int | None) -> dict[str, RunRecord]:
     """Simulate every placement behind one progress bar."""
@@ -72,9 +75,13 @@ def comparison(runs: Mapping[str, RunRecord]) -> Table:
 
 
 def _reasons(budgets: Iterable[Budget]) -> list[StallReason]:
-    """Return the reasons that stalled any core in any run."""
-    met = {reason for budget in budgets for core in budget.cores for reason in core.frame.stall_cclk}
-    return [reason for reason in StallReason if reason in met]
+    """Return the reasons that took more than a trace of any core's frame in any run."""
+    frames = [core.frame for budget in budgets for core in budget.cores]
+    return [
+        reason
+        for reason in StallReason
+        if any(each.stall_cclk.get(reason, 0) > TRACE * each.elapsed_cclk.total for each in frames)
+    ]
 
 
 @click.command()

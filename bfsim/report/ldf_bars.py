@@ -34,7 +34,7 @@ def _segment(segment: MapSegment, colours: dict[str, str]) -> Iterator[Text]:
     yield bar
     legend = Text("  ")
     for piece, letter in letters.items():
-        entry = f"{letter} {piece.name} {size(piece.nbytes)}"
+        entry = f"{letter} {segment.label(piece)} {size(piece.nbytes)}"
         if len(legend) + len(entry) > CELLS + 16:
             yield legend
             legend = Text("  ")

@@ -126,7 +126,12 @@ class _Pen:
         for number, piece in enumerate(entries):
             column, line = number % LEGEND_COLUMNS, number // LEGEND_COLUMNS
             place = x + column * PANEL_WIDTH / LEGEND_COLUMNS
-            self._entry(place, y + line * LINE_HEIGHT, self._fill(piece), _label(piece))
+            self._entry(
+                place,
+                y + line * LINE_HEIGHT,
+                self._fill(piece),
+                f"{segment.label(piece)}  {size(piece.nbytes)}",
+            )
         return y + -(-len(entries) // LEGEND_COLUMNS) * LINE_HEIGHT + PANEL_GAP
 
     def _bar(self, x: float, y: float, segment: MapSegment) -> None:
@@ -134,9 +139,9 @@ class _Pen:
         for piece in segment.pieces:
             left, width = x + (piece.start - segment.start) * scale, piece.nbytes * scale
             self._box(left, y, width, BAR_HEIGHT, self._fill(piece))
-            if piece.is_named and _width(piece.name, SMALL_FONT) < width - 6:
+            if piece.is_named and _width(segment.label(piece), SMALL_FONT) < width - 6:
                 middle = y + BAR_HEIGHT / 2
-                self._write(left + 3, middle - 8, piece.name, font_px=SMALL_FONT)
+                self._write(left + 3, middle - 8, segment.label(piece), font_px=SMALL_FONT)
                 self._write(left + 3, middle + 8, size(piece.nbytes), font_px=SMALL_FONT)
         self.sheet.boxes.append(Box(x=x, y=y, width=PANEL_WIDTH, height=BAR_HEIGHT, fill="", outline=FAINT))
 
@@ -158,10 +163,6 @@ class _Pen:
         self, x: float, y: float, text: str, *, font_px: int = FONT, colour: str = INK, is_right: bool = False
     ) -> None:
         self.sheet.words.append(Words(x=x, y=y, text=text, font_px=font_px, colour=colour, is_right=is_right))
-
-
-def _label(piece: Piece) -> str:
-    return f"{piece.name}  {size(piece.nbytes)}"
 
 
 def _width(text: str, font_px: int) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 from bfsim.chip.memory_map import KIB, Region
@@ -137,7 +137,7 @@ class _Builder:
     def fixed(self, segment: Segment) -> list[Piece]:
         """Return the reserves that have an address in a segment."""
         return [
-            Piece(name=each.name, kind=Kind.RESERVED, start=each.start, nbytes=each.nbytes)
+            Piece(name=each.name, kind=Kind.RESERVED, owner=SHARED, start=each.start, nbytes=each.nbytes)
             for each in self.script.reserves
             if segment.start <= each.start <= segment.end
         ]
@@ -157,32 +157,38 @@ def _pieces(
     last = max((each.address + each.nbytes for each in symbols), default=segment.start)
     unnamed = used_bytes - sum(each.nbytes for each in named)
     here = segment.start
-    for piece in [*named, Piece(name="", kind=Kind.FREE, start=segment.end + 1, nbytes=0)]:
+    for piece in [*named, _unnamed(Kind.FREE, segment.end + 1, 0)]:
         gap = piece.start - here
         reserved = gap if here < last else min(gap, unnamed)
         unnamed -= reserved
         if reserved:
-            yield Piece(name="reserved", kind=Kind.RESERVED, start=here, nbytes=reserved)
+            yield _unnamed(Kind.RESERVED, here, reserved)
         if gap > reserved:
-            yield Piece(name="free", kind=Kind.FREE, start=here + reserved, nbytes=gap - reserved)
+            yield _unnamed(Kind.FREE, here + reserved, gap - reserved)
         if piece.nbytes:
             yield piece
         here = max(here, piece.start + piece.nbytes)
 
 
+def _unnamed(kind: Kind, start: int, nbytes: int) -> Piece:
+    return Piece(name=kind.value, kind=kind, owner=SHARED, start=start, nbytes=nbytes)
+
+
 def _piece(symbol: MapSymbol) -> Piece:
-    return Piece(name=symbol.name, kind=symbol.kind, start=symbol.address, nbytes=symbol.nbytes)
+    return Piece(
+        name=symbol.name, kind=symbol.kind, owner=symbol.owner, start=symbol.address, nbytes=symbol.nbytes
+    )
 
 
 def _merged(pieces: Iterable[Piece]) -> list[Piece]:
-    """Return the pieces by address, code that lies side by side as one."""
+    """Return the pieces by address, one core's code that lies side by side as one."""
     merged: list[Piece] = []
-    for kind, group in groupby(sorted(pieces, key=lambda piece: piece.start), key=lambda piece: piece.kind):
+    ordered = sorted(pieces, key=lambda piece: piece.start)
+    for (kind, _), group in groupby(ordered, key=lambda piece: (piece.kind, piece.owner)):
         run = list(group)
         if kind is Kind.CODE and len(run) > 1:
-            start, last = run[0].start, run[-1]
-            nbytes = last.start + last.nbytes - start
-            run = [Piece(name=f"{len(run)} kernels", kind=kind, start=start, nbytes=nbytes)]
+            nbytes = run[-1].start + run[-1].nbytes - run[0].start
+            run = [replace(run[0], name=f"{len(run)} kernels", nbytes=nbytes)]
         merged.extend(run)
     return merged
 

@@ -44,10 +44,11 @@ class MapSymbol:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Piece:
-    """A stretch of a segment: one buffer, all code that lies side by side, a reserve, or what is free."""
+    """A stretch of a segment: one buffer, one core's code that lies side by side, a reserve, or what is free."""
 
     name: str
     kind: Kind
+    owner: str
     start: int
     nbytes: int
 
@@ -90,6 +91,10 @@ class MapSegment:
     def free_bytes(self) -> int:
         """Bytes that are still free."""
         return self.nbytes - self.used_bytes
+
+    def label(self, piece: Piece) -> str:
+        """Return the name of one of the pieces; where both cores have theirs, with its core."""
+        return piece.name if piece.owner in (SHARED, self.owner) else f"{piece.name} ({piece.owner})"
 
     @property
     def used_share(self) -> float:
