@@ -153,8 +153,9 @@ def _pieces(
     segment: Segment, used_bytes: int, symbols: Sequence[MapSymbol], fixed: Sequence[Piece]
 ) -> Iterator[Piece]:
     """Yield what fills a segment. What is used and has no name lies before a symbol, or after the last one."""
-    named = _merged([*(_piece(each) for each in symbols if each.nbytes), *fixed])
-    last = max((each.address + each.nbytes for each in symbols), default=segment.start)
+    placed = [_piece(each) for each in symbols if each.nbytes]
+    named = _merged([*placed, *fixed])
+    last = max((each.start + each.nbytes for each in placed), default=segment.start)
     unnamed = used_bytes - sum(each.nbytes for each in named)
     here = segment.start
     for piece in [*named, _unnamed(Kind.FREE, segment.end + 1, 0)]:

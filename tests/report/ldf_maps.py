@@ -26,18 +26,26 @@ def a_segment(
     used_bytes: int = 0,
     takes: tuple[str, ...] = (),
 ) -> MapSegment:
-    """A segment with symbols in it. Its pieces are the symbols; what lies between them is left out."""
+    """A segment with symbols in it, by address; what lies between them is free."""
     section = MapSection(
         name="out", block="PROCESSOR p0", line=1, takes=takes, symbols=len(symbols), nbytes=0
     )
-    pieces = [
-        Piece(name=each.name, kind=each.kind, owner=each.owner, start=each.address, nbytes=each.nbytes)
-        for each in symbols
-    ]
+    pieces, here = [], start
+    for each in symbols:
+        pieces.append(_free(here, each.address))
+        pieces.append(
+            Piece(name=each.name, kind=each.kind, owner=each.owner, start=each.address, nbytes=each.nbytes)
+        )
+        here = each.address + each.nbytes
+    pieces.append(_free(here, start + nbytes))
     return MapSegment(
         name=f"MEM_{memory}", memory=memory, owner=SHARED, start=start, nbytes=nbytes, used_bytes=used_bytes,
-        sections=(section,), symbols=symbols, pieces=tuple(pieces),
+        sections=(section,), symbols=symbols, pieces=tuple(piece for piece in pieces if piece.nbytes),
     )  # fmt: skip
+
+
+def _free(start: int, end: int) -> Piece:
+    return Piece(name="free", kind=Kind.FREE, owner=SHARED, start=start, nbytes=max(0, end - start))
 
 
 def a_map(*segments: MapSegment, caches: tuple[CacheRange, ...] = ()) -> MemoryMap:
