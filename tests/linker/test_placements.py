@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from itertools import pairwise
 
 import pytest
 
@@ -47,9 +48,7 @@ def test_every_placement_holds_the_firmware(name: str, width_px: int, height_px:
     """At each size of the camera, with the same symbols, none over another."""
     memory_map = placed(name, width_px, height_px)
     symbols = sorted(memory_map.symbols, key=lambda each: each.address)
-    assert all(
-        one.address + one.nbytes <= two.address for one, two in zip(symbols, symbols[1:], strict=False)
-    )
+    assert all(one.address + one.nbytes <= two.address for one, two in pairwise(symbols))
     here = {(each.owner, each.name, each.nbytes) for each in symbols}
     assert here == {
         (each.owner, each.name, each.nbytes) for each in placed("thesis", width_px, height_px).symbols
