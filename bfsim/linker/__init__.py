@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.linker.link_map import LinkMap, Placement, SegmentUsage, Symbol
+from bfsim.linker.link_map import LinkMap, PlacedReserve, Placement, SegmentUsage, Symbol
 from bfsim.linker.parser import parse_ldf
 from bfsim.linker.placement import link
 from bfsim.linker.script import CORE_OF_PROCESSOR, LinkerScript
@@ -11,6 +11,7 @@ __all__ = [
     "CORE_OF_PROCESSOR",
     "LinkMap",
     "LinkerScript",
+    "PlacedReserve",
     "Placement",
     "SegmentUsage",
     "Symbol",

@@ -3,12 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 from bfsim.chip.memory_map import Region, region_of
 from bfsim.errors import ConfigError, LinkError
 from bfsim.linker.link_map import LinkMap, Symbol
-from bfsim.linker.script import CORE_OF_PROCESSOR, LinkerScript, OutputSection, Segment
+from bfsim.linker.script import LinkerScript, OutputSection, Segment
+from bfsim.linker.source import Place
+
+
+def check_chip(script: LinkerScript, chip: str) -> None:
+    """Raise LinkError for an LDF of another chip, or with other processors than it has."""
+    if script.chip and script.chip != chip.upper():
+        raise LinkError(f"{script.path}: ARCHITECTURE must be {chip}, the board's chip, not {script.chip}")
+    cores = script.core_of_processor
+    for block in script.blocks:
+        for name in block.processors:
+            if name not in cores:
+                known = " or ".join(cores)
+                raise LinkError(f"{block.place}: processor must be {known} on an {chip}, not {name}")
+    if len(cores) > 1 and len(set(cores.values())) == 1:
+        raise LinkError(
+            f"{script.path}: {chip} has one core, and the LDF must have one PROCESSOR, not {len(cores)}"
+        )
 
 
 def check_symbols(script: LinkerScript, symbols: Sequence[Symbol]) -> None:
@@ -33,17 +50,23 @@ def check_symbols(script: LinkerScript, symbols: Sequence[Symbol]) -> None:
 
 
 def check_memories(script: LinkerScript, regions: Sequence[Region]) -> None:
-    """Raise LinkError for a segment or fixed RESERVE that has no memory, or that its core does not reach."""
-    region_by_segment = {segment.name: _region_under(script, segment, regions) for segment in script.segments}
-    for segment in script.segments:
+    """Raise LinkError for a segment in use, or a fixed RESERVE, that has no memory or that its core does not reach."""
+    _check_views(script)
+    used = {output.segment for block in script.blocks for output in block.output_sections if output.segment}
+    region_by_segment = {
+        segment.name: _region_under(segment, regions) for segment in script.segments if segment.name in used
+    }
+    for name, region in region_by_segment.items():
+        segment = script.segment_by_name[name]
         if segment.processor:
-            _check_reach(script, segment, region_by_segment[segment.name], segment.processor, segment.line)
-    segments = {segment.name: segment for segment in script.segments}
+            _check_reach(script, segment, region, segment.processor, segment.place)
     for block in script.blocks:
         for output in block.output_sections:
-            segment = segments[output.segment]
-            user = "both cores" if block.is_shared else block.processors[0]
-            _check_reach(script, segment, region_by_segment[segment.name], user, output.line)
+            if not output.segment:
+                continue
+            segment = script.segment_by_name[output.segment]
+            user = block.processor or "both cores"
+            _check_reach(script, segment, region_by_segment[segment.name], user, output.place)
             if output.is_contiguous:
                 _check_unbroken(script, segment, output)
     _check_reserves(script)
@@ -57,24 +80,34 @@ def check_resolves(script: LinkerScript, link_map: LinkMap) -> None:
                 is_resolved = placed.symbol.name == resolve.name and block.serves(placed.symbol)
                 if is_resolved and placed.address != resolve.address:
                     raise LinkError(
-                        f"{script.path}:{resolve.line}: {placed.symbol} must lie at "
+                        f"{resolve.place}: {placed.symbol} must lie at "
                         f"0x{resolve.address:08X}, where RESOLVE puts it, not at 0x{placed.address:08X}, "
                         f"where line {placed.line} does"
                     )
 
 
-def _region_under(script: LinkerScript, segment: Segment, regions: Sequence[Region]) -> Region:
+def _check_views(script: LinkerScript) -> None:
+    """Check that the processors' own segments are the same memory or different ones."""
+    for left, right in combinations(script.segments, 2):
+        if left.overlaps(right) and (left.start, left.nbytes) != (right.start, right.nbytes):
+            raise LinkError(
+                f"{right.place}: segment '{right.name}' of {right.processor} must be the same memory as "
+                f"'{left.name}' of {left.processor} ({left.place.beside(right.place)}) or another, not a part of it"
+            )
+
+
+def _region_under(segment: Segment, regions: Sequence[Region]) -> Region:
     try:
         return region_of(segment.start, segment.nbytes, regions)
     except ConfigError as error:
-        raise LinkError(f"{script.path}:{segment.line}: segment '{segment.name}': {error}") from None
+        raise LinkError(f"{segment.place}: segment '{segment.name}': {error}") from None
 
 
-def _check_reach(script: LinkerScript, segment: Segment, region: Region, user: str, line: int) -> None:
+def _check_reach(script: LinkerScript, segment: Segment, region: Region, user: str, place: Place) -> None:
     """Check that the memory under a segment is shared, or belongs to the core that is to use it."""
-    if region.owner not in ("shared", CORE_OF_PROCESSOR.get(user)):
+    if region.owner not in ("shared", script.core_of_processor.get(user)):
         raise LinkError(
-            f"{script.path}:{line}: segment '{segment.name}' lies in {region.name}, which only core "
+            f"{place}: segment '{segment.name}' lies in {region.name}, which only core "
             f"{region.owner} reaches: it must be used by that core alone, not by {user}"
         )
 
@@ -84,8 +117,8 @@ def _check_unbroken(script: LinkerScript, segment: Segment, output: OutputSectio
     for reserved in script.reserves:
         if segment.start <= reserved.start <= segment.end and reserved.start + reserved.nbytes <= segment.end:
             raise LinkError(
-                f"{script.path}:{output.line}: segment of FORCE_CONTIGUITY section '{output.name}' must be "
-                f"in one piece, not {segment.name}, cut by RESERVE({reserved.name}) of line {reserved.line}"
+                f"{output.place}: segment of FORCE_CONTIGUITY section '{output.name}' must be "
+                f"in one piece, not {segment.name}, cut by RESERVE({reserved.name}) of {reserved.place.beside(output.place)}"
             )
 
 
@@ -95,12 +128,12 @@ def _check_reserves(script: LinkerScript) -> None:
         end = reserved.start + reserved.nbytes - 1
         if not any(segment.start <= reserved.start and end <= segment.end for segment in script.segments):
             raise LinkError(
-                f"{script.path}:{reserved.line}: RESERVE({reserved.name}) must lie inside one segment of "
+                f"{reserved.place}: RESERVE({reserved.name}) must lie inside one segment of "
                 f"MEMORY, not at 0x{reserved.start:08X}-0x{end:08X}"
             )
     for left, right in pairwise(reserves):
-        if right.start < left.start + left.nbytes:
+        if right.start < left.start + left.nbytes and not left.is_same_as(right):
             raise LinkError(
-                f"{script.path}:{right.line}: RESERVE({right.name}) at 0x{right.start:08X} must not overlap "
-                f"RESERVE({left.name}) of line {left.line}"
+                f"{right.place}: RESERVE({right.name}) at 0x{right.start:08X} must not overlap "
+                f"RESERVE({left.name}) of {left.place.beside(right.place)}"
             )

@@ -1,4 +1,4 @@
-"""Gives the small parts of an LDF their values: expressions, object lists and memory segments.
+"""Gives the small parts of an LDF their values: object lists, memory segments, and numbers known as they are read.
 
 Works bottom up and in the order of the file, so a use before the definition is an error, as it is for the
 linker of VisualDSP++.
@@ -9,13 +9,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from lark import Token, v_args
-from lark.visitors import Transformer_NonRecursive
 
 from bfsim.errors import LinkError
-from bfsim.linker.script import COMMAND_LINE_OBJECTS, LinkerScript, Segment
-from bfsim.linker.source import Source
+from bfsim.linker.expressions import Expression, ExpressionBuilder, ExpressionError
+from bfsim.linker.script import (
+    COMMAND_LINE_OBJECTS,
+    MEMORY_FUNCTIONS,
+    FixedReserve,
+    LinkerScript,
+    Segment,
+    memory_function,
+)
+from bfsim.linker.source import Place, Source
 
-_SUFFIXES = {"K": 1024, "M": 1024 * 1024}
+Files = frozenset[str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,31 +34,61 @@ class Bound:
 
 
 @v_args(inline=True)
-class Evaluator(Transformer_NonRecursive[Token, LinkerScript]):
+class Evaluator(ExpressionBuilder[LinkerScript]):
     """One method per rule of ldf.lark; raises LinkError at the first part that has no value."""
 
     def __init__(self, source: Source) -> None:
         super().__init__()
         self._source = source
-        self._segments: dict[str, Segment] = {}
-        self._lists: dict[str, frozenset[str]] = {COMMAND_LINE_OBJECTS: frozenset({COMMAND_LINE_OBJECTS})}
+        self._processor = ""
+        self._segments: dict[tuple[str, str], Segment] = {}  # by processor (or "") and name in the LDF
+        self._processors: list[str] = []
+        self._reserves: list[FixedReserve] = []
+        self._constants: dict[str, int] = {}
+        self._lists: dict[str, Files] = {COMMAND_LINE_OBJECTS: frozenset({COMMAND_LINE_OBJECTS})}
 
     def _error(self, token: Token, problem: str) -> LinkError:
         return self._source.error_at(token.start_pos or 0, problem)
 
-    def _line(self, token: Token) -> int:
-        return self._source.line_at(token.start_pos or 0)
+    def _place(self, token: Token) -> Place:
+        return self._source.place_of(token.start_pos or 0)
 
-    def _known_segment(self, name: Token) -> Segment:
-        if name not in self._segments:
-            known = ", ".join(self._segments) or "none"
-            raise self._error(name, f"segment must be one that MEMORY defines above ({known}), not '{name}'")
-        return self._segments[name]
+    def _known_segment(self, name: str, offset: int) -> Segment:
+        """Return the segment of a name: the processor's own, a global one, else another processor's."""
+        owners = sorted(dict.fromkeys(owner for owner, _ in self._segments), key=lambda o: (o != self._processor, o != ""))
+        for owner in owners:
+            if (owner, name) in self._segments:
+                return self._segments[owner, name]
+        known = ", ".join(segment.name for segment in self._segments.values()) or "none"
+        problem = f"segment must be one that MEMORY defines above ({known}), not '{name}'"
+        raise self._source.error_at(offset, problem)
+
+    # ---- expressions that must have a value as they are read
+
+    def _value(self, expression: Expression) -> int:
+        try:
+            return expression.value_in(self)
+        except ExpressionError as error:
+            raise self._source.error_at(error.offset, error.problem) from None
+
+    def value_of(self, name: str, offset: int) -> int:
+        """Return the number that was assigned to a symbol above, outside the output sections."""
+        if name not in self._constants:
+            problem = f"expression must be made of numbers and #define names, not '{name}'"
+            raise ExpressionError(offset, problem)
+        return self._constants[name]
+
+    def result_of(self, function: str, argument: Expression, offset: int) -> int:
+        """Return the value of a memory function."""
+        if function not in MEMORY_FUNCTIONS:
+            known = ", ".join(MEMORY_FUNCTIONS)
+            raise ExpressionError(offset, f"function must be one of {known} here, not {function}")
+        return memory_function(function, self._known_segment(argument.text, argument.offset))
 
     # ---- memory segments
 
-    def bound(self, keyword: Token, value: int) -> Bound:
-        return Bound(keyword, value)
+    def bound(self, keyword: Token, value: Expression) -> Bound:
+        return Bound(keyword, self._value(value))
 
     def segment(self, name: Token, *bounds: Bound) -> Segment:
         given = {str(bound.keyword): bound.value for bound in bounds}
@@ -70,37 +107,46 @@ class Evaluator(Transformer_NonRecursive[Token, LinkerScript]):
         if start < 0 or nbytes <= 0:
             problem = f"must have a positive size from a positive address, not {nbytes} bytes from {start}"
             raise self._error(name, f"segment '{name}' {problem}")
-        segment = Segment(str(name), start, nbytes, self._line(name))
+        segment = Segment(self._place(name), self._unique(name), start, nbytes, self._processor)
         self._check_disjoint(name, segment)
-        self._segments[segment.name] = segment
+        self._segments[self._processor, str(name)] = segment
         return segment
 
+    def _unique(self, name: Token) -> str:
+        """Return the name of a segment, with its processor's if another processor has one of that name."""
+        is_taken = any(name == segment.name for segment in self._segments.values())
+        return f"{self._processor}.{name}" if is_taken and self._processor else str(name)
+
     def _check_disjoint(self, name: Token, segment: Segment) -> None:
-        for other in self._segments.values():
-            if other.name == segment.name:
-                raise self._error(
-                    name, f"segment must have a name of its own, not '{name}' of line {other.line}"
-                )
-            if segment.start < other.start + other.nbytes and other.start < segment.start + segment.nbytes:
-                place = f"line {other.line}, 0x{other.start:08X}-0x{other.end:08X}"
-                problem = f"must not overlap '{other.name}' of {place}"
+        for (owner, known), other in self._segments.items():
+            if owner not in ("", self._processor):
+                continue  # each processor has its own view of the memory they share
+            if known == name:
+                where = other.place.beside(segment.place)
+                raise self._error(name, f"segment must have a name of its own, not '{name}' of {where}")
+            if segment.overlaps(other):
+                place = f"{other.place.beside(segment.place)}, 0x{other.start:08X}-0x{other.end:08X}"
+                problem = f"must not overlap '{known}' of {place}"
                 raise self._error(
                     name, f"segment '{name}', 0x{segment.start:08X}-0x{segment.end:08X}, {problem}"
                 )
 
     # ---- object lists
 
-    def file(self, name: Token) -> frozenset[str]:
+    def file(self, name: Token) -> Files:
         return frozenset({name.strip('"')})
 
-    def listed(self, name: Token, is_taken: bool | None) -> frozenset[str]:
+    def members(self, library: Token, *members: Token) -> Files:
+        return frozenset(member.strip('"') for member in members)
+
+    def listed(self, name: Token, is_taken: bool | None) -> Files:
         if name not in self._lists:
             known = ", ".join(self._lists)
             raise self._error(name, f"object list must be one that is defined above ({known}), not {name}")
         return frozenset() if is_taken is False else self._lists[name]
 
-    def object_list(self, name: Token, *parts: frozenset[str] | None) -> None:
-        self._lists[str(name)] = frozenset().union(*(part for part in parts if part is not None))
+    def object_list(self, name: Token, *parts: Files) -> None:
+        self._lists[str(name)] = frozenset().union(*parts)
 
     def attribute(self) -> bool:
         """Value of a test such as prefersMem("internal"): no object file of bfsim carries such attributes."""
@@ -114,44 +160,3 @@ class Evaluator(Transformer_NonRecursive[Token, LinkerScript]):
 
     def either(self, left: bool, right: bool) -> bool:
         return left or right
-
-    # ---- expressions
-
-    def number(self, text: Token) -> int:
-        if text[:2] in ("0x", "0X"):
-            return int(text, 16)
-        return int(text.rstrip("kKmM")) * _SUFFIXES.get(text[-1].upper(), 1)
-
-    def undefined(self, name: Token) -> int:
-        raise self._error(name, f"expression must be made of numbers and #define names, not '{name}'")
-
-    def memory_function(self, function: Token, name: Token) -> int:
-        segment = self._known_segment(name)
-        values = {"MEMORY_START": segment.start, "MEMORY_END": segment.end, "MEMORY_SIZEOF": segment.nbytes}
-        return values[function]
-
-    def divide(self, dividend: int, sign: Token, divisor: int) -> int:
-        if divisor == 0:
-            raise self._error(sign, "divisor must not be 0")
-        return dividend // divisor
-
-    def multiply(self, left: int, right: int) -> int:
-        return left * right
-
-    def add(self, left: int, right: int) -> int:
-        return left + right
-
-    def subtract(self, left: int, right: int) -> int:
-        return left - right
-
-    def bit_and(self, left: int, right: int) -> int:
-        return left & right
-
-    def bit_or(self, left: int, right: int) -> int:
-        return left | right
-
-    def negative(self, operand: int) -> int:
-        return -operand
-
-    def inverse(self, operand: int) -> int:
-        return ~operand

@@ -15,18 +15,26 @@ class Filling:
         self.segment = segment
         self._limit = segment.start + segment.nbytes
         self._pointer = segment.start
-        self._reserves = sorted(
-            (r for r in reserves if segment.start <= r.start < self._limit),
-            key=lambda reserved: reserved.start,
-        )
+        # Two processors that share a memory may both reserve the same bytes.
+        inside = {(r.start, r.start + r.nbytes) for r in reserves if segment.start <= r.start < self._limit}
+        self._reserved = sorted(inside)
+
+    @property
+    def location(self) -> int:
+        """The location pointer: first address behind all that was taken."""
+        return self._pointer
 
     def address_for(self, nbytes: int, align: int) -> int:
         """Return the first address, maybe beyond the segment, where `nbytes` clear every reserve."""
-        address = _align_up(self._pointer, align)
-        for reserved in self._reserves:
-            if address < reserved.start + reserved.nbytes and reserved.start < address + nbytes:
-                address = _align_up(reserved.start + reserved.nbytes, align)
+        address = align_up(self._pointer, align)
+        for start, end in self._reserved:
+            if address < end and start < address + nbytes:
+                address = align_up(end, align)
         return address
+
+    def rest_at(self, address: int) -> int:
+        """Return how many bytes from `address` on are free in one piece."""
+        return min((start for start, _ in self._reserved if start >= address), default=self._limit) - address
 
     def has_room(self, nbytes: int, align: int) -> bool:
         """Say whether `nbytes` still fit."""
@@ -41,15 +49,36 @@ class Filling:
     @property
     def free_bytes(self) -> int:
         """Bytes ahead of the pointer that no fixed reserve takes."""
-        ends = ((r.start + r.nbytes, max(r.start, self._pointer)) for r in self._reserves)
-        return self._limit - self._pointer - sum(max(0, end - start) for end, start in ends)
+        ahead = sum(max(0, end - max(start, self._pointer)) for start, end in self._reserved)
+        return self._limit - self._pointer - ahead
+
+    def move_to(self, address: int) -> bool:
+        """Move the pointer forward to `address`; say whether it lies ahead and inside the segment."""
+        is_ahead = self._pointer <= address <= self._limit
+        if is_ahead:
+            self._pointer = address
+        return is_ahead
+
+    def largest_stretch(self, taken: Iterable[tuple[int, int]], align: int) -> tuple[int, int]:
+        """Return start and size of the largest stretch, from a multiple of `align`, of what is not `taken`."""
+        best = here = align_up(self.segment.start, align)
+        best_nbytes = 0
+        for start, end in sorted([*taken, *self._reserved, (self._limit, self._limit)]):
+            if start - here > best_nbytes:
+                best, best_nbytes = here, start - here
+            here = max(here, align_up(end, align))
+        return best, best_nbytes
 
     @property
     def usage(self) -> SegmentUsage:
         """How full the segment is now."""
-        segment = self.segment
+        return self.usage_of(self.segment)
+
+    def usage_of(self, segment: Segment) -> SegmentUsage:
+        """Return how full `segment` is, this one or another processor's for the same memory."""
         return SegmentUsage(segment.name, segment.start, segment.nbytes, segment.nbytes - self.free_bytes)
 
 
-def _align_up(address: int, align: int) -> int:
+def align_up(address: int, align: int) -> int:
+    """Return the first multiple of `align` from `address` on."""
     return -(-address // align) * align

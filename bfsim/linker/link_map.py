@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from bfsim.errors import LinkError
 
@@ -40,7 +41,10 @@ class Placement:
 
 @dataclass(frozen=True, slots=True)
 class SegmentUsage:
-    """How full a segment is: `used_bytes` counts symbols, reserves and the gaps that alignment leaves."""
+    """How full a segment is: `used_bytes` counts symbols, reserves and the gaps that alignment leaves.
+
+    Of a reserve that expands only the minimum counts.
+    """
 
     name: str
     start: int
@@ -53,14 +57,43 @@ class SegmentUsage:
         return self.nbytes - self.used_bytes
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlacedReserve:
+    """A RESERVE: `nbytes` from `start` of a segment; `length_name` is the symbol of its length.
+
+    `processor` is None in memory that both cores share, `output_section` is empty for one with an address.
+    """
+
+    processor: str | None
+    name: str
+    length_name: str
+    segment: str
+    output_section: str
+    start: int
+    nbytes: int
+    line: int
+
+
 class LinkMap:
-    """Every placement, in the order in which the segments were filled, and how full each segment is."""
+    """Every placement, in the order in which the segments were filled, and how full each segment is.
 
-    __slots__ = ("_by_name", "placements", "segments")
+    `reserves` are the reserves in that order, those with an address first. `values` are the symbols that the LDF
+    itself defines, by processor (None: for both) and name: starts and lengths of reserves, and assignments.
+    """
 
-    def __init__(self, placements: Sequence[Placement], segments: Sequence[SegmentUsage]) -> None:
+    __slots__ = ("_by_name", "placements", "reserves", "segments", "values")
+
+    def __init__(
+        self,
+        placements: Sequence[Placement],
+        segments: Sequence[SegmentUsage],
+        reserves: Sequence[PlacedReserve] = (),
+        values: Mapping[tuple[str | None, str], int] = MappingProxyType({}),
+    ) -> None:
         self.placements = tuple(placements)
         self.segments = tuple(segments)
+        self.reserves = tuple(reserves)
+        self.values = MappingProxyType(dict(values))
         self._by_name: Mapping[tuple[str | None, str], Placement] = {
             (placed.symbol.processor, placed.symbol.name): placed for placed in self.placements
         }

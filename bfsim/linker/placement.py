@@ -12,37 +12,58 @@ from dataclasses import dataclass
 
 from bfsim.chip.memory_map import CM_BF561_REGIONS, Region
 from bfsim.errors import LinkError
-from bfsim.linker.checks import check_memories, check_resolves, check_symbols
-from bfsim.linker.filling import Filling
+from bfsim.linker.checks import check_chip, check_memories, check_resolves, check_symbols
+from bfsim.linker.filling import Filling, align_up
 from bfsim.linker.link_map import LinkMap, Placement, SegmentUsage, Symbol
-from bfsim.linker.script import InputSections, LinkerScript, OutputSection, Reserve
+from bfsim.linker.reserves import Reserved, expanded
+from bfsim.linker.script import (
+    Assignment,
+    InputSections,
+    LinkerScript,
+    Move,
+    OutputSection,
+    Reserve,
+    Statement,
+)
+from bfsim.linker.source import Place
+from bfsim.linker.values import Key, Values
 
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """An output section without room for a symbol: the statement's line, and how full the segment was."""
+    """An output section without room for a symbol: the statement's place, and how full the segment was."""
 
     output_section: str
-    line: int
+    place: Place
     align: int
     usage: SegmentUsage
 
 
 def link(
-    script: LinkerScript, symbols: Sequence[Symbol], regions: Sequence[Region] = CM_BF561_REGIONS
+    script: LinkerScript,
+    symbols: Sequence[Symbol],
+    regions: Sequence[Region] = CM_BF561_REGIONS,
+    *,
+    chip: str = "ADSP-BF561",
 ) -> LinkMap:
-    """Place `symbols` by `script` into the memories `regions` of a board; LinkError if one has no place."""
+    """Place `symbols` by `script` into the memories `regions` of a board with a `chip`; LinkError if one has no place."""
+    check_chip(script, chip)
     check_symbols(script, symbols)
     check_memories(script, regions)
     linker = _Linker(script)
     waiting = list(symbols)
+    for assignment in script.loose:
+        linker.values.assign(None, assignment)
     for block in script.blocks:
+        for assignment in block.loose:
+            linker.values.assign(block.processor, assignment)
         for output in block.output_sections:
-            linker.fill(output, [symbol for symbol in waiting if block.serves(symbol)])
-            waiting = [symbol for symbol in waiting if symbol not in linker.placed]
+            if output.segment:
+                linker.fill(block.processor, output, [symbol for symbol in waiting if block.serves(symbol)])
+                waiting = [symbol for symbol in waiting if symbol not in linker.placed]
     if waiting:
         raise linker.error_about(waiting)
-    link_map = LinkMap(list(linker.placed.values()), [filling.usage for filling in linker.fillings.values()])
+    link_map = linker.link_map()
     check_resolves(script, link_map)
     return link_map
 
@@ -52,19 +73,45 @@ class _Linker:
 
     def __init__(self, script: LinkerScript) -> None:
         self._script = script
-        self.fillings = {segment.name: Filling(segment, script.reserves) for segment in script.segments}
+        self.fillings = _fillings(script)
         self.placed: dict[Symbol, Placement] = {}
+        self.values = Values(script)
+        self._reserves: list[Reserved] = []
+        self._extents: dict[Key, tuple[int, int]] = {}
         self._refusals: dict[Symbol, list[Refusal]] = {}
 
-    def fill(self, output: OutputSection, symbols: Sequence[Symbol]) -> None:
-        """Place those of `symbols` that `output` takes and has room for."""
+    def fill(self, processor: str | None, output: OutputSection, symbols: Sequence[Symbol]) -> None:
+        """Place those of `symbols` that `output` takes and has room for, and do what else stands there."""
+        filling = self.fillings[output.segment]
+        start = filling.location
         for statement in output.statements:
-            if isinstance(statement, Reserve):
-                self._reserve(output, statement)
-                continue
-            for symbol in symbols:
-                if symbol not in self.placed and statement.takes(symbol):
-                    self._place(symbol, output, statement)
+            match statement:
+                case Reserve():
+                    self._reserve(processor, output, statement)
+                case Assignment(symbol="."):
+                    self._move(
+                        output, statement, self.values.location_of(processor, statement, filling.location)
+                    )
+                case Assignment():
+                    self.values.assign(processor, statement, filling.location)
+                case Move():
+                    self._move(output, statement, align_up(filling.location, statement.align))
+                case InputSections():
+                    for symbol in symbols:
+                        if symbol not in self.placed and statement.takes(symbol):
+                            self._place(symbol, output, statement)
+        self._extents.setdefault((processor, output.name), (start, filling.location - start))
+
+    def link_map(self) -> LinkMap:
+        """Return what was placed, after the reserves that expand have got what is free."""
+        placements = list(self.placed.values())
+        reserves = expanded(self._script, self._reserves, placements, self.fillings)
+        reserved = {(r.processor, r.name): r.start for r in reserves}
+        reserved |= {(r.processor, r.length_name): r.nbytes for r in reserves}
+        addresses = {(p.symbol.processor, p.symbol.name): p.address for p in placements}
+        values = self.values.settle(addresses, self._extents, reserved)
+        usages = [self.fillings[segment.name].usage_of(segment) for segment in self._script.segments]
+        return LinkMap(placements, usages, reserves, values)
 
     def _place(self, symbol: Symbol, output: OutputSection, statement: InputSections) -> None:
         filling = self.fillings[output.segment]
@@ -73,15 +120,27 @@ class _Linker:
             address = filling.take(symbol.nbytes, align)
             self.placed[symbol] = Placement(symbol, output.segment, output.name, address, statement.line)
         else:
-            refusal = Refusal(output.name, statement.line, align, filling.usage)
+            refusal = Refusal(output.name, statement.place, align, filling.usage)
             self._refusals.setdefault(symbol, []).append(refusal)
 
-    def _reserve(self, output: OutputSection, reserve: Reserve) -> None:
+    def _reserve(self, processor: str | None, output: OutputSection, reserve: Reserve) -> None:
         filling = self.fillings[output.segment]
         if not filling.has_room(reserve.nbytes, reserve.align):
             what = f"RESERVE({reserve.name}, {reserve.nbytes} bytes, align {reserve.align})"
-            raise LinkError(self._out_of_memory(reserve.line, output.name, what, filling.usage))
-        filling.take(reserve.nbytes, reserve.align)
+            raise LinkError(_out_of_memory(reserve.place, output.name, what, filling.usage))
+        address = filling.address_for(reserve.nbytes, reserve.align)
+        nbytes = filling.rest_at(address) if reserve.takes_rest else reserve.nbytes
+        filling.take(nbytes, reserve.align)
+        self._reserves.append(Reserved(reserve, processor, output, address, nbytes))
+
+    def _move(self, output: OutputSection, statement: Statement, address: int) -> None:
+        filling = self.fillings[output.segment]
+        here = filling.location
+        if not filling.move_to(address):
+            raise LinkError(
+                f"{statement.place}: location counter of output section '{output.name}' must stay inside "
+                f"{filling.segment.name} and go up from 0x{here:08X}, not to 0x{address & 0xFFFFFFFF:08X}"
+            )
 
     def error_about(self, waiting: Sequence[Symbol]) -> LinkError:
         """Return the LinkError for the first of the symbols that found no place."""
@@ -90,21 +149,16 @@ class _Linker:
             return self._not_taken(symbol)
         *before, last = self._refusals[symbol]
         what = f"{symbol} (section {symbol.section}, {symbol.nbytes} bytes, align {last.align})"
-        message = self._out_of_memory(last.line, last.output_section, what, last.usage)
+        message = _out_of_memory(last.place, last.output_section, what, last.usage)
         for refusal in before:
             message += (
-                f"; nor in {_fullness(refusal.usage)} ('{refusal.output_section}', line {refusal.line})"
+                f"; nor in {_fullness(refusal.usage)} "
+                f"('{refusal.output_section}', {refusal.place.beside(last.place)})"
             )
         if len(waiting) > 1:
             nbytes = sum(other.nbytes for other in waiting)
             message += f"; in all {len(waiting)} symbols, {nbytes} bytes, are left without a place"
         return LinkError(message)
-
-    def _out_of_memory(self, line: int, output_section: str, what: str, usage: SegmentUsage) -> str:
-        return (
-            f"{self._script.path}:{line}: Out of memory in output section '{output_section}' [li1040]: "
-            f"{what} does not fit in {_fullness(usage)}"
-        )
 
     def _not_taken(self, symbol: Symbol) -> LinkError:
         """Return the LinkError for a symbol whose input section no output section names."""
@@ -128,3 +182,18 @@ class _Linker:
 
 def _fullness(usage: SegmentUsage) -> str:
     return f"{usage.name}: {usage.free_bytes} of {usage.nbytes} bytes free"
+
+
+def _out_of_memory(place: Place, output_section: str, what: str, usage: SegmentUsage) -> str:
+    return (
+        f"{place}: Out of memory in output section '{output_section}' [li1040]: "
+        f"{what} does not fit in {_fullness(usage)}"
+    )
+
+
+def _fillings(script: LinkerScript) -> dict[str, Filling]:
+    """Return a filling for each segment; those of several processors for the same memory have one in common."""
+    by_range = {
+        (each.start, each.nbytes): Filling(each, script.reserves) for each in reversed(script.segments)
+    }
+    return {each.name: by_range[each.start, each.nbytes] for each in script.segments}

@@ -1,136 +1,195 @@
-"""The LDF preprocessor: takes comments out and macros in. Conditional text and #include are refused."""
+"""The LDF preprocessor: files in, one text out, without comments, macros, conditions and inclusions."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from bfsim.errors import LinkError
-from bfsim.linker.source import Piece, Source, error_in
+from bfsim.linker.conditions import holds
+from bfsim.linker.macros import TOKEN, Macro, MacroError, Macros, expand_use
+from bfsim.linker.predefined import macros_for
+from bfsim.linker.source import File, Piece, Source
 
-_TOKEN = re.compile(
-    r"""(?P<directive> ^[ \t]*\#(?:\\\n|[^\n])* )
-      | (?P<comment>   /\*.*?\*/ | //[^\n]* )
-      | (?P<unclosed>  /\* )
-      | (?P<string>    "[^"\n]*" )
-      | (?P<word>      \$?\w+ )""",
-    re.VERBOSE | re.MULTILINE | re.DOTALL,
-)
-_DEFINE = re.compile(r"\s*#\s*define\s+(?P<name>[A-Za-z_]\w*)(?:\((?P<parameters>[\w\s,]*)\))?(?P<body>.*)")
-_UNDEF = re.compile(r"\s*#\s*undef\s+(?P<name>[A-Za-z_]\w*)\s*")
-_ARGUMENTS = re.compile(r"\s*\(([^()]*)\)")
-_PASTE = re.compile(r"\s*##\s*")
+_DIRECTIVE = re.compile(r"\s*#\s*(?P<name>\w*)(?P<rest>.*)", re.DOTALL)
+_DEFINE = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)(?:\((?P<parameters>[\w\s,]*)\))?(?P<body>.*)", re.DOTALL)
+_NAME = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)\s*")
+_INCLUDED = re.compile(r'\s*(?:"(?P<beside>[^"\n]+)"|<(?P<listed>[^>\n]+)>)\s*')
+_INCLUDE_COMMAND = re.compile(r'\s*\(\s*"?(?P<beside>[^")\n]+?)"?\s*\)\s*;?')
+_IGNORED = {"", "pragma", "line", "ident"}
 
-# Bounds for macros that were written to explode; the default LDFs of VisualDSP++ stay below 3 and 1000.
-_DEEPEST_NESTING = 50
-_LONGEST_EXPANSION = 100_000
+# Bounds for inclusions that were written to explode; the default LDFs of VisualDSP++ include one file.
+_DEEPEST_INCLUSION = 20
+_MOST_INCLUSIONS = 500
 
 
-@dataclass(frozen=True, slots=True)
-class Macro:
-    """A #define: `parameters` is None for one without parentheses."""
+@dataclass(slots=True)
+class _Condition:
+    """An #if and its branches: whether the text around it counts, this branch does, and one did before."""
 
-    parameters: tuple[str, ...] | None
-    body: str
+    offset: int
+    is_read: bool
+    is_taken: bool
+    was_taken: bool
+    has_else: bool = False
 
 
-class _MacroError(Exception):
-    """Carries what is wrong with the use of a macro up to where the place of that use is known."""
+@dataclass(slots=True)
+class _Preprocessor:
+    """One run: the macros as they are defined now, and what has been included."""
+
+    macros: Macros
+    include_dirs: Sequence[Path]
+    warnings: list[str] = field(default_factory=list)
+    inclusions: int = 0
+
+    def pieces(self, file: File, active: tuple[Path, ...]) -> Iterator[tuple[str, File, int, bool]]:
+        """Yield the expanded text in pieces: text, file, where it was written, whether just so."""
+        written, conditions, position = file.written, list[_Condition](), 0
+        while (match := TOKEN.search(written, position)) is not None:
+            start = match.start()
+            is_taken = not conditions or conditions[-1].is_taken
+            if is_taken:
+                yield written[position:start], file, position, True
+            position = match.end()
+            match match.lastgroup:
+                case "directive":
+                    yield from self._obey(file, match, conditions, active)
+                case "unclosed":
+                    raise file.error_at(start, "comment must end with */ before the file does")
+                case _ if not is_taken:
+                    continue
+                case "comment":
+                    yield " ", file, start, False
+                case "word" if match.group() in self.macros:
+                    try:
+                        text, position = expand_use(written, match, self.macros)
+                    except MacroError as error:
+                        raise file.error_at(start, str(error)) from None
+                    yield text, file, start, False
+                case "word" if match.group() == "INCLUDE" and (
+                    command := _INCLUDE_COMMAND.match(written, position)
+                ):
+                    position = command.end()
+                    yield from self._include(file, start, command["beside"], is_beside=True, active=active)
+                case _:
+                    yield match.group(), file, start, True
+        if conditions:
+            raise file.error_at(conditions[-1].offset, "#if must end with #endif before the file does")
+        yield written[position:], file, position, True
+
+    def _obey(
+        self, file: File, match: re.Match[str], conditions: list[_Condition], active: tuple[Path, ...]
+    ) -> Iterator[tuple[str, File, int, bool]]:
+        """Do what a directive says; yield the text that it includes."""
+        text = re.sub(r"/\*.*?\*/", " ", re.sub(r"\\\r?\n", " ", match.group()), flags=re.DOTALL)
+        directive = _DIRECTIVE.fullmatch(text)
+        assert directive is not None
+        name, rest = directive["name"], directive["rest"].strip()
+        offset = match.start() + match.group().index("#")
+        if name in ("if", "ifdef", "ifndef", "elif", "else", "endif"):
+            self._branch(file, offset, name, rest, conditions)
+        elif conditions and not conditions[-1].is_taken:
+            return
+        elif name == "include" and (included := _INCLUDED.fullmatch(rest)):
+            wanted = included["beside"] or included["listed"]
+            is_beside = included["beside"] is not None
+            yield from self._include(file, offset, wanted, is_beside=is_beside, active=active)
+        elif name == "define" and (define := _DEFINE.fullmatch(rest)):
+            self.macros[define["name"]] = _macro(define)
+        elif name == "undef" and (undef := _NAME.fullmatch(rest)):
+            self.macros.pop(undef["name"], None)
+        elif name == "error":
+            raise file.error_at(offset, f"#error {rest}".rstrip())
+        elif name == "warning":
+            self.warnings.append(f"{file.place_of(offset)}: {rest}")
+        elif name not in _IGNORED:
+            raise file.error_at(
+                offset,
+                "preprocessor line must be #define, #undef, #if, #ifdef, #ifndef, #elif, #else, #endif, "
+                f"#include, #error, #warning or #pragma, with what belongs to it, not {text.strip()[:60]!r}",
+            )
+
+    def _branch(self, file: File, offset: int, name: str, rest: str, conditions: list[_Condition]) -> None:
+        """Enter, change or leave a condition."""
+        if name in ("if", "ifdef", "ifndef"):
+            is_read = not conditions or conditions[-1].is_taken
+            is_true = is_read and self._is_true(file, offset, name, rest)
+            conditions.append(_Condition(offset, is_read, is_true, is_true))
+            return
+        if not conditions:
+            raise file.error_at(offset, f"#{name} must follow an #if")
+        if name == "endif":
+            conditions.pop()
+            return
+        condition = conditions[-1]
+        if condition.has_else:
+            raise file.error_at(offset, f"#{name} must not follow the #else of its #if")
+        condition.has_else = name == "else"
+        may_take = condition.is_read and not condition.was_taken
+        condition.is_taken = may_take and (name == "else" or self._is_true(file, offset, "if", rest))
+        condition.was_taken |= condition.is_taken
+
+    def _is_true(self, file: File, offset: int, name: str, rest: str) -> bool:
+        if name == "if":
+            try:
+                return holds(rest, self.macros)
+            except MacroError as error:
+                raise file.error_at(offset, str(error)) from None
+        named = _NAME.match(rest)
+        if named is None:
+            raise file.error_at(offset, f"#{name} must name a macro, not {rest[:30]!r}")
+        return (named["name"] in self.macros) == (name == "ifdef")
+
+    def _include(
+        self, file: File, offset: int, wanted: str, *, is_beside: bool, active: tuple[Path, ...]
+    ) -> Iterator[tuple[str, File, int, bool]]:
+        """Yield the text of the file `wanted`, from beside `file` or from the first of the include folders."""
+        self.inclusions += 1
+        if len(active) > _DEEPEST_INCLUSION or self.inclusions > _MOST_INCLUSIONS:
+            limits = f"{_DEEPEST_INCLUSION} deep and {_MOST_INCLUSIONS} in all"
+            raise file.error_at(offset, f"inclusions must be at most {limits}")
+        folders = [*([file.path.parent] if is_beside else []), *self.include_dirs]
+        for folder in folders:
+            path = folder / wanted.replace("\\", "/")
+            if path.resolve() in active:
+                raise file.error_at(offset, f"file must not include itself, not {wanted!r}")
+            try:
+                written = _read(path)
+            except (OSError, ValueError):
+                continue
+            place = file.place_of(offset)
+            yield from self.pieces(File(path, written, place), (*active, path.resolve()))
+            return
+        searched = ", ".join(map(str, folders)) or "no folder"
+        raise file.error_at(offset, f"included file must be a readable one, not '{wanted}' (sought in {searched})")
 
 
-def preprocess(path: Path) -> Source:
-    """Read an LDF, expand its macros and blank its comments; LinkError if a part cannot be read."""
+def preprocess(path: Path, macros: Mapping[str, str], include_dirs: Sequence[Path]) -> Source:
+    """Read an LDF with `macros` beside the predefined ones, expand macros, blank comments; LinkError if it cannot."""
     try:
-        written = path.read_text(encoding="utf-8-sig", errors="replace")
+        file = File(path, _read(path))
     except OSError as error:
         raise LinkError(f"LDF must be a readable file, not {path} ({error.strerror})") from None
+    defined = macros_for(file.written) | dict(macros)
+    run = _Preprocessor({name: Macro(None, body) for name, body in defined.items()}, include_dirs)
     expanded: list[str] = []
     pieces: list[Piece] = []
     length = 0
-    for text, written_at, is_copy in _pieces(path, written):
-        pieces.append(Piece(length, written_at, is_copy))
+    for text, written_in, written_at, is_copy in run.pieces(file, (path.resolve(),)):
+        pieces.append(Piece(length, written_in, written_at, is_copy))
         expanded.append(text)
         length += len(text)
-    return Source(path, written, "".join(expanded), tuple(pieces))
+    return Source(path, "".join(expanded), tuple(pieces), tuple(run.warnings))
 
 
-def _pieces(path: Path, written: str) -> Iterator[tuple[str, int, bool]]:
-    """Yield the expanded text in pieces: the text, where it was written, whether it was written just so."""
-    macros: dict[str, Macro] = {}
-    position = 0
-    while (match := _TOKEN.search(written, position)) is not None:
-        start = match.start()
-        yield written[position:start], position, True
-        position = match.end()
-        match match.lastgroup:
-            case "directive":
-                _obey(path, written, match, macros)
-            case "comment":
-                yield " ", start, False
-            case "unclosed":
-                raise error_in(path, written, start, "comment must end with */ before the file does")
-            case "word" if match.group() in macros:
-                try:
-                    text, position = _expand_use(written, match, macros, frozenset())
-                except _MacroError as error:
-                    raise error_in(path, written, start, str(error)) from None
-                yield text, start, False
-            case _:
-                yield match.group(), start, True
-    yield written[position:], position, True
+def _read(path: Path) -> str:
+    return path.read_text(encoding="utf-8-sig", errors="replace")
 
 
-def _obey(path: Path, written: str, directive: re.Match[str], macros: dict[str, Macro]) -> None:
-    """Enter a #define into `macros` or take an #undef out; refuse every other directive."""
-    text = re.sub(r"/\*.*?\*/|//.*", " ", directive.group().replace("\\\n", " "))
-    if define := _DEFINE.fullmatch(text):
-        listed = define["parameters"]
-        parameters = None if listed is None else tuple(name.strip() for name in listed.split(","))
-        macros[define["name"]] = Macro(parameters, define["body"].strip())
-    elif undef := _UNDEF.fullmatch(text):
-        macros.pop(undef["name"], None)
-    else:
-        offset = directive.start() + directive.group().index("#")
-        raise error_in(
-            path, written, offset, f"preprocessor line must be #define or #undef, not {text.strip()!r}"
-        )
-
-
-def _expand_use(
-    text: str, use: re.Match[str], macros: Mapping[str, Macro], active: frozenset[str]
-) -> tuple[str, int]:
-    """Return what the macro used at `use` becomes, and the position in `text` behind its arguments."""
-    name = use.group()
-    macro = macros[name]
-    body, end = macro.body, use.end()
-    if macro.parameters is not None:
-        listed = _ARGUMENTS.match(text, end)
-        if listed is None:
-            return name, end
-        arguments = [argument.strip() for argument in listed[1].split(",")]
-        if len(arguments) != len(macro.parameters):
-            raise _MacroError(f"macro {name} takes {len(macro.parameters)} arguments, not {len(arguments)}")
-        values = dict(zip(macro.parameters, arguments, strict=True))
-        body, end = re.sub(r"\w+", lambda word: values.get(word[0], word[0]), body), listed.end()
-    if len(active) == _DEEPEST_NESTING:
-        raise _MacroError(f"macros must nest at most {_DEEPEST_NESTING} deep")
-    return _expand_body(_PASTE.sub("", body), macros, active | {name}), end
-
-
-def _expand_body(body: str, macros: Mapping[str, Macro], active: frozenset[str]) -> str:
-    """Expand the macros in a macro's body, but those that are being expanded already, as C does."""
-    expanded: list[str] = []
-    length = position = 0
-    while (match := _TOKEN.search(body, position)) is not None:
-        text = body[position : match.start()]
-        position = match.end()
-        use = match.group()
-        if use in macros and use not in active:
-            use, position = _expand_use(body, match, macros, active)
-        expanded += (text, use)
-        length += len(text) + len(use)
-        if length > _LONGEST_EXPANSION:
-            raise _MacroError(f"macro must expand to at most {_LONGEST_EXPANSION} characters")
-    return "".join(expanded) + body[position:]
+def _macro(define: re.Match[str]) -> Macro:
+    listed = define["parameters"]
+    names = None if listed is None else tuple(name.strip() for name in listed.split(",") if name.strip())
+    return Macro(names, define["body"].strip())

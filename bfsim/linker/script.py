@@ -2,23 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from functools import cached_property
 from pathlib import Path
 
+from bfsim.linker.expressions import Expression
 from bfsim.linker.link_map import Symbol
+from bfsim.linker.source import Place, Source
 
 CORE_OF_PROCESSOR = {"p0": "A", "p1": "B"}  # the names that the default LDFs of the BF561 give the cores
+DUAL_CORE_CHIPS = ("ADSP-BF561",)
+MEMORY_FUNCTIONS = ("MEMORY_START", "MEMORY_END", "MEMORY_SIZEOF")
 COMMAND_LINE_OBJECTS = "$COMMAND_LINE_OBJECTS"
 
 
 @dataclass(frozen=True, slots=True)
-class Segment:
+class Statement:
+    """Something that stands in a certain `place` of the LDF."""
+
+    place: Place
+
+    @property
+    def line(self) -> int:
+        """Line of its file, from 1."""
+        return self.place.line
+
+
+@dataclass(frozen=True, slots=True)
+class Segment(Statement):
     """A stretch of memory: `nbytes` from address `start`. `processor` is empty in the global MEMORY block."""
 
     name: str
     start: int
     nbytes: int
-    line: int
     processor: str = ""
 
     @property
@@ -26,10 +44,20 @@ class Segment:
         """Address of the last byte."""
         return self.start + self.nbytes - 1
 
+    def overlaps(self, other: Segment) -> bool:
+        """Say whether a byte lies in both."""
+        return self.start <= other.end and other.start <= self.end
+
+
+def memory_function(function: str, segment: Segment) -> int:
+    """Return MEMORY_START, MEMORY_END or MEMORY_SIZEOF of a segment."""
+    values = {"MEMORY_START": segment.start, "MEMORY_END": segment.end, "MEMORY_SIZEOF": segment.nbytes}
+    return values[function]
+
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """The input sections `sections` of the object files `files`."""
+    """The input sections `sections`, which may have the wildcards * and ?, of the object files `files`."""
 
     files: frozenset[str]
     sections: frozenset[str]
@@ -41,16 +69,18 @@ class Input:
 
     def takes(self, symbol: Symbol) -> bool:
         """Say whether `symbol` lies in one of the sections of one of the files."""
-        return symbol.section in self.sections and self.takes_file(symbol)
+        return self.takes_file(symbol) and (
+            symbol.section in self.sections
+            or any(fnmatchcase(symbol.section, section) for section in self.sections if {*section} & {*"*?"})
+        )
 
 
 @dataclass(frozen=True, slots=True)
-class InputSections:
+class InputSections(Statement):
     """An INPUT_SECTIONS statement; `align` is the INPUT_SECTION_ALIGN, in bytes, in force there."""
 
     inputs: tuple[Input, ...]
     align: int
-    line: int
 
     def takes(self, symbol: Symbol) -> bool:
         """Say whether `symbol` is one of the statement's inputs."""
@@ -58,66 +88,137 @@ class InputSections:
 
 
 @dataclass(frozen=True, slots=True)
-class Reserve:
-    """A RESERVE inside an output section: `nbytes` at the location pointer, moved up to `align`."""
+class Reserve(Statement):
+    """A RESERVE inside an output section: `nbytes` at the location pointer, moved up to `align`.
+
+    One that takes the rest gets what follows up to the next fixed reserve, `nbytes` at least. One that
+    expands gets, when everything else has its place, the largest stretch that is free.
+    """
 
     name: str
+    length_name: str
     nbytes: int
     align: int
-    line: int
+    takes_rest: bool = False
+    expands: bool = False
 
 
 @dataclass(frozen=True, slots=True)
-class FixedReserve:
+class FixedReserve(Statement):
     """A RESERVE with an address: `nbytes` from `start` that no symbol may use."""
 
     name: str
+    length_name: str
     start: int
     nbytes: int
-    line: int
+    processor: str | None
+
+    def is_same_as(self, other: FixedReserve) -> bool:
+        """Say whether both reserve the same bytes, each for its own processor."""
+        return (self.start, self.nbytes) == (other.start, other.nbytes) and self.processor != other.processor
 
 
 @dataclass(frozen=True, slots=True)
-class OutputSection:
-    """An output section: statements that fill `segment` one after the other."""
+class Assignment(Statement):
+    """A `symbol = expression;`, where "." is the location counter."""
+
+    symbol: str
+    expression: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Move(Statement):
+    """An ALIGN: the location pointer goes up to a multiple of `align`."""
+
+    align: int
+
+
+@dataclass(frozen=True, slots=True)
+class OutputSection(Statement):
+    """An output section: statements that fill `segment` one after the other; without one it takes nothing."""
 
     name: str
-    statements: tuple[InputSections | Reserve, ...]
+    statements: tuple[InputSections | Reserve | Assignment | Move, ...]
     segment: str
     is_contiguous: bool
-    line: int
 
 
 @dataclass(frozen=True, slots=True)
-class Resolve:
+class Resolve(Statement):
     """A RESOLVE: where the processor expects the symbol `name`."""
 
     name: str
     address: int
-    line: int
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
-    """A PROCESSOR, COMMON_MEMORY or SHARED_MEMORY block; the latter two also take what both cores share."""
+class Block(Statement):
+    """A PROCESSOR, COMMON_MEMORY or SHARED_MEMORY block; the latter two also take what both cores share.
+
+    `loose` are the assignments outside its output sections.
+    """
 
     title: str
     processors: tuple[str, ...]
     is_shared: bool
     output_sections: tuple[OutputSection, ...]
     resolves: tuple[Resolve, ...]
-    line: int
+    loose: tuple[Assignment, ...]
+
+    @property
+    def processor(self) -> str | None:
+        """The processor that owns what is defined here; None if several share it."""
+        return None if self.is_shared else self.processors[0]
+
+    @property
+    def assignments(self) -> dict[str, int]:
+        """The symbols that are assigned a number here, whatever is linked."""
+        return {
+            each.symbol: each.expression.number for each in self._assignments() if each.expression.is_number
+        }
 
     def serves(self, symbol: Symbol) -> bool:
         """Say whether the block places symbols of this one's processor."""
         return self.is_shared if symbol.processor is None else symbol.processor in self.processors
 
+    def _assignments(self) -> Iterator[Assignment]:
+        yield from self.loose
+        for output in self.output_sections:
+            yield from (each for each in output.statements if isinstance(each, Assignment))
 
-@dataclass(frozen=True, slots=True)
+
+@dataclass(frozen=True)
 class LinkerScript:
-    """A whole LDF. Segments do not overlap and have different names; blocks are in the order of the file."""
+    """A whole LDF. Segments have different names; blocks are in the order of the file.
 
-    path: Path
+    `chip` is empty without an ARCHITECTURE. `loose` are the assignments outside all blocks.
+    """
+
+    source: Source
+    chip: str
     segments: tuple[Segment, ...]
     reserves: tuple[FixedReserve, ...]
     blocks: tuple[Block, ...]
+    loose: tuple[Assignment, ...]
+
+    @property
+    def path(self) -> Path:
+        """The LDF's file."""
+        return self.source.path
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the #warning lines of the LDF say, each with its place."""
+        return self.source.warnings
+
+    @cached_property
+    def segment_by_name(self) -> Mapping[str, Segment]:
+        """The segments by their names."""
+        return {segment.name: segment for segment in self.segments}
+
+    @cached_property
+    def core_of_processor(self) -> Mapping[str, str]:
+        """The core, "A" or "B", that each processor of the LDF is: by name, or the only one of a single core."""
+        if not self.chip or self.chip in DUAL_CORE_CHIPS:
+            return CORE_OF_PROCESSOR
+        return {name: "A" for block in self.blocks for name in block.processors}

@@ -1,4 +1,4 @@
-"""The text of one LDF: as written, as the preprocessor left it, and the way back to line and column."""
+"""The text of an LDF: its files as written, what the preprocessor made of them, and the way back to line and column."""
 
 from __future__ import annotations
 
@@ -12,40 +12,75 @@ _LONGEST_EXCERPT = 100  # characters of the source line that an error shows on e
 
 
 @dataclass(frozen=True, slots=True)
+class Place:
+    """A line, from 1, of an LDF or of a file that it includes."""
+
+    path: Path
+    line: int
+
+    def __str__(self) -> str:
+        """Name the place as the start of an error message."""
+        return f"{self.path}:{self.line}"
+
+    def beside(self, other: Place) -> str:
+        """Name this place in an error message about the place `other`."""
+        return f"line {self.line}" if self.path == other.path else str(self)
+
+
+@dataclass(frozen=True, slots=True)
+class File:
+    """A file as written, and which line of which file includes it (None: the LDF itself)."""
+
+    path: Path
+    written: str
+    included_at: Place | None = None
+
+    def place_of(self, offset: int) -> Place:
+        """Return the line of the character `offset`."""
+        return Place(self.path, self.written.count("\n", 0, offset) + 1)
+
+    def error_at(self, offset: int, problem: str) -> LinkError:
+        """Return a LinkError about the character `offset`: place, source line, caret."""
+        line_start = self.written.rfind("\n", 0, offset) + 1
+        rest = self.written[line_start : max(offset, line_start) + _LONGEST_EXCERPT]
+        line = rest.partition("\n")[0].expandtabs(1)
+        column = offset - line_start + 1
+        cut = max(0, column - _LONGEST_EXCERPT)
+        via = f" (included from {self.included_at})" if self.included_at else ""
+        return LinkError(
+            f"{self.place_of(offset)}:{column}: {problem}{via}\n{line[cut:]}\n{' ' * (column - 1 - cut)}^"
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class Piece:
     """A stretch of expanded text and where it was written; not `is_copy` where a macro was expanded."""
 
     expanded_at: int
+    file: File
     written_at: int
     is_copy: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """An LDF as written in the file `path`, and its preprocessed text made of `pieces` in order."""
+    """An LDF's preprocessed text, made of `pieces` in order, and what its #warning lines say."""
 
     path: Path
-    written: str
     expanded: str
     pieces: tuple[Piece, ...]
+    warnings: tuple[str, ...]
 
-    def line_at(self, offset: int) -> int:
-        """Return the line, from 1, on which the expanded text's character `offset` was written."""
-        return self.written.count("\n", 0, self._written_at(offset)) + 1
+    def place_of(self, offset: int) -> Place:
+        """Return the line on which the expanded text's character `offset` was written."""
+        file, written_at = self._written_at(offset)
+        return file.place_of(written_at)
 
     def error_at(self, offset: int, problem: str) -> LinkError:
         """Return a LinkError about the expanded text's character `offset`: place, source line, caret."""
-        return error_in(self.path, self.written, self._written_at(offset), problem)
+        file, written_at = self._written_at(offset)
+        return file.error_at(written_at, problem)
 
-    def _written_at(self, offset: int) -> int:
+    def _written_at(self, offset: int) -> tuple[File, int]:
         piece = self.pieces[bisect_right(self.pieces, offset, key=lambda p: p.expanded_at) - 1]
-        return piece.written_at + (offset - piece.expanded_at if piece.is_copy else 0)
-
-
-def error_in(path: Path, text: str, offset: int, problem: str) -> LinkError:
-    """Return a LinkError about the character `offset` of `text`, the contents of `path`."""
-    line_start = text.rfind("\n", 0, offset) + 1
-    line = text[line_start : max(offset, line_start) + _LONGEST_EXCERPT].partition("\n")[0].expandtabs(1)
-    number, column = text.count("\n", 0, offset) + 1, offset - line_start + 1
-    cut = max(0, column - _LONGEST_EXCERPT)
-    return LinkError(f"{path}:{number}:{column}: {problem}\n{line[cut:]}\n{' ' * (column - 1 - cut)}^")
+        return piece.file, piece.written_at + (offset - piece.expanded_at if piece.is_copy else 0)

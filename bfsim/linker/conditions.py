@@ -1,0 +1,29 @@
+"""The conditions of #if and #elif: integer expressions of C over macros and `defined`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from bfsim.errors import LinkError
+from bfsim.linker.macros import Macro, MacroError, expand
+
+_DEFINED = re.compile(r"\bdefined\s*(?:\(\s*(\w+)\s*\)|(\w+))")
+
+
+def holds(condition: str, macros: Mapping[str, Macro]) -> bool:
+    """Say whether `condition` is not 0; names that no macro defines are 0. Raise MacroError if it has no value."""
+    from bfsim.linker.grammar import parse_condition  # the grammar costs time that few LDFs need to pay twice
+
+    def is_defined(use: re.Match[str]) -> str:
+        return "1" if (use[1] or use[2]) in macros else "0"
+
+    # A macro may stand for a condition of its own, as INSTR_CACHE does in the default LDFs.
+    expanded = _DEFINED.sub(is_defined, expand(_DEFINED.sub(is_defined, condition), macros))
+    if expanded.strip() in ("0", "1"):
+        return expanded.strip() == "1"
+    try:
+        return parse_condition(expanded) != 0
+    except LinkError as error:
+        said = condition if len(condition) <= 60 else f"{condition[:60]}..."
+        raise MacroError(f"condition must be an expression of integers, not '{said}': {error}") from None
