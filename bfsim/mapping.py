@@ -7,7 +7,7 @@ from pathlib import Path
 from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import profile_named
-from bfsim.linker import CORE_OF_PROCESSOR, LinkerScript, link, parse_ldf
+from bfsim.linker import LinkerScript, link, parse_ldf
 from bfsim.loading import load_firmware
 from bfsim.machine.board import PROCESSORS, symbols_of
 from bfsim.machine.program import Buffer, Firmware, FrameSize
@@ -48,8 +48,9 @@ def map_memory(
 
 def _fits(firmware: Firmware, script: LinkerScript, spec: BoardSpec) -> bool:
     """Say whether firmware, LDF and board are about the same cores."""
-    placed = {CORE_OF_PROCESSOR[name] for block in script.blocks for name in block.processors}
-    return set(firmware.mains) == set(spec.chip.cores) == placed
+    placed = {script.core_of_processor.get(name) for block in script.blocks for name in block.processors}
+    is_of_chip = script.chip in ("", spec.chip.name)
+    return is_of_chip and set(firmware.mains) == set(spec.chip.cores) == placed
 
 
 def _kinds(firmware: Firmware, size: FrameSize) -> dict[tuple[str | None, str], Kind]:

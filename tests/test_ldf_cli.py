@@ -78,15 +78,21 @@ def test_picture(suffix: str, tmp_path: Path) -> None:
     path = tmp_path / f"map.{suffix}"
     assert call("--no-symbols", "--picture", str(path)).exit_code == 0
     if suffix == "png":
-        assert Image.open(path).width > 2000
+        with Image.open(path) as picture:
+            assert picture.width > 2000
     else:
         assert path.read_text().endswith("</svg>\n")
 
 
-def test_an_ldf_of_another_chip_is_shown_without_the_firmware(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "text",
+    [BF533, BF533.replace("BF533", "BF561").replace("p0", "p9")],
+    ids=["another chip", "another processor"],
+)
+def test_an_ldf_of_other_cores_is_shown_without_the_firmware(text: str, tmp_path: Path) -> None:
     """Segments, and what they take in what order."""
-    path = tmp_path / "bf533.ldf"
-    path.write_text(BF533)
+    path = tmp_path / "other.ldf"
+    path.write_text(text)
     done = call(str(path))
     assert done.exit_code == 0
     assert "no firmware: it is for other cores" in done.output

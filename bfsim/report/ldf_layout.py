@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 
 from bfsim.chip.memory_map import KIB, Region
-from bfsim.linker import CORE_OF_PROCESSOR, LinkerScript, LinkMap, Placement, SegmentUsage
+from bfsim.linker import LinkerScript, LinkMap, Placement
 from bfsim.linker.script import InputSections, Segment
 from bfsim.report.ldf_map import (
     SHARED,
@@ -54,19 +54,14 @@ def memory_map(
 
     `kinds`: what the symbols are, by processor (None: both) and name; every other one is code.
     """
-    usages = {each.name: each for each in link_map.segments} if link_map else {}
-    placements = link_map.placements if link_map else ()
-    builder = _Builder(script, memories, kinds)
+    builder = _Builder(script, link_map, memories, kinds)
     return MemoryMap(
         ldf=script.path.name,
         firmware=firmware,
         board=memories.board,
         width_px=width_px,
         height_px=height_px,
-        segments=tuple(
-            builder.segment(each, usages.get(each.name), [p for p in placements if p.segment == each.name])
-            for each in script.segments
-        ),
+        segments=tuple(builder.segment(each) for each in script.segments),
         caches=tuple(_caches(script, memories.regions)),
     )
 
@@ -76,17 +71,23 @@ class _Builder:
     """Makes the parts of one map."""
 
     script: LinkerScript
+    link_map: LinkMap | None
     memories: Memories
     kinds: Mapping[tuple[str | None, str], Kind]
 
-    def segment(
-        self, segment: Segment, usage: SegmentUsage | None, placements: Sequence[Placement]
-    ) -> MapSegment:
-        """Return one segment with what was placed in it."""
+    def segment(self, segment: Segment) -> MapSegment:
+        """Return one segment with what was placed in it, under whatever name of the same memory."""
         region = next((r for r in self.memories.regions if r.holds(segment.start, segment.nbytes)), None)
         memory, owner = (region.name, str(region.owner)) if region else ("no memory of the board", SHARED)
-        symbols = tuple(self.symbol(each, memory) for each in sorted(placements, key=lambda p: p.address))
-        used = usage.used_bytes if usage else sum(each.nbytes for each in self.fixed(segment))
+        placed = [
+            each
+            for each in (self.link_map.placements if self.link_map else ())
+            if segment.start <= each.address <= segment.end
+        ]
+        reserves = list(self.reserves(segment))
+        symbols = tuple(self.symbol(each, memory) for each in sorted(placed, key=lambda p: p.address))
+        usages = {each.name: each.used_bytes for each in self.link_map.segments} if self.link_map else {}
+        used = usages.get(segment.name, sum(each.nbytes for each in reserves))
         return MapSegment(
             name=segment.name,
             memory=memory,
@@ -94,9 +95,9 @@ class _Builder:
             start=segment.start,
             nbytes=segment.nbytes,
             used_bytes=used,
-            sections=tuple(self.sections(segment, placements)),
+            sections=tuple(self.sections(segment, placed)),
             symbols=symbols,
-            pieces=tuple(_pieces(segment, used, symbols, self.fixed(segment))),
+            pieces=tuple(_pieces(segment, used, symbols, reserves)),
         )
 
     def symbol(self, placed: Placement, memory: str) -> MapSymbol:
@@ -107,7 +108,7 @@ class _Builder:
         return MapSymbol(
             name=symbol.name,
             kind=self.kinds.get((symbol.processor, symbol.name), Kind.CODE),
-            owner=CORE_OF_PROCESSOR[symbol.processor] if symbol.processor else SHARED,
+            owner=self.script.core_of_processor[symbol.processor] if symbol.processor else SHARED,
             section=symbol.section,
             nbytes=symbol.nbytes,
             address=placed.address,
@@ -134,13 +135,14 @@ class _Builder:
                     nbytes=sum(each.symbol.nbytes for each in inside),
                 )
 
-    def fixed(self, segment: Segment) -> list[Piece]:
-        """Return the reserves that have an address in a segment."""
-        return [
-            Piece(name=each.name, kind=Kind.RESERVED, owner=SHARED, start=each.start, nbytes=each.nbytes)
-            for each in self.script.reserves
-            if segment.start <= each.start <= segment.end
-        ]
+    def reserves(self, segment: Segment) -> Iterator[Piece]:
+        """Yield the reserves in a segment; without a link only those that have an address."""
+        found = self.link_map.reserves if self.link_map else self.script.reserves
+        inside = {each.start: each for each in found if segment.start <= each.start <= segment.end}
+        for each in inside.values():
+            yield Piece(
+                name=each.name, kind=Kind.RESERVED, owner=SHARED, start=each.start, nbytes=each.nbytes
+            )
 
 
 def _takes(statements: Sequence[InputSections]) -> Iterator[str]:
@@ -150,29 +152,31 @@ def _takes(statements: Sequence[InputSections]) -> Iterator[str]:
 
 
 def _pieces(
-    segment: Segment, used_bytes: int, symbols: Sequence[MapSymbol], fixed: Sequence[Piece]
+    segment: Segment, used_bytes: int, symbols: Sequence[MapSymbol], reserves: Sequence[Piece]
 ) -> Iterator[Piece]:
-    """Yield what fills a segment. What is used and has no name lies before a symbol, or after the last one."""
+    """Yield what fills a segment. What is used and has no name is a gap before a symbol, or after the last one."""
     placed = [_piece(each) for each in symbols if each.nbytes]
-    named = _merged([*placed, *fixed])
+    named = _merged([*placed, *(each for each in reserves if each.nbytes)])
     last = max((each.start + each.nbytes for each in placed), default=segment.start)
-    unnamed = used_bytes - sum(each.nbytes for each in named)
+    gaps = max(0, used_bytes - sum(each.nbytes for each in named))
     here = segment.start
     for piece in [*named, _unnamed(Kind.FREE, segment.end + 1, 0)]:
-        gap = piece.start - here
-        reserved = gap if here < last else min(gap, unnamed)
-        unnamed -= reserved
-        if reserved:
-            yield _unnamed(Kind.RESERVED, here, reserved)
-        if gap > reserved:
-            yield _unnamed(Kind.FREE, here + reserved, gap - reserved)
+        space = piece.start - here
+        gap = space if here < last else min(space, gaps)
+        gaps -= gap
+        if gap:
+            yield _unnamed(Kind.RESERVED, here, gap)
+        if space > gap:
+            yield _unnamed(Kind.FREE, here + gap, space - gap)
         if piece.nbytes:
             yield piece
         here = max(here, piece.start + piece.nbytes)
 
 
 def _unnamed(kind: Kind, start: int, nbytes: int) -> Piece:
-    return Piece(name=kind.value, kind=kind, owner=SHARED, start=start, nbytes=nbytes)
+    return Piece(
+        name="free" if kind is Kind.FREE else "gap", kind=kind, owner=SHARED, start=start, nbytes=nbytes
+    )
 
 
 def _piece(symbol: MapSymbol) -> Piece:
@@ -198,10 +202,10 @@ def _caches(script: LinkerScript, regions: Sequence[Region]) -> Iterator[CacheRa
     """Yield what the LDF's switches turn into cache, core by core."""
     for block in script.blocks:
         for name, memory in CACHE_SWITCHES.items():
-            if not getattr(block, "assignments", {}).get(name):
+            if not block.assignments.get(name):
                 continue
             for region in regions:
-                cores = {CORE_OF_PROCESSOR[each] for each in block.processors}
+                cores = {script.core_of_processor.get(each) for each in block.processors}
                 if region.memory == memory and region.owner in cores:
                     yield CacheRange(
                         memory=region.name,

@@ -74,7 +74,7 @@ class MapSection:
 class MapSegment:
     """A memory segment of the LDF, in the board's `memory`. `used_bytes` counts symbols, reserves and gaps.
 
-    `pieces` fill it from its start to its end.
+    `pieces` fill it from its start to its end. Of a reserve that expands into what is free only the least is used.
     """
 
     name: str

@@ -44,12 +44,16 @@ MEMORIES = Memories(board="test-board", regions=CM_BF561_REGIONS, bank_bytes=8 *
 
 
 def mapped(
-    symbols: list[Symbol], kinds: dict[tuple[str | None, str], Kind], *, linked: bool = True
+    symbols: list[Symbol],
+    kinds: dict[tuple[str | None, str], Kind],
+    *,
+    linked: bool = True,
+    text: str = TEXT,
 ) -> MemoryMap:
-    """The map of symbols placed by `TEXT`."""
+    """The map of symbols placed by the LDF `text`."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "test.ldf"
-        path.write_text(TEXT)
+        path.write_text(text)
         script = parse_ldf(path)
     return memory_map(
         script, link(script, symbols) if linked else None, MEMORIES, kinds,
@@ -84,11 +88,11 @@ def test_reserves_and_gaps_show_where_they_are() -> None:
     kinds = {("p0", "odd"): Kind.ROW, ("p0", "even"): Kind.LINES}
     (segment,) = (each for each in mapped(symbols, kinds).segments if each.name == "L1")
     assert [(each.name, each.start - segment.start, each.nbytes) for each in segment.pieces] == [
-        ("reserved", 0, 100),
+        ("heap", 0, 100),
         ("odd", 100, 3),
-        ("reserved", 103, 1),
+        ("gap", 103, 1),
         ("even", 104, 8),
-        ("reserved", 112, 60),
+        ("stack", 112, 60),
         ("free", 172, 2048 - 172),
     ]
 
@@ -112,7 +116,7 @@ def test_code_around_a_reserve_is_two_pieces() -> None:
     segment = mapped(symbols, {}).segments[0]
     assert [(each.name, each.start & 0xFFF) for each in segment.pieces if each.kind is not Kind.FREE] == [
         ("f0", 0),
-        ("reserved", 0x180),
+        ("gap", 0x180),
         ("hole", 0x200),
         ("2 kernels", 0x300),
     ]
@@ -139,6 +143,30 @@ def test_output_sections_say_what_they_take_in_what_order() -> None:
     ]
     assert (segments["L1"].memory, segments["L1"].owner) == ("COREA_L1_DATA_A", "A")
     assert (segments["L2"].memory, segments["L2"].owner) == ("L2", SHARED)
+
+
+def test_a_reserve_that_expands_takes_what_is_free() -> None:
+    """It is drawn as long as it became, but only its least counts as used."""
+    text = TEXT.replace("RESERVE(stack, stack_length = 60, 4)", "RESERVE_EXPAND(stack, stack_length, 60, 4)")
+    (segment,) = (each for each in mapped([], {}, text=text).segments if each.name == "L1")
+    assert [(each.name, each.nbytes) for each in segment.pieces] == [("heap", 100), ("stack", 2048 - 100)]
+    assert segment.used_bytes == 160
+
+
+def test_memory_that_two_segments_name_shows_in_both() -> None:
+    """What the other core's segment placed there is not free in one's own."""
+    shared = "{ TYPE(RAM) START(0xFEB00000) LENGTH(4K) WIDTH(8) }"
+    text = (
+        TEXT.replace(f"L2     {shared}", "")
+        .replace("MEMORY { L1", f"MEMORY {{ L2 {shared} L1")
+        .replace("PROCESSOR p1 {", f"PROCESSOR p1 {{ MEMORY {{ MINE {shared} }}")
+        .replace("> L2 } }", "> MINE } }")
+    )
+    symbols = [Symbol("f", "program", 40, 4, "p0"), Symbol("g", "program", 16, 4, "p1")]
+    named = {
+        each.name: [piece.name for piece in each.pieces] for each in mapped(symbols, {}, text=text).segments
+    }
+    assert named["L2"] == named["MINE"] == ["f", "g", "free", "hole", "free"]
 
 
 def test_without_a_link_there_are_segments_and_sections_only() -> None:
