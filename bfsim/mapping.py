@@ -34,7 +34,9 @@ def map_memory(
     script = parse_ldf(ldf or THESIS_LDF)
     program, size = load_firmware(firmware).firmware, FrameSize(width_px, height_px)
     fits = _fits(program, script, spec)
-    link_map = link(script, symbols_of(program, size, compiler), spec.chip.regions) if fits else None
+    link_map = None
+    if fits:
+        link_map = link(script, symbols_of(program, size, compiler), spec.chip.regions, chip=spec.chip.name)
     return memory_map(
         script,
         link_map,
