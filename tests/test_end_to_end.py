@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from bfsim.recording import RecordingWriter
-from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
+from bfsim.run import BUILT_IN_RECORDING
 
 
 def bfsim(
@@ -218,15 +218,14 @@ def test_unknown_names_are_refused(tmp_path: Path) -> None:
 
 def test_an_ldf_that_cannot_be_is_refused(tmp_path: Path) -> None:
     """A syntax error has line and caret; a picture too wide for L1 names section, memory, sizes and line."""
-    text = THESIS_LDF.read_text()
     broken = tmp_path / "broken.ldf"
-    broken.write_text(text.replace("SECTIONS", "SECTION", 1))
+    broken.write_text("ARCHITECTURE(ADSP-BF561)\nMEMORY { L1 { TYPE(RAM) START } }\n")
     message = refused("run", "--ldf", broken)
     assert "broken.ldf:" in message
     assert "^" in message
     wide = write_recording(tmp_path / "wide.mcap", width=1600, height=8)
     message = refused("run", wide)
-    for words in ("thesis.ldf:", "L1_data_a", "MEM_A_L1_DATA_A", "bytes"):
+    for words in ("core.ldfi:", "L1_data_a", "MEM_A_L1_DATA_A", "bytes"):
         assert words in message
 
 

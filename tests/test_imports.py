@@ -22,14 +22,16 @@ MAY_IMPORT = {
     "machine": {"errors", "clocks", "trace", "chip", "kernel", "linker"},
     "api": {"kernel", "machine", "trace"},
     "recording": {"errors"},
-    "report": {"errors", "clocks", "trace"},
+    "report": {"errors", "clocks", "trace", "chip", "linker"},  # the last two hold data: memories, and a link
     "loading": {"errors", "kernel", "machine"},
     "explain": {"errors", "kernel", "loading", "trace"},
     "run": {"errors", "trace", "chip", "kernel", "linker", "machine", "recording", "loading"},
+    "mapping": {"chip", "kernel", "linker", "loading", "machine", "report", "run"},
     "terminal": set(),
     "cli_boards": {"chip", "report", "terminal"},
+    "cli_ldf": {"mapping", "report", "terminal"},
     "cli_record": {"recording", "terminal"},
-    "cli": {"errors", "trace", "report", "run", "explain", "cli_boards", "cli_record", "terminal"},
+    "cli": {"errors", "trace", "report", "run", "explain", "cli_boards", "cli_ldf", "cli_record", "terminal"},
     "__main__": {"cli"},
 }
 READ_VERSION = {"recording", "run", "cli"}  # these also read `bfsim.__version__`

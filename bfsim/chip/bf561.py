@@ -25,6 +25,7 @@ BF561 = ChipSpec(
         data_bytes_per_bank=CACHE_NBYTES,
         code_ways=4,                    # Programming Reference p.243: 4 ways, LRU
         code_bytes=CACHE_NBYTES,
+        invalidate_cclk=2,              # [assumed] FLUSHINV [P++] in a hardware loop, and its tag access
     ),
     l2=L2Spec(
         read_cclk=9,                    # [assumed] first 64 bits of an access, range 7..11; writes are posted

@@ -71,13 +71,17 @@ class L1Spec:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CacheSpec:
-    """A cache in L1: what it takes of each memory that can be cache, and how it is divided."""
+    """A cache in L1: what it takes of each memory that can be cache, and how it is divided.
+
+    `invalidate_cclk`: what the loop that invalidates lines of the data cache takes for each.
+    """
 
     line_bytes: int
     data_ways: int
     data_bytes_per_bank: int
     code_ways: int
     code_bytes: int
+    invalidate_cclk: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

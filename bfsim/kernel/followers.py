@@ -138,6 +138,11 @@ class Follower:
                 f"a kernel call must access memory outside L1 at most {self._state[ROOM]} times, not {count} times: split it"
             )
 
+    def caches(self, offset: int) -> bool:
+        """Whether the data cache holds lines of the memory at `offset`."""
+        regions = self._state[FIRST_REGION : FIRST_REGION + 3 * int(self._state[REGIONS])].reshape(-1, 3)
+        return any(first <= offset < end for first, end, _ in regions.tolist())
+
     def forget(self, first: int, nbytes: int) -> int:
         """Invalidate the cached lines of `nbytes` from `first`, which are not written back; return how many that can be."""
         if not self._state[SETS]:

@@ -195,6 +195,7 @@ class Board:
             calls=book,
             bus=self._bus,
             number=index,
+            follower=follower,
             capture=capture,
             streams=(inward, outward),
             semaphores=self._semaphores,

@@ -21,8 +21,10 @@ import simpy
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, FirmwareError
 from bfsim.kernel import Kernel, Work
+from bfsim.kernel.followers import Follower
 from bfsim.machine.accounts import FrameAccounts
 from bfsim.machine.bus import Bus, Transfer
+from bfsim.machine.cached_lines import CachedInput, CachedOutput
 from bfsim.machine.calls import CallBook
 from bfsim.machine.capture import Capture
 from bfsim.machine.mdma import MdmaStream
@@ -78,6 +80,7 @@ class Core:
         calls: CallBook,
         bus: Bus,
         number: int,
+        follower: Follower,
         capture: Capture,
         streams: tuple[MdmaStream, MdmaStream],
         semaphores: dict[str, Semaphore],
@@ -103,6 +106,7 @@ class Core:
         self._calls = calls
         self._bus = bus
         self._number = number
+        self._follower = follower
         self._capture = capture
         self._streams = streams
         self._semaphores = semaphores
@@ -129,12 +133,19 @@ class Core:
             raise FirmwareError(f"buffer {name} has {len(rows)} rows; use core.rows({name!r})")
         return rows[0]
 
-    def input_ring(self, image: Sequence[Row], ring: str) -> InputRing:
-        """Return a ring that fetches the lines of `image` into the rows of buffer `ring`, one line ahead."""
+    def input_ring(self, image: Sequence[Row], ring: str) -> InputRing | CachedInput:
+        """Return a ring that fetches the lines of `image` into the rows of buffer `ring`, one line ahead.
+
+        Where the LDF has the image cached, its own rows take the place of the ring's.
+        """
+        if self._is_cached(image):
+            return CachedInput(image)
         return InputRing(self, self._streams[0], image, self.rows(ring))
 
-    def output_ring(self, ring: str, image: Sequence[Row]) -> OutputRing:
-        """Return a ring that takes finished lines from the rows of buffer `ring` to `image`."""
+    def output_ring(self, ring: str, image: Sequence[Row]) -> OutputRing | CachedOutput:
+        """Return a ring that takes finished lines from the rows of buffer `ring` to `image`, which may be cached as above."""
+        if self._is_cached(image):
+            return CachedOutput(image)
         return OutputRing(self, self._streams[1], self.rows(ring), image)
 
     def run(self, kernel: Kernel, *arguments: Row | int) -> Work:
@@ -172,6 +183,7 @@ class Core:
         self._full_at_cclk = -(-pair.full_at_ticks // self._cclk_ticks)
         rows = pair.rows[self.name]
         width = rows[0].nbytes // 2
+        self._invalidate(rows)
         self._frame = Frame(pair.index, rows, width, len(rows))
         return self._frame
 
@@ -191,6 +203,16 @@ class Core:
         if turn is not None:
             yield from self._blocked(iter([turn]), f"semaphore {name!r}")
             self._wake(StallReason.SEMAPHORE)
+
+    def _is_cached(self, image: Sequence[Row]) -> bool:
+        return bool(image) and self._follower.caches(image[0].offset)
+
+    def _invalidate(self, rows: Sequence[Row]) -> None:
+        """Let the data cache forget what it holds of a picture that DMA has written over."""
+        lines = self._follower.forget(rows[0].offset, rows[0].nbytes * len(rows))
+        cclk = lines * self._board.chip.cache.invalidate_cclk
+        self._cclk += cclk
+        self._account.issue_cclk += cclk
 
     def _enter(self, stage: str) -> None:
         """Go over to another row of the budget, and charge the one that ends what conflicts in L1 cost it."""

@@ -1,4 +1,4 @@
-"""Writing a text file whole or not at all."""
+"""Writing a file whole or not at all."""
 
 from __future__ import annotations
 
@@ -18,7 +18,12 @@ def require_place(path: Path) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write `text` beside `path` first and then put it in its place; a link is followed, permissions are kept.
+    """Write `text` to `path` as `write_bytes` does."""
+    write_bytes(path, text.encode())
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write `content` beside `path` first and then put it in its place; a link is followed, permissions are kept.
 
     Raises ConfigError where the system refuses.
     """
@@ -27,7 +32,7 @@ def write_text(path: Path, text: str) -> None:
     try:
         with tempfile.TemporaryDirectory(prefix=".bfsim-", dir=target.parent) as folder:
             draft = Path(folder) / target.name
-            draft.write_text(text, encoding="utf-8")
+            draft.write_bytes(content)
             if target.exists():
                 shutil.copymode(target, draft)
             draft.replace(target)

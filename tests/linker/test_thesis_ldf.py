@@ -68,7 +68,7 @@ def test_sections_start_where_the_memory_map_says(processor: str | None, section
 def test_sections_hold_what_the_memory_holds(processor: str | None, section: str, largest: int) -> None:
     """A symbol as large as the memory less its reserves fits; four bytes more are out of memory."""
     assert link(thesis(), [Symbol("x", section, largest, processor=processor)]).placements
-    with pytest.raises(LinkError, match=rf"thesis\.ldf:\d+: Out of memory .* {largest + 4} bytes"):
+    with pytest.raises(LinkError, match=rf"\.ldfi:\d+: Out of memory .* {largest + 4} bytes"):
         link(thesis(), [Symbol("x", section, largest + 4, processor=processor)])
 
 

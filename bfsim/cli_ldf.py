@@ -1,0 +1,97 @@
+"""`bfsim ldf`: where a linker description file puts things."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import click
+
+from bfsim.terminal import print_report
+
+
+class _Size(click.ParamType[tuple[int, int]]):
+    """Width and height in pixels, such as 320x240."""
+
+    name = "WxH"
+
+    def convert(
+        self, value: str | tuple[int, int], param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, int]:
+        if isinstance(value, tuple):
+            return value
+        found = re.fullmatch(r"([1-9]\d{0,3})x([1-9]\d{0,3})", value)
+        if found is None:
+            self.fail(f"must be width x height in pixels, such as 320x240, not {value!r}", param, ctx)
+        return int(found[1]), int(found[2])
+
+
+@click.command(short_help="Print where an LDF puts buffers and code.")
+@click.argument("file", required=False, type=click.Path(path_type=Path))
+@click.option(
+    "--firmware",
+    metavar="PACKAGE:NAME",
+    default="firmware:tinyphoon",
+    show_default=True,
+    help="Firmware to place: NAME in the importable PACKAGE.",
+)
+@click.option(
+    "--board", metavar="NAME", default="cm-bf561", show_default=True, help="Board with the memories."
+)
+@click.option(
+    "--profile",
+    metavar="NAME",
+    default="vdsp-O2",
+    show_default=True,
+    help="Compiler whose code is placed: vdsp-O2, gcc-O2 or gcc-O0.",
+)
+@click.option("--size", type=_Size(), default="320x240", show_default=True, help="Pictures to make room for.")
+@click.option("--symbols/--no-symbols", default=True, show_default=True, help="List every symbol.")
+@click.option(
+    "--picture",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Draw the map, too, as FILE.png or FILE.svg.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of the tables.")
+def ldf(
+    file: Path | None,
+    *,
+    firmware: str,
+    board: str,
+    profile: str,
+    size: tuple[int, int],
+    symbols: bool,
+    picture: Path | None,
+    as_json: bool,
+) -> None:
+    """Link the firmware by FILE and print the memory map: what lies where, what is free, what to look at.
+
+    FILE is a linker description file of VisualDSP++; without it, the placement of the thesis is shown. An LDF for
+    other cores than the firmware's is shown without it.
+
+    \b
+    Examples:
+      bfsim ldf
+      bfsim ldf ldf/l2.ldf --size 640x480 --no-symbols
+      bfsim ldf my.ldf --picture my.png
+    """
+    from bfsim.mapping import map_memory
+    from bfsim.report.ldf_lint import lint
+    from bfsim.report.ldf_picture import format_of, picture_bytes
+    from bfsim.report.ldf_tables import ldf_json, ldf_report
+    from bfsim.report.save import require_place, write_bytes
+
+    if picture:
+        format_of(picture)
+        require_place(picture)
+    found = map_memory(
+        file, firmware=firmware, board=board, profile=profile, width_px=size[0], height_px=size[1]
+    )
+    findings = lint(found)
+    if as_json:
+        click.echo(ldf_json(found, findings), nl=False)
+    else:
+        print_report(ldf_report(found, findings, symbols=symbols))
+    if picture:
+        write_bytes(picture, picture_bytes(found, picture))

@@ -1,0 +1,65 @@
+"""Lines of a picture that lies in cached memory: kernels get the picture's own rows, and no DMA brings or takes any.
+
+They answer firmware as line rings do, so that the LDF alone decides between rings and caches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from typing import Any
+
+from bfsim.errors import FirmwareError
+from bfsim.machine.memories import Row
+
+
+class CachedInput:
+    """The lines of a picture, first to last."""
+
+    def __init__(self, image: Sequence[Row]) -> None:
+        self._image = image
+        self._taken = 0
+
+    def line(self) -> Generator[Any, Any, Row]:
+        """Return the row of the next line, at once."""
+        number = self._taken
+        if number == len(self._image):
+            raise FirmwareError(
+                f"{self._image[0].buffer} has no line {number}: the picture has {len(self._image)}"
+            )
+        self._taken = number + 1
+        return self._image[number]
+        yield  # a generator, as the line of a ring is
+
+    def __getitem__(self, number: int) -> Row:
+        """Return the row of line `number`, which must have been taken."""
+        if not 0 <= number < self._taken:
+            raise FirmwareError(
+                f"line {number} of {self._image[0].buffer} was not taken yet, but {self._taken} lines"
+            )
+        return self._image[number]
+
+
+class CachedOutput:
+    """The lines of a picture that is written, first to last."""
+
+    def __init__(self, image: Sequence[Row]) -> None:
+        self._image = image
+        self._sent = 0
+
+    def row(self) -> Generator[Any, Any, Row]:
+        """Return the row of the next line, at once."""
+        if self._sent == len(self._image):
+            raise FirmwareError(
+                f"the picture {self._image[0].buffer} has {len(self._image)} lines; one more was asked for"
+            )
+        return self._image[self._sent]
+        yield  # a generator, as the row of a ring is
+
+    def send(self) -> None:
+        """Go on to the next line; the cache writes this one when it has to."""
+        self._sent += 1
+
+    def flush(self) -> Generator[Any, Any, None]:
+        """Do nothing: the lines are where they belong."""
+        return
+        yield

@@ -1,0 +1,72 @@
+"""One link without a run: LDF + firmware + board → the memory map."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from bfsim.chip.boards import board_named
+from bfsim.chip.spec import BoardSpec
+from bfsim.kernel import profile_named
+from bfsim.linker import LinkerScript, link, parse_ldf
+from bfsim.loading import load_firmware
+from bfsim.machine.board import PROCESSORS, symbols_of
+from bfsim.machine.program import Buffer, Firmware, FrameSize
+from bfsim.report.ldf_layout import Memories, memory_map
+from bfsim.report.ldf_map import Kind, MemoryMap
+from bfsim.run import THESIS_LDF
+
+
+def map_memory(
+    ldf: Path | None = None,
+    *,
+    firmware: str,
+    board: str,
+    profile: str,
+    width_px: int,
+    height_px: int,
+) -> MemoryMap:
+    """Return where the LDF (the thesis's without one) puts `firmware` for pictures of that size.
+
+    Firmware for other cores than the LDF's is left out, and the map holds what the LDF says by itself. Raises a
+    BfsimError for anything that is wrong with what was given, a firmware that does not fit included.
+    """
+    spec, compiler = board_named(board), profile_named(profile)
+    script = parse_ldf(ldf or THESIS_LDF)
+    program, size = load_firmware(firmware).firmware, FrameSize(width_px, height_px)
+    fits = _fits(program, script, spec)
+    link_map = None
+    if fits:
+        link_map = link(script, symbols_of(program, size, compiler), spec.chip.regions, chip=spec.chip.name)
+    return memory_map(
+        script,
+        link_map,
+        Memories(board=spec.name, regions=spec.chip.regions, bank_bytes=spec.sdram.bank_bytes),
+        _kinds(program, size) if fits else {},
+        firmware=firmware if fits else "",
+        width_px=width_px,
+        height_px=height_px,
+    )
+
+
+def _fits(firmware: Firmware, script: LinkerScript, spec: BoardSpec) -> bool:
+    """Say whether firmware, LDF and board are about the same cores."""
+    placed = {script.core_of_processor.get(name) for block in script.blocks for name in block.processors}
+    is_of_chip = script.chip in ("", spec.chip.name)
+    return is_of_chip and set(firmware.mains) == set(spec.chip.cores) == placed
+
+
+def _kinds(firmware: Firmware, size: FrameSize) -> dict[tuple[str | None, str], Kind]:
+    """Return what each buffer is; what else the linker places is code."""
+    return {
+        (PROCESSORS[owner], each.name): _kind(each, firmware.camera)
+        for owner, buffers in firmware.buffers(size).items()
+        for each in buffers
+    }
+
+
+def _kind(buffer: Buffer, camera: str) -> Kind:
+    if buffer.name == camera:
+        return Kind.CAMERA
+    if buffer.values is not None:
+        return Kind.TABLE
+    return Kind.LINES if buffer.rows > 1 else Kind.ROW

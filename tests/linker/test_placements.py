@@ -1,0 +1,128 @@
+"""The shipped placements with the built-in firmware: everything fits, and lies where the file says that it does."""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import pairwise
+
+import pytest
+
+from bfsim.mapping import map_memory
+from bfsim.report.ldf_lint import lint
+from bfsim.report.ldf_map import Kind, MemoryMap
+from bfsim.run import THESIS_LDF
+
+FOLDER = THESIS_LDF.parent
+SIZES = [(160, 120), (320, 240), (640, 480)]
+KIB = 1024
+CACHE_BYTES = 16 * KIB
+
+
+@cache
+def placed(name: str, width_px: int = 320, height_px: int = 240) -> MemoryMap:
+    """The built-in firmware in one of the shipped placements."""
+    return map_memory(
+        FOLDER / f"{name}.ldf", firmware="firmware:tinyphoon", board="cm-bf561", profile="vdsp-O2",
+        width_px=width_px, height_px=height_px,
+    )  # fmt: skip
+
+
+def memories(memory_map: MemoryMap, *kinds: Kind) -> dict[str, set[str]]:
+    """The memories of what is of these kinds, by name."""
+    found: dict[str, set[str]] = {}
+    for segment in memory_map.segments:
+        for each in segment.symbols:
+            if each.kind in kinds:
+                found.setdefault(each.name, set()).add(segment.memory)
+    return found
+
+
+def sizes_where(memory_map: MemoryMap, memory: str) -> int:
+    """Bytes of symbols in a memory."""
+    return sum(s.nbytes for each in memory_map.segments if each.memory == memory for s in each.symbols)
+
+
+@pytest.mark.parametrize(("width_px", "height_px"), SIZES)
+@pytest.mark.parametrize("name", ["thesis", "sdram", "l2", "cache"])
+def test_every_placement_holds_the_firmware(name: str, width_px: int, height_px: int) -> None:
+    """At each size of the camera, with the same symbols, none over another."""
+    memory_map = placed(name, width_px, height_px)
+    symbols = sorted(memory_map.symbols, key=lambda each: each.address)
+    assert all(one.address + one.nbytes <= two.address for one, two in pairwise(symbols))
+    here = {(each.owner, each.name, each.nbytes) for each in symbols}
+    assert here == {
+        (each.owner, each.name, each.nbytes) for each in placed("thesis", width_px, height_px).symbols
+    }
+
+
+@pytest.mark.parametrize("name", ["thesis", "sdram", "l2", "cache"])
+def test_images_of_each_stream_have_a_bank(name: str) -> None:
+    """Cameras in banks 0 and 1, working images in 2 and 3; nothing of another owner beside them."""
+    banks = {(each.kind, each.owner): each.banks for each in placed(name).symbols if each.name in ("camera", "colour_image")}  # fmt: skip
+    assert banks == {
+        (Kind.CAMERA, "A"): (0,),
+        (Kind.CAMERA, "B"): (1,),
+        (Kind.LINES, "A"): (2,),
+        (Kind.LINES, "B"): (3,),
+    }
+    assert "streams share a bank" not in {each.rule for each in lint(placed(name))}
+
+
+@pytest.mark.parametrize("name", ["thesis", "sdram", "l2", "cache"])
+def test_code_is_in_l1(name: str) -> None:
+    """The placements differ in data only."""
+    found = memories(placed(name), Kind.CODE)
+    assert set().union(*found.values()) == {"COREA_L1_CODE", "COREB_L1_CODE"}
+
+
+def test_thesis_keeps_lines_and_tables_in_l1() -> None:
+    """Nothing but images leaves L1, and L2 is empty."""
+    found = memories(placed("thesis"), Kind.LINES, Kind.ROW, Kind.TABLE)
+    outside = {name for name, where in found.items() if not all("L1_DATA" in each for each in where)}
+    assert outside == {"colour_image", "edge_image", "opened_image"}
+    assert sizes_where(placed("thesis"), "L2") == 0
+
+
+def test_sdram_has_all_data() -> None:
+    """Rings, tables and edge store, too: L1 data banks keep heap and stack alone."""
+    found = memories(placed("sdram"), *Kind)
+    data = {name: where for name, where in found.items() if where & {"SDRAM"}}
+    assert {"camera_ring", "atan", "edge_data", "gx"} <= set(data)
+    assert all(where == {"SDRAM"} for where in data.values())
+    assert (
+        sizes_where(placed("sdram"), "COREA_L1_DATA_A")
+        == sizes_where(placed("sdram"), "COREB_L1_DATA_B")
+        == 0
+    )
+    assert "table in SDRAM" in {each.rule for each in lint(placed("sdram"))}
+
+
+@pytest.mark.parametrize(("width_px", "height_px"), SIZES)
+def test_l2_takes_what_thesis_has_in_l1(width_px: int, height_px: int) -> None:
+    """Rings, tables and edge store of both cores: 57 w + 6 h + 257 bytes and 16 KB of each core."""
+    memory_map = placed("l2", width_px, height_px)
+    found = memories(memory_map, Kind.LINES, Kind.ROW, Kind.TABLE)
+    assert set().union(*found.values()) == {"L2", "SDRAM"}
+    one_core = 57 * width_px + 6 * height_px + 257 + 16 * KIB
+    assert sizes_where(memory_map, "L2") == 2 * one_core
+
+
+def test_cache_gives_half_of_each_bank_away() -> None:
+    """Three caches of 16 KB in each core, and nothing is placed in them."""
+    memory_map = placed("cache")
+    assert [(each.memory, hex(each.start), each.nbytes) for each in memory_map.caches] == [
+        ("COREA_L1_DATA_A", "0xff804000", CACHE_BYTES),
+        ("COREA_L1_DATA_B", "0xff904000", CACHE_BYTES),
+        ("COREA_L1_CODE_CACHE", "0xffa10000", CACHE_BYTES),
+        ("COREB_L1_DATA_A", "0xff404000", CACHE_BYTES),
+        ("COREB_L1_DATA_B", "0xff504000", CACHE_BYTES),
+        ("COREB_L1_CODE_CACHE", "0xff610000", CACHE_BYTES),
+    ]
+    assert not any("cached half" in each.rule for each in lint(memory_map))
+    assert memories(memory_map, Kind.ROW)["edge_data"] == {"L2"}
+
+
+@pytest.mark.parametrize("name", ["thesis", "sdram", "l2"])
+def test_the_others_have_no_cache(name: str) -> None:
+    """Their switches are 0."""
+    assert placed(name).caches == ()

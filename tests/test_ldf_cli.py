@@ -1,0 +1,121 @@
+"""`bfsim ldf` as it is called."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+from PIL import Image
+
+from bfsim.cli import main
+from bfsim.run import THESIS_LDF
+
+FOLDER = THESIS_LDF.parent
+
+# a single core of another chip, as its default LDF begins
+BF533 = """
+ARCHITECTURE(ADSP-BF533)
+$OBJECTS = $COMMAND_LINE_OBJECTS;
+MEMORY
+{
+   MEM_L1_CODE    { TYPE(RAM) START(0xFFA00000) END(0xFFA0FFFF) WIDTH(8) }
+   MEM_L1_DATA_A  { TYPE(RAM) START(0xFF800000) END(0xFF803FFF) WIDTH(8) }
+}
+PROCESSOR p0
+{
+   SECTIONS
+   {
+      code { INPUT_SECTIONS($OBJECTS(L1_code program)) } > MEM_L1_CODE
+      data { INPUT_SECTIONS($OBJECTS(L1_data_a)) INPUT_SECTIONS($OBJECTS(data1)) } > MEM_L1_DATA_A
+   }
+}
+"""
+
+
+def call(*arguments: str) -> Result:
+    """Call the command line in this process; unexpected exceptions come through."""
+    return CliRunner().invoke(main, ["ldf", *arguments], catch_exceptions=False, prog_name="bfsim")
+
+
+def test_the_thesis_placement_is_shown_by_default() -> None:
+    """Every segment and every buffer is there."""
+    done = call()
+    assert done.exit_code == 0
+    assert done.output.startswith("thesis.ldf on cm-bf561: firmware:tinyphoon, 320x240 px")
+    for text in ("MEM_B_L1_SCRATCH", "camera_ring", "0xFF800800", "firmware_stages_open_closing_erode_row"):
+        assert text in done.output
+    assert max(map(len, done.output.splitlines())) <= 100
+
+
+def test_findings_do_not_fail() -> None:
+    """Lint is advice: exit code 0."""
+    done = call(str(FOLDER / "sdram.ldf"), "--no-symbols")
+    assert done.exit_code == 0
+    assert "MEM_SDRAM_BANK2: table in SDRAM" in done.output
+    assert "\nSymbols" not in done.output
+
+
+def test_size_and_profile_count() -> None:
+    """Larger pictures take larger rings, and unoptimised code is longer."""
+    small, large, unoptimised = (
+        json.loads(call("--json", *options).output)["segments"]
+        for options in (
+            ("--size", "160x120"),
+            ("--size", "640x480"),
+            ("--size", "160x120", "--profile", "gcc-O0"),
+        )
+    )
+    used = [{each["name"]: each["used_bytes"] for each in one} for one in (small, large, unoptimised)]
+    assert used[1]["MEM_A_L1_DATA_A"] - used[0]["MEM_A_L1_DATA_A"] == 46 * (640 - 160)
+    assert used[2]["MEM_A_L1_CODE"] > used[0]["MEM_A_L1_CODE"]
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg"])
+def test_picture(suffix: str, tmp_path: Path) -> None:
+    """It is written beside the tables, whole."""
+    path = tmp_path / f"map.{suffix}"
+    assert call("--no-symbols", "--picture", str(path)).exit_code == 0
+    if suffix == "png":
+        with Image.open(path) as picture:
+            assert picture.width > 2000
+    else:
+        assert path.read_text().endswith("</svg>\n")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [BF533, BF533.replace("BF533", "BF561").replace("p0", "p9")],
+    ids=["another chip", "another processor"],
+)
+def test_an_ldf_of_other_cores_is_shown_without_the_firmware(text: str, tmp_path: Path) -> None:
+    """Segments, and what they take in what order."""
+    path = tmp_path / "other.ldf"
+    path.write_text(text)
+    done = call(str(path))
+    assert done.exit_code == 0
+    assert "no firmware: it is for other cores" in done.output
+    assert "L1_data_a data1" in done.output
+    assert json.loads(call(str(path), "--json").output)["firmware"] == ""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--size", "wide"], "must be width x height in pixels, such as 320x240, not 'wide'"),
+        (["--size", "0x240"], "must be width x height"),
+        (["--board", "arduino"], "--board must be one of"),
+        (["--firmware", "nowhere:at_all"], "'nowhere' must be installed"),
+        (["--picture", "map.jpg"], "--picture must be a file *.png or *.svg, not map.jpg"),
+        (["--picture", "/no/such/folder/map.png"], "the folder /no/such/folder must exist"),
+        (["no.ldf"], "LDF must be a readable file, not no.ldf"),
+        (["--size", "1280x960"], "Out of memory in output section"),
+    ],
+)
+def test_mistakes_end_with_2(arguments: list[str], message: str) -> None:
+    """And with one paragraph."""
+    done = call(*arguments)
+    assert done.exit_code == 2
+    assert message in done.output
+    assert "Traceback" not in done.output
