@@ -9,11 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from bfsim import __version__
-<<<<<<< HEAD
 from bfsim.cli_boards import boards
-=======
 from bfsim.cli_ldf import ldf
->>>>>>> map
 from bfsim.cli_record import record
 from bfsim.errors import BfsimError, ConfigError
 from bfsim.terminal import print_report, progress_bar
@@ -55,11 +52,8 @@ def main() -> None:
 
 
 main.add_command(record)
-<<<<<<< HEAD
 main.add_command(boards)
-=======
 main.add_command(ldf)
->>>>>>> map
 
 _RUN_PARAMETERS = (
     click.argument("recording", required=False, type=click.Path(path_type=Path)),
