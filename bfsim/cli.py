@@ -87,10 +87,10 @@ _RUN_PARAMETERS = (
     click.option("--frames", metavar="N", type=click.IntRange(min=1), help="Stop after N frames."),
     click.option(
         "--feed",
-        type=click.Choice(["demand", "recorded"]),
+        type=click.Choice(["demand", "recorded", "cameras"]),
         default="demand",
         show_default=True,
-        help="When the cameras deliver: as fast as the firmware asks, or at the recorded time stamps.",
+        help="When pictures come: as fast as the firmware asks, at the recorded time stamps, or at the free-running cameras' pace.",
     ),
     click.option("--sanitize", is_flag=True, help="Stop at the first index outside an array. Slower."),
 )

@@ -9,7 +9,7 @@ from bfsim.chip.bf533 import BF533
 from bfsim.chip.bf561 import BF561
 from bfsim.chip.memory_map import with_sdram
 from bfsim.chip.sdram_parts import BF561_EZKIT_64_MB, CM_BF533_32_MB, CM_BF561_32_MB, CM_BF561_64_MB
-from bfsim.chip.sensors import MHZ, OV9650
+from bfsim.chip.sensors import LEFT_CAMERA, MHZ, OV9650, RIGHT_CAMERA
 from bfsim.chip.spec import BoardSpec, ChipSpec, Pll, SdramSpec
 from bfsim.clocks import Clocks
 from bfsim.errors import ConfigError
@@ -37,7 +37,7 @@ def _board(
         clocks=chip.clocks_of(pll),
         sdram=sdram,
         sensor=OV9650,
-        cameras=("left", "right")[: chip.ppis],
+        cameras=(LEFT_CAMERA, RIGHT_CAMERA)[: chip.ppis],
         dma_over_core=dma_over_core,
         deb_period=deb_period,
         spi_clk_hz=Fraction(10 * MHZ),  # [assumed] practical range 10..20 MHz; the chip's limit is SCLK/4

@@ -315,7 +315,7 @@ class BoardSpec:
     clocks: Clocks
     sdram: SdramSpec
     sensor: SensorSpec
-    cameras: tuple[str, ...]
+    cameras: tuple[CameraSpec, ...]
     dma_over_core: bool
     deb_period: int = 0
     mdma_period: int = 0

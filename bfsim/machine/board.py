@@ -31,7 +31,6 @@ from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, TrafficRecord
 
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
 
-PPI_MASTERS = (w.PPI0, w.PPI1)
 MDMA_MASTERS = (
     (w.MDMA1_0, w.MDMA1_1),
     (w.MDMA2_0, w.MDMA2_1),
@@ -84,9 +83,9 @@ class Board:
     def __post_init__(self) -> None:
         self._env = Simulation()
         picture_nbytes = 2 * self.size.width_px * self.size.height_px
-        self._memories = Memories(self.spec, outside_nbytes=len(PPI_MASTERS) * picture_nbytes)
+        self._memories = Memories(self.spec, outside_nbytes=self.spec.chip.ppis * picture_nbytes)
         self._outside = [
-            self._memories.outside + number * picture_nbytes for number in range(len(PPI_MASTERS))
+            self._memories.outside + number * picture_nbytes for number in range(self.spec.chip.ppis)
         ]
         self._bus = Bus(self._env, self.spec, self._memories)
         self._semaphores: dict[str, Semaphore] = {}
@@ -145,8 +144,16 @@ class Board:
     def _capture(self, pictures: Iterator[StereoPictures]) -> Capture:
         mode = self.spec.sensor.mode(self.size.width_px, self.size.height_px)
         ppis = {
-            name: Ppi(self._env, self.spec, mode, self._bus, self._memories, master=master, outside=outside)
-            for name, master, outside in zip(self.spec.chip.cores, PPI_MASTERS, self._outside, strict=False)
+            name: Ppi(
+                self.spec,
+                mode,
+                camera,
+                self._bus,
+                self._memories,
+                number=number,
+                outside=self._outside[number],
+            )
+            for number, (name, camera) in enumerate(zip(self.spec.chip.cores, self.spec.cameras, strict=True))
         }
         return Capture(self._env, self.spec.clocks, ppis, self._frame_buffers(), pictures, self.feed)
 

@@ -245,6 +245,10 @@ class Bus:
             event = self._waiting[number] = self._env.event()
         return event
 
+    def lost_by(self, master: int) -> int:
+        """Return how many elements a peripheral's DMA has lost, since they found its FIFO full or did not come in time."""
+        return int(self.words[w.MASTERS_AT + master + w.ALL_LOST])
+
     # ---- cores
 
     def access(self, core: int, begin: int, cclk: int, entries: int) -> simpy.Event:

@@ -70,8 +70,9 @@ MASTERS = 13
     IN_FIFO,        # elements that were read and not yet written
     PARTNER,        # the other stream of its controller, or NONE
     SERVED,         # elements since the partner had its turn
-) = range(0, 14 * MASTERS, MASTERS)  # fmt: skip
-MASTER_WORDS = 14
+    ALL_LOST,       # elements of all transfers that found the FIFO full
+) = range(0, 15 * MASTERS, MASTERS)  # fmt: skip
+MASTER_WORDS = 15
 
 # ---- A slot: one transfer of a DMA.
 (
@@ -84,7 +85,7 @@ MASTER_WORDS = 14
     ELEMENT_BITS,   # an element is 1 << so many bytes
     LEFT,           # elements still to move
     MOVED,          # elements moved, or lost
-    LOST,           # elements that found the FIFO full, or the line empty
+    LOST,           # elements that found the FIFO full
     FROM, FROM_X_COUNT, FROM_X_MODIFY, FROM_Y_MODIFY, FROM_X_LEFT,
     TO, TO_X_COUNT, TO_X_MODIFY, TO_Y_MODIFY, TO_X_LEFT,
     # The pace of a device, in parts of a tick: an element and a line take so many PARTS, PARTS make a tick.

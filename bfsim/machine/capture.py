@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Generator, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, Protocol
 
@@ -19,14 +19,19 @@ from numpy.typing import NDArray
 from bfsim.clocks import Clocks
 from bfsim.machine.memories import Row
 from bfsim.machine.ppi import Ppi
+from bfsim.machine.settling import CameraSettings
 from bfsim.machine.simulation import Simulation
 
 
 class Feed(StrEnum):
-    """When pictures come: as fast as the firmware asks, or at the time stamps of the recording."""
+    """When pictures come: as fast as the firmware asks, at the time stamps of the recording, or at the cameras' own pace.
+
+    Only with the last one do the cameras run free of each other, each by its oscillator.
+    """
 
     DEMAND = "demand"
     RECORDED = "recorded"
+    CAMERAS = "cameras"
 
 
 class StereoPictures(Protocol):
@@ -64,13 +69,14 @@ class State(StrEnum):
 
 @dataclass(slots=True)
 class Pair:
-    """A pair of frame buffers, one per core. `index` is the recording's frame in it."""
+    """A pair of frame buffers, one per core. `index` is the recording's frame in it; `lost` the words that its PPIs lost."""
 
     rows: Mapping[str, Sequence[Row]]
     state: State = State.FREE
     index: int = -1
     full_at_ticks: int = 0
     users: int = 0
+    lost: Mapping[str, int] = field(default_factory=dict)
 
 
 class Capture:
@@ -118,6 +124,10 @@ class Capture:
         self._held[core] = mine.popleft()
         return self._held[core]
 
+    def change_camera(self, core: str, settings: CameraSettings) -> None:
+        """Give the camera of a core new settings."""
+        self._ppis[core].change(settings)
+
     def _hand_out(self, full: list[Pair]) -> None:
         newest = max(full, key=lambda each: each.index)
         for each in full:
@@ -145,15 +155,19 @@ class Capture:
     def _take(self) -> Generator[simpy.Event, Any, None]:
         """Take every picture of the recording at its time."""
         origin_ns: int | None = None
+        frame = 0
         for pictures in self._pictures:
+            stamps = (pictures.left_ns, pictures.right_ns)[: len(self._ppis)]
+            origin_ns = min(stamps) if origin_ns is None else origin_ns
             if self._feed is Feed.DEMAND:
                 starts = yield from self._when_wanted()
+            elif self._feed is Feed.RECORDED:
+                starts = [self._clocks.ticks_of_ns(each - origin_ns) for each in stamps]
             else:
-                origin_ns = min(pictures.left_ns, pictures.right_ns) if origin_ns is None else origin_ns
-                stamps = (pictures.left_ns - origin_ns, pictures.right_ns - origin_ns)
-                starts = [self._clocks.ticks_of_ns(each) for each in stamps]
-                yield self._env.after(max(0, min(starts) - self._env.tick))
+                starts = [each.oscillator.line_start(frame, 0) for each in self._ppis.values()]
+            yield self._env.after(max(0, min(starts) - self._env.tick))
             self._begin(pictures, dict(zip(self._ppis, starts, strict=True)))
+            frame += 1
         self._ended = True
         self._notify()
 
@@ -161,9 +175,7 @@ class Capture:
         """Wait until the firmware has taken the picture before, a buffer is free and the sensors are through."""
         while not self._is_picture_wanted():
             yield self._changed
-        start = max(self._env.tick, self._sensors_ready_at)
-        yield self._env.after(start - self._env.tick)
-        return [start] * len(self._ppis)
+        return [max(self._env.tick, self._sensors_ready_at)] * len(self._ppis)
 
     def _is_picture_wanted(self) -> bool:
         states = {each.state for each in self._pairs}
@@ -183,7 +195,7 @@ class Capture:
         for core, start in starts.items():
             self._receiving_until[core] = start + self._ppis[core].picture_ticks
             self._sensors_ready_at = max(self._sensors_ready_at, start + self._ppis[core].frame_ticks)
-        images = dict(zip(self._ppis, (pictures.left, pictures.right), strict=True))
+        images = dict(zip(self._ppis, (pictures.left, pictures.right), strict=False))
         self._env.process(self._fill(pair, images, starts))
 
     def _empty_pair(self) -> Pair | None:
@@ -204,6 +216,7 @@ class Capture:
         yield self._env.all_of(
             [ppi.receive(images[core], pair.rows[core], starts[core]) for core, ppi in self._ppis.items()]
         )
+        pair.lost = {core: ppi.take_lost() for core, ppi in self._ppis.items()}
         pair.state = State.FULL
         pair.full_at_ticks = self._env.tick
         self._notify()

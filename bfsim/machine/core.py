@@ -32,6 +32,7 @@ from bfsim.machine.memories import Row
 from bfsim.machine.program import Main
 from bfsim.machine.ring import InputRing, OutputRing
 from bfsim.machine.semaphore import Semaphore
+from bfsim.machine.settling import CameraSettings
 from bfsim.machine.simulation import Simulation
 from bfsim.trace import REST, CoreFrame, StallReason
 
@@ -184,12 +185,21 @@ class Core:
         rows = pair.rows[self.name]
         width = rows[0].nbytes // 2
         self._invalidate(rows)
+        if lost := pair.lost.get(self.name, 0):
+            self.publish(ppi_words_lost=lost)
         self._frame = Frame(pair.index, rows, width, len(rows))
         return self._frame
 
     def publish(self, **results: int) -> None:
         """Add numbers to the record of the current frame."""
         self._results.update({f"{name}_{self.name}": index(value) for name, value in results.items()})
+
+    def set_camera(self, settings: CameraSettings) -> None:
+        """Give this core's camera new settings: its next pictures are off in brightness and colour until they have worked.
+
+        The two-wire bus to the camera is not modelled.
+        """
+        self._capture.change_camera(self.name, settings)
 
     def post(self, name: str) -> Generator[Any, Any, None]:
         """Add one to the semaphore `name`, in L2."""

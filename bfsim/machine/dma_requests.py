@@ -321,6 +321,7 @@ def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> 
         state[slot + w.MOVED] += 1
         state[slot + w.LEFT] -= 1
         state[slot + w.LOST] += 1
+        state[master + w.ALL_LOST] += 1
     count = lot_of(state, slot)
     offset = state[slot + w.TO] if write else state[slot + w.FROM]
     through, nbytes = at, count << state[slot + w.ELEMENT_BITS]

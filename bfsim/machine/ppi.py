@@ -1,4 +1,4 @@
-"""PPI and camera: a picture arrives word by word, at the sensor's pace, in a frame buffer in memory."""
+"""PPI and camera: a picture arrives word by word, at the pace of the camera's own oscillator, in a frame buffer in memory."""
 
 from __future__ import annotations
 
@@ -9,49 +9,66 @@ import numpy as np
 import simpy
 from numpy.typing import NDArray
 
-from bfsim.chip.spec import BoardSpec, SensorMode
+from bfsim.chip.spec import BoardSpec, CameraSpec, SensorMode
 from bfsim.clocks import PeriodicEdges
+from bfsim.machine import bus_state as w
 from bfsim.machine.bus import Bus, Pace, Walk
 from bfsim.machine.memories import Memories, Row
-from bfsim.machine.simulation import Simulation
+from bfsim.machine.oscillator import Oscillator
+from bfsim.machine.ppi_status import PpiStatus
+from bfsim.machine.settling import CameraSettings, Settling
 
 WORD_BYTES = 4  # PPI_CONTROL with PACK_EN and DMA32
 
 
 class Ppi:
-    """One parallel peripheral interface with the camera on it."""
+    """One parallel peripheral interface with the camera on it. `status` is what the chip's PPI_STATUS shows."""
 
     def __init__(
         self,
-        env: Simulation,
         board: BoardSpec,
         mode: SensorMode,
+        camera: CameraSpec,
         bus: Bus,
         memories: Memories,
         *,
-        master: int,
+        number: int,
         outside: int,
     ) -> None:
-        """`outside`: where in the arena a picture stands while it comes in."""
-        self._env = env
+        """`number`: 0 or 1. `outside`: where in the arena a picture stands while it comes in."""
         self._bus = bus
         self._memories = memories
-        self._master = master
+        self._master = w.PPI0 + number
         self._outside = outside
-        ppi_clk_ticks = board.clocks.tick_hz / mode.ppi_clk_hz
+        self.oscillator = Oscillator(board.clocks, mode, camera)
+        ppi_clk_ticks = board.clocks.tick_hz / self.oscillator.ppi_clk_hz
         self._word_ticks = ppi_clk_ticks * WORD_BYTES
         self._line_ticks: Fraction = ppi_clk_ticks * mode.line_clocks
         lines = PeriodicEdges(self._line_ticks)
-        self.picture_ticks = lines.after(mode.height_px - 1) + PeriodicEdges(self._word_ticks).after(
-            2 * mode.width_px // WORD_BYTES
+        self.picture_ticks = lines.after(mode.height_px - 1) + PeriodicEdges(ppi_clk_ticks).after(
+            mode.active_clocks
         )
-        """Ticks from the start of a picture to its last byte."""
+        """Ticks from the first byte of a picture to its last one."""
         self.frame_ticks = lines.after(mode.frame_lines)
         """Ticks from one picture's first line to the next one's, vertical blanking included."""
+        self.status = PpiStatus(f"PPI{number}", mode.height_px, mode.active_clocks)
+        # a change of settings is what the firmware asks for; a run begins with settled cameras
+        self._settling = Settling(
+            camera, CameraSettings(exposure_lines=0, gain=0, red_gain=0, blue_gain=0), camera.settling_frames
+        )
+        self._lost = 0
+
+    def change(self, settings: CameraSettings) -> None:
+        """Give the camera new settings: the next pictures are off until they have worked."""
+        self._settling.change(settings)
 
     def receive(self, picture: NDArray[np.uint8], rows: Sequence[Row], start: int) -> simpy.Event:
         """Write `picture` (height, 2 · width) to `rows`; its first line begins at tick `start`. Return the event at its end."""
         words = picture.shape[1] // WORD_BYTES
+        self.status.frame_sync()
+        for line in picture:
+            self.status.line(len(line))
+        picture = self._settling.next_picture(picture)
         self._memories.bytes_from(self._outside, picture.nbytes)[:] = picture.reshape(-1)
         plan = self._bus.plan_receive(
             self._master,
@@ -62,3 +79,11 @@ class Ppi:
             pace=Pace(start, words, self._word_ticks, self._line_ticks),
         )
         return self._bus.when_done(self._bus.post(plan))
+
+    def take_lost(self) -> int:
+        """Return how many words found the FIFO full since the last time; any of them sets OVR."""
+        total = self._bus.lost_by(self._master)
+        lost, self._lost = total - self._lost, total
+        if lost:
+            self.status.overrun(lost * WORD_BYTES)
+        return lost
