@@ -13,7 +13,7 @@ from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import ConfigError, RecordingError
 from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
-from bfsim.linker import link, parse_ldf
+from bfsim.linker import LinkerScript, link, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.capture import Feed
@@ -23,7 +23,9 @@ from bfsim.trace import Identity, RunRecord
 
 # Both stand beside the installed package: in a checkout and in site-packages alike.
 BUILT_IN_RECORDING = Path(__file__).parent / "recording" / "builtin" / "soccer.mcap"
-THESIS_LDF = Path(__file__).parent.parent / "ldf" / "thesis.ldf"
+PLACEMENTS = Path(__file__).parent.parent / "ldf"
+THESIS_LDF = PLACEMENTS / "thesis.ldf"
+DEFAULT_LDF = {"ADSP-BF561": THESIS_LDF, "ADSP-BF533": PLACEMENTS / "cm-bf533.ldf"}
 
 
 def simulate(
@@ -48,10 +50,11 @@ def simulate(
         raise ConfigError(f"frames must be at least 1, not {frames}")
     spec, compiler = board_named(board), profile_named(profile)
     loaded = load_firmware(firmware)
-    script = ldf or THESIS_LDF
+    placement = parse_ldf(ldf or DEFAULT_LDF[spec.chip.name])
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
         size = FrameSize(reader.width, reader.height)
-        link_map = link(parse_ldf(script), symbols_of(loaded.firmware, size, compiler), spec.chip.regions)
+        symbols = symbols_of(loaded.firmware, size, compiler)
+        link_map = link(placement, symbols, spec.chip.regions, chip=spec.chip.name)
         machine = Board(spec, loaded.firmware, size, link_map, feed=feed, sanitize=sanitize, profile=compiler)
         total = min(frames or reader.frame_count, reader.frame_count)
         if not total:
@@ -66,7 +69,7 @@ def simulate(
                 progress(done, total)
 
         outcome = machine.run(iter(source), count)
-    return _record(outcome, spec, loaded, script, feed, size, source, compiler)
+    return _record(outcome, spec, loaded, placement, feed, size, source, compiler)
 
 
 class _DigestedFrames:
@@ -95,7 +98,7 @@ def _record(
     outcome: Outcome,
     spec: BoardSpec,
     loaded: LoadedFirmware,
-    ldf: Path,
+    placement: LinkerScript,
     feed: Feed,
     size: FrameSize,
     source: _DigestedFrames,
@@ -108,8 +111,8 @@ def _record(
         firmware_digest=loaded.digest,
         board=spec.name,
         board_digest=hashlib.sha256(repr(spec).encode()).hexdigest(),
-        ldf=ldf.name,
-        ldf_digest=hashlib.sha256(ldf.read_bytes()).hexdigest(),
+        ldf=placement.path.name,
+        ldf_digest=hashlib.sha256(placement.source.expanded.encode()).hexdigest(),
         compiler=compiler.name,
         feed=feed.value,
         bfsim_version=__version__,

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from bfsim.api import BudgetRow, Firmware
-from firmware.buffers import buffers
+from firmware.buffers import buffers, one_core_buffers
 from firmware.core_a import core_a
 from firmware.core_b import core_b
+from firmware.one_core import one_core
+
+ROWS = (
+    BudgetRow(stage="Edge detection", thesis_ms=87.0),  # T Table 6.4, average
+    BudgetRow(stage="Open & closing", thesis_ms=26.0),
+)
 
 tinyphoon = Firmware(
     mains={"A": core_a, "B": core_b},
     buffers=buffers,
     camera="camera",
-    rows=(
-        BudgetRow(stage="Edge detection", thesis_ms=87.0),  # T Table 6.4, average
-        BudgetRow(stage="Open & closing", thesis_ms=26.0),
-    ),
+    rows=ROWS,
 )
+
+one_eye = Firmware(mains={"A": one_core}, buffers=one_core_buffers, camera="camera", rows=ROWS)
+"""The same stages for a board with one core and one camera, such as cm-bf533."""

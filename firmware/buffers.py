@@ -23,6 +23,11 @@ def buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     }
 
 
+def one_core_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
+    """Return the buffers for pictures of `size` of a board with one core."""
+    return {"A": _core_buffers(size, camera="sdram_bank0", images="sdram_bank2")}
+
+
 def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buffer]:
     width, height = size.width_px, size.height_px
     return (

@@ -155,8 +155,7 @@ class Capture:
     def _take(self) -> Generator[simpy.Event, Any, None]:
         """Take every picture of the recording at its time."""
         origin_ns: int | None = None
-        frame = 0
-        for pictures in self._pictures:
+        for frame, pictures in enumerate(self._pictures):
             stamps = (pictures.left_ns, pictures.right_ns)[: len(self._ppis)]
             origin_ns = min(stamps) if origin_ns is None else origin_ns
             if self._feed is Feed.DEMAND:
@@ -167,7 +166,6 @@ class Capture:
                 starts = [each.oscillator.line_start(frame, 0) for each in self._ppis.values()]
             yield self._env.after(max(0, min(starts) - self._env.tick))
             self._begin(pictures, dict(zip(self._ppis, starts, strict=True)))
-            frame += 1
         self._ended = True
         self._notify()
 

@@ -123,4 +123,5 @@ class FetchedCall:
             [np.arange(at, at + nbytes, FETCH_BYTES) for at, nbytes in self._code.places.values()]
         )
         offsets = words[number % len(words)]
-        return stamps << log.STAMP_BIT | log.FETCH << log.KIND_BIT | offsets
+        fetches: NDArray[np.int64] = stamps << log.STAMP_BIT | log.FETCH << log.KIND_BIT | offsets
+        return fetches

@@ -6,12 +6,10 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus import Bus, Plan, Transfer, Walk
 from bfsim.machine.memories import Row
 
-WORD_BYTES = 4  # the widest element of a DMA
 
-
-def element_bytes(*numbers: int) -> int:
-    """Return the widest element of a DMA, 4, 2 or 1 bytes, of which all of these sizes and addresses are multiples."""
-    size = WORD_BYTES
+def element_bytes(widest: int, *numbers: int) -> int:
+    """Return the widest element of a DMA, `widest` bytes or half or a quarter, that divides all these sizes and addresses."""
+    size = widest
     while any(number % size for number in numbers):
         size //= 2
     return size
@@ -24,6 +22,7 @@ class MdmaStream:
         self._bus = bus
         self._master = master
         self._startup_ticks = board.chip.dma.startup_sclk * board.clocks.sclk_ticks
+        self._word_bytes = board.chip.dma.word_bytes
         self._plans: dict[tuple[Row, Row], Plan] = {}
 
     def copy(self, source: Row, destination: Row, at: int) -> Transfer:
@@ -37,7 +36,7 @@ class MdmaStream:
         return self._bus.post(plan, at)
 
     def _plan(self, source: Row, destination: Row) -> Plan:
-        size = element_bytes(source.offset, destination.offset, source.nbytes)
+        size = element_bytes(self._word_bytes, source.offset, destination.offset, source.nbytes)
         count = source.nbytes // size
         inward, outward = (Walk(each.offset, count, size, size) for each in (source, destination))
         return self._bus.plan_copy(

@@ -18,8 +18,6 @@ from bfsim.machine.oscillator import Oscillator
 from bfsim.machine.ppi_status import PpiStatus
 from bfsim.machine.settling import CameraSettings, Settling
 
-WORD_BYTES = 4  # PPI_CONTROL with PACK_EN and DMA32
-
 
 class Ppi:
     """One parallel peripheral interface with the camera on it. `status` is what the chip's PPI_STATUS shows."""
@@ -40,9 +38,12 @@ class Ppi:
         self._memories = memories
         self._master = w.PPI0 + number
         self._outside = outside
+        self._word_bytes = (
+            board.chip.dma.word_bytes
+        )  # PPI_CONTROL with PACK_EN, and DMA32 where DMA has 32 bits
         self.oscillator = Oscillator(board.clocks, mode, camera)
         ppi_clk_ticks = board.clocks.tick_hz / self.oscillator.ppi_clk_hz
-        self._word_ticks = ppi_clk_ticks * WORD_BYTES
+        self._word_ticks = ppi_clk_ticks * self._word_bytes
         self._line_ticks: Fraction = ppi_clk_ticks * mode.line_clocks
         lines = PeriodicEdges(self._line_ticks)
         self.picture_ticks = lines.after(mode.height_px - 1) + PeriodicEdges(ppi_clk_ticks).after(
@@ -64,7 +65,7 @@ class Ppi:
 
     def receive(self, picture: NDArray[np.uint8], rows: Sequence[Row], start: int) -> simpy.Event:
         """Write `picture` (height, 2 · width) to `rows`; its first line begins at tick `start`. Return the event at its end."""
-        words = picture.shape[1] // WORD_BYTES
+        words = picture.shape[1] // self._word_bytes
         self.status.frame_sync()
         for line in picture:
             self.status.line(len(line))
@@ -72,10 +73,10 @@ class Ppi:
         self._memories.bytes_from(self._outside, picture.nbytes)[:] = picture.reshape(-1)
         plan = self._bus.plan_receive(
             self._master,
-            Walk(self._outside, words, WORD_BYTES, WORD_BYTES),
-            Walk(rows[0].offset, words, WORD_BYTES, WORD_BYTES),
+            Walk(self._outside, words, self._word_bytes, self._word_bytes),
+            Walk(rows[0].offset, words, self._word_bytes, self._word_bytes),
             words * len(rows),
-            element_bytes=WORD_BYTES,
+            element_bytes=self._word_bytes,
             pace=Pace(start, words, self._word_ticks, self._line_ticks),
         )
         return self._bus.when_done(self._bus.post(plan))
@@ -85,5 +86,5 @@ class Ppi:
         total = self._bus.lost_by(self._master)
         lost, self._lost = total - self._lost, total
         if lost:
-            self.status.overrun(lost * WORD_BYTES)
+            self.status.overrun(lost * self._word_bytes)
         return lost

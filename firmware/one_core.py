@@ -1,0 +1,20 @@
+"""A board with one core and one camera: the left one's picture, without stereo."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import Any
+
+from bfsim.api import Core
+from firmware.modes import INDOOR_FIELD
+from firmware.stages.edge_detection import edge_detection
+from firmware.stages.open_closing import open_closing
+
+
+def one_core(core: Core) -> Generator[Any, Any, None]:
+    """See every picture of the only camera."""
+    while (frame := (yield from core.next_frame())) is not None:
+        with core.stage("Edge detection"):
+            yield from edge_detection(core, frame, INDOOR_FIELD)
+        with core.stage("Open & closing"):
+            yield from open_closing(core, frame)
