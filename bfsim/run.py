@@ -131,6 +131,8 @@ def _record(
         kernels=outcome.kernels,
         traffic=outcome.traffic,
         code=outcome.code,
+        messages=outcome.messages,
+        interrupts=outcome.interrupts,
         events=outcome.events,
     )
 

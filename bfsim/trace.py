@@ -172,8 +172,20 @@ class CodeRecord:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class MessageRecord:
+    """One message over SPI: `direction` is out or in, seen from the board; the cycles are of core A's clock."""
+
+    direction: str
+    type: str
+    sequence: int
+    nbytes: int
+    begin_cclk: int
+    end_cclk: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RunRecord:
-    """One run. `missed` are the recording's frames that came while the firmware was busy.
+    """One run. `messages` went over SPI; `interrupts` were taken, by core and source. `missed` are the recording's frames that came while the firmware was busy.
 
     When `interrupted` by Ctrl-C, `kernels` and `traffic` also hold what was done of the frame that was not finished.
     """
@@ -186,6 +198,8 @@ class RunRecord:
     kernels: tuple[KernelRecord, ...]
     traffic: tuple[TrafficRecord, ...]
     code: tuple[CodeRecord, ...]
+    messages: tuple[MessageRecord, ...]
+    interrupts: Mapping[str, int]
     events: int
 
 

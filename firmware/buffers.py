@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 
 from bfsim.api import Buffer, FrameSize, i16, u8, u16, u32
 from firmware.edge_store import EDGE_CAPACITY
+from firmware.results import MESSAGE_WORDS
 from firmware.tables import arctangent_table
 
 CAMERA_FRAMES = 3  # one that is worked on, one that waits, one that is filled
@@ -20,6 +21,7 @@ def buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     return {
         "A": _core_buffers(size, camera="sdram_bank0", images="sdram_bank2"),
         "B": _core_buffers(size, camera="sdram_bank1", images="sdram_bank3"),
+        "shared": (Buffer("right_edges", u32, 1, "l2_shared"),),
     }
 
 
@@ -52,4 +54,5 @@ def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buff
         Buffer("edge_data", u32, EDGE_CAPACITY, "L1_data_b"),
         Buffer("edge_index", u32, height, "L1_data_b"),
         Buffer("edge_counts", u16, height, "L1_data_b"),
+        Buffer("results", u16, MESSAGE_WORDS, "L1_data_b"),
     )

@@ -1,4 +1,4 @@
-"""Core A: the left camera."""
+"""Core A: the left camera, and the results of both."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 
 from bfsim.api import Core
 from firmware.modes import INDOOR_FIELD
+from firmware.results import MESSAGE_WORDS, load_word, pack_results
 from firmware.stages.edge_detection import edge_detection
 from firmware.stages.open_closing import open_closing
 
@@ -15,8 +16,12 @@ def core_a(core: Core) -> Generator[Any, Any, None]:
     """See every picture of the left camera. The cores end a frame together, to take the same next pair."""
     while (frame := (yield from core.next_frame())) is not None:
         with core.stage("Edge detection"):
-            yield from edge_detection(core, frame, INDOOR_FIELD)
+            found = yield from edge_detection(core, frame, INDOOR_FIELD)
         with core.stage("Open & closing"):
             yield from open_closing(core, frame)
         yield from core.post("core A is done")
         yield from core.wait("core B is done")
+        others = yield core.run(load_word, core.array("right_edges"))
+        message = core.array("results")
+        yield core.run(pack_results, message, frame.index & 0x7FFF, found, others)
+        yield from core.send(message, 2 * MESSAGE_WORDS)

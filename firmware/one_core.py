@@ -7,6 +7,7 @@ from typing import Any
 
 from bfsim.api import Core
 from firmware.modes import INDOOR_FIELD
+from firmware.results import MESSAGE_WORDS, pack_results
 from firmware.stages.edge_detection import edge_detection
 from firmware.stages.open_closing import open_closing
 
@@ -15,6 +16,9 @@ def one_core(core: Core) -> Generator[Any, Any, None]:
     """See every picture of the only camera."""
     while (frame := (yield from core.next_frame())) is not None:
         with core.stage("Edge detection"):
-            yield from edge_detection(core, frame, INDOOR_FIELD)
+            found = yield from edge_detection(core, frame, INDOOR_FIELD)
         with core.stage("Open & closing"):
             yield from open_closing(core, frame)
+        message = core.array("results")
+        yield core.run(pack_results, message, frame.index & 0x7FFF, found, 0)
+        yield from core.send(message, 2 * MESSAGE_WORDS)

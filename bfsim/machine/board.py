@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
+
+import simpy
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import DeadlockError, FirmwareError
@@ -12,22 +15,27 @@ from bfsim.kernel.followers import Follower
 from bfsim.linker import LinkMap, Symbol
 from bfsim.machine import bus_state as w
 from bfsim.machine.bus import Bus
-from bfsim.machine.caches import caches_of, check_caches
+from bfsim.machine.caches import cached_parts, caches_of, check_caches
 from bfsim.machine.calls import CallBook
 from bfsim.machine.capture import Capture, Feed, Pair, StereoPictures
 from bfsim.machine.code import code_outside_l1, code_records, code_symbols
 from bfsim.machine.conflicts import SubBanks
 from bfsim.machine.core import Core
+from bfsim.machine.dma_checks import DmaSpace
 from bfsim.machine.fetch import CodeCache, CodeOutside
+from bfsim.machine.interrupts import Interrupts
 from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
+from bfsim.machine.memory_dma import Dma
 from bfsim.machine.ppi import Ppi
 from bfsim.machine.program import Buffer, Firmware, FrameSize
 from bfsim.machine.records import kernel_records
-from bfsim.machine.semaphore import Semaphore
 from bfsim.machine.simulation import Simulation
+from bfsim.machine.spi import OUTSIDE_BYTES, Spi
+from bfsim.machine.strategy import ScriptedMessage, StrategyUnit
+from bfsim.machine.synchronised import SharedObjects
 from bfsim.machine.traffic import traffic_records
-from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, TrafficRecord
+from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, MessageRecord, TrafficRecord
 
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
 
@@ -47,6 +55,8 @@ class Outcome:
     kernels: tuple[KernelRecord, ...]
     traffic: tuple[TrafficRecord, ...]
     code: tuple[CodeRecord, ...]
+    messages: tuple[MessageRecord, ...]
+    interrupts: Mapping[str, int]
     events: int
 
 
@@ -78,23 +88,44 @@ class Board:
     feed: Feed = Feed.DEMAND
     profile: CompilerProfile = VDSP_O2
     sanitize: bool = False
+    script: Sequence[ScriptedMessage] = ()
     cores: dict[str, Core] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         self._env = Simulation()
         picture_nbytes = 2 * self.size.width_px * self.size.height_px
-        self._memories = Memories(self.spec, outside_nbytes=self.spec.chip.ppis * picture_nbytes)
-        self._outside = [
-            self._memories.outside + number * picture_nbytes for number in range(self.spec.chip.ppis)
-        ]
+        chip = self.spec.chip
+        self._memories = Memories(self.spec, outside_nbytes=chip.ppis * picture_nbytes + OUTSIDE_BYTES)
+        self._outside = [self._memories.outside + number * picture_nbytes for number in range(chip.ppis + 1)]
         self._bus = Bus(self._env, self.spec, self._memories)
-        self._semaphores: dict[str, Semaphore] = {}
         self._calls: dict[str, CallBook] = {}
         self._frames: list[FrameRecord] = []
         self._caches = {core: caches_of(self.link_map, PROCESSORS[core]) for core in self.spec.chip.cores}
         for core, caches in self._caches.items():
             check_caches(self.link_map, core, caches, self.spec.chip.regions)
         self._buffers = self._load()
+        self._shared = SharedObjects()
+        for core in chip.cores:
+            self._shared.interrupts[core] = Interrupts(self._env, core, chip.interrupts)
+        cached = [
+            part for core, caches in self._caches.items() for part in cached_parts(core, caches, chip.regions)
+        ]
+        space = DmaSpace(chip.regions, tuple(cached))
+        self._dma = Dma(self._env, self.spec, self._bus, self._memories, space)
+        self._spi = Spi(
+            self._env,
+            self.spec,
+            self._bus,
+            self._memories,
+            StrategyUnit(self.script),
+            self._spi_done,
+            self._outside[-1],
+        )
+
+    def _spi_done(self) -> None:
+        """Interrupt every core whose firmware asked for it: each has a SIC of its own."""
+        for each in self._shared.interrupts.values():
+            each.request("SPI_DMA")
 
     def _load(self) -> dict[str, dict[str, tuple[Row, ...]]]:
         """Place every buffer in memory; return the rows that each core knows by name."""
@@ -119,16 +150,22 @@ class Board:
         capture = self._capture(pictures)
         for index, name in enumerate(self.spec.chip.cores):
             self.cores[name] = self._core(index, name, capture, lambda: self._finish_frame(on_frame))
-        for name, core in self.cores.items():
-            self._env.process(core.play(self.firmware.mains[name]))
+        tasks = [self._env.process(core.play(self.firmware.mains[name])) for name, core in self.cores.items()]
         interrupted = False
         try:
-            self._env.run()
+            self._run_until(self._env.all_of(tasks))
+            self._check_end()
+            if self._spi.busy is not None:  # the last message
+                self._run_until(self._spi.busy)
         except KeyboardInterrupt:
             interrupted = True
-        if not interrupted:
-            self._check_end()
         return self._outcome(capture, interrupted)
+
+    def _run_until(self, event: simpy.Event) -> None:
+        """Let time pass until `event`, or until nothing can happen any more."""
+        with suppress(simpy.core.EmptySchedule):
+            while not event.processed:
+                self._env.step()
 
     def _check_end(self) -> None:
         """Raise an error unless both main loops have ended, with the same frames."""
@@ -205,7 +242,9 @@ class Board:
             follower=follower,
             capture=capture,
             streams=(inward, outward),
-            semaphores=self._semaphores,
+            dma=self._dma,
+            spi=self._spi,
+            shared=self._shared,
             stages=tuple(each.stage for each in self.firmware.rows),
             on_finished=on_finished,
         )
@@ -236,5 +275,11 @@ class Board:
             ),
             traffic=traffic_records(self._bus.words, self.spec.clocks.cclk_ticks),
             code=code_records(self.link_map, PROCESSORS, self.spec.chip.regions),
+            messages=tuple(self._spi.records),
+            interrupts={
+                f"{core} {source}": count
+                for core, each in self._shared.interrupts.items()
+                for source, count in sorted(each.counts.items())
+            },
             events=self._env.count_events(),
         )

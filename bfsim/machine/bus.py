@@ -239,6 +239,11 @@ class Bus:
         self.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.WAKE] = w.AT_END
         return self._await(transfer.number)
 
+    def when_row(self, transfer: Transfer) -> simpy.Event:
+        """Return the event at the end of the next row that a transfer writes, or at its own end; neither is known yet."""
+        self.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.WAKE] = w.AT_ROWS
+        return self._await(transfer.number)
+
     def _await(self, number: int) -> simpy.Event:
         event = self._waiting.get(number)
         if event is None:

@@ -7,13 +7,13 @@ back, as its default protection table has it; the code cache holds whatever code
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from bfsim.chip.memory_map import Region
 from bfsim.chip.spec import CacheSpec
 from bfsim.errors import LinkError
 from bfsim.kernel.followers import CachedRegion, CacheSize, Policy
-from bfsim.linker import LinkMap, Placement
+from bfsim.linker import LinkMap
 from bfsim.machine.memories import Memories
 
 DATA_SYMBOLS = {"___l1_data_cache_a": "L1_DATA_A", "___l1_data_cache_b": "L1_DATA_B"}
@@ -49,25 +49,22 @@ def caches_of(link_map: LinkMap, processor: str | None) -> Caches:
     return Caches(data, is_on(CODE_SYMBOL))
 
 
+def cached_parts(core: str, caches: Caches, regions: Sequence[Region]) -> Iterator[Region]:
+    """Yield the parts of a core's L1 that are cache: no DMA reaches them, and nothing can be placed there."""
+    for each in regions:
+        is_cache = each.memory in caches.data or (caches.code and each.memory == "L1_CODE_CACHE")
+        if each.owner == core and is_cache:
+            yield replace(each, start=each.start + each.nbytes - each.cache_nbytes, nbytes=each.cache_nbytes)
+
+
 def check_caches(link_map: LinkMap, core: str, caches: Caches, regions: Sequence[Region]) -> None:
     """Raise LinkError if something lies in the part of the core's L1 that is cache."""
-    for region, first in _cached_parts(core, caches, regions):
+    for part in cached_parts(core, caches, regions):
         for placed in link_map.placements:
             end = placed.address + placed.symbol.nbytes
-            if placed.symbol.nbytes and placed.address < region.start + region.nbytes and end > first:
-                raise LinkError(_message(placed, region, first))
-
-
-def _cached_parts(core: str, caches: Caches, regions: Sequence[Region]) -> Iterator[tuple[Region, int]]:
-    """Yield each memory with a part that is cache, and the address where that begins."""
-    for region in regions:
-        is_cache = region.memory in caches.data or (caches.code and region.memory == "L1_CODE_CACHE")
-        if region.owner == core and is_cache:
-            yield region, region.start + region.nbytes - region.cache_nbytes
-
-
-def _message(placed: Placement, region: Region, first: int) -> str:
-    return (
-        f"{placed.symbol} (section {placed.symbol.section}) must lie outside of 0x{first:08X}-"
-        f"0x{region.start + region.nbytes - 1:08X} of {region.name}, which the LDF makes a cache, not at 0x{placed.address:08X}"
-    )
+            if placed.symbol.nbytes and placed.address < part.start + part.nbytes and end > part.start:
+                raise LinkError(
+                    f"{placed.symbol} (section {placed.symbol.section}) must lie outside of 0x{part.start:08X}-"
+                    f"0x{part.start + part.nbytes - 1:08X} of {part.name}, which the LDF makes a cache, "
+                    f"not at 0x{placed.address:08X}"
+                )

@@ -1,9 +1,4 @@
-"""A core: plays the firmware's main loop, charges what its kernels cost, and waits for the rest of the machine.
-
-The core runs ahead of the simulated time: kernel work only adds to its own clock, and it catches up with
-the simulated time where it meets another device. Every cycle of its clock goes to one account, so that
-issue + stall + idle = elapsed holds by construction.
-"""
+"""A core: plays the firmware's main loop, charges what its kernels cost, and waits for the rest of the machine."""
 
 from __future__ import annotations
 
@@ -22,18 +17,19 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, FirmwareError
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel.followers import Follower
-from bfsim.machine.accounts import FrameAccounts
-from bfsim.machine.bus import Bus, Transfer
+from bfsim.machine.bus import Bus
 from bfsim.machine.cached_lines import CachedInput, CachedOutput
 from bfsim.machine.calls import CallBook
 from bfsim.machine.capture import Capture
 from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Row
+from bfsim.machine.memory_dma import Dma, MemoryDma
 from bfsim.machine.program import Main
 from bfsim.machine.ring import InputRing, OutputRing
-from bfsim.machine.semaphore import Semaphore
 from bfsim.machine.settling import CameraSettings
 from bfsim.machine.simulation import Simulation
+from bfsim.machine.spi import SPI_WRITES, Spi
+from bfsim.machine.synchronised import SharedObjects, SynchronisedCore
 from bfsim.trace import REST, CoreFrame, StallReason
 
 NOT_FIRMWARE = (str(Path(__file__).parent.parent) + os.sep, contextlib.__file__)
@@ -68,7 +64,7 @@ class FinishedFrame:
     results: Mapping[str, int]
 
 
-class Core:
+class Core(SynchronisedCore):
     """One core. Firmware gets it as the argument of its main loop."""
 
     def __init__(
@@ -84,38 +80,35 @@ class Core:
         follower: Follower,
         capture: Capture,
         streams: tuple[MdmaStream, MdmaStream],
-        semaphores: dict[str, Semaphore],
+        dma: Dma,
+        spi: Spi,
+        shared: SharedObjects,
         stages: tuple[str, ...],
         on_finished: Callable[[], None],
     ) -> None:
         """`streams`: the MDMA streams of its input and of its output rings. `on_finished`: called at a frame's end."""
-        self.name = name
+        super().__init__(env, name, board, bus, stages)
         self.finished: list[FinishedFrame] = []
         """Frames that are done, until the board takes them."""
-        self.waiting_for: str | None = None
-        """What the core waits for, in words, while only another device can let it go on."""
-        self._env = env
-        self._board = board
-        self._cclk_ticks = board.clocks.cclk_ticks
-        self._cclk = 0
         self._entered_at_cclk = 0
-        self._accounts = FrameAccounts(name, stages)
-        self._account = self._accounts.now
         self._stages = stages
         self._on_finished = on_finished
         self._buffers = buffers
         self._calls = calls
-        self._bus = bus
         self._number = number
         self._follower = follower
         self._capture = capture
         self._streams = streams
-        self._semaphores = semaphores
+        self._dma = dma
+        self._spi = spi
+        self._shared = shared
+        self._interrupts = shared.interrupts[name]
         self._frame: Frame | None = None
         self._full_at_cclk = 0
         self._results: dict[str, int] = {}
         self._unclaimed: Work | None = None
         self._main: Generator[Any, Any, None] | None = None
+        self._in_handler = False
 
     # What firmware uses
 
@@ -181,6 +174,8 @@ class Core:
         self._wake(None)
         if pair is None:
             return None
+        events = self._board.chip.events  # the interrupt of the PPI's DMA ends the wait
+        self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk + events.interrupt_exit_cclk)
         self._full_at_cclk = -(-pair.full_at_ticks // self._cclk_ticks)
         rows = pair.rows[self.name]
         width = rows[0].nbytes // 2
@@ -201,18 +196,30 @@ class Core:
         """
         self._capture.change_camera(self.name, settings)
 
-    def post(self, name: str) -> Generator[Any, Any, None]:
-        """Add one to the semaphore `name`, in L2."""
-        yield from self._test_and_set()
-        self._semaphore(name).post()
+    def memory_dma(self, name: str) -> MemoryDma:
+        """Return the memory DMA stream `name`, such as MDMA2_1 or IMDMA_0, to be programmed by its registers."""
+        return self._dma.stream(name, self)
 
-    def wait(self, name: str) -> Generator[Any, Any, None]:
-        """Take one from the semaphore `name`, waiting until another core has posted it."""
-        yield from self._test_and_set()
-        turn = self._semaphore(name).take()
-        if turn is not None:
-            yield from self._blocked(iter([turn]), f"semaphore {name!r}")
-            self._wake(StallReason.SEMAPHORE)
+    def send(self, row: Row, nbytes: int) -> Generator[Any, Any, None]:
+        """Send the first `nbytes` of `row` to the strategy unit by SPI and DMA, once the message before is out."""
+        yield from self._sync()
+        if self._spi.busy is not None:
+            yield from self._blocked(iter([self._spi.busy]), "the SPI")
+            self._wake(StallReason.RING_FULL)
+        self.program_device(writes=SPI_WRITES)
+        yield from self._sync()
+        self._spi.send(row, nbytes)
+
+    def receive(self, row: Row) -> Generator[Any, Any, int]:
+        """Take the next message of the strategy unit into `row`, if one has come; return its bytes, 0 without one."""
+        yield from self._sync()
+        if not self._spi.has_message:
+            return 0
+        self.program_device(writes=SPI_WRITES)
+        yield from self._sync()
+        transfer, nbytes = self._spi.receive(row)
+        yield from self.wait_transfer(transfer, StallReason.RING_EMPTY)
+        return nbytes
 
     def _is_cached(self, image: Sequence[Row]) -> bool:
         return bool(image) and self._follower.caches(image[0].offset)
@@ -221,53 +228,18 @@ class Core:
         """Let the data cache forget what it holds of a picture that DMA has written over."""
         lines = self._follower.forget(rows[0].offset, rows[0].nbytes * len(rows))
         cclk = lines * self._board.chip.cache.invalidate_cclk
-        self._cclk += cclk
-        self._account.issue_cclk += cclk
+        self.issue(cclk)
 
     def _enter(self, stage: str) -> None:
         """Go over to another row of the budget, and charge the one that ends what conflicts in L1 cost it."""
         self._bus.settle()
         conflicts_cclk = self._calls.conflicts_cclk(self._cclk - self._entered_at_cclk)
         if conflicts_cclk:
-            self._stall(StallReason.L1_CONFLICT, conflicts_cclk)
+            self.stall(StallReason.L1_CONFLICT, conflicts_cclk)
         self._entered_at_cclk = self._cclk
         self._accounts.enter(stage)
         self._account = self._accounts.now
         self._calls.enter(stage)
-
-    # What rings use
-
-    @property
-    def now_ticks(self) -> int:
-        """The core's own clock, in ticks: the simulated time or later."""
-        return self._cclk * self._cclk_ticks
-
-    def catch_up(self) -> simpy.Event | None:
-        """Return the event at which the simulated time reaches the core's clock; None when it has."""
-        ahead_ticks = self._cclk * self._cclk_ticks - self._env.tick
-        return self._env.after(ahead_ticks) if ahead_ticks > 0 else None
-
-    def settle(self) -> None:
-        """Let everything on the bus happen that is due; the core's clock must have been caught up with."""
-        self._bus.settle()
-
-    def has(self, transfer: Transfer) -> bool:
-        """Whether `transfer` is done by the core's clock."""
-        end = transfer.end
-        return end is not None and end <= self._cclk * self._cclk_ticks
-
-    def wait_transfer(self, transfer: Transfer, reason: StallReason) -> Generator[Any, Any, None]:
-        """Stall for `reason` until `transfer` is done."""
-        if transfer.end is None:
-            yield from self._sync()
-            self._bus.settle()
-            if transfer.end is None:
-                yield self._bus.when_done(transfer)
-        end = transfer.end
-        assert end is not None
-        late_ticks = end - self._cclk * self._cclk_ticks
-        if late_ticks > 0:
-            self._stall(reason, -(-late_ticks // self._cclk_ticks))
 
     # What the board uses
 
@@ -276,6 +248,13 @@ class Core:
         self._main = task = main(self)
         if not isinstance(task, Generator):
             raise FirmwareError(f"core {self.name}: the main loop must be a generator function, not {main!r}")
+        yield from self._perform(task)
+        yield from self._sync()
+        self._close_frame()
+        self._main = None
+
+    def _perform(self, task: Generator[Any, Any, Any]) -> Generator[Any, Any, None]:
+        """Play a generator of the firmware: charge the kernels that it yields, and wait for the events."""
         value = None
         while True:
             try:
@@ -299,12 +278,13 @@ class Core:
             else:
                 raise FirmwareError(
                     f"core {self.name}: firmware must yield each core.run(...) once, or `yield from` a wait, "
-                    f"not {item!r}{self._place()}"
+                    f"not {item!r}{self.place()}"
                 )
+            if self._interrupts.is_waiting and not self._in_handler:
+                self._in_handler = True
+                yield from self._take_interrupts()
+                self._in_handler = False
         self._check_claimed()
-        yield from self._sync()
-        self._close_frame()
-        self._main = None
 
     @property
     def is_done(self) -> bool:
@@ -315,12 +295,12 @@ class Core:
         """Say what the core waits for and where in the firmware."""
         if self.is_done:
             return f"core {self.name} has ended"
-        return f"core {self.name} waits for {self.waiting_for or 'a device'}{self._place()}"
+        return f"core {self.name} waits for {self.waiting_for or 'a device'}{self.place()}"
 
     # Inside
 
-    def _place(self) -> str:
-        """Innermost line of the firmware that is being played, as ` (file:line)`."""
+    def place(self) -> str:
+        """Return the innermost line of the firmware that is being played, as ` (file:line)`."""
         place = ""
         generator: Any = self._main
         while generator is not None and getattr(generator, "gi_frame", None) is not None:
@@ -345,33 +325,6 @@ class Core:
         if self._unclaimed is not None:
             raise FirmwareError(f"core {self.name}: core.run(...) must be yielded, or its cycles are lost")
 
-    def _sync(self) -> Generator[Any, Any, None]:
-        if late := self.catch_up():
-            yield late
-
-    def _stall(self, reason: StallReason, cclk: int) -> None:
-        self._cclk += cclk
-        stalls = self._account.stall_cclk
-        stalls[reason] = stalls.get(reason, 0) + cclk
-
-    def _wake(self, reason: StallReason | None) -> None:
-        """Go on at the first CCLK edge from now; the time since the core's clock was a stall, or idle without a reason."""
-        waited_cclk = -(-self._env.tick // self._cclk_ticks) - self._cclk
-        if waited_cclk <= 0:
-            return
-        if reason is None:
-            self._cclk += waited_cclk
-            self._account.idle_cclk += waited_cclk
-        else:
-            self._stall(reason, waited_cclk)
-
-    def _blocked(self, wait: Any, what: str) -> Generator[Any, Any, Any]:
-        """Play `wait`, a generator of events, saying meanwhile what the core waits for."""
-        self.waiting_for = f"{what}, since cycle {self._cclk:,}"
-        result = yield from wait
-        self.waiting_for = None
-        return result
-
     def _outside_l1(self, work: Work) -> Generator[Any, Any, None]:
         """Play the accesses of a call outside L1 from the core's clock on, and charge what they stall."""
         yield from self._sync()
@@ -379,17 +332,7 @@ class Core:
         yield self._bus.access(self._number, begin, cclk, work.accesses)
         for reason, stalled in zip(BUS_STALLS, self._bus.stalls_of(self._number), strict=True):
             if stalled:
-                self._stall(reason, stalled)
-
-    def _test_and_set(self) -> Generator[Any, Any, None]:
-        chip = self._board.chip
-        self._cclk += chip.events.testset_cclk
-        self._account.issue_cclk += chip.events.testset_cclk
-        self._stall(StallReason.L2_LATENCY, chip.l2.read_cclk if chip.l2 else 0)
-        yield from self._sync()
-
-    def _semaphore(self, name: str) -> Semaphore:
-        return self._semaphores.setdefault(name, Semaphore(self._env, name))
+                self.stall(reason, stalled)
 
     def _close_frame(self) -> None:
         """Turn the cycles since the last frame's end into a record, if there was a frame."""

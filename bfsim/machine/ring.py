@@ -17,6 +17,8 @@ from bfsim.trace import StallReason
 if TYPE_CHECKING:
     from bfsim.machine.core import Core
 
+COPY_WRITES = 5  # START_ADDR and CONFIG of source and destination; IRQ_STATUS is read before and cleared
+
 
 def _check(rows: Sequence[Row], image: Sequence[Row]) -> None:
     if not image:
@@ -57,6 +59,7 @@ class InputRing:
                 f"the ring of {self._rows[0].buffer} has no line {number}: the picture has {self._height}"
             )
         self._taken = number + 1
+        core.program_device(writes=COPY_WRITES, reads=1)
         transfer = self._coming or self._fetch(number)
         # one line ahead: its row is the one that the core gave up with this call
         self._coming = self._fetch(number + 1) if number + 1 < self._height else None
@@ -104,6 +107,7 @@ class OutputRing:
             raise FirmwareError(
                 f"the picture {self._image[0].buffer} has {self._height} lines; one more was sent"
             )
+        self._core.program_device(writes=COPY_WRITES, reads=1)
         row = self._rows[number % self._depth]
         self._transfers.append(self._stream.copy(row, self._image[number], self._core.now_ticks))
 

@@ -112,11 +112,11 @@ def suppress_row(
     edges[last] = 0
 
 
-def edge_detection(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, None]:
+def edge_detection(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, int]:
     """Detect the edges of a picture and reduce its colours, in one pass of DMA lines (T Figure 5.3).
 
     Leaves `edge_image` (gradients) and `colour_image` in SDRAM and the edge store in L1; publishes `edges`,
-    how many are stored, and `edges_lost`, how many had no room.
+    how many are stored, and `edges_lost`, how many had no room; returns how many there are.
     """
     camera = core.input_ring(frame.rows, "camera_ring")
     colours = core.output_ring("colour_ring", core.rows("colour_image"))
@@ -151,3 +151,4 @@ def edge_detection(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, 
     yield from colours.flush()
     yield from edges.flush()
     core.publish(edges=min(found, EDGE_CAPACITY), edges_lost=max(0, found - EDGE_CAPACITY))
+    return found

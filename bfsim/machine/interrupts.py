@@ -1,0 +1,68 @@
+"""Interrupts of one core: SIC and CEC, from a device's request to the handler that the firmware attached.
+
+A core takes an interrupt where it meets the rest of the machine, or between two kernel calls: a call is never cut. Of several
+that wait, the one of the lowest IVG level comes first, then the lowest number; handlers are not interrupted themselves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import simpy
+
+from bfsim.chip.interrupts import SicInterrupt
+from bfsim.errors import FirmwareError
+from bfsim.machine.simulation import Simulation
+
+Handler = Callable[[Any], Any]
+"""Called with the core: a function, or a generator function that yields kernels as a main loop does."""
+
+
+class Interrupts:
+    """What is attached, and what waits, at one core."""
+
+    def __init__(self, env: Simulation, core: str, sources: type[SicInterrupt]) -> None:
+        self._env = env
+        self._core = core
+        self._sources = sources
+        self._handlers: dict[SicInterrupt, Handler] = {}
+        self._waiting: set[SicInterrupt] = set()
+        self._raised = env.event()
+        self.counts: dict[str, int] = {}
+        """Interrupts that were taken, by source."""
+
+    def source(self, name: str) -> SicInterrupt:
+        """Return the interrupt called `name`, or raise FirmwareError."""
+        known = self._sources.__members__
+        if name not in known:
+            raise FirmwareError(f"an interrupt must be one of {', '.join(known)}, not {name!r}")
+        return known[name]
+
+    def attach(self, name: str, handler: Handler) -> None:
+        """Unmask an interrupt and have `handler` called for it."""
+        self._handlers[self.source(name)] = handler
+
+    def request(self, name: str) -> None:
+        """Ask for an interrupt now. A source that waits already is not counted twice; one without a handler is masked."""
+        source = self.source(name)
+        if source in self._handlers:
+            self._waiting.add(source)
+            event, self._raised = self._raised, self._env.event()
+            event.succeed()
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether any interrupt waits."""
+        return bool(self._waiting)
+
+    def take(self) -> Handler:
+        """Take the interrupt that comes first."""
+        source = min(self._waiting, key=lambda each: (each.ivg, each.value))
+        self._waiting.remove(source)
+        self.counts[source.name] = self.counts.get(source.name, 0) + 1
+        return self._handlers[source]
+
+    def next_request(self) -> simpy.Event:
+        """Return the event at which the next interrupt is asked for."""
+        return self._raised

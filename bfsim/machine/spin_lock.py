@@ -1,0 +1,37 @@
+"""A spin lock in shared memory: a byte that TESTSET sets, tried again and again until the other core has cleared it."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import simpy
+
+from bfsim.machine.simulation import Simulation
+
+
+class SpinLock:
+    """`holder` is the core that has it, in words for a message; None when it is free. Waiters have their turn in order."""
+
+    def __init__(self, env: Simulation, name: str) -> None:
+        self.name = name
+        self.core: str | None = None
+        self.holder: str | None = None
+        self._env = env
+        self._waiters: deque[tuple[simpy.Event, str]] = deque()
+
+    def take(self, core: str, holder: str) -> simpy.Event | None:
+        """Give the lock to `core`, or return the event at which it gets it."""
+        if self.core is None:
+            self.core, self.holder = core, holder
+            return None
+        event = self._env.event()
+        self._waiters.append((event, core))
+        return event
+
+    def release(self) -> None:
+        """Free the lock, or hand it on."""
+        self.core = self.holder = None
+        if self._waiters:
+            event, self.core = self._waiters.popleft()
+            self.holder = f"core {self.core}"
+            event.succeed()
