@@ -232,7 +232,7 @@ class ScriptBuilder(Evaluator):
 
     # ---- what is refused where it stands
 
-    def _refuse(self, keyword: Token, *parts: object) -> None:
+    def _refuse(self, keyword: Token, *_parts: object) -> None:
         raise self._error(keyword, f"LDF must do without {keyword}: {_REFUSED[keyword]}")
 
     packing = plit = overlay_group = overlay_input = mpmemory = _refuse

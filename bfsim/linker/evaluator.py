@@ -55,7 +55,9 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
 
     def _known_segment(self, name: str, offset: int) -> Segment:
         """Return the segment of a name: the processor's own, a global one, else another processor's."""
-        owners = sorted(dict.fromkeys(owner for owner, _ in self._segments), key=lambda o: (o != self._processor, o != ""))
+        owners = sorted(
+            dict.fromkeys(owner for owner, _ in self._segments), key=lambda o: (o != self._processor, o != "")
+        )
         for owner in owners:
             if (owner, name) in self._segments:
                 return self._segments[owner, name]
@@ -136,7 +138,7 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
     def file(self, name: Token) -> Files:
         return frozenset({name.strip('"')})
 
-    def members(self, library: Token, *members: Token) -> Files:
+    def members(self, _library: Token, *members: Token) -> Files:
         return frozenset(member.strip('"') for member in members)
 
     def listed(self, name: Token, is_taken: bool | None) -> Files:

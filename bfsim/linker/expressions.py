@@ -30,11 +30,11 @@ class ExpressionError(Exception):
 class Scope(Protocol):
     """What the names in an expression stand for."""
 
-    def value_of(self, name: str, offset: int) -> int:
+    def value_of(self, name: str, offset: int, /) -> int:
         """Return the value of a symbol, or of the location counter '.'."""
         ...
 
-    def result_of(self, function: str, argument: Expression, offset: int) -> int:
+    def result_of(self, function: str, argument: Expression, offset: int, /) -> int:
         """Return the value of a function such as MEMORY_END(segment)."""
         ...
 
@@ -67,14 +67,19 @@ class Expression:
                 return scope.value_of(self.text, self.offset)
             case "call":
                 return scope.result_of(self.text, self.operands[0], self.offset)
-            case "&&":
-                return int(all(operand.value_in(scope) != 0 for operand in self.operands))
-            case "||":
-                return int(any(operand.value_in(scope) != 0 for operand in self.operands))
-            case "?":
-                condition, then, otherwise = self.operands
-                return (then if condition.value_in(scope) else otherwise).value_in(scope)
+            case "&&" | "||" | "?":
+                return self._value_of_branch(scope)
         return self._apply([operand.value_in(scope) for operand in self.operands])
+
+    def _value_of_branch(self, scope: Scope) -> int:
+        """Return the value by the operands that count: a branch that is not taken need not have one."""
+        first, *rest = self.operands
+        is_true = first.value_in(scope) != 0
+        if self.operator == "?":
+            return rest[not is_true].value_in(scope)
+        if is_true == (self.operator == "||"):
+            return int(is_true)
+        return int(rest[0].value_in(scope) != 0)
 
     def _apply(self, values: list[int]) -> int:
         compute = _UNARY[self.operator] if len(values) == 1 else _BINARY[self.operator]
@@ -122,8 +127,18 @@ _BINARY: dict[str, Callable[..., int]] = {
 _BINDING = {
     sign: binding
     for binding, signs in enumerate(
-        (("||",), ("&&",), ("|",), ("^",), ("&",), ("==", "!="), ("<", ">", "<=", ">="), ("<<", ">>"))
-        + (("+", "-"), ("*", "/", "%"))
+        (
+            ("||",),
+            ("&&",),
+            ("|",),
+            ("^",),
+            ("&",),
+            ("==", "!="),
+            ("<", ">", "<=", ">="),
+            ("<<", ">>"),
+            ("+", "-"),
+            ("*", "/", "%"),
+        )
     )
     for sign in signs
 }
@@ -132,11 +147,11 @@ _BINDING = {
 class _NoScope:
     """The scope of a condition: no functions, and names that are no macros are 0."""
 
-    def value_of(self, name: str, offset: int) -> int:
+    def value_of(self, _name: str, _offset: int, /) -> int:
         """Return 0, as C does in #if."""
         return 0
 
-    def result_of(self, function: str, argument: Expression, offset: int) -> int:
+    def result_of(self, function: str, _argument: Expression, offset: int, /) -> int:
         """Refuse a function."""
         raise ExpressionError(offset, f"function must not stand in a condition: {function}")
 

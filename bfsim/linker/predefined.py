@@ -20,7 +20,7 @@ SILICON_REVISION = {
 ANY_REVISION = "0xffff"  # the default LDF of the BF533 takes it for all revisions
 
 _ARCHITECTURE = re.compile(r"^[ \t]*ARCHITECTURE\s*\(\s*([\w-]+)", re.MULTILINE)
-_BLACKFIN = re.compile(r"ADSP-(BF[56]\d\d\w*)", re.IGNORECASE)
+_BLACKFIN = re.compile(r"ADSP-(BF[5-7]\d\d\w*)", re.IGNORECASE)
 
 
 def is_blackfin(chip: str) -> bool:

@@ -17,7 +17,10 @@ _DIRECTIVE = re.compile(r"\s*#\s*(?P<name>\w*)(?P<rest>.*)", re.DOTALL)
 _DEFINE = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)(?:\((?P<parameters>[\w\s,]*)\))?(?P<body>.*)", re.DOTALL)
 _NAME = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)\s*")
 _INCLUDED = re.compile(r'\s*(?:"(?P<beside>[^"\n]+)"|<(?P<listed>[^>\n]+)>)\s*')
-_INCLUDE_COMMAND = re.compile(r'\s*\(\s*"?(?P<beside>[^")\n]+?)"?\s*\)\s*;?')
+_INCLUDE_COMMAND = re.compile(r'INCLUDE\s*\(\s*"?(?P<beside>[^")\n]+?)"?\s*\)\s*;?')
+Text = tuple[str, File, int, bool]
+"""A piece of expanded text, the file and the offset where it was written, whether it was written just so."""
+
 _IGNORED = {"", "pragma", "line", "ident"}
 
 # Bounds for inclusions that were written to explode; the default LDFs of VisualDSP++ include one file.
@@ -45,8 +48,8 @@ class _Preprocessor:
     warnings: list[str] = field(default_factory=list)
     inclusions: int = 0
 
-    def pieces(self, file: File, active: tuple[Path, ...]) -> Iterator[tuple[str, File, int, bool]]:
-        """Yield the expanded text in pieces: text, file, where it was written, whether just so."""
+    def pieces(self, file: File, active: tuple[Path, ...]) -> Iterator[Text]:
+        """Yield the expanded text of a file, which the files `active` include."""
         written, conditions, position = file.written, list[_Condition](), 0
         while (match := TOKEN.search(written, position)) is not None:
             start = match.start()
@@ -64,14 +67,9 @@ class _Preprocessor:
                 case "comment":
                     yield " ", file, start, False
                 case "word" if match.group() in self.macros:
-                    try:
-                        text, position = expand_use(written, match, self.macros)
-                    except MacroError as error:
-                        raise file.error_at(start, str(error)) from None
+                    text, position = self._expanded(file, match)
                     yield text, file, start, False
-                case "word" if match.group() == "INCLUDE" and (
-                    command := _INCLUDE_COMMAND.match(written, position)
-                ):
+                case _ if command := _INCLUDE_COMMAND.match(written, start):
                     position = command.end()
                     yield from self._include(file, start, command["beside"], is_beside=True, active=active)
                 case _:
@@ -80,9 +78,15 @@ class _Preprocessor:
             raise file.error_at(conditions[-1].offset, "#if must end with #endif before the file does")
         yield written[position:], file, position, True
 
+    def _expanded(self, file: File, use: re.Match[str]) -> tuple[str, int]:
+        try:
+            return expand_use(file.written, use, self.macros)
+        except MacroError as error:
+            raise file.error_at(use.start(), str(error)) from None
+
     def _obey(
         self, file: File, match: re.Match[str], conditions: list[_Condition], active: tuple[Path, ...]
-    ) -> Iterator[tuple[str, File, int, bool]]:
+    ) -> Iterator[Text]:
         """Do what a directive says; yield the text that it includes."""
         text = re.sub(r"/\*.*?\*/", " ", re.sub(r"\\\r?\n", " ", match.group()), flags=re.DOTALL)
         directive = _DIRECTIVE.fullmatch(text)
@@ -145,7 +149,7 @@ class _Preprocessor:
 
     def _include(
         self, file: File, offset: int, wanted: str, *, is_beside: bool, active: tuple[Path, ...]
-    ) -> Iterator[tuple[str, File, int, bool]]:
+    ) -> Iterator[Text]:
         """Yield the text of the file `wanted`, from beside `file` or from the first of the include folders."""
         self.inclusions += 1
         if len(active) > _DEEPEST_INCLUSION or self.inclusions > _MOST_INCLUSIONS:
@@ -164,7 +168,9 @@ class _Preprocessor:
             yield from self.pieces(File(path, written, place), (*active, path.resolve()))
             return
         searched = ", ".join(map(str, folders)) or "no folder"
-        raise file.error_at(offset, f"included file must be a readable one, not '{wanted}' (sought in {searched})")
+        raise file.error_at(
+            offset, f"included file must be a readable one, not '{wanted}' (sought in {searched})"
+        )
 
 
 def preprocess(path: Path, macros: Mapping[str, str], include_dirs: Sequence[Path]) -> Source:
