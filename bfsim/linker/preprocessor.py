@@ -14,13 +14,17 @@ from bfsim.linker.predefined import macros_for
 from bfsim.linker.source import File, Piece, Source
 
 _DIRECTIVE = re.compile(r"\s*#\s*(?P<name>\w*)(?P<rest>.*)", re.DOTALL)
-_DEFINE = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)(?:\((?P<parameters>[\w\s,]*)\))?(?P<body>.*)", re.DOTALL)
+_DEFINE = re.compile(
+    r"\s*(?P<name>[A-Za-z_]\w*)(?:\((?P<parameters>[\w\s,]*)\)|(?!\())(?P<body>.*)", re.DOTALL
+)
 _NAME = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)\s*")
 _INCLUDED = re.compile(r'\s*(?:"(?P<beside>[^"\n]+)"|<(?P<listed>[^>\n]+)>)\s*')
 _INCLUDE_COMMAND = re.compile(r'INCLUDE\s*\(\s*"?(?P<beside>[^")\n]+?)"?\s*\)\s*;?')
 Text = tuple[str, File, int, bool]
 """A piece of expanded text, the file and the offset where it was written, whether it was written just so."""
 
+_CONDITIONS = ("if", "ifdef", "ifndef", "elif", "else", "endif")
+_NEEDED = {"define": "a macro", "undef": "the name of a macro", "include": 'a file in "" or <>'}
 _IGNORED = {"", "pragma", "line", "ident"}
 
 # Bounds for inclusions that were written to explode; the default LDFs of VisualDSP++ include one file.
@@ -93,7 +97,7 @@ class _Preprocessor:
         assert directive is not None
         name, rest = directive["name"], directive["rest"].strip()
         offset = match.start() + match.group().index("#")
-        if name in ("if", "ifdef", "ifndef", "elif", "else", "endif"):
+        if name in _CONDITIONS:
             self._branch(file, offset, name, rest, conditions)
         elif conditions and not conditions[-1].is_taken:
             return
@@ -109,12 +113,11 @@ class _Preprocessor:
             raise file.error_at(offset, f"#error {rest}".rstrip())
         elif name == "warning":
             self.warnings.append(f"{file.place_of(offset)}: {rest}")
+        elif name in _NEEDED:
+            raise file.error_at(offset, f"#{name} must be followed by {_NEEDED[name]}, not '{rest[:60]}'")
         elif name not in _IGNORED:
-            raise file.error_at(
-                offset,
-                "preprocessor line must be #define, #undef, #if, #ifdef, #ifndef, #elif, #else, #endif, "
-                f"#include, #error, #warning or #pragma, with what belongs to it, not {text.strip()[:60]!r}",
-            )
+            known = ", ".join(f"#{each}" for each in (*_CONDITIONS, *_NEEDED, "error", "warning", "pragma"))
+            raise file.error_at(offset, f"preprocessor line must be one of {known}, not '#{name}'")
 
     def _branch(self, file: File, offset: int, name: str, rest: str, conditions: list[_Condition]) -> None:
         """Enter, change or leave a condition."""
