@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from lark import Token, v_args
 
 from bfsim.errors import LinkError
-from bfsim.linker.expressions import Expression, ExpressionBuilder, ExpressionError
+from bfsim.linker.expression_builder import ExpressionBuilder
+from bfsim.linker.expressions import Expression, ExpressionError
 from bfsim.linker.script import (
     COMMAND_LINE_OBJECTS,
     MEMORY_FUNCTIONS,
