@@ -85,7 +85,7 @@ def test_a_hand_written_ldf_links(parse: Parse) -> None:
     assert [p.symbol.name for p in linked.placements] == ["d", "e", "a", "b", "c"]
     assert linked.values["core0", "ldf_stack_end"] == 0xFF808000
     with pytest.raises(LinkError, match=r"section of symbol 'x' of core0"):
-        link(parse(HAND_WRITTEN), [core0("x", "boot", "iir.doj")], SINGLE_CORE, chip="ADSP-BF533")
+        link(parse(HAND_WRITTEN), [core0("x", "boot", "iir.dlb")], SINGLE_CORE, chip="ADSP-BF533")
 
 
 @pytest.mark.parametrize(

@@ -189,7 +189,7 @@ def test_a_mistake_inside_a_macro_is_shown_where_the_macro_is_used(parse: Parse)
     ("text", "message"),
     [
         ("MEMORY { M { START 0 } }", r"test\.ldf:1:20: expected '\(', not '0'"),
-        ("MEMORY {", r"test\.ldf:1:9: expected '}' or a name, not the end of the file"),
+        ("MEMORY {", r"test\.ldf:1:9: expected ';', '}' or a name, not the end of the file"),
         (
             "MEMORY { M { START(0) END(1) } } ?",
             r"test\.ldf:1:34: expected .* or the end of the file, not '\?'",
