@@ -16,7 +16,6 @@ from bfsim.linker.expressions import Expression, ExpressionError
 from bfsim.linker.script import (
     COMMAND_LINE_OBJECTS,
     MEMORY_FUNCTIONS,
-    FixedReserve,
     LinkerScript,
     Segment,
     memory_function,
@@ -43,8 +42,6 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
         self._source = source
         self._processor = ""
         self._segments: dict[tuple[str, str], Segment] = {}  # by processor (or "") and name in the LDF
-        self._processors: list[str] = []
-        self._reserves: list[FixedReserve] = []
         self._constants: dict[str, int] = {}
         self._lists: dict[str, Files] = {COMMAND_LINE_OBJECTS: frozenset({COMMAND_LINE_OBJECTS})}
 

@@ -39,10 +39,11 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Start]):
     """One method per rule for expressions in ldf.lark."""
 
     def number(self, text: Token) -> Expression:
-        if text[:2] in ("0x", "0X"):
-            value = int(text, 16)
+        digits = text.rstrip("uUlL")
+        if digits[:2] in ("0x", "0X"):
+            value = int(digits, 16)
         else:
-            value = int(text.rstrip("kKmM")) * _SUFFIXES.get(text[-1].upper(), 1)
+            value = int(digits.rstrip("kKmM")) * _SUFFIXES.get(digits[-1].upper(), 1)
         return Expression(text.start_pos or 0, "number", number=value)
 
     def name(self, name: Token) -> Expression:

@@ -51,6 +51,7 @@ def value(parse: Parse, expression: str) -> int:
         ("0 ? 1 / 0 : 4", 4),
         ("DEFINED(nothing) ? nothing : 6", 6),
         ("ABSOLUTE(2K)", 2048),
+        ("0x10UL + 16u + 0000000004", 36),
     ],
 )
 def test_assignments_have_the_values_of_c(parse: Parse, expression: str, expected: int) -> None:
