@@ -8,7 +8,7 @@ fit waits for the next output section that names its input section; one that wai
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from bfsim.chip.memory_map import CM_BF561_REGIONS, Region
 from bfsim.errors import LinkError
@@ -48,6 +48,8 @@ def link(
     chip: str = "ADSP-BF561",
 ) -> LinkMap:
     """Place `symbols` by `script` into the memories `regions` of a board with a `chip`; LinkError if one has no place."""
+    if not script.chip:
+        script = replace(script, chip=chip)  # an LDF without ARCHITECTURE is for any chip
     check_chip(script, chip)
     check_symbols(script, symbols)
     check_memories(script, regions)

@@ -120,6 +120,8 @@ def test_processors_are_cores(parse: Parse) -> None:
     """On the BF561 by name; on a single core the only PROCESSOR is core A, whatever its name."""
     assert parse("ARCHITECTURE(ADSP-BF561)").core_of_processor == {"p0": "A", "p1": "B"}
     assert parse("ARCHITECTURE(ADSP-BF537) PROCESSOR main { }").core_of_processor == {"main": "A"}
+    anywhere = parse("PROCESSOR main { }")
+    assert link(anywhere, [], chip="ADSP-BF537").placements == ()
     two = parse("ARCHITECTURE(ADSP-BF537) PROCESSOR p0 { } PROCESSOR p1 { }")
     with pytest.raises(
         LinkError, match=r"ADSP-BF537 has one core, and the LDF must have one PROCESSOR, not 2"

@@ -225,6 +225,10 @@ def test_a_mistake_inside_a_macro_is_shown_where_the_macro_is_used(parse: Parse)
             "PROCESSOR p0 { SECTIONS { a { OVERLAY_INPUT { } } } }",
             r"LDF must do without OVERLAY_INPUT: overlays",
         ),
+        (
+            "PROCESSOR p0 { SECTIONS { OVERLAY_INPUT { OVERLAY_OUTPUT(a.ovl) } > M } }",
+            r"test\.ldf:1:27: LDF must do without OVERLAY_INPUT: overlays",
+        ),
         ("PROCESSOR p0 { PLIT { } }", r"LDF must do without PLIT: it belongs to overlays"),
         ("PROCESSOR p0 { SECTIONS { a { PACKING(6 B1 B2) } } }", r"LDF must do without PACKING: a Blackfin"),
         ("MPMEMORY { p0 { START(4) } }", r"test\.ldf:1:1: LDF must do without MPMEMORY: the two cores"),
