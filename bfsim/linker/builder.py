@@ -25,6 +25,7 @@ from bfsim.linker.script import (
     Resolve,
     Segment,
 )
+from bfsim.linker.source import Source
 
 # What would change a placement and is not modelled, with the reason that the error gives.
 _REFUSED = {
@@ -63,27 +64,28 @@ _Item = Segment | OutputSection | Reserve | FixedReserve | Resolve | Masters | A
 class ScriptBuilder(Evaluator):
     """One method per rule of ldf.lark; raises LinkError at the first statement that cannot be meant."""
 
-    chip = ""
+    def __init__(self, source: Source) -> None:
+        super().__init__(source)
+        self._chip = ""
+        self._processors: list[str] = []
+        self._reserves: list[FixedReserve] = []
 
     def start(self, *items: Block | Segment | Assignment | None) -> LinkerScript:
-        blocks = tuple(item for item in items if isinstance(item, Block))
-        processors = [block.processors[0] for block in blocks if not block.is_shared]
+        everyone = tuple(self._processors) or tuple(CORE_OF_PROCESSOR)
+        blocks = (item for item in items if isinstance(item, Block))
         return LinkerScript(
             self._source,
-            self.chip,
+            self._chip,
             tuple(self._segments.values()),
             tuple(self._reserves),
-            tuple(replace(each, processors=each.processors or self._everyone(processors)) for each in blocks),
+            tuple(replace(block, processors=block.processors or everyone) for block in blocks),
             tuple(item for item in items if isinstance(item, Assignment)),
         )
-
-    def _everyone(self, processors: list[str]) -> tuple[str, ...]:
-        return tuple(dict.fromkeys(processors)) or tuple(CORE_OF_PROCESSOR)
 
     def architecture(self, chip: Token) -> None:
         if not is_blackfin(chip):
             raise self._error(chip, f"ARCHITECTURE must be a Blackfin such as ADSP-BF561, not {chip}")
-        self.chip = chip.upper()
+        self._chip = chip.upper()
 
     # ---- blocks
 
@@ -166,7 +168,8 @@ class ScriptBuilder(Evaluator):
         return Contiguous()
 
     def input_sections(self, keyword: Token, *inputs: Input) -> InputSections:
-        return InputSections(self._place(keyword), inputs, 1)
+        is_exclusive = keyword.endswith("_EXCLUSIVE")
+        return InputSections(self._place(keyword), inputs, 1, "_PIN" in keyword, is_exclusive)
 
     def input(self, files: Files, *sections: str) -> Input:
         return Input(files, frozenset(sections))
@@ -232,7 +235,7 @@ class ScriptBuilder(Evaluator):
 
     # ---- what is refused where it stands
 
-    def _refuse(self, keyword: Token, *parts: object) -> None:
+    def _refuse(self, keyword: Token, *_parts: object) -> None:
         raise self._error(keyword, f"LDF must do without {keyword}: {_REFUSED[keyword]}")
 
     packing = plit = overlay_group = overlay_input = mpmemory = _refuse

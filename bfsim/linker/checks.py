@@ -14,7 +14,7 @@ from bfsim.linker.source import Place
 
 def check_chip(script: LinkerScript, chip: str) -> None:
     """Raise LinkError for an LDF of another chip, or with other processors than it has."""
-    if script.chip and script.chip != chip.upper():
+    if script.chip != chip.upper():
         raise LinkError(f"{script.path}: ARCHITECTURE must be {chip}, the board's chip, not {script.chip}")
     cores = script.core_of_processor
     for block in script.blocks:
@@ -97,6 +97,15 @@ def _check_views(script: LinkerScript) -> None:
 
 
 def _region_under(segment: Segment, regions: Sequence[Region]) -> Region:
+    """Return the memory under a segment; the first one if neighbours of one owner, as SRAM and cache, hold it."""
+    first = next((region for region in regions if region.holds(segment.start, 1)), None)
+    last = first
+    while first and last and last.start + last.nbytes <= segment.end:
+        last = next(
+            (r for r in regions if (r.start, r.owner) == (last.start + last.nbytes, first.owner)), None
+        )
+    if first and last:
+        return first
     try:
         return region_of(segment.start, segment.nbytes, regions)
     except ConfigError as error:
@@ -113,9 +122,9 @@ def _check_reach(script: LinkerScript, segment: Segment, region: Region, user: s
 
 
 def _check_unbroken(script: LinkerScript, segment: Segment, output: OutputSection) -> None:
-    """Check that FORCE_CONTIGUITY holds: a reserve may lie at the end of the segment only."""
+    """Check that FORCE_CONTIGUITY holds: a reserve may lie at the start or the end of the segment only."""
     for reserved in script.reserves:
-        if segment.start <= reserved.start <= segment.end and reserved.start + reserved.nbytes <= segment.end:
+        if segment.start < reserved.start and reserved.start + reserved.nbytes <= segment.end:
             raise LinkError(
                 f"{output.place}: segment of FORCE_CONTIGUITY section '{output.name}' must be "
                 f"in one piece, not {segment.name}, cut by RESERVE({reserved.name}) of {reserved.place.beside(output.place)}"

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from lark import Token, v_args
 
 from bfsim.errors import LinkError
-from bfsim.linker.expressions import Expression, ExpressionBuilder, ExpressionError
+from bfsim.linker.expression_builder import ExpressionBuilder
+from bfsim.linker.expressions import Expression, ExpressionError
 from bfsim.linker.script import (
     COMMAND_LINE_OBJECTS,
     MEMORY_FUNCTIONS,
-    FixedReserve,
     LinkerScript,
     Segment,
     memory_function,
@@ -42,8 +42,6 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
         self._source = source
         self._processor = ""
         self._segments: dict[tuple[str, str], Segment] = {}  # by processor (or "") and name in the LDF
-        self._processors: list[str] = []
-        self._reserves: list[FixedReserve] = []
         self._constants: dict[str, int] = {}
         self._lists: dict[str, Files] = {COMMAND_LINE_OBJECTS: frozenset({COMMAND_LINE_OBJECTS})}
 
@@ -138,7 +136,7 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
     def file(self, name: Token) -> Files:
         return frozenset({name.strip('"')})
 
-    def members(self, library: Token, *members: Token) -> Files:
+    def members(self, _library: Token, *members: Token) -> Files:
         return frozenset(member.strip('"') for member in members)
 
     def listed(self, name: Token, is_taken: bool | None) -> Files:

@@ -1,21 +1,13 @@
-"""Expressions of an LDF: C's operators on integers. What is constant is computed as it is read."""
+"""Expressions of an LDF: C's operators on integers, names and functions."""
 
 from __future__ import annotations
 
 import operator
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import Protocol
 
-from lark import Token, v_args
-from lark.visitors import Transformer_NonRecursive
-
-_SUFFIXES = {"K": 1024, "M": 1024 * 1024}
-_DEEPEST = 100  # expressions with symbols; constants may be deeper
 _WIDEST_BITS = 64  # of a value in between; an address has 32
-
-
-Start = TypeVar("Start")  # what the start rule becomes
 
 
 class ExpressionError(Exception):
@@ -30,11 +22,11 @@ class ExpressionError(Exception):
 class Scope(Protocol):
     """What the names in an expression stand for."""
 
-    def value_of(self, name: str, offset: int) -> int:
+    def value_of(self, name: str, offset: int, /) -> int:
         """Return the value of a symbol, or of the location counter '.'."""
         ...
 
-    def result_of(self, function: str, argument: Expression, offset: int) -> int:
+    def result_of(self, function: str, argument: Expression, offset: int, /) -> int:
         """Return the value of a function such as MEMORY_END(segment)."""
         ...
 
@@ -67,14 +59,19 @@ class Expression:
                 return scope.value_of(self.text, self.offset)
             case "call":
                 return scope.result_of(self.text, self.operands[0], self.offset)
-            case "&&":
-                return int(all(operand.value_in(scope) != 0 for operand in self.operands))
-            case "||":
-                return int(any(operand.value_in(scope) != 0 for operand in self.operands))
-            case "?":
-                condition, then, otherwise = self.operands
-                return (then if condition.value_in(scope) else otherwise).value_in(scope)
+            case "&&" | "||" | "?":
+                return self._value_of_branch(scope)
         return self._apply([operand.value_in(scope) for operand in self.operands])
+
+    def _value_of_branch(self, scope: Scope) -> int:
+        """Return the value by the operands that count: a branch that is not taken need not have one."""
+        first, *rest = self.operands
+        is_true = first.value_in(scope) != 0
+        if self.operator == "?":
+            return rest[not is_true].value_in(scope)
+        if is_true == (self.operator == "||"):
+            return int(is_true)
+        return int(rest[0].value_in(scope) != 0)
 
     def _apply(self, values: list[int]) -> int:
         compute = _UNARY[self.operator] if len(values) == 1 else _BINARY[self.operator]
@@ -119,97 +116,17 @@ _BINARY: dict[str, Callable[..., int]] = {
     "|": operator.or_,
 }
 
-_BINDING = {
-    sign: binding
-    for binding, signs in enumerate(
-        (("||",), ("&&",), ("|",), ("^",), ("&",), ("==", "!="), ("<", ">", "<=", ">="), ("<<", ">>"))
-        + (("+", "-"), ("*", "/", "%"))
-    )
-    for sign in signs
-}
-
 
 class _NoScope:
     """The scope of a condition: no functions, and names that are no macros are 0."""
 
-    def value_of(self, name: str, offset: int) -> int:
+    def value_of(self, _name: str, _offset: int, /) -> int:
         """Return 0, as C does in #if."""
         return 0
 
-    def result_of(self, function: str, argument: Expression, offset: int) -> int:
+    def result_of(self, function: str, _argument: Expression, offset: int, /) -> int:
         """Refuse a function."""
         raise ExpressionError(offset, f"function must not stand in a condition: {function}")
 
 
 NO_SCOPE: Scope = _NoScope()
-
-
-@v_args(inline=True)
-class ExpressionBuilder(Transformer_NonRecursive[Token, Start]):
-    """One method per rule for expressions in ldf.lark."""
-
-    def number(self, text: Token) -> Expression:
-        if text[:2] in ("0x", "0X"):
-            value = int(text, 16)
-        else:
-            value = int(text.rstrip("kKmM")) * _SUFFIXES.get(text[-1].upper(), 1)
-        return Expression(text.start_pos or 0, "number", number=value)
-
-    def name(self, name: Token) -> Expression:
-        return Expression(name.start_pos or 0, "name", text=str(name))
-
-    def call(self, function: Token, argument: Expression) -> Expression:
-        return _combine(function, "call", (argument,), str(function))
-
-    def signed(self, sign: Token, operand: Expression) -> Expression:
-        return _combine(sign, str(sign), (operand,))
-
-    def expr(self, first: Expression, *rest: Expression | Token | None) -> Expression:
-        """Give each operator its operands: `rest` alternates both, and ends with the two branches of "?" or None."""
-        *pairs, then, otherwise = rest
-        operands, signs = [first], list[Token]()
-        for sign, operand in zip(pairs[::2], pairs[1::2], strict=True):
-            assert isinstance(sign, Token)
-            assert isinstance(operand, Expression)
-            while signs and _BINDING[signs[-1]] >= _BINDING[sign]:
-                _reduce(operands, signs)
-            signs.append(sign)
-            operands.append(operand)
-        while signs:
-            _reduce(operands, signs)
-        if isinstance(then, Expression) and isinstance(otherwise, Expression):
-            return _choose(operands[0], then, otherwise)
-        return operands[0]
-
-    def condition(self, expression: Expression) -> Expression:
-        return expression
-
-
-def _reduce(operands: list[Expression], signs: list[Token]) -> None:
-    """Replace the last two operands by their combination."""
-    sign, right, left = signs.pop(), operands.pop(), operands.pop()
-    operands.append(_combine(sign, str(sign), (left, right)))
-
-
-def _choose(condition: Expression, then: Expression, otherwise: Expression) -> Expression:
-    if condition.is_number:
-        return then if condition.number else otherwise
-    operands = (condition, then, otherwise)
-    return Expression(condition.offset, "?", operands, depth=_depth(*operands))
-
-
-def _combine(token: Token, sign: str, operands: tuple[Expression, ...], text: str = "") -> Expression:
-    """Make an expression; compute it if all its operands are numbers and it has a value."""
-    expression = Expression(token.start_pos or 0, sign, operands, text, depth=_depth(*operands))
-    if expression.depth > _DEEPEST:
-        raise ExpressionError(expression.offset, f"expression must nest at most {_DEEPEST} deep")
-    if sign == "call" or not all(operand.is_number for operand in operands):
-        return expression
-    try:
-        return Expression(expression.offset, "number", number=expression.value_in(NO_SCOPE))
-    except ExpressionError:
-        return expression  # it may stand in a branch that is never taken
-
-
-def _depth(*operands: Expression) -> int:
-    return 1 + max(operand.depth for operand in operands)

@@ -10,7 +10,8 @@ from lark.exceptions import VisitError
 from lark.lexer import PatternStr
 
 from bfsim.errors import LinkError
-from bfsim.linker.expressions import NO_SCOPE, Expression, ExpressionBuilder, ExpressionError
+from bfsim.linker.expression_builder import ExpressionBuilder
+from bfsim.linker.expressions import NO_SCOPE, Expression, ExpressionError
 from bfsim.linker.source import Source
 
 # How an error names what it expected, where the pattern of a terminal would not help.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 
 TOKEN = re.compile(
     r"""(?P<directive> ^[ \t]*\#(?: \\\r?\n | /\*.*?\*/ | (?!//)[^\n] )* )
@@ -16,6 +17,8 @@ TOKEN = re.compile(
     re.VERBOSE | re.MULTILINE | re.DOTALL,
 )
 _PIECE_OF_BODY = re.compile(r'\s*(?P<paste>\#\#)\s*|\#\s*(?P<quoted>\w+)|(?P<word>\w+)|"[^"\n]*"')
+_OPENING = re.compile(r"\s*\(")
+_PART_OF_ARGUMENTS = re.compile(r'"[^"\n]*"|[(),]')
 
 # Bounds for macros that were written to explode; the default LDFs of VisualDSP++ stay below 3 and 1000.
 _DEEPEST_NESTING = 50
@@ -36,8 +39,11 @@ class MacroError(Exception):
     """Carries what is wrong with the use of a macro up to where the place of that use is known."""
 
 
-def expand(text: str, macros: Mapping[str, Macro], active: frozenset[str] = frozenset()) -> str:
-    """Expand the macros in `text`, but those that are `active`, which is to say being expanded, already."""
+def expand(text: str, macros: Mapping[str, Macro], active: tuple[str, ...] = ()) -> str:
+    """Expand the macros in `text`, but those that are `active`, which is to say being expanded, already.
+
+    An argument that is being expanded adds "" to `active`, so that its length is how deep it is.
+    """
     expanded: list[str] = []
     length = position = 0
     while (match := TOKEN.search(text, position)) is not None:
@@ -54,7 +60,7 @@ def expand(text: str, macros: Mapping[str, Macro], active: frozenset[str] = froz
 
 
 def expand_use(
-    text: str, use: re.Match[str], macros: Mapping[str, Macro], active: frozenset[str] = frozenset()
+    text: str, use: re.Match[str], macros: Mapping[str, Macro], active: tuple[str, ...] = ()
 ) -> tuple[str, int]:
     """Return what the macro used at `use` becomes, and the position in `text` behind its arguments."""
     name = use.group()
@@ -62,7 +68,7 @@ def expand_use(
     if len(active) == _DEEPEST_NESTING:
         raise MacroError(f"macros must nest at most {_DEEPEST_NESTING} deep")
     if macro.parameters is None:
-        return expand(_substitute(macro.body, {}, macros, active), macros, active | {name}), use.end()
+        return expand(_substitute(macro.body, {}, macros, active), macros, (*active, name)), use.end()
     listed = _arguments(text, use.end(), name)
     if listed is None:
         return name, use.end()
@@ -70,16 +76,16 @@ def expand_use(
     if len(arguments) != len(macro.parameters) and not (arguments == [""] and not macro.parameters):
         raise MacroError(f"macro {name} takes {len(macro.parameters)} arguments, not {len(arguments)}")
     values = dict(zip(macro.parameters, arguments, strict=False))
-    return expand(_substitute(macro.body, values, macros, active), macros, active | {name}), end
+    return expand(_substitute(macro.body, values, macros, active), macros, (*active, name)), end
 
 
 def _arguments(text: str, position: int, name: str) -> tuple[list[str], int] | None:
     """Return the arguments in parentheses from `position` on and the position behind; None if there are none."""
-    opening = re.compile(r"\s*\(").match(text, position)
+    opening = _OPENING.match(text, position)
     if opening is None:
         return None
     arguments, depth, start = [], 1, opening.end()
-    for token in re.compile(r'"[^"\n]*"|[(),]').finditer(text, start):
+    for token in _PART_OF_ARGUMENTS.finditer(text, start):
         depth += {"(": 1, ")": -1}.get(token.group(), 0)
         if depth == 0 or (depth == 1 and token.group() == ","):
             arguments.append(text[start : token.start()].strip())
@@ -90,9 +96,14 @@ def _arguments(text: str, position: int, name: str) -> tuple[list[str], int] | N
 
 
 def _substitute(
-    body: str, values: Mapping[str, str], macros: Mapping[str, Macro], active: frozenset[str]
+    body: str, values: Mapping[str, str], macros: Mapping[str, Macro], active: tuple[str, ...]
 ) -> str:
     """Put the arguments into a macro's body: as written beside ## and behind #, else expanded first."""
+
+    @cache
+    def expanded(parameter: str) -> str:
+        return expand(values[parameter], macros, (*active, ""))
+
     pieces: list[str] = []
     position, is_pasted = 0, False
     for piece in _PIECE_OF_BODY.finditer(body):
@@ -106,7 +117,7 @@ def _substitute(
             text = f'"{values[piece["quoted"]]}"'
         elif word in values:
             is_pasted = is_pasted or body[position:].lstrip().startswith("##")
-            text = values[word] if is_pasted else expand(values[word], macros, active)
+            text = values[word] if is_pasted else expanded(word)
         is_pasted = bool(piece["paste"])
         pieces.append(text)
     return "".join(pieces) + body[position:]

@@ -8,7 +8,7 @@ fit waits for the next output section that names its input section; one that wai
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from bfsim.chip.memory_map import CM_BF561_REGIONS, Region
 from bfsim.errors import LinkError
@@ -18,6 +18,7 @@ from bfsim.linker.link_map import LinkMap, Placement, SegmentUsage, Symbol
 from bfsim.linker.reserves import Reserved, expanded
 from bfsim.linker.script import (
     Assignment,
+    Block,
     InputSections,
     LinkerScript,
     Move,
@@ -47,6 +48,8 @@ def link(
     chip: str = "ADSP-BF561",
 ) -> LinkMap:
     """Place `symbols` by `script` into the memories `regions` of a board with a `chip`; LinkError if one has no place."""
+    if not script.chip:
+        script = replace(script, chip=chip)  # an LDF without ARCHITECTURE is for any chip
     check_chip(script, chip)
     check_symbols(script, symbols)
     check_memories(script, regions)
@@ -77,6 +80,8 @@ class _Linker:
         self.placed: dict[Symbol, Placement] = {}
         self.values = Values(script)
         self._reserves: list[Reserved] = []
+        self._filled: list[OutputSection] = []
+        self._pins = _pins(script)
         self._extents: dict[Key, tuple[int, int]] = {}
         self._refusals: dict[Symbol, list[Refusal]] = {}
 
@@ -98,8 +103,9 @@ class _Linker:
                     self._move(output, statement, align_up(filling.location, statement.align))
                 case InputSections():
                     for symbol in symbols:
-                        if symbol not in self.placed and statement.takes(symbol):
+                        if symbol not in self.placed and self._takes(output, statement, symbol):
                             self._place(symbol, output, statement)
+        self._filled.append(output)
         self._extents.setdefault((processor, output.name), (start, filling.location - start))
 
     def link_map(self) -> LinkMap:
@@ -112,6 +118,14 @@ class _Linker:
         values = self.values.settle(addresses, self._extents, reserved)
         usages = [self.fillings[segment.name].usage_of(segment) for segment in self._script.segments]
         return LinkMap(placements, usages, reserves, values)
+
+    def _takes(self, output: OutputSection, statement: InputSections, symbol: Symbol) -> bool:
+        """Say whether a statement of `output` takes a symbol that is not pinned elsewhere."""
+        return statement.takes(symbol) and not any(
+            pinned is not output and (pin.is_exclusive or pinned not in self._filled) and pin.takes(symbol)
+            for block, pinned, pin in self._pins
+            if block.serves(symbol)
+        )
 
     def _place(self, symbol: Symbol, output: OutputSection, statement: InputSections) -> None:
         filling = self.fillings[output.segment]
@@ -189,6 +203,17 @@ def _out_of_memory(place: Place, output_section: str, what: str, usage: SegmentU
         f"{place}: Out of memory in output section '{output_section}' [li1040]: "
         f"{what} does not fit in {_fullness(usage)}"
     )
+
+
+def _pins(script: LinkerScript) -> list[tuple[Block, OutputSection, InputSections]]:
+    """Return the INPUT_SECTIONS_PIN statements, each with its output section and block."""
+    return [
+        (block, output, statement)
+        for block in script.blocks
+        for output in block.output_sections
+        for statement in output.statements
+        if isinstance(statement, InputSections) and statement.is_pinned
+    ]
 
 
 def _fillings(script: LinkerScript) -> dict[str, Filling]:

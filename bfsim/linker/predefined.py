@@ -6,8 +6,8 @@ import re
 
 VERSION = "0x05000000"  # VisualDSP++ 5.0, whose LDFs bfsim reads
 
-# Silicon revision that VisualDSP++ 5.0 links for: the headers of the LDFs that its wizard wrote say 0.3 for the
-# BF536 and BF537 and 0.5 for the BF533; the BF561's is [assumed].
+# Silicon revision that VisualDSP++ 5.0 links for: "default_silicon_revision_from_archdef" in the headers of the LDFs
+# that its wizard wrote for the BF533, BF536, BF537 and BF561; the others are taken from their family [assumed].
 SILICON_REVISION = {
     "BF531": "0x5",
     "BF532": "0x5",
@@ -20,7 +20,7 @@ SILICON_REVISION = {
 ANY_REVISION = "0xffff"  # the default LDF of the BF533 takes it for all revisions
 
 _ARCHITECTURE = re.compile(r"^[ \t]*ARCHITECTURE\s*\(\s*([\w-]+)", re.MULTILINE)
-_BLACKFIN = re.compile(r"ADSP-(BF[56]\d\d\w*)", re.IGNORECASE)
+_BLACKFIN = re.compile(r"ADSP-(BF[5-7]\d\d\w*)", re.IGNORECASE)
 
 
 def is_blackfin(chip: str) -> bool:

@@ -14,10 +14,17 @@ from bfsim.linker.predefined import macros_for
 from bfsim.linker.source import File, Piece, Source
 
 _DIRECTIVE = re.compile(r"\s*#\s*(?P<name>\w*)(?P<rest>.*)", re.DOTALL)
-_DEFINE = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)(?:\((?P<parameters>[\w\s,]*)\))?(?P<body>.*)", re.DOTALL)
+_DEFINE = re.compile(
+    r"\s*(?P<name>[A-Za-z_]\w*)(?:\((?P<parameters>[\w\s,]*)\)|(?!\())(?P<body>.*)", re.DOTALL
+)
 _NAME = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)\s*")
 _INCLUDED = re.compile(r'\s*(?:"(?P<beside>[^"\n]+)"|<(?P<listed>[^>\n]+)>)\s*')
-_INCLUDE_COMMAND = re.compile(r'\s*\(\s*"?(?P<beside>[^")\n]+?)"?\s*\)\s*;?')
+_INCLUDE_COMMAND = re.compile(r'INCLUDE\s*\(\s*"?(?P<beside>[^")\n]+?)"?\s*\)\s*;?')
+Text = tuple[str, File, int, bool]
+"""A piece of expanded text, the file and the offset where it was written, whether it was written just so."""
+
+_CONDITIONS = ("if", "ifdef", "ifndef", "elif", "else", "endif")
+_NEEDED = {"define": "a macro", "undef": "the name of a macro", "include": 'a file in "" or <>'}
 _IGNORED = {"", "pragma", "line", "ident"}
 
 # Bounds for inclusions that were written to explode; the default LDFs of VisualDSP++ include one file.
@@ -45,8 +52,8 @@ class _Preprocessor:
     warnings: list[str] = field(default_factory=list)
     inclusions: int = 0
 
-    def pieces(self, file: File, active: tuple[Path, ...]) -> Iterator[tuple[str, File, int, bool]]:
-        """Yield the expanded text in pieces: text, file, where it was written, whether just so."""
+    def pieces(self, file: File, active: tuple[Path, ...]) -> Iterator[Text]:
+        """Yield the expanded text of a file, which the files `active` include."""
         written, conditions, position = file.written, list[_Condition](), 0
         while (match := TOKEN.search(written, position)) is not None:
             start = match.start()
@@ -64,14 +71,9 @@ class _Preprocessor:
                 case "comment":
                     yield " ", file, start, False
                 case "word" if match.group() in self.macros:
-                    try:
-                        text, position = expand_use(written, match, self.macros)
-                    except MacroError as error:
-                        raise file.error_at(start, str(error)) from None
+                    text, position = self._expanded(file, match)
                     yield text, file, start, False
-                case "word" if match.group() == "INCLUDE" and (
-                    command := _INCLUDE_COMMAND.match(written, position)
-                ):
+                case _ if command := _INCLUDE_COMMAND.match(written, start):
                     position = command.end()
                     yield from self._include(file, start, command["beside"], is_beside=True, active=active)
                 case _:
@@ -80,16 +82,22 @@ class _Preprocessor:
             raise file.error_at(conditions[-1].offset, "#if must end with #endif before the file does")
         yield written[position:], file, position, True
 
+    def _expanded(self, file: File, use: re.Match[str]) -> tuple[str, int]:
+        try:
+            return expand_use(file.written, use, self.macros)
+        except MacroError as error:
+            raise file.error_at(use.start(), str(error)) from None
+
     def _obey(
         self, file: File, match: re.Match[str], conditions: list[_Condition], active: tuple[Path, ...]
-    ) -> Iterator[tuple[str, File, int, bool]]:
+    ) -> Iterator[Text]:
         """Do what a directive says; yield the text that it includes."""
         text = re.sub(r"/\*.*?\*/", " ", re.sub(r"\\\r?\n", " ", match.group()), flags=re.DOTALL)
         directive = _DIRECTIVE.fullmatch(text)
         assert directive is not None
         name, rest = directive["name"], directive["rest"].strip()
         offset = match.start() + match.group().index("#")
-        if name in ("if", "ifdef", "ifndef", "elif", "else", "endif"):
+        if name in _CONDITIONS:
             self._branch(file, offset, name, rest, conditions)
         elif conditions and not conditions[-1].is_taken:
             return
@@ -105,12 +113,11 @@ class _Preprocessor:
             raise file.error_at(offset, f"#error {rest}".rstrip())
         elif name == "warning":
             self.warnings.append(f"{file.place_of(offset)}: {rest}")
+        elif name in _NEEDED:
+            raise file.error_at(offset, f"#{name} must be followed by {_NEEDED[name]}, not '{rest[:60]}'")
         elif name not in _IGNORED:
-            raise file.error_at(
-                offset,
-                "preprocessor line must be #define, #undef, #if, #ifdef, #ifndef, #elif, #else, #endif, "
-                f"#include, #error, #warning or #pragma, with what belongs to it, not {text.strip()[:60]!r}",
-            )
+            known = ", ".join(f"#{each}" for each in (*_CONDITIONS, *_NEEDED, "error", "warning", "pragma"))
+            raise file.error_at(offset, f"preprocessor line must be one of {known}, not '#{name}'")
 
     def _branch(self, file: File, offset: int, name: str, rest: str, conditions: list[_Condition]) -> None:
         """Enter, change or leave a condition."""
@@ -145,7 +152,7 @@ class _Preprocessor:
 
     def _include(
         self, file: File, offset: int, wanted: str, *, is_beside: bool, active: tuple[Path, ...]
-    ) -> Iterator[tuple[str, File, int, bool]]:
+    ) -> Iterator[Text]:
         """Yield the text of the file `wanted`, from beside `file` or from the first of the include folders."""
         self.inclusions += 1
         if len(active) > _DEEPEST_INCLUSION or self.inclusions > _MOST_INCLUSIONS:

@@ -77,10 +77,15 @@ class Input:
 
 @dataclass(frozen=True, slots=True)
 class InputSections(Statement):
-    """An INPUT_SECTIONS statement; `align` is the INPUT_SECTION_ALIGN, in bytes, in force there."""
+    """An INPUT_SECTIONS statement; `align` is the INPUT_SECTION_ALIGN, in bytes, in force there.
+
+    What one `is_pinned` takes goes to no output section before it, and to no other at all if it `is_exclusive`.
+    """
 
     inputs: tuple[Input, ...]
     align: int
+    is_pinned: bool = False
+    is_exclusive: bool = False
 
     def takes(self, symbol: Symbol) -> bool:
         """Say whether `symbol` is one of the statement's inputs."""

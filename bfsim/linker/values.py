@@ -14,7 +14,7 @@ Key = tuple[str | None, str]  # processor (None: both cores) and name
 _FUNCTIONS = (*MEMORY_FUNCTIONS, "SIZEOF", "ADDR", "DEFINED", "ABSOLUTE", "ALIGN")
 
 
-class _NotYet(Exception):
+class _NotYetError(Exception):
     """Raised for a value that is known only when everything has its place, if at all."""
 
 
@@ -33,20 +33,19 @@ class Values:
     def assign(self, processor: str | None, assignment: Assignment, location: int | None = None) -> None:
         """Enter an assignment that stands where the location counter is `location`, if it has one there."""
         key = processor, assignment.symbol
-        try:
-            if key in self._waiting_keys:
-                raise _NotYet
-            self.known[key] = self._compute(processor, assignment.expression, location)
-        except _NotYet:
-            self.known.pop(key, None)
-            self._waiting_keys.add(key)
-            self._waiting.append((processor, assignment, location))
+        with suppress(_NotYetError):
+            if key not in self._waiting_keys:  # the last assignment to a symbol holds
+                self.known[key] = self._compute(processor, assignment.expression, location)
+                return
+        self.known.pop(key, None)
+        self._waiting_keys.add(key)
+        self._waiting.append((processor, assignment, location))
 
     def location_of(self, processor: str | None, assignment: Assignment, location: int) -> int:
         """Return where an assignment to "." moves the location counter; LinkError if that is not known yet."""
         try:
             return self._compute(processor, assignment.expression, location)
-        except _NotYet:
+        except _NotYetError:
             problem = (
                 "location counter must be set to what is known there, not to what follows from the placement"
             )
@@ -63,7 +62,7 @@ class Values:
         self.known |= reserved
         for processor, assignment, location in self._waiting:
             # What follows from symbols that only C firmware has, such as _main, has no value and moves nothing.
-            with suppress(_NotYet):
+            with suppress(_NotYetError):
                 value = self._compute(processor, assignment.expression, location)
                 self.known[processor, assignment.symbol] = value
         return self.known
@@ -91,7 +90,7 @@ class _Scope:
             return self.location
         value = self._find(name)
         if value is None:
-            raise _NotYet
+            raise _NotYetError
         return value
 
     def result_of(self, function: str, argument: Expression, offset: int) -> int:
@@ -106,7 +105,7 @@ class _Scope:
         if function in MEMORY_FUNCTIONS:
             return self._memory(function, argument)
         if not self.values.is_settled:
-            raise _NotYet
+            raise _NotYetError
         if function == "DEFINED":
             return int(self._find(argument.text) is not None)
         for key in self._keys(argument.text):

@@ -189,7 +189,7 @@ def test_a_mistake_inside_a_macro_is_shown_where_the_macro_is_used(parse: Parse)
     ("text", "message"),
     [
         ("MEMORY { M { START 0 } }", r"test\.ldf:1:20: expected '\(', not '0'"),
-        ("MEMORY {", r"test\.ldf:1:9: expected '}' or a name, not the end of the file"),
+        ("MEMORY {", r"test\.ldf:1:9: expected ';', '}' or a name, not the end of the file"),
         (
             "MEMORY { M { START(0) END(1) } } ?",
             r"test\.ldf:1:34: expected .* or the end of the file, not '\?'",
@@ -225,13 +225,16 @@ def test_a_mistake_inside_a_macro_is_shown_where_the_macro_is_used(parse: Parse)
             "PROCESSOR p0 { SECTIONS { a { OVERLAY_INPUT { } } } }",
             r"LDF must do without OVERLAY_INPUT: overlays",
         ),
+        (
+            "PROCESSOR p0 { SECTIONS { OVERLAY_INPUT { OVERLAY_OUTPUT(a.ovl) } > M } }",
+            r"test\.ldf:1:27: LDF must do without OVERLAY_INPUT: overlays",
+        ),
         ("PROCESSOR p0 { PLIT { } }", r"LDF must do without PLIT: it belongs to overlays"),
         ("PROCESSOR p0 { SECTIONS { a { PACKING(6 B1 B2) } } }", r"LDF must do without PACKING: a Blackfin"),
         ("MPMEMORY { p0 { START(4) } }", r"test\.ldf:1:1: LDF must do without MPMEMORY: the two cores"),
         (
-            "PROCESSOR p0 { SECTIONS { OVERLAY_GROUP { OVERLAY_INPUT { OVERLAY_OUTPUT(a.ovl) "
-            "ALGORITHM(ALL_FIT) INPUT_SECTIONS(x.doj(program)) } > M } > N } }",
-            r"test\.ldf:1:43: LDF must do without OVERLAY_INPUT: overlays",
+            "SHARED_MEMORY { SECTIONS { OVERLAY_GROUP { OVERLAY_INPUT { ALGORITHM(ALL_FIT) } > M } > N } }",
+            r"test\.ldf:1:44: LDF must do without OVERLAY_INPUT: overlays",
         ),
         ("PROCESSOR p0 { SECTIONS { OVERLAY_GROUP { OVERLAY_INPUT } } }", r"1:57: expected '{', not '}'"),
     ],

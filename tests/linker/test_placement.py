@@ -168,6 +168,28 @@ def test_the_larger_alignment_holds(parse: Parse) -> None:
     assert used(placed) == {"M": 65}
 
 
+PINNED = """
+PROCESSOR p0 {
+   MEMORY { M { START(0xFF800000) LENGTH(16) } N { START(0xFF900000) LENGTH(16) } O { START(0xFEB00000) LENGTH(64) } }
+   SECTIONS {
+      first  { INPUT_SECTIONS($COMMAND_LINE_OBJECTS(a b c)) } > M
+      second { INPUT_SECTIONS_PIN($COMMAND_LINE_OBJECTS(b)) INPUT_SECTIONS_PIN_EXCLUSIVE($COMMAND_LINE_OBJECTS(c)) } > N
+      third  { INPUT_SECTIONS($COMMAND_LINE_OBJECTS(a b c)) } > O
+   }
+}
+"""
+
+
+def test_pinned_sections_wait_for_their_place(parse: Parse) -> None:
+    """What is pinned passes by the output sections before; what is pinned exclusively has no other place at all."""
+    symbols = [symbol("a", "a", 8), symbol("b1", "b", 8), symbol("c", "c", 4), symbol("b2", "b", 12)]
+    placed = link(parse(PINNED), symbols)
+    homes = {p.symbol.name: p.output_section for p in placed.placements}
+    assert homes == {"a": "first", "b1": "second", "c": "second", "b2": "third"}
+    with pytest.raises(LinkError, match=r"section 'second' \[li1040\]: symbol 'c2' .* 4 of 16 bytes free$"):
+        link(parse(PINNED), [*symbols, symbol("c2", "c", 8)])
+
+
 def test_reserves_are_stepped_over(parse: Parse) -> None:
     """RESERVE with an address is never used, without one it moves the pointer, EXPAND takes its minimum."""
     script = parse(
