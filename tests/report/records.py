@@ -79,6 +79,8 @@ def run_of(frames: Sequence[FrameRecord], missed: tuple[int, ...] = ()) -> RunRe
         kernels=(),
         code=(),
         traffic=(),
+        messages=(),
+        interrupts={},
         events=0,
     )
 
