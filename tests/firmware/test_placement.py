@@ -12,6 +12,7 @@ SEMAPHORES_PER_FRAME = 2  # each core posts one and takes one
 
 def test_rows_in_l2_stall_for_every_read() -> None:
     """Pixels and issue cycles stay; each read of a kernel waits the latency of L2, less the cycle of its own."""
+    assert BF561.l2
     at_home = simulate(frames=1)
     moved = simulate(frames=1, ldf=PLACEMENTS / "l2.ldf")
     assert moved.frames[0].results == at_home.frames[0].results
@@ -19,7 +20,7 @@ def test_rows_in_l2_stall_for_every_read() -> None:
         reads = sum(each.accesses.get("L2", (0, 0))[0] for each in moved.kernels if each.core == core.core)
         stalls = sum(each.stall_cclk.get(StallReason.L2_LATENCY, 0) for each in core.stages)
         assert reads > 1_000_000
-        assert stalls == reads * (BF561.l2_read_cclk - 1) + SEMAPHORES_PER_FRAME * BF561.l2_read_cclk
+        assert stalls == reads * (BF561.l2.read_cclk - 1) + SEMAPHORES_PER_FRAME * BF561.l2.read_cclk
         assert [each.issue_cclk for each in core.stages] == [each.issue_cclk for each in home.stages]
 
 

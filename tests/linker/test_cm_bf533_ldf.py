@@ -25,7 +25,7 @@ def script() -> LinkerScript:
 
 def linked(*symbols: Symbol) -> LinkMap:
     """Place symbols of the one processor into the board's memories."""
-    return link(script(), symbols, CM_BF533.chip.regions)
+    return link(script(), symbols, CM_BF533.chip.regions, chip=CM_BF533.chip.name)
 
 
 @pytest.mark.parametrize(
