@@ -92,6 +92,12 @@ _RUN_PARAMETERS = (
         show_default=True,
         help="When pictures come: as fast as the firmware asks, at the recorded time stamps, or at the free-running cameras' pace.",
     ),
+    click.option(
+        "--strategy",
+        metavar="FILE",
+        type=click.Path(path_type=Path),
+        help="Script, JSON or TOML, of what the strategy unit sends over SPI and when.",
+    ),
     click.option("--sanitize", is_flag=True, help="Stop at the first index outside an array. Slower."),
 )
 

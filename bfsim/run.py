@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import llvmlite.binding as llvm
@@ -18,6 +18,7 @@ from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.capture import Feed
 from bfsim.machine.program import FrameSize
+from bfsim.machine.strategy import ScriptedMessage
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.trace import Identity, RunRecord
 
@@ -38,24 +39,35 @@ def simulate(
     feed: Feed = Feed.DEMAND,
     sanitize: bool = False,
     profile: str = VDSP_O2.name,
+    strategy: Path | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> RunRecord:
     """Run `firmware` ("PACKAGE:NAME") on a recording and return the records.
 
     Without `recording` and `ldf` the built-in ones are taken; `frames` stops early. `progress` is called with
-    (frames done, frames in all); `profile` names the compiler whose code is costed. Ctrl-C ends the run with the frames done. Raises a BfsimError for anything
+    (frames done, frames in all); `profile` names the compiler whose code is costed; `strategy` is a script of what
+    the strategy unit sends. Ctrl-C ends the run with the frames done. Raises a BfsimError for anything
     that is wrong with what was given.
     """
     if frames is not None and frames < 1:
         raise ConfigError(f"frames must be at least 1, not {frames}")
     spec, compiler = board_named(board), profile_named(profile)
-    loaded = load_firmware(firmware)
+    loaded, script = load_firmware(firmware), _read_strategy(strategy)
     placement = parse_ldf(ldf or DEFAULT_LDF[spec.chip.name])
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
         size = FrameSize(reader.width, reader.height)
         symbols = symbols_of(loaded.firmware, size, compiler)
         link_map = link(placement, symbols, spec.chip.regions, chip=spec.chip.name)
-        machine = Board(spec, loaded.firmware, size, link_map, feed=feed, sanitize=sanitize, profile=compiler)
+        machine = Board(
+            spec,
+            loaded.firmware,
+            size,
+            link_map,
+            feed=feed,
+            sanitize=sanitize,
+            profile=compiler,
+            script=script,
+        )
         total = min(frames or reader.frame_count, reader.frame_count)
         if not total:
             raise RecordingError(f"{reader.path}: a recording must have at least one stereo frame, not none")
@@ -69,7 +81,15 @@ def simulate(
                 progress(done, total)
 
         outcome = machine.run(iter(source), count)
-    return _record(outcome, spec, loaded, placement, feed, size, source, compiler)
+    return _record(outcome, spec, loaded, placement, feed, size, source, compiler, script)
+
+
+def _read_strategy(path: Path | None) -> Sequence[ScriptedMessage]:
+    if path is None:
+        return ()
+    from bfsim.machine.strategy_script import read_script  # pydantic takes its time
+
+    return read_script(path)
 
 
 class _DigestedFrames:
@@ -103,6 +123,7 @@ def _record(
     size: FrameSize,
     source: _DigestedFrames,
     compiler: CompilerProfile,
+    script: Sequence[ScriptedMessage],
 ) -> RunRecord:
     identity = Identity(
         recording=source.name,
@@ -115,6 +136,7 @@ def _record(
         ldf_digest=hashlib.sha256(placement.source.expanded.encode()).hexdigest(),
         compiler=compiler.name,
         feed=feed.value,
+        strategy_digest=hashlib.sha256(repr(script).encode()).hexdigest() if script else "",
         bfsim_version=__version__,
         llvm_version=".".join(map(str, llvm.llvm_version_info)),
         cclk_hz=float(spec.clocks.cclk_hz),

@@ -136,7 +136,7 @@ class BudgetRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Identity:
-    """All that a result depends on. Digests are sha256 in hex; paths are left out on purpose."""
+    """All that a result depends on. Digests are sha256 in hex, or empty; paths are left out on purpose."""
 
     recording: str
     recording_digest: str
@@ -148,6 +148,7 @@ class Identity:
     ldf_digest: str
     compiler: str
     feed: str
+    strategy_digest: str
     bfsim_version: str
     llvm_version: str
     cclk_hz: float

@@ -13,6 +13,7 @@ from firmware.edge_store import EDGE_CAPACITY
 from firmware.results import MESSAGE_WORDS
 from firmware.tables import arctangent_table
 
+ORDERS_WORDS = 256  # room for a message of the strategy unit
 CAMERA_FRAMES = 3  # one that is worked on, one that waits, one that is filled
 
 
@@ -55,4 +56,5 @@ def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buff
         Buffer("edge_index", u32, height, "L1_data_b"),
         Buffer("edge_counts", u16, height, "L1_data_b"),
         Buffer("results", u16, MESSAGE_WORDS, "L1_data_b"),
+        Buffer("orders", u16, ORDERS_WORDS, "L1_data_b"),
     )

@@ -21,6 +21,7 @@ def core_a(core: Core) -> Generator[Any, Any, None]:
             yield from open_closing(core, frame)
         yield from core.post("core A is done")
         yield from core.wait("core B is done")
+        yield from core.receive(core.array("orders"))  # modes and models: taken, not obeyed yet
         others = yield core.run(load_word, core.array("right_edges"))
         message = core.array("results")
         yield core.run(pack_results, message, frame.index & 0x7FFF, found, others)

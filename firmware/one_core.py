@@ -19,6 +19,7 @@ def one_core(core: Core) -> Generator[Any, Any, None]:
             found = yield from edge_detection(core, frame, INDOOR_FIELD)
         with core.stage("Open & closing"):
             yield from open_closing(core, frame)
+        yield from core.receive(core.array("orders"))  # modes and models: taken, not obeyed yet
         message = core.array("results")
         yield core.run(pack_results, message, frame.index & 0x7FFF, found, 0)
         yield from core.send(message, 2 * MESSAGE_WORDS)

@@ -133,7 +133,9 @@ def test_both_boards_and_both_feeds_run(report: dict[str, Any]) -> None:
 
 def test_sanitize_changes_no_cycle(report: dict[str, Any]) -> None:
     """`--sanitize` checks and reports the same."""
-    sanitized = json.loads(bfsim("run", "--frames", len(report["frames"]), "--sanitize", "--json", "-").stdout)
+    sanitized = json.loads(
+        bfsim("run", "--frames", len(report["frames"]), "--sanitize", "--json", "-").stdout
+    )
     assert sanitized["frames"] == report["frames"]
 
 

@@ -219,14 +219,35 @@ def configuration(run: RunRecord) -> Table:
     for each in run.code:
         table.add_row(f"Code of {each.core}", _code(each))
     table.add_row("Feed", identity.feed)
+    if run.messages:
+        table.add_row("SPI messages", _messages(run))
+    if run.interrupts:
+        table.add_row(
+            "Interrupts", ", ".join(f"{source} {count:,}" for source, count in run.interrupts.items())
+        )
     table.add_row("bfsim", f"{identity.bfsim_version}, {run.events:,} events simulated")
     table.add_row("Identity", identity_digest(identity))
     table.add_row("Cycles", cycle_digest(run.frames))
     return table
 
 
+def _messages(run: RunRecord) -> str:
+    """Say what went over SPI in each direction, and how long the longest message took."""
+    parts = []
+    for direction in ("out", "in"):
+        mine = [each for each in run.messages if each.direction == direction]
+        if mine:
+            longest = max(each.end_cclk - each.begin_cclk for each in mine)
+            nbytes = sum(each.nbytes for each in mine)
+            microseconds = 1000 * milliseconds(longest, run.identity.cclk_hz)
+            parts.append(
+                f"{len(mine):,} {direction} ({nbytes:,} bytes, at most {microseconds:.1f} µs each)"
+            )
+    return "; ".join(parts)
+
+
 def _code(code: CodeRecord) -> str:
-    outside = "" if code.in_l1 else "; outside L1, its fetches are not modelled"
+    outside = "" if code.in_l1 else "; outside L1"
     return (
         f"{code.kernels} kernels, {code.nbytes:,} bytes in {code.segment}, {code.free_bytes:,} free{outside}"
     )

@@ -129,7 +129,7 @@ def test_everything_fits_in_the_memories_of_the_thesis(width: int, height: int) 
     """Every buffer of all three picture sizes of the robot finds its place, the rings and the edge store in L1."""
     placements = board_for(width, height).link_map.placements
     in_l1 = [each for each in placements if "L1_DATA" in each.segment]
-    assert len(in_l1) == 2 * 16
+    assert len(in_l1) == 2 * 17
 
 
 def test_lines_too_wide_for_l1_are_a_link_error() -> None:
