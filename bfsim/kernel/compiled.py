@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 from bfsim.kernel import store
 
 numba: Any = importlib.import_module("numba")  # its own types do not know all of its options
+_extending: Any = importlib.import_module("numba.extending")
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -26,8 +27,8 @@ def _folder(room: Path) -> str:
 
 
 def compiled(function: Function) -> Function:
-    """Compile `function` for the host, as a part of those that call it. `.py_func` is the plain one."""
-    made: Function = numba.njit(no_cfunc_wrapper=True, error_model="numpy")(function)
+    """Let `function` be compiled as a part of those that call it. Called from Python, it is plain Python."""
+    made: Function = _extending.register_jitable(error_model="numpy")(function)
     return made
 
 
@@ -37,7 +38,7 @@ def entry(function: Function) -> Function:
     try:
         made: Function = numba.njit(cache=True, no_cfunc_wrapper=True, error_model="numpy")(function)
     except RuntimeError:  # no folder can be written: compile in every process
-        return compiled(function)
+        made = numba.njit(no_cfunc_wrapper=True, error_model="numpy")(function)
     return made
 
 

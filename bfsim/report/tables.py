@@ -240,9 +240,7 @@ def _messages(run: RunRecord) -> str:
             longest = max(each.end_cclk - each.begin_cclk for each in mine)
             nbytes = sum(each.nbytes for each in mine)
             microseconds = 1000 * milliseconds(longest, run.identity.cclk_hz)
-            parts.append(
-                f"{len(mine):,} {direction} ({nbytes:,} bytes, at most {microseconds:.1f} µs each)"
-            )
+            parts.append(f"{len(mine):,} {direction} ({nbytes:,} bytes, at most {microseconds:.1f} µs each)")
     return "; ".join(parts)
 
 
