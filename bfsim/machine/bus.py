@@ -20,8 +20,6 @@ from numpy.typing import NDArray
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
 from bfsim.machine import bus_state as w
-from bfsim.machine.core_requests import start_job
-from bfsim.machine.dma_requests import post
 from bfsim.machine.memories import Memories
 from bfsim.machine.sdram import new_sdram
 from bfsim.machine.simulation import Simulation
@@ -231,7 +229,9 @@ class Bus:
         SLOT.pack_into(
             words, 8 * (w.SLOTS_AT + place * w.SLOT_WORDS), number, w.NONE, max(at, now), *plan.words
         )
-        post(self._state, plan.master, place, now)
+        posted = words[w.POSTED]
+        words[w.POSTS_AT + 2 * posted], words[w.POSTS_AT + 2 * posted + 1] = plan.master, place
+        words[w.POSTED] = posted + 1
         return Transfer(self, number, place)
 
     def when_done(self, transfer: Transfer) -> simpy.Event:
@@ -259,7 +259,9 @@ class Bus:
     def access(self, core: int, begin: int, cclk: int, entries: int) -> simpy.Event:
         """Play the first `entries` accesses of a core's log, of a call of `cclk` cycles from tick `begin`; return its end."""
         self.settle()
-        start_job(self._state, core, begin, cclk, entries)
+        job = w.JOBS_AT + core * w.JOB_WORDS
+        for word, value in ((w.STATE, w.STARTING), (w.BEGIN, begin), (w.TOTAL, cclk), (w.END, entries)):
+            self.words[job + word] = value
         return self._await(w.NONE - 1 - core)
 
     def stalls_of(self, core: int) -> Sequence[int]:

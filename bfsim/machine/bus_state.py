@@ -46,8 +46,9 @@ BUS_AT = SDRAM_WORDS
     LAST_CORE,      # the core that had the bus last: the other one comes first
     FREE_SLOTS,     # how many slots are on the stack
     DONE_AT,        # tick of the completion that `advance` returned with
-) = range(BUS_AT, BUS_AT + 20)  # fmt: skip
-BUS_WORDS = 20
+    POSTED,         # transfers that were posted since
+) = range(BUS_AT, BUS_AT + 21)  # fmt: skip
+BUS_WORDS = 21
 
 # The masters in the order of their rows. Cores have one for what they wait for and one for their store buffer.
 PPI0, PPI1, SPI, MDMA1_0, MDMA1_1, MDMA2_0, MDMA2_1, IMDMA_0, IMDMA_1, STORES_A, STORES_B, CORE_A, CORE_B = (
@@ -112,7 +113,7 @@ AT_END, AT_ROWS = 1, 2  # what wakes somebody
     ISSUED_AT,      # tick of the present access
     STORE_HEAD, STORES,  # store buffer: the oldest, and how many
 ) = range(9)  # fmt: skip
-IDLE, RUNNING, BUFFER_FULL, BUFFER_NOT_EMPTY = range(4)
+IDLE, STARTING, RUNNING, BUFFER_FULL, BUFFER_NOT_EMPTY = range(5)
 STALL = 9
 (
     L2_LATENCY, L2_PORT, PAGE_HIT, PAGE_MISS, PAGE_CONFLICT, REFRESHING, ARBITRATION, STORE_BUFFER, CACHE_FILL, CODE_FETCH,
@@ -139,7 +140,8 @@ TRAFFIC_AT = JOBS_AT + CORES * JOB_WORDS
 SUBBANKS_AT = TRAFFIC_AT + MASTERS * MEMORIES * TRAFFIC_WORDS
 SLOTS_AT = SUBBANKS_AT + MAX_SUBBANKS
 FREE_AT_STACK = SLOTS_AT + SLOTS * SLOT_WORDS
-ENDS_AT = FREE_AT_STACK + SLOTS
+POSTS_AT = FREE_AT_STACK + SLOTS  # master and slot of each transfer that was posted
+ENDS_AT = POSTS_AT + 2 * SLOTS
 LOGS_AT = ENDS_AT + ENDS
 LOG_ENTRIES = 1 << 23
 """Accesses outside L1 that one kernel call may make; the host has memory for those that are made only."""

@@ -7,7 +7,7 @@ Loads overtake stores, except that a load from an address in the store buffer wa
 from __future__ import annotations
 
 from bfsim.kernel import followers as log
-from bfsim.kernel.compiled import compiled, entry
+from bfsim.kernel.compiled import compiled
 from bfsim.machine import bus_state as w
 from bfsim.machine.bus_state import State
 from bfsim.machine.dma_requests import aligned, count_access, count_traffic
@@ -45,21 +45,18 @@ def next_entry(state: State, core: int, not_before: int) -> int:
     return w.NONE
 
 
-@entry
-def start_job(state: State, core: int, begin: int, cclk: int, entries: int) -> None:
-    """Let a core make the first `entries` accesses of its log, from tick `begin` on, in a call of `cclk` cycles."""
-    job = w.JOBS_AT + core * w.JOB_WORDS
-    state[job + w.STATE] = w.RUNNING
-    (
-        state[job + w.BEGIN],
-        state[job + w.TOTAL],
-        state[job + w.STALLED],
-        state[job + w.ENTRY],
-        state[job + w.END],
-    ) = begin, cclk, 0, 0, entries
-    for reason in range(w.STALLS):
-        state[job + w.STALL + reason] = 0
-    next_entry(state, core, begin)
+@compiled
+def start_jobs(state: State) -> None:
+    """Let the cores begin with what was handed to them."""
+    for core in range(w.CORES):
+        job = w.JOBS_AT + core * w.JOB_WORDS
+        if state[job + w.STATE] == w.STARTING:
+            state[job + w.STATE] = w.RUNNING
+            state[job + w.STALLED] = 0
+            state[job + w.ENTRY] = 0
+            for reason in range(w.STALLS):
+                state[job + w.STALL + reason] = 0
+            next_entry(state, core, state[job + w.BEGIN])
 
 
 @compiled

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.kernel.compiled import compiled, entry
+from bfsim.kernel.compiled import compiled
 from bfsim.machine import bus_state as w
 from bfsim.machine.bus_state import Memory, State
 from bfsim.machine.sdram import access, hits_ahead, stream
@@ -100,16 +100,18 @@ def begin(state: State, master: int, slot: int, at: int) -> None:
         state[master + w.READY] = start
 
 
-@entry
-def post(state: State, number: int, place: int, now: int) -> None:
-    """Put the transfer in slot `place` behind those of a master; it begins at once when there are none."""
-    master = w.MASTERS_AT + number
-    if state[master + w.SLOT] == w.NONE:
-        state[master + w.SLOT] = place
-        begin(state, master, w.SLOTS_AT + place * w.SLOT_WORDS, now)
-    else:
-        state[w.SLOTS_AT + state[master + w.LAST_SLOT] * w.SLOT_WORDS + w.NEXT] = place
-    state[master + w.LAST_SLOT] = place
+@compiled
+def accept(state: State) -> None:
+    """Put the transfers that were posted behind those of their masters; a master that has none begins at once."""
+    for post in range(state[w.POSTED]):
+        master, place = w.MASTERS_AT + state[w.POSTS_AT + 2 * post], state[w.POSTS_AT + 2 * post + 1]
+        if state[master + w.SLOT] == w.NONE:
+            state[master + w.SLOT] = place
+            begin(state, master, w.SLOTS_AT + place * w.SLOT_WORDS, state[master + w.FREE_AT])
+        else:
+            state[w.SLOTS_AT + state[master + w.LAST_SLOT] * w.SLOT_WORDS + w.NEXT] = place
+        state[master + w.LAST_SLOT] = place
+    state[w.POSTED] = 0
 
 
 @compiled

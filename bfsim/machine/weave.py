@@ -9,8 +9,8 @@ from __future__ import annotations
 from bfsim.kernel.compiled import compiled, entry
 from bfsim.machine import bus_state as w
 from bfsim.machine.bus_state import Memory, State
-from bfsim.machine.core_requests import serve_core, serve_stores
-from bfsim.machine.dma_requests import arrival, serve_dma
+from bfsim.machine.core_requests import serve_core, serve_stores, start_jobs
+from bfsim.machine.dma_requests import accept, arrival, serve_dma
 
 # What changes a rank (HRM of the BF537, 5-50 to 5-54): an urgent request comes before everything else, one against the
 # direction of the traffic behind all of its kind. A request that needs no bus cannot keep anybody waiting.
@@ -89,6 +89,8 @@ def advance(state: State, memory: Memory, until: int) -> int:
 
     A transfer is woken by its number, the job of core c by NONE - 1 - c.
     """
+    accept(state)
+    start_jobs(state)
     while True:
         first, at = first_request(state, until)
         if first == w.NONE:
