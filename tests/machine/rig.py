@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from bfsim.api import BudgetRow, Buffer, Core, Firmware, Frame, FrameSize, i32, u8, u16
 from bfsim.chip.boards import board_named
+from bfsim.chip.memory_map import region_of
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import Kernel, followers
 from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
@@ -229,6 +230,11 @@ class Bench:
         row.octets[:] = np.random.default_rng(address).integers(0, 256, nbytes, np.uint8)
         return row
 
+    def offset(self, address: int) -> int:
+        """Return where an address of the chip's memory map lies in the arena."""
+        region = region_of(address, 1, self.spec.chip.regions)
+        return self.memories.first[region.name] + address - region.start
+
     def call(
         self, core: int, accesses: Iterable[tuple[int, int, int]], *, begin: int = 0, cclk: int = 0
     ) -> Call:
@@ -238,8 +244,8 @@ class Bench:
         """
         log, count = self.bus.room_of(core)[followers.LOG :], 0
         for stamp, kind, address in accesses:
-            offset = self.row(address, 1).offset
-            log[count] = stamp << followers.STAMP_BIT | kind << followers.KIND_BIT | offset
+            entry = stamp << followers.STAMP_BIT | kind << followers.KIND_BIT
+            log[count] = entry | self.offset(address)
             count += 1
         return Call(self, core, self.bus.access(core, begin, cclk, count))
 
