@@ -174,6 +174,7 @@ class Call:
     def __init__(self, bench: Bench, core: int, event: simpy.Event) -> None:
         self.end: int | None = None
         self.stalls: dict[StallReason, int] = {}
+        self.event = event
         self._bench, self._core = bench, core
         assert event.callbacks is not None
         event.callbacks.append(self._finish)

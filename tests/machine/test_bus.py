@@ -229,3 +229,12 @@ def test_too_many_transfers_are_refused() -> None:
         write_all(bench, 4)
     bench.play()
     write_all(bench, 4)
+
+
+@pytest.mark.xfail(strict=True, reason="the bus is not settled before it is found full")
+def test_transfers_that_are_done_make_room() -> None:
+    """Long after each is over there is a next one; nobody has asked for any of them."""
+    bench = Bench()
+    for number in range(w.SLOTS + 1):
+        bench.env.run(until=LONG * (number + 1))
+        write_all(bench, 4)
