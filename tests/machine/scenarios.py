@@ -1,0 +1,182 @@
+"""Chance scenes on the bus: every master at work at a time, and all that is left behind when they are through.
+
+Run as a program it plays one with its number, and prints what is left: for a process in which nothing is compiled.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from fractions import Fraction
+from random import Random
+
+from bfsim.chip.boards import board_named
+from bfsim.kernel.followers import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
+from bfsim.machine import bus_state as w
+from bfsim.machine import core_requests, dma_requests
+from bfsim.machine.bus import Pace, Plan, Transfer, Walk
+from tests.machine.rig import Bench, Call, Play
+
+SDRAM_PLACES = (0x0000_1000, 0x0000_1F00, 0x0000_8000, 0x0080_1000, 0x0100_0700)
+PLACES = (*SDRAM_PLACES, 0xFEB0_1000, 0xFF80_1000, 0xFF40_1000)
+CORE_PLACES = (*SDRAM_PLACES, 0xFEB0_1000)
+KINDS = (LOAD, LOAD, STORE, STORE, FILL, WRITE_BACK, FETCH, FETCH_LINE)
+MDMA = (w.MDMA1_0, w.MDMA1_1, w.MDMA2_0, w.MDMA2_1)
+OUTSIDE = 8192
+NOISE = 4096  # bytes from each place on; no walk goes twice as far
+
+# What the state tells of the last access alone: of a run of words it is the first, of single words the last.
+OF_THE_LAST_ACCESS = (w.BEGAN, w.PAGE_CLASS, w.REFRESH_WAIT)
+
+
+class Scene:
+    """One scene, made by `chance`, ready to be played: who asks for what, and at which tick."""
+
+    def __init__(self, chance: Random) -> None:
+        spec = board_named(chance.choice(["cm-bf561", "cm-bf561-ratings", "bf561-ezkit"]))
+        self.bench = Bench(
+            replace(spec, sdram=replace(spec.sdram, rows_refreshed=chance.choice([4096, 120_000]))),
+            outside_nbytes=OUTSIDE,
+            dma_over_core=chance.choice([True, False]),
+            deb_period=chance.choice([0, 0, 0, 4, 15]),
+            mdma_period=chance.choice([0, 0, 0, 1, 8]),
+        )
+        for place in PLACES:
+            self.bench.row(place, NOISE)
+        ticks = [chance.choice([0, 0, chance.randint(0, 3000)]) for _ in range(9)]
+        plans = [self._copy(chance) for _ in range(chance.randint(0, 6))]
+        for master in (w.PPI0, w.PPI1):
+            if chance.random() < 0.4:
+                plans.append(self._receive(chance, master, ticks[len(plans)]))
+        if chance.random() < 0.4:
+            plans.append(self._send(chance, ticks[len(plans)]))
+        self.transfers: list[Transfer] = []
+        self.calls: list[Call] = []
+        for plan, tick in zip(plans, ticks, strict=False):
+            self.bench.env.process(self._post(plan, tick))
+        for core in (0, 1):
+            logs = [self._log(chance) for _ in range(chance.randint(0, 2))]
+            self.bench.env.process(self._run(core, logs, chance.randint(0, 500)))
+
+    def _walk(self, chance: Random, size: int, x_count: int) -> Walk:
+        first = self.bench.offset(chance.choice(PLACES)) + size * chance.randint(0, 9)
+        steps = [size * step for step in (1, 1, 1, 2, 5)]
+        return Walk(first, x_count, chance.choice(steps), chance.choice(steps))
+
+    def _copy(self, chance: Random) -> Plan:
+        size, lines = chance.choice([4, 4, 4, 2, 1]), chance.randint(1, 3)
+        x_count = chance.choice([chance.randint(1, 8), chance.randint(20, 120)])
+        return self.bench.bus.plan_copy(
+            chance.choice(MDMA),
+            self._walk(chance, size, x_count),
+            self._walk(chance, size, x_count),
+            x_count * lines,
+            element_bytes=size,
+            setup=self.bench.sclk(15),
+        )
+
+    def _pace(self, chance: Random, words: int, begin: int) -> Pace:
+        word_ticks = Fraction(chance.randint(15, 300), chance.randint(1, 3))
+        return Pace(
+            begin + chance.randint(0, 500), words, word_ticks, words * word_ticks + chance.randint(0, 200)
+        )
+
+    def _receive(self, chance: Random, master: int, begin: int) -> Plan:
+        words, lines = chance.randint(1, 25), chance.randint(1, 5)
+        outside = Walk(self.bench.memories.outside + master * OUTSIDE // 2, words, 4, 4)
+        return self.bench.bus.plan_receive(
+            master,
+            outside,
+            self._walk(chance, 4, words),
+            words * lines,
+            element_bytes=4,
+            pace=self._pace(chance, words, begin),
+        )
+
+    def _send(self, chance: Random, begin: int) -> Plan:
+        words = chance.randint(1, 40)
+        outside = Walk(self.bench.memories.outside, words, 2, 2)
+        return self.bench.bus.plan_send(
+            w.SPI,
+            self._walk(chance, 2, words),
+            outside,
+            words,
+            element_bytes=2,
+            pace=self._pace(chance, words, begin),
+        )
+
+    def _log(self, chance: Random) -> list[tuple[int, int, int]]:
+        stamp, accesses = 0, []
+        for _ in range(chance.randint(1, 25)):
+            stamp += chance.choice([0, 1, chance.randint(0, 40)])
+            place = chance.choice(CORE_PLACES) + 4 * chance.randint(0, 50)
+            accesses.append((stamp, chance.choice(KINDS), place))
+        return accesses
+
+    def _post(self, plan: Plan, tick: int) -> Play:
+        yield self.bench.env.timeout(tick)
+        self.transfers.append(self.bench.bus.post(plan))
+
+    def _run(self, core: int, logs: list[list[tuple[int, int, int]]], begin_cclk: int) -> Play:
+        yield self.bench.env.timeout(self.bench.cclk(begin_cclk))
+        for log in logs:
+            cclk = log[-1][0] + len(log)
+            self.calls.append(self.bench.call(core, log, begin=self.bench.env.tick, cclk=cclk))
+            yield self.calls[-1].event
+
+    def _settle(self, stops: Iterable[int]) -> Play:
+        for stop in stops:
+            yield self.bench.env.timeout(stop - self.bench.env.tick)
+            self.bench.bus.settle()
+
+    def play(self, stops: Iterable[int] = ()) -> dict[str, object]:
+        """Play to the end, settling the bus at these ticks on the way too; return what is left behind."""
+        bus = self.bench.bus
+        self.bench.env.process(self._settle(stops))
+        self.bench.play()
+        words = bus.words[: w.SLOTS_AT].tolist()  # which slot a transfer had means nothing
+        for word in OF_THE_LAST_ACCESS:
+            words[word] = 0
+        return {
+            "ends": [each.end for each in self.transfers],
+            "calls": [
+                [each.end, {str(reason): cclk for reason, cclk in each.stalls.items()}] for each in self.calls
+            ],
+            "words": hashlib.sha256(repr(words).encode()).hexdigest(),
+            "memory": hashlib.sha256(b"".join(self._touched())).hexdigest(),
+        }
+
+    def _touched(self) -> Iterator[bytes]:
+        """What lies in each place now, and what was sent to the outside."""
+        for place in PLACES:
+            yield self.bench.memories.bytes_from(self.bench.offset(place), 2 * NOISE).tobytes()
+        yield self.bench.memories.bytes_from(self.bench.memories.outside, OUTSIDE).tobytes()
+
+
+def record_grants() -> list[tuple[int, int]]:
+    """Note from now on when each access held the bus; nothing must be compiled."""
+    grants = []
+
+    def watched(state, now, offset, write, access=dma_requests.access):
+        through = access(state, now, offset, write)
+        grants.append((int(state[w.BEGAN] + state[w.REFRESH_WAIT]), int(state[w.COMMAND_FREE])))
+        return through
+
+    def watched_stream(state, count, write, offset, stream=dma_requests.stream):
+        before = int(state[w.COMMAND_FREE])
+        through = stream(state, count, write, offset)
+        grants.append((before, int(state[w.COMMAND_FREE])))
+        return through
+
+    for module in (dma_requests, core_requests):
+        module.access, module.stream = watched, watched_stream
+    return grants
+
+
+if __name__ == "__main__":
+    noted = record_grants()
+    left = Scene(Random(int(sys.argv[1]))).play()
+    print(json.dumps({"left": left, "grants": noted}))  # noqa: T201
