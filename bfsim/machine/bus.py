@@ -219,6 +219,9 @@ class Bus:
         words, now = self.words, self._env.tick
         top = words[w.FREE_SLOTS] - 1
         if top < 0:
+            self.settle()  # those that are over make room
+            top = words[w.FREE_SLOTS] - 1
+        if top < 0:
             raise FirmwareError(f"DMA must have at most {w.SLOTS} transfers to do at a time")
         words[w.FREE_SLOTS] = top
         place = words[w.FREE_AT_STACK + top]

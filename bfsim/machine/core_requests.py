@@ -13,8 +13,6 @@ from bfsim.machine.bus_state import State
 from bfsim.machine.dma_requests import aligned, count_access, count_traffic
 from bfsim.machine.sdram import access, stream
 
-WORD_MASK = ~3
-
 
 @compiled
 def bytes_of(state: State, kind: int) -> int:
@@ -117,8 +115,11 @@ def serve_stores(state: State, core: int, at: int) -> int:
         count_access(state, w.STORES_A + core, 1 + max(0, more))
         count_traffic(state, w.STORES_A + core, w.IN_SDRAM, True, nbytes)
         free = state[w.COMMAND_FREE]
+    elif at < state[w.L2_FREE]:
+        state[w.MASTERS_AT + w.STORES_A + core + w.READY] = state[w.L2_FREE]
+        return w.NONE
     else:
-        free = max(at, state[w.L2_FREE]) + ((nbytes - 1 >> state[w.L2_PORT_BITS]) + 1) * state[w.L2_NEXT]
+        free = at + ((nbytes - 1 >> state[w.L2_PORT_BITS]) + 1) * state[w.L2_NEXT]
         state[w.L2_FREE] = free
         count_traffic(state, w.STORES_A + core, w.IN_L2, True, nbytes)
     state[job + w.STORE_HEAD] = (state[job + w.STORE_HEAD] + 1) % w.MAX_STORES
@@ -134,12 +135,12 @@ def serve_stores(state: State, core: int, at: int) -> int:
 
 
 @compiled
-def is_in_buffer(state: State, job: int, offset: int) -> bool:
-    """Whether the word at `offset` is in the store buffer."""
+def is_in_buffer(state: State, job: int, offset: int, nbytes: int) -> bool:
+    """Whether the store buffer has anything of the `nbytes` (a power of two) at `offset`, or a line that holds them."""
     for number in range(state[job + w.STORES]):
-        if (
-            state[job + w.STORE_QUEUE + (state[job + w.STORE_HEAD] + number) % w.MAX_STORES] ^ offset
-        ) & log.OFFSET_MASK & WORD_MASK == 0:
+        entry = state[job + w.STORE_QUEUE + (state[job + w.STORE_HEAD] + number) % w.MAX_STORES]
+        size = max(nbytes, bytes_of(state, entry >> log.KIND_BIT & log.KIND_MASK))
+        if ((entry ^ offset) & log.OFFSET_MASK) // size == 0:
             return True
     return False
 
@@ -156,7 +157,7 @@ def serve_core(state: State, core: int, at: int) -> int:
     kind, offset = entry >> log.KIND_BIT & log.KIND_MASK, entry & log.OFFSET_MASK
     if kind in (log.STORE, log.WRITE_BACK):
         return store(state, core, at, entry & ((1 << log.STAMP_BIT) - 1))
-    if is_in_buffer(state, job, offset):
+    if is_in_buffer(state, job, offset, bytes_of(state, kind)):
         return wait_for_buffer(state, core, w.BUFFER_NOT_EMPTY)
     if offset < state[w.SDRAM_END]:
         done = read_sdram(state, core, at, kind, offset)
@@ -192,8 +193,8 @@ def read_l2(state: State, core: int, at: int, kind: int) -> int:
 def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
     """Read from SDRAM; return when the first data are at the core.
 
-    The wait for an SCLK edge is part of the cycles of synchronisation. What is beyond the latency of an idle bus is
-    stalled for a refresh or for arbitration.
+    The wait for an SCLK edge is part of the cycles of synchronisation. Until the bus is free the core waits for
+    arbitration, then perhaps for a refresh, and else for the page.
     """
     job = w.JOBS_AT + core * w.JOB_WORDS
     cclk = state[w.CCLK]
@@ -210,15 +211,11 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
     page, refresh_wait = state[w.PAGE_CLASS], state[w.REFRESH_WAIT]
     edge = aligned(state[job + w.ISSUED_AT], state[w.SCLK])
     done = through + state[w.CORE_SYNC] - state[w.SCLK] - (edge - state[job + w.ISSUED_AT])
-    opening = 0 if page == 0 else state[w.RCD] if page == 1 else state[w.RP] + state[w.RCD]
-    latency = state[w.CORE_SYNC] + state[w.CL] + opening
-    if kind == log.LOAD:
-        latency += more * state[w.SCLK]
     cycles = stall(state, job, cclk, done, w.ARBITRATION)
-    unloaded = min(cycles, (latency + cclk - 1) // cclk - 1)
-    refreshed = min(cycles - unloaded, refresh_wait // cclk)
+    waited = min(cycles, max(0, state[w.BEGAN] - edge) // cclk)
+    refreshed = min(cycles - waited, refresh_wait // cclk)
     reason = w.PAGE_HIT + page if kind == log.LOAD else w.CACHE_FILL if kind == log.FILL else w.CODE_FETCH
-    state[job + w.STALL + reason] += unloaded
+    state[job + w.STALL + reason] += cycles - waited - refreshed
     state[job + w.STALL + w.REFRESHING] += refreshed
-    state[job + w.STALL + w.ARBITRATION] -= unloaded + refreshed
+    state[job + w.STALL + w.ARBITRATION] -= cycles - waited
     return done

@@ -6,7 +6,7 @@ from bfsim.kernel.compiled import compiled
 from bfsim.machine import bus_state as w
 from bfsim.machine.bus_state import Memory, State
 from bfsim.machine.sdram import access, hits_ahead, stream
-from bfsim.machine.walk import move, step_from
+from bfsim.machine.walk import copy_element, move, step_from
 
 
 @compiled
@@ -205,6 +205,16 @@ def pause(state: State, master: int, elements: int) -> int:
 
 
 @compiled
+def take_turn(state: State, master: int, count: int) -> None:
+    """Count what a stream moved; when it and its partner have had their periods, both begin anew."""
+    state[master + w.SERVED] += count
+    partner, period = state[master + w.PARTNER], state[w.MDMA_PERIOD]
+    if partner != w.NONE and state[master + w.SERVED] >= period <= state[w.MASTERS_AT + partner + w.SERVED]:
+        state[master + w.SERVED] = 0
+        state[w.MASTERS_AT + partner + w.SERVED] = 0
+
+
+@compiled
 def burst(state: State, memory: Memory, number: int, at: int, until: int) -> int:
     """Move the next elements of a memory DMA with one side in SDRAM; return who is woken."""
     master = w.MASTERS_AT + number
@@ -234,7 +244,7 @@ def burst(state: State, memory: Memory, number: int, at: int, until: int) -> int
     if state[w.L2_FIRST] <= on_chip < state[w.L2_END]:
         count_traffic(state, number, w.IN_L2, not write, nbytes)
     moved(state, memory, slot, 1 + more)
-    state[master + w.SERVED] += 1 + more
+    take_turn(state, master, 1 + more)
     return after_move(state, master, slot, through)
 
 
@@ -281,7 +291,7 @@ def exchange(state: State, memory: Memory, number: int, at: int) -> int:
     )
     through = access_lot(state, number, at, offset, step, count, write)
     count_traffic(state, number, w.IN_SDRAM, write, count << state[slot + w.ELEMENT_BITS])
-    state[master + w.SERVED] += count
+    take_turn(state, master, count)
     state[master + w.WRITES] = not write
     if not write:
         state[master + w.IN_FIFO] = count
@@ -310,20 +320,38 @@ def copy_on_chip(state: State, memory: Memory, number: int, at: int) -> int:
 
 
 @compiled
+def lose(state: State, memory: Memory, master: int, slot: int, at: int) -> None:
+    """Drop the elements that came before tick `at` and found the FIFO full; the picture goes on without them.
+
+    Those in the FIFO take the places of the last ones dropped, where the device's memory is read next.
+    """
+    fifo, lost = state[master + w.FIFO], 0
+    while state[slot + w.LEFT] > fifo + lost and arrival(state, slot, fifo + lost) < at:
+        lost += 1
+    if lost == 0:
+        return
+    first, step = state[slot + w.FROM], state[slot + w.FROM_X_MODIFY]
+    for element in range(fifo - 1, -1, -1):
+        copy_element(
+            memory, first + element * step, first + (element + lost) * step, state[slot + w.ELEMENT_BITS]
+        )
+    for _ in range(lost):
+        step_from(state, slot, 1)
+        step_device(state, slot, 1)
+    state[slot + w.MOVED] += lost
+    state[slot + w.LEFT] -= lost
+    state[slot + w.LOST] += lost
+    state[master + w.ALL_LOST] += lost
+
+
+@compiled
 def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> int:
-    """Move the next element to or from a device that sets the pace, and lose what came too late."""
+    """Move the next lot to or from a device that sets the pace, and lose what came too late."""
     master = w.MASTERS_AT + number
     slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
     write = state[slot + w.MODE] == w.PACED_IN
-    late, fifo = at - state[master + w.READY], state[master + w.FIFO]
-    while write and late > 0 and state[slot + w.LEFT] > fifo and arrival(state, slot, fifo) < at:
-        # the FIFO was full when this element came: the picture goes on without it
-        step_from(state, slot, 1)
-        step_device(state, slot, 1)
-        state[slot + w.MOVED] += 1
-        state[slot + w.LEFT] -= 1
-        state[slot + w.LOST] += 1
-        state[master + w.ALL_LOST] += 1
+    if write and at > state[master + w.READY]:
+        lose(state, memory, master, slot, at)
     count = lot_of(state, slot)
     offset = state[slot + w.TO] if write else state[slot + w.FROM]
     through, nbytes = at, count << state[slot + w.ELEMENT_BITS]
@@ -354,8 +382,6 @@ def serve_dma(state: State, memory: Memory, number: int, at: int, until: int) ->
     """Grant the request of a DMA at tick `at`; return the number of the transfer that wakes somebody, or NONE."""
     where = w.MASTERS_AT + number
     mode = state[w.SLOTS_AT + state[where + w.SLOT] * w.SLOT_WORDS + w.MODE]
-    if state[where + w.PARTNER] != w.NONE:
-        state[w.MASTERS_AT + state[where + w.PARTNER] + w.SERVED] = 0
     if mode == w.BOTH:
         return exchange(state, memory, number, at)
     if mode == w.ON_CHIP:

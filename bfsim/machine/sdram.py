@@ -44,6 +44,11 @@ def refresh(state: State, now: int) -> int:
     missed = (now - state[w.NEXT_REFRESH]) // state[w.REFRESH_INTERVAL]
     due = state[w.NEXT_REFRESH] + missed * state[w.REFRESH_INTERVAL]
     begin = max(due, state[w.COMMAND_FREE], state[w.DATA_FREE])
+    for bank in range(w.MAX_BANKS):
+        if state[w.OPEN_PAGE + bank] >= 0:
+            begin = max(
+                begin, state[w.ACTIVATED + bank] + state[w.RAS], state[w.WRITTEN + bank] + state[w.WR]
+            )
     state[w.REFRESHES] += missed + 1
     state[w.NEXT_REFRESH] = due + state[w.REFRESH_INTERVAL]
     for bank in range(w.MAX_BANKS):

@@ -30,24 +30,24 @@ def step_to(state: State, slot: int, count: int) -> None:
 
 
 @compiled
+def copy_element(memory: Memory, source: int, target: int, bits: int) -> None:
+    """Copy the element of 1 << `bits` bytes at `source` to `target`."""
+    if bits == WORD_BITS:
+        memory[target >> WORD_BITS] = memory[source >> WORD_BITS]
+        return
+    mask, shift = (1 << (8 << bits)) - 1, target % WORD_BYTES * 8
+    value = memory[source >> WORD_BITS] >> (source % WORD_BYTES * 8) & mask
+    memory[target >> WORD_BITS] = memory[target >> WORD_BITS] & ~(mask << shift) | value << shift
+
+
+@compiled
 def move(state: State, memory: Memory, slot: int, count: int) -> None:
     """Move `count` elements, none beyond the end of either side's line, and step both sides on."""
     source, target, bits = state[slot + w.FROM], state[slot + w.TO], state[slot + w.ELEMENT_BITS]
-    source_step, target_step = state[slot + w.FROM_X_MODIFY], state[slot + w.TO_X_MODIFY]
-    if bits == WORD_BITS:
-        for _ in range(count):
-            memory[target >> WORD_BITS] = memory[source >> WORD_BITS]
-            source += source_step
-            target += target_step
-    else:
-        mask = (1 << (8 << bits)) - 1
-        for _ in range(count):
-            value = memory[source >> WORD_BITS] >> (source % WORD_BYTES * 8) & mask
-            shift = target % WORD_BYTES * 8
-            kept = memory[target >> WORD_BITS] & ~(mask << shift)
-            memory[target >> WORD_BITS] = kept | value << shift
-            source += source_step
-            target += target_step
+    for _ in range(count):
+        copy_element(memory, source, target, bits)
+        source += state[slot + w.FROM_X_MODIFY]
+        target += state[slot + w.TO_X_MODIFY]
     step_from(state, slot, count)
     step_to(state, slot, count)
     state[slot + w.MOVED] += count

@@ -95,9 +95,9 @@ def advance(state: State, memory: Memory, until: int) -> int:
         first, at = first_request(state, until)
         if first == w.NONE:
             return w.NONE
-        before = state[w.LAST_WRITE]
+        before, counts = state[w.LAST_WRITE], state[w.DEB_PERIOD] and state[w.MASTERS_AT + first + w.USES_BUS]
         woken = serve(state, memory, first, at, until)
-        if state[w.DEB_PERIOD]:
+        if counts:
             count_direction(state, before)
         if woken != w.NONE:
             return woken

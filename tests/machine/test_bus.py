@@ -184,7 +184,6 @@ def test_traffic_control_keeps_the_bus_in_its_direction(period: int) -> None:
     assert controlled == (plain[0] + pauses * period, plain[1])
 
 
-@pytest.mark.xfail(strict=True, reason="an access of a core to L2 uses up a transfer of the period")
 def test_what_needs_no_bus_has_no_part_in_traffic_control() -> None:
     """A core that reads L2 changes nothing at the bus."""
     alone = opposite_streams(Bench(deb_period=15))
@@ -231,7 +230,6 @@ def test_too_many_transfers_are_refused() -> None:
     write_all(bench, 4)
 
 
-@pytest.mark.xfail(strict=True, reason="the bus is not settled before it is found full")
 def test_transfers_that_are_done_make_room() -> None:
     """Long after each is over there is a next one; nobody has asked for any of them."""
     bench = Bench()

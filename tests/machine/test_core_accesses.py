@@ -154,9 +154,6 @@ def test_many_stores_go_at_the_pace_of_the_bus(board: str, more: int) -> None:
     )  # CCLK edges between SCLK's
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a store to L2 leaves the buffer while the port is still busy with another"
-)
 def test_many_stores_to_l2_go_at_the_pace_of_its_port() -> None:
     """Two cycles each, of which one is the store's own where they come one a cycle."""
     bench = Bench()
@@ -218,14 +215,12 @@ def test_a_line_that_just_left_is_written_before_it_is_read() -> None:
     assert call.stalls == {StallReason.STORE_BUFFER: (2 + 1 + 2 + 8) * 5 - 1, StallReason.CACHE_FILL: 39}
 
 
-@pytest.mark.xfail(strict=True, reason="a fill looks for its first word only in the store buffer")
 def test_a_line_with_a_queued_word_waits_for_it() -> None:
     """Written through without a line of its own, a word is on its way when another word of its line is read."""
     call = play(Bench(), (0, STORE, OTHER_BANK), (0, STORE, SDRAM + 8), (1, FILL, SDRAM))
     assert StallReason.STORE_BUFFER in call.stalls
 
 
-@pytest.mark.xfail(strict=True, reason="tRAS and tWR behind a core's own accesses count as arbitration")
 def test_a_core_alone_never_waits_for_arbitration() -> None:
     """A store that it made itself to another page must recover before this one can be opened."""
     call = play(Bench(), (0, LOAD, SDRAM), (1, STORE, SDRAM), (2, LOAD, OTHER_PAGE))

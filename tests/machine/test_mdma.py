@@ -296,7 +296,6 @@ def test_round_robin_of_one_word() -> None:
     assert abs(first - second) <= 1
 
 
-@pytest.mark.xfail(strict=True, reason="the second stream gets one word after each period of the first one")
 @pytest.mark.parametrize("period", [2, 8, 31])
 def test_round_robin_gives_both_streams_a_period(period: int) -> None:
     """Each moves so many words before the other has its turn, so they are done a period apart (HRM, 5-54)."""

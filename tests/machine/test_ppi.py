@@ -160,9 +160,6 @@ def test_the_picture_goes_on_where_the_lost_words_should_be() -> None:
     assert end >= 100 * WORD_TICKS
 
 
-@pytest.mark.xfail(
-    strict=True, reason="the oldest words of the FIFO are lost instead of those that found it full"
-)
 def test_what_is_in_the_fifo_is_not_lost() -> None:
     """Of 30 words that came while the bus was blocked the first twelve are kept."""
     bench = Bench(outside_nbytes=OUTSIDE)

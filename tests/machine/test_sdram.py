@@ -230,9 +230,6 @@ def test_refresh_interval(board: BoardSpec) -> None:
     assert state[w.REFRESH_INTERVAL] == expected * board.clocks.sclk_ticks
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a refresh begins with the data, not nWR behind them nor nRAS behind ACT"
-)
 @pytest.mark.parametrize("write", [READ, WRITE])
 def test_the_precharge_of_a_refresh_waits_as_any_other(write: bool) -> None:
     """A bank that was activated or written a moment ago cannot be precharged yet, for a refresh neither."""
