@@ -34,6 +34,7 @@ def new_sdram(board: BoardSpec) -> NDArray[np.int64]:
     ):
         state[word] = size.bit_length() - 1
     state[w.NEXT_REFRESH] = state[w.REFRESH_INTERVAL]
+    state[w.LAST_WRITE] = True  # there is no read behind which the bus must turn round
     state[w.OPEN_PAGE : w.OPEN_PAGE + w.MAX_BANKS] = -1
     return state
 
