@@ -98,6 +98,9 @@ SLOTS = 256
 ENDS = 1 << 16
 """Transfers whose end is remembered: the latest so many."""
 
+# A side of a transfer, from FROM or from TO on.
+POSITION, X_COUNT, X_MODIFY, Y_MODIFY, X_LEFT = range(5)
+
 # Modes of a transfer: which of its sides is in SDRAM; or that a device sets its pace.
 READ, WRITE, BOTH, ON_CHIP, PACED_IN, PACED_OUT = range(6)
 

@@ -10,23 +10,13 @@ WORD_BYTES, WORD_BITS = 4, 2  # the arena is an array of 32-bit words
 
 
 @compiled
-def step_from(state: State, slot: int, count: int) -> None:
-    """Move the source on by `count` elements of its line. Behind a line's last one Y_MODIFY stands in for X_MODIFY."""
-    state[slot + w.FROM] += count * state[slot + w.FROM_X_MODIFY]
-    state[slot + w.FROM_X_LEFT] -= count
-    if state[slot + w.FROM_X_LEFT] == 0:
-        state[slot + w.FROM] += state[slot + w.FROM_Y_MODIFY] - state[slot + w.FROM_X_MODIFY]
-        state[slot + w.FROM_X_LEFT] = state[slot + w.FROM_X_COUNT]
-
-
-@compiled
-def step_to(state: State, slot: int, count: int) -> None:
-    """Move the destination on by `count` elements of its line."""
-    state[slot + w.TO] += count * state[slot + w.TO_X_MODIFY]
-    state[slot + w.TO_X_LEFT] -= count
-    if state[slot + w.TO_X_LEFT] == 0:
-        state[slot + w.TO] += state[slot + w.TO_Y_MODIFY] - state[slot + w.TO_X_MODIFY]
-        state[slot + w.TO_X_LEFT] = state[slot + w.TO_X_COUNT]
+def step(state: State, side: int, count: int) -> None:
+    """Move a side on by `count` elements of its line. Behind a line's last one Y_MODIFY stands in for X_MODIFY."""
+    state[side + w.POSITION] += count * state[side + w.X_MODIFY]
+    state[side + w.X_LEFT] -= count
+    if state[side + w.X_LEFT] == 0:
+        state[side + w.POSITION] += state[side + w.Y_MODIFY] - state[side + w.X_MODIFY]
+        state[side + w.X_LEFT] = state[side + w.X_COUNT]
 
 
 @compiled
@@ -48,7 +38,7 @@ def move(state: State, memory: Memory, slot: int, count: int) -> None:
         copy_element(memory, source, target, bits)
         source += state[slot + w.FROM_X_MODIFY]
         target += state[slot + w.TO_X_MODIFY]
-    step_from(state, slot, count)
-    step_to(state, slot, count)
+    step(state, slot + w.FROM, count)
+    step(state, slot + w.TO, count)
     state[slot + w.MOVED] += count
     state[slot + w.LEFT] -= count
