@@ -6,7 +6,7 @@ from bfsim.kernel.compiled import compiled
 from bfsim.machine import bus_state as w
 from bfsim.machine.bus_state import Memory, State
 from bfsim.machine.sdram import access, hits_ahead, stream
-from bfsim.machine.walk import copy_element, move, step
+from bfsim.machine.walk import copy_element, go_on, move
 
 
 @compiled
@@ -336,7 +336,7 @@ def lose(state: State, memory: Memory, master: int, slot: int, at: int) -> None:
             memory, first + element * step, first + (element + lost) * step, state[slot + w.ELEMENT_BITS]
         )
     for _ in range(lost):
-        step(state, slot + w.FROM, 1)
+        go_on(state, slot + w.FROM, 1)
         step_device(state, slot, 1)
     state[slot + w.MOVED] += lost
     state[slot + w.LEFT] -= lost

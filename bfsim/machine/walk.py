@@ -10,7 +10,7 @@ WORD_BYTES, WORD_BITS = 4, 2  # the arena is an array of 32-bit words
 
 
 @compiled
-def step(state: State, side: int, count: int) -> None:
+def go_on(state: State, side: int, count: int) -> None:
     """Move a side on by `count` elements of its line. Behind a line's last one Y_MODIFY stands in for X_MODIFY."""
     state[side + w.POSITION] += count * state[side + w.X_MODIFY]
     state[side + w.X_LEFT] -= count
@@ -38,7 +38,7 @@ def move(state: State, memory: Memory, slot: int, count: int) -> None:
         copy_element(memory, source, target, bits)
         source += state[slot + w.FROM_X_MODIFY]
         target += state[slot + w.TO_X_MODIFY]
-    step(state, slot + w.FROM, count)
-    step(state, slot + w.TO, count)
+    go_on(state, slot + w.FROM, count)
+    go_on(state, slot + w.TO, count)
     state[slot + w.MOVED] += count
     state[slot + w.LEFT] -= count
