@@ -23,6 +23,8 @@ def placed_in(segment: str, folder: Path) -> Path:
 
 def test_rows_in_l2_stall_for_every_read(tmp_path: Path) -> None:
     """Pixels and issue cycles stay; each read of a kernel waits the latency of L2, less the cycle of its own."""
+    assert BF561.l2 is not None
+    latency_cclk = BF561.l2.read_cclk
     at_home = simulate(frames=1)
     moved = simulate(frames=1, ldf=placed_in("MEM_L2_SRAM", tmp_path))
     assert moved.frames[0].results == at_home.frames[0].results
@@ -30,7 +32,7 @@ def test_rows_in_l2_stall_for_every_read(tmp_path: Path) -> None:
         reads = sum(each.accesses.get("L2", (0, 0))[0] for each in moved.kernels if each.core == core.core)
         stalls = sum(each.stall_cclk.get(StallReason.L2_LATENCY, 0) for each in core.stages)
         assert reads > 1_000_000
-        assert stalls == reads * (BF561.l2_read_cclk - 1) + SEMAPHORES_PER_FRAME * BF561.l2_read_cclk
+        assert stalls == reads * (latency_cclk - 1) + SEMAPHORES_PER_FRAME * latency_cclk
         assert [each.issue_cclk for each in core.stages] == [each.issue_cclk for each in home.stages]
 
 
