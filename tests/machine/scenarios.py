@@ -137,7 +137,7 @@ class Scene:
         bus = self.bench.bus
         self.bench.env.process(self._settle(stops))
         self.bench.play()
-        words = bus.words[: w.SLOTS_AT].tolist()  # which slot a transfer had means nothing
+        words = bus.words[: w.SUBBANKS_AT].tolist()  # which slot a transfer had means nothing
         for word in OF_THE_LAST_ACCESS:
             words[word] = 0
         return {

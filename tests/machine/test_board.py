@@ -85,7 +85,7 @@ def test_a_recording_at_its_own_pace_tells_what_was_missed() -> None:
     assert delivered == sorted(delivered)
 
 
-@pytest.mark.parametrize("board", BOARDS)
+@pytest.mark.parametrize("board", [name for name, each in BOARDS.items() if len(each.chip.cores) == 2])
 def test_traffic_adds_up(board: str) -> None:
     """Both cameras, both streams of both cores: bytes in are bytes out, three frames long."""
     outcome = run(every_frame(in_and_out), every_frame(in_and_out), frames=3, board=board)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bfsim.chip.spec import SensorMode
@@ -53,6 +53,11 @@ def picture(index: int, left_ns: int, right_ns: int) -> Picture:
     """A picture that is full of its own number; the right one is brighter."""
     left = np.full((2, 8), index % 100, np.uint8)
     return Picture(index, left, left + 100, left_ns, right_ns)
+
+
+too_early = pytest.mark.xfail(
+    strict=True, reason="the next picture stands in the room outside before all of the last one has come in"
+)
 
 
 class Studio:
@@ -199,6 +204,7 @@ def test_a_pair_is_ready_when_its_later_picture_is() -> None:
     assert studio.seen["A"].frames == studio.seen["B"].frames == [(280, 0), (680, 1)]
 
 
+@too_early
 def test_the_cameras_may_overlap_from_frame_to_frame() -> None:
     """The left camera begins frame 1 at 300, while the right one, 250 late, is at frame 0 till 450."""
     studio = play([(0, 250), (300, 550)], [0])
@@ -231,7 +237,9 @@ rising = st.lists(st.integers(1, 900), min_size=1, max_size=25)
 works = st.lists(st.integers(0, 1500), min_size=1, max_size=5)
 
 
+@too_early
 @settings(deadline=None)
+@example(gaps=[1, 200], skews=[0], work_a=[0], work_b=[0], frame_buffers=2, feed=Feed.RECORDED)
 @given(
     gaps=rising,
     skews=works,

@@ -139,18 +139,22 @@ def test_latency_is_counted_from_the_later_picture_s_last_line() -> None:
         feed=Feed.RECORDED,
     )
     (frame,) = outcome.frames
-    picture_cclk = 600_000_000 // 30 * 8 // 9  # 8 of 9 lines, 30 frames a second
-    assert frame.last_line_cclk - (600_000 + picture_cclk) in (0, 1)
+    # 7 of 9 lines and 32 of the eighth's 40 clocks, 30 frames a second; an SCLK edge, tRCD and the last four words
+    picture_cclk = 600_000_000 * (7 * 40 + 32) // (30 * 9 * 40)
+    assert frame.last_line_cclk == -(-(600_000 + picture_cclk) // 5) * 5 + (2 + 4) * 5
     assert frame.result_cclk == frame.last_line_cclk
 
 
 def test_a_core_goes_on_at_its_own_clock_s_next_edge() -> None:
-    """At 600/133 1/3 a CCLK is two ticks; a picture that is there at an odd one is seen half a cycle later."""
+    """At 600/133 1/3 a CCLK is two ticks, an SCLK nine; a picture that is there at an odd one is seen half a cycle later."""
     flat = np.zeros((8, 32), np.uint8)
     outcome = run(
-        see_all, frames=[Picture(0, flat, flat, 0, 2)], feed=Feed.RECORDED, board="cm-bf561-ratings"
+        see_all, frames=[Picture(0, flat, flat, 0, 107)], feed=Feed.RECORDED, board="cm-bf561-ratings"
     )
-    ready_ticks = 3 + 35_555_556  # 2 ns, and 8 of 9 lines at 30 frames a second, each rounded up to a tick
+    # 107 ns and the picture, each rounded up to a tick; an SCLK edge, tRCD and the last four words
+    last_ticks = 129 + -(-1_200_000_000 * (7 * 40 + 32) // (30 * 9 * 40))
+    ready_ticks = -(-last_ticks // 9) * 9 + (2 + 4) * 9
+    assert ready_ticks % 2 == 1
     (frame,) = outcome.frames
     assert frame.last_line_cclk == frame.result_cclk == (ready_ticks + 1) // 2
 

@@ -138,3 +138,12 @@ def test_the_end_of_each_line_can_wake_somebody() -> None:
     opening = bench.spec.sdram.nRCD
     assert ends == [opening + 40 * line for line in range(1, 5)]
     assert transfer.end == bench.sclk(ends[-1])
+
+
+def test_sub_banks_are_counted_word_by_word() -> None:
+    """A row with half of its words in one sub-bank of 4 KB and half in the next."""
+    bench = Bench()
+    source, target = bench.row(PLACES["SDRAM"], 1024), bench.row(PLACES["L1"] + 4096 - 512, 1024)
+    bench.ends(bench.stream.copy(source, target, 0))
+    first = w.SUBBANKS_AT + (target.offset - bench.memories.l1) // 4096
+    assert bench.bus.words[first : first + 2].tolist() == [128, 128]
