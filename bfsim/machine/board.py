@@ -93,10 +93,10 @@ class Board:
 
     def __post_init__(self) -> None:
         self._env = Simulation()
-        picture_nbytes = 2 * self.size.width_px * self.size.height_px
+        pictures_nbytes = 2 * 2 * self.size.width_px * self.size.height_px  # two at a time
         chip = self.spec.chip
-        self._memories = Memories(self.spec, outside_nbytes=chip.ppis * picture_nbytes + OUTSIDE_BYTES)
-        self._outside = [self._memories.outside + number * picture_nbytes for number in range(chip.ppis + 1)]
+        self._memories = Memories(self.spec, outside_nbytes=chip.ppis * pictures_nbytes + OUTSIDE_BYTES)
+        self._outside = [self._memories.outside + number * pictures_nbytes for number in range(chip.ppis + 1)]
         self._bus = Bus(self._env, self.spec, self._memories)
         self._calls: dict[str, CallBook] = {}
         self._frames: list[FrameRecord] = []

@@ -135,13 +135,22 @@ def finish(state: State, master: int, slot: int, at: int) -> int:
 
 
 @compiled
+def count_subbanks(state: State, side: int, count: int) -> None:
+    """Count what the next `count` elements of a side move to or from each sub-bank of L1."""
+    first, bits = state[w.L1_FIRST], state[w.SUBBANK_BITS]
+    at = state[side + w.POSITION] - first
+    if at < 0:
+        return
+    for _ in range(count):
+        state[w.SUBBANKS_AT + (at >> bits)] += 1
+        at += state[side + w.X_MODIFY]
+
+
+@compiled
 def moved(state: State, memory: Memory, slot: int, count: int) -> None:
     """Move the bytes of `count` elements, and count what goes to and from the sub-banks of L1."""
-    first, bits = state[w.L1_FIRST], state[w.SUBBANK_BITS]
-    if state[slot + w.FROM] >= first:
-        state[w.SUBBANKS_AT + ((state[slot + w.FROM] - first) >> bits)] += count
-    if state[slot + w.TO] >= first:
-        state[w.SUBBANKS_AT + ((state[slot + w.TO] - first) >> bits)] += count
+    count_subbanks(state, slot + w.FROM, count)
+    count_subbanks(state, slot + w.TO, count)
     move(state, memory, slot, count)
 
 

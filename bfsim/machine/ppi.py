@@ -33,11 +33,14 @@ class Ppi:
         number: int,
         outside: int,
     ) -> None:
-        """`number`: 0 or 1. `outside`: where in the arena a picture stands while it comes in."""
+        """`number`: 0 or 1. `outside`: where in the arena two pictures stand while they come in.
+
+        Two, since the next one may begin before the bus has taken the last words of the one before.
+        """
         self._bus = bus
         self._memories = memories
         self._master = w.PPI0 + number
-        self._outside = outside
+        self._outside = outside, outside + 2 * mode.width_px * mode.height_px
         self._word_bytes = (
             board.chip.dma.word_bytes
         )  # PPI_CONTROL with PACK_EN, and DMA32 where DMA has 32 bits
@@ -70,10 +73,12 @@ class Ppi:
         for line in picture:
             self.status.line(len(line))
         picture = self._settling.next_picture(picture)
-        self._memories.bytes_from(self._outside, picture.nbytes)[:] = picture.reshape(-1)
+        outside, other = self._outside
+        self._outside = other, outside
+        self._memories.bytes_from(outside, picture.nbytes)[:] = picture.reshape(-1)
         plan = self._bus.plan_receive(
             self._master,
-            Walk(self._outside, words, self._word_bytes, self._word_bytes),
+            Walk(outside, words, self._word_bytes, self._word_bytes),
             Walk(rows[0].offset, words, self._word_bytes, self._word_bytes),
             words * len(rows),
             element_bytes=self._word_bytes,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -12,8 +13,10 @@ import simpy
 from numpy.typing import NDArray
 
 from bfsim.api import BudgetRow, Buffer, Core, Firmware, Frame, FrameSize, i32, u8, u16
+from bfsim.chip.bf561 import BF561
 from bfsim.chip.boards import board_named
 from bfsim.chip.memory_map import region_of
+from bfsim.chip.sensors import LEFT_CAMERA
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import Kernel, followers
 from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
@@ -33,6 +36,11 @@ SIZE = FrameSize(16, 8)
 STAGES = ("Work", "More work")
 WORDS = 1024  # of the buffers in L2 and SDRAM
 PERIOD_NS = 100_000_000
+
+STEADY = replace(LEFT_CAMERA, offset_ppm=Fraction(0))
+"""A camera whose oscillator has its nominal rate."""
+INTERRUPT_CCLK = BF561.events.interrupt_entry_cclk + BF561.events.interrupt_exit_cclk
+"""What a core takes to notice that a picture is there."""
 
 Play = Generator[Any, Any, None]
 
@@ -109,7 +117,7 @@ def board_of(
     program: Firmware, size: FrameSize = SIZE, *, board: str = "cm-bf561", feed: Feed = Feed.DEMAND
 ) -> Board:
     """Link `program` with the thesis's LDF and put it on a board."""
-    spec = board_named(board)
+    spec = replace(board_named(board), cameras=(STEADY, STEADY))
     link_map = link(thesis_ldf(), symbols_of(program, size), spec.chip.regions)
     return Board(spec, program, size, link_map, feed=feed)
 

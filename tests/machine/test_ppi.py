@@ -15,7 +15,7 @@ from bfsim.machine import bus_state as w
 from bfsim.machine.bus import Pace, Transfer, Walk
 from bfsim.machine.memories import Row
 from bfsim.machine.ppi import Ppi
-from tests.machine.rig import Bench
+from tests.machine.rig import STEADY, Bench
 
 HEIGHT, WIDTH = 8, 16
 SDRAM, OTHER_BANK, L1 = 0x0000_1000, 0x0080_0000, 0xFF80_0000
@@ -29,12 +29,12 @@ def new_ppi(bench: Bench) -> Ppi:
     """Return a PPI with a camera of 16x8 pixels on it."""
     mode = bench.spec.sensor.mode(WIDTH, HEIGHT)
     return Ppi(
-        bench.env,
         bench.spec,
         mode,
+        STEADY,
         bench.bus,
         bench.memories,
-        master=w.PPI0,
+        number=0,
         outside=bench.memories.outside,
     )
 
