@@ -192,6 +192,57 @@ def test_what_needs_no_bus_has_no_part_in_traffic_control() -> None:
     assert opposite_streams(bench) == alone
 
 
+def send(bench: Bench, words: int = 40) -> tuple[Transfer, bytes]:
+    """Let a link take 16 bits every 100 ticks from the second bank; return what it does and the bytes it should send."""
+    source = bench.row(OTHER_BANK, 2 * words)
+    plan = bench.bus.plan_send(
+        w.SPI,
+        Walk(source.offset, words, 2, 2),
+        Walk(bench.memories.outside, words, 2, 2),
+        words,
+        element_bytes=2,
+        pace=Pace(0, words, Fraction(WORD_TICKS), Fraction(words * WORD_TICKS)),
+    )
+    return bench.bus.post(plan), source.array.tobytes()
+
+
+def test_a_link_takes_its_words_in_time() -> None:
+    """The FIFO is filled at the start and again whenever it is empty; the last word ends at the link's pace."""
+    bench = Bench(outside_nbytes=4096)
+    transfer, expected = send(bench)
+    bench.bus.play_until(1)
+    assert bench.traffic(w.SPI).read_bytes == 8
+    bench.bus.play_until(4 * WORD_TICKS)
+    assert bench.traffic(w.SPI).read_bytes == 8
+    bench.bus.play_until(4 * WORD_TICKS + 1)
+    assert bench.traffic(w.SPI).read_bytes == 16
+    assert bench.ends(transfer) == [40 * WORD_TICKS]
+    assert bench.memories.bytes_from(bench.memories.outside, 80).tobytes() == expected
+
+
+@pytest.mark.xfail(
+    strict=True, reason="a device that takes words is urgent when it should have sent half a FIFO more"
+)
+def test_a_link_is_urgent_before_it_runs_dry() -> None:
+    """Against the direction that DEB_TRAFFIC_PERIOD prefers, it has the bus by the time its fifth word is due."""
+    bench = Bench(deb_period=LONG, outside_nbytes=4096)
+    write_all(bench)
+    send(bench)
+    bench.bus.play_until(5 * WORD_TICKS)
+    assert bench.traffic(w.SPI).read_bytes == 16
+
+
+@pytest.mark.xfail(strict=True, reason="words that came too late for a link are not counted")
+def test_a_link_that_runs_dry_is_told() -> None:
+    """The bus is blocked for 20 of its words, and the FIFO holds four."""
+    bench = Bench(outside_nbytes=4096)
+    transfer, _ = send(bench)
+    bench.bus.play_until(1)
+    bench.bus.words[w.COMMAND_FREE] = 20 * WORD_TICKS
+    bench.play()
+    assert bench.bus.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.LOST] > 0
+
+
 # ---- Everything else
 
 

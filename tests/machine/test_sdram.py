@@ -295,6 +295,7 @@ def test_words_meet_what_the_naive_model_says(
     assert chip.state[w.REFRESHES] == naive.refreshes
 
 
+@settings(deadline=None)
 @given(offset=st.integers(0, 4095).map(lambda n: 4 * n), count=st.integers(1, 600), write=st.booleans())
 def test_a_stream_of_hits_is_what_its_words_are(offset: int, count: int, write: bool) -> None:
     """Done at once or word by word, the state afterwards is the same, and `hits_ahead` says how many there are."""

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bfsim.errors import FirmwareError
 from bfsim.machine import bus_state as w
 from bfsim.machine.bus import Walk
 from tests.machine.rig import Bench
@@ -147,3 +148,14 @@ def test_sub_banks_are_counted_word_by_word() -> None:
     bench.ends(bench.stream.copy(source, target, 0))
     first = w.SUBBANKS_AT + (target.offset - bench.memories.l1) // 4096
     assert bench.bus.words[first : first + 2].tolist() == [128, 128]
+
+
+@pytest.mark.xfail(
+    strict=True, reason="a transfer is not stopped within a line: it would run on, beyond its memory"
+)
+def test_a_part_of_a_line_is_refused() -> None:
+    """X_COUNT 9 on one side and two elements in all is no transfer that a descriptor can ask for."""
+    bench = Bench()
+    source, target = (Walk(bench.offset(PLACES[each]), 9, 4, 4) for each in ("SDRAM", "L1"))
+    with pytest.raises(FirmwareError):
+        bench.bus.plan_copy(w.MDMA1_0, source, target, 2, element_bytes=4, setup=0)
