@@ -202,6 +202,11 @@ class Bus:
     def _plan(
         self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, setup: int, pace: Pace
     ) -> Plan:  # fmt: skip
+        for side in (source, destination):
+            if count % side.x_count:
+                raise FirmwareError(
+                    f"a DMA transfer must have whole lines of {side.x_count} elements, not {count} in all"
+                )
         parts = lcm(pace.element_ticks.denominator, pace.line_ticks.denominator)
         element, line = int(pace.element_ticks * parts), int(pace.line_ticks * parts)
         return Plan(

@@ -58,9 +58,13 @@ def count_access(state: State, master: int, elements: int) -> None:
 
 @compiled
 def lot_of(state: State, slot: int) -> int:
-    """How many elements a device's DMA moves at once: a lot, or what is left of the line on either side."""
+    """How many elements a device's DMA moves at once: a lot, or what is left of the line on either side.
+
+    To a device it moves half a lot, so that the other half is there while it waits for the bus.
+    """
+    lot = state[w.LOT] if state[slot + w.MODE] == w.PACED_IN else max(1, state[w.LOT] // 2)
     left = min(state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT])
-    return min(state[w.LOT], left, state[slot + w.LINE_ELEMENTS] - state[slot + w.PLACE])
+    return min(lot, left, state[slot + w.LINE_ELEMENTS] - state[slot + w.PLACE])
 
 
 @compiled
@@ -378,7 +382,9 @@ def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> 
     elif state[w.L2_FIRST] <= offset < state[w.L2_END]:
         count_traffic(state, number, w.IN_L2, write, nbytes)
     if not write:
-        through = max(through, arrival(state, slot, count - 1))
+        # a link that has nothing to send holds its clock until it has
+        state[slot + w.START] += max(0, through - arrival(state, slot, -1))
+        through = arrival(state, slot, count - 1)
     moved(state, memory, slot, count)
     step_device(state, slot, count)
     if state[slot + w.LEFT]:

@@ -69,7 +69,12 @@ class NaiveSdram:
     def _idle_until(self, now: int) -> None:
         """Let time pass until the controller can begin something new, and refresh whenever that is due."""
         while self.time < now or self.time >= self.due:
-            if self.time >= max(self.due, self.data_end):
+            closable = [
+                max(each.activated + self.spec.nRAS, each.written + self.spec.nWR)
+                for each in self.banks
+                if each.page is not None
+            ]
+            if self.time >= max(self.due, self.data_end, *closable):
                 self.due += self.refresh_every
                 self.refreshes += 1
                 self.time += self.spec.nRP + self.spec.nRAS + self.spec.nRP

@@ -79,7 +79,9 @@ def test_sdram_reads_stall_by_page(name: str) -> None:
     assert found.pop(StallReason.SDRAM_PAGE_HIT) == traffic.page_hits * read_cclk(board)
     misses = traffic.page_misses * read_cclk(board, board.sdram.miss_sclk)
     met = found.pop(StallReason.SDRAM_PAGE_MISS)
-    assert misses <= met <= misses + traffic.page_misses  # parts of a cycle that waits for refreshes leave over
+    assert (
+        misses <= met <= misses + traffic.page_misses
+    )  # parts of a cycle that waits for refreshes leave over
     conflicts = traffic.page_conflicts * read_cclk(board, board.sdram.conflict_sclk)
     assert found.pop(StallReason.SDRAM_PAGE_CONFLICT, 0) == conflicts
     refresh_cclk = board.sdram.refresh_sclk * board.clocks.sclk_ticks // board.clocks.cclk_ticks

@@ -11,12 +11,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bfsim.api import Core, Frame, FrameSize, u16
+from bfsim.chip.bf561 import BF561
 from bfsim.errors import FirmwareError
 from bfsim.trace import StallReason
 from tests.machine.kernels import copy, first, negate, spin
 from tests.machine.rig import SIZE, Bench, Picture, Play, every_frame, noise, run, stage_of
 
 LINE_BYTES = 2 * SIZE.width_px
+EVENTS = BF561.events
+SETUP_CCLK = 5 * EVENTS.mmr_write_cclk + EVENTS.mmr_read_cclk  # of one copy, each time
 REFRESH_CCLK = (11 + 3 + 2 * 2) * 5
 """A refresh that comes in between, behind data on their way, and the page opened before and after it."""
 
@@ -111,10 +114,10 @@ def test_a_core_without_work_waits_for_every_line() -> None:
     cost = stage_of(outcome.frames[1], "Work")
     unloaded_cclk = SIZE.height_px * copy_sclk(LINE_BYTES // 4) * 5
     assert cost.issue_cclk == cost.idle_cclk == 0
-    assert cost.elapsed_cclk == cost.stall_cclk[StallReason.RING_EMPTY]
-    assert cost.elapsed_cclk - unloaded_cclk in range(
-        REFRESH_CCLK + 5
-    )  # the first copy waits for an SCLK edge
+    assert cost.stall_cclk[StallReason.DMA_SETUP] == SIZE.height_px * SETUP_CCLK
+    assert cost.elapsed_cclk == sum(cost.stall_cclk.values())
+    # the first copy is programmed, and waits for an SCLK edge
+    assert cost.elapsed_cclk - unloaded_cclk in range(SETUP_CCLK + REFRESH_CCLK + 5)
 
 
 def test_a_core_with_work_waits_for_the_first_line_only() -> None:
@@ -130,8 +133,12 @@ def test_a_core_with_work_waits_for_the_first_line_only() -> None:
                 yield from ring.line()
 
     outcome = run(every_frame(work))
-    assert set(stage_of(outcome.frames[0], "Work").stall_cclk) == {StallReason.RING_EMPTY}
-    assert stage_of(outcome.frames[0], "More work").stall_cclk == {}
+    assert set(stage_of(outcome.frames[0], "Work").stall_cclk) == {
+        StallReason.RING_EMPTY,
+        StallReason.DMA_SETUP,
+    }
+    setup_cclk = (SIZE.height_px - 1) * SETUP_CCLK
+    assert stage_of(outcome.frames[0], "More work").stall_cclk == {StallReason.DMA_SETUP: setup_cclk}
 
 
 def test_a_core_that_is_too_fast_fills_its_output_ring() -> None:
@@ -150,9 +157,12 @@ def test_a_core_that_is_too_fast_fills_its_output_ring() -> None:
     outcome = run(every_frame(send), frames=2)
     one_cclk = copy_sclk(LINE_BYTES // 4, is_write=True) * 5
     sending, flushing = (stage_of(outcome.frames[1], each) for each in ("Work", "More work"))
-    assert set(sending.stall_cclk) == set(flushing.stall_cclk) == {StallReason.RING_FULL}
-    assert sending.elapsed_cclk - (SIZE.height_px - 2) * one_cclk in range(REFRESH_CCLK + 5)
-    assert flushing.elapsed_cclk == 2 * one_cclk
+    assert set(sending.stall_cclk) == {StallReason.RING_FULL, StallReason.DMA_SETUP}
+    assert set(flushing.stall_cclk) == {StallReason.RING_FULL}
+    # each line is programmed while those before it leave; the last two are on their way when all are sent
+    setup_cclk = SIZE.height_px * SETUP_CCLK
+    assert sending.elapsed_cclk - (SIZE.height_px - 2) * one_cclk in range(setup_cclk + REFRESH_CCLK + 5)
+    assert 2 * one_cclk - flushing.elapsed_cclk in range(2 * SETUP_CCLK)
 
 
 def test_flush_of_nothing_is_free() -> None:

@@ -150,9 +150,6 @@ def test_sub_banks_are_counted_word_by_word() -> None:
     assert bench.bus.words[first : first + 2].tolist() == [128, 128]
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a transfer is not stopped within a line: it would run on, beyond its memory"
-)
 def test_a_part_of_a_line_is_refused() -> None:
     """X_COUNT 9 on one side and two elements in all is no transfer that a descriptor can ask for."""
     bench = Bench()
