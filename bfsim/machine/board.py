@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import DeadlockError, FirmwareError
@@ -16,6 +17,7 @@ from bfsim.machine.calls import CallBook
 from bfsim.machine.capture import Capture, Feed, Pair, StereoPictures
 from bfsim.machine.code import code_records, code_symbols
 from bfsim.machine.core import Core
+from bfsim.machine.detailed_bus import DetailedBus
 from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.ppi import Ppi
@@ -33,6 +35,16 @@ MDMA_MASTERS = (
     (w.MDMA1_0, w.MDMA1_1),
     (w.MDMA2_0, w.MDMA2_1),
 )  # of each core: for its input and its output rings
+
+
+class Fidelity(StrEnum):
+    """How the buses are played: in compiled code, runs of words at once; or every transaction an event, which is slow."""
+
+    FAST = "fast"
+    DETAILED = "detailed"
+
+
+BUSES = {Fidelity.FAST: Bus, Fidelity.DETAILED: DetailedBus}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,6 +88,7 @@ class Board:
     feed: Feed = Feed.DEMAND
     profile: CompilerProfile = VDSP_O2
     sanitize: bool = False
+    fidelity: Fidelity = Fidelity.FAST
     cores: dict[str, Core] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -85,7 +98,7 @@ class Board:
         self._outside = [
             self._memories.outside + number * picture_nbytes for number in range(len(PPI_MASTERS))
         ]
-        self._bus = Bus(self._env, self.spec, self._memories)
+        self._bus = BUSES[self.fidelity](self._env, self.spec, self._memories)
         self._semaphores: dict[str, Semaphore] = {}
         self._calls: dict[str, CallBook] = {}
         self._frames: list[FrameRecord] = []
