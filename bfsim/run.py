@@ -15,7 +15,7 @@ from bfsim.errors import ConfigError, RecordingError
 from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
 from bfsim.linker import link, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
-from bfsim.machine.board import Board, Outcome, symbols_of
+from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
 from bfsim.machine.capture import Feed
 from bfsim.machine.program import FrameSize
 from bfsim.recording import RecordingReader, StereoFrame
@@ -34,6 +34,7 @@ def simulate(
     ldf: Path | None = None,
     frames: int | None = None,
     feed: Feed = Feed.DEMAND,
+    fidelity: Fidelity = Fidelity.FAST,
     sanitize: bool = False,
     profile: str = VDSP_O2.name,
     progress: Callable[[int, int], None] | None = None,
@@ -52,7 +53,16 @@ def simulate(
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
         size = FrameSize(reader.width, reader.height)
         link_map = link(parse_ldf(script), symbols_of(loaded.firmware, size, compiler), spec.chip.regions)
-        machine = Board(spec, loaded.firmware, size, link_map, feed=feed, sanitize=sanitize, profile=compiler)
+        machine = Board(
+            spec,
+            loaded.firmware,
+            size,
+            link_map,
+            feed=feed,
+            fidelity=fidelity,
+            sanitize=sanitize,
+            profile=compiler,
+        )
         total = min(frames or reader.frame_count, reader.frame_count)
         if not total:
             raise RecordingError(f"{reader.path}: a recording must have at least one stereo frame, not none")
@@ -66,7 +76,7 @@ def simulate(
                 progress(done, total)
 
         outcome = machine.run(iter(source), count)
-    return _record(outcome, spec, loaded, script, feed, size, source, compiler)
+    return _record(outcome, spec, loaded, script, feed, fidelity, size, source, compiler)
 
 
 class _DigestedFrames:
@@ -97,6 +107,7 @@ def _record(
     loaded: LoadedFirmware,
     ldf: Path,
     feed: Feed,
+    fidelity: Fidelity,
     size: FrameSize,
     source: _DigestedFrames,
     compiler: CompilerProfile,
@@ -112,6 +123,7 @@ def _record(
         ldf_digest=hashlib.sha256(ldf.read_bytes()).hexdigest(),
         compiler=compiler.name,
         feed=feed.value,
+        fidelity=fidelity.value,
         bfsim_version=__version__,
         llvm_version=".".join(map(str, llvm.llvm_version_info)),
         cclk_hz=float(spec.clocks.cclk_hz),
@@ -132,4 +144,4 @@ def _record(
     )
 
 
-__all__ = ["BUILT_IN_RECORDING", "THESIS_LDF", "Feed", "simulate"]
+__all__ = ["BUILT_IN_RECORDING", "THESIS_LDF", "Feed", "Fidelity", "simulate"]

@@ -148,6 +148,7 @@ class Identity:
     ldf_digest: str
     compiler: str
     feed: str
+    fidelity: str
     bfsim_version: str
     llvm_version: str
     cclk_hz: float

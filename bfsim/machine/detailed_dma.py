@@ -143,7 +143,7 @@ class DmaChannel:
         dma = self._board.chip.dma
         for offset in offsets(plan.source, plan.count):
             while not fifo.has_room:
-                yield fifo.changed
+                yield fifo.changed()
             grant = yield from self._word(plan, fifo, offset, write=False)
             fifo.put(Element(self._load(plan, offset), grant.through))
             pause = self._pause(dma.read_word_sclk) if plan.mode == w.READ else 0
@@ -174,7 +174,7 @@ class DmaChannel:
         while not fifo.can_give:
             if fifo.is_done:
                 return False
-            yield fifo.changed
+            yield fifo.changed()
         yield from wait_until(self._env, fifo.there_at)
         return True
 
@@ -188,7 +188,7 @@ class DmaChannel:
             else:
                 yield from wait_until(self._env, start + number * self._sclk)
             while not fifo.has_room:
-                yield fifo.changed
+                yield fifo.changed()
             fifo.put(Element(self._load(plan, offset), self._env.tick))
 
     def _write_on_chip(self, plan: DetailedPlan, fifo: Fifo) -> Play:

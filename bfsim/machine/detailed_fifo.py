@@ -30,8 +30,7 @@ class Fifo:
         self._takes_turns = takes_turns
         self._is_draining = False
         self._is_closed = False
-        self.changed = env.event()
-        """The next time that something came in or left."""
+        self._waits: list[simpy.Event] = []
 
     def __len__(self) -> int:
         return len(self._elements)
@@ -78,6 +77,13 @@ class Fifo:
         self._is_closed = self._is_draining = True
         self._change()
 
+    def changed(self) -> simpy.Event:
+        """Return the event at which something comes in or leaves the next time."""
+        event = self._env.event()
+        self._waits.append(event)
+        return event
+
     def _change(self) -> None:
-        event, self.changed = self.changed, self._env.event()
-        event.succeed()
+        waits, self._waits = self._waits, []
+        for event in waits:
+            event.succeed()

@@ -219,6 +219,7 @@ def configuration(run: RunRecord) -> Table:
     for each in run.code:
         table.add_row(f"Code of {each.core}", _code(each))
     table.add_row("Feed", identity.feed)
+    table.add_row("Fidelity", identity.fidelity)
     table.add_row("bfsim", f"{identity.bfsim_version}, {run.events:,} events simulated")
     table.add_row("Identity", identity_digest(identity))
     table.add_row("Cycles", cycle_digest(run.frames))

@@ -32,6 +32,7 @@ IDENTITY = Identity(
     ldf_digest="4" * 64,
     compiler="gcc-O2",
     feed="demand",
+    fidelity="fast",
     bfsim_version="0.1.0",
     llvm_version="20.1.8",
     cclk_hz=1_000_000.0,
