@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import simpy
+from simpy.core import EventPriority
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine import bus_state as w
@@ -19,7 +20,7 @@ from bfsim.machine.bus import PARTNERS, RANKS
 from bfsim.machine.detailed_sdram import Page, SdramBanks
 from bfsim.machine.simulation import Simulation
 
-LAST_OF_A_TICK = 2  # simpy's own priorities are 0 and 1
+LAST_OF_A_TICK = EventPriority(2)  # simpy's own are 0 and 1
 
 STORES = {w.STORES_A: 0, w.STORES_B: 1}
 LOADS = {w.CORE_A: 0, w.CORE_B: 1}
@@ -83,7 +84,12 @@ class Arbiter:
     ) -> simpy.Event:
         """Ask for a transaction of `nbytes`; return the event of its grant."""
         request = Request(
-            master=master, offset=offset, nbytes=nbytes, write=write, is_urgent=is_urgent, granted=self._env.event()
+            master=master,
+            offset=offset,
+            nbytes=nbytes,
+            write=write,
+            is_urgent=is_urgent,
+            granted=self._env.event(),
         )
         self._requests.append(request)
         if not self._asked.triggered:
@@ -172,7 +178,9 @@ class SdramArbiter(Arbiter):
             self._go_on(request)
         refresh_wait, self._refresh_wait = self._refresh_wait, 0
         more = (beats - 1) * self._board.clocks.sclk_ticks
-        return Grant(now, banks.command_from, access.through, access.through + more, access.page, refresh_wait)
+        return Grant(
+            now, banks.command_from, access.through, access.through + more, access.page, refresh_wait
+        )
 
     def _go_on(self, request: Request) -> None:
         """Count a transfer of a DMA to the periods of traffic control."""

@@ -39,7 +39,7 @@ class DetailedBus(Bus):
     def settle(self) -> None:
         """Do nothing: everything that is due has happened."""
 
-    def play_until(self, tick: int) -> bool:
+    def play_until(self, tick: int) -> bool:  # noqa: ARG002
         """Do nothing, and stop at nothing: the simulation plays every master."""
         return False
 

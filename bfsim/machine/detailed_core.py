@@ -54,7 +54,9 @@ class CorePort:
         self.stalls = [0] * w.STALLS
         env.process(self._drain())
 
-    def call(self, begin: int, cclk: int, entries: NDArray[Any], done: simpy.Event) -> Generator[simpy.Event, Any, None]:
+    def call(
+        self, begin: int, cclk: int, entries: NDArray[Any], done: simpy.Event
+    ) -> Generator[simpy.Event, Any, None]:
         """Make the accesses of a call of `cclk` cycles from tick `begin` on; `done` happens at its end."""
         self.stalls = [0] * w.STALLS
         for entry in entries.tolist():
@@ -96,7 +98,9 @@ class CorePort:
         issued = self._env.tick
         edge = self._edge(issued)
         yield from wait_until(self._env, edge)
-        grant: Grant = yield self._sdram.ask(w.CORE_A + self._number, access.offset, access.nbytes, write=False)
+        grant: Grant = yield self._sdram.ask(
+            w.CORE_A + self._number, access.offset, access.nbytes, write=False
+        )
         # a load needs all of its word; with a line the core goes on when its first word is there
         through = grant.through if access.kind == log.LOAD else grant.first_through
         sync = (self._board.chip.external.core_sync_sclk - 1) * self._sclk
@@ -125,7 +129,9 @@ class CorePort:
         yield from wait_until(self._env, grant.through)
 
     def _charge(self, access: CoreAccess, of_load: int, cycles: int) -> None:
-        reason = of_load if access.kind == log.LOAD else w.CACHE_FILL if access.kind == log.FILL else w.CODE_FETCH
+        reason = (
+            of_load if access.kind == log.LOAD else w.CACHE_FILL if access.kind == log.FILL else w.CODE_FETCH
+        )
         self.stalls[reason] += cycles
 
     def _edge(self, tick: int) -> int:

@@ -69,7 +69,13 @@ class DmaChannel:
     """One master with its queue of errands. `lost`: elements of a device that found the FIFO full."""
 
     def __init__(
-        self, env: Simulation, board: BoardSpec, memories: Memories, sdram: SdramArbiter, words: Any, master: int
+        self,
+        env: Simulation,
+        board: BoardSpec,
+        memories: Memories,
+        sdram: SdramArbiter,
+        words: Any,
+        master: int,
     ) -> None:
         self._env = env
         self._board = board
@@ -125,7 +131,9 @@ class DmaChannel:
 
     # ---- sides in SDRAM
 
-    def _word(self, plan: DetailedPlan, fifo: Fifo, offset: int, *, write: bool) -> Generator[simpy.Event, Any, Grant]:
+    def _word(
+        self, plan: DetailedPlan, fifo: Fifo, offset: int, *, write: bool
+    ) -> Generator[simpy.Event, Any, Grant]:
         """Wait for the bus and return how the access of an element went."""
 
         def is_urgent() -> bool:
