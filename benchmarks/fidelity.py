@@ -70,7 +70,9 @@ def cycles_of(outcome: Outcome) -> dict[tuple[str, str], list[int]]:
         for stage in core.stages:
             if stage.stage != REST and stage.elapsed_cclk:
                 found.setdefault((stage.stage, core.core), []).append(stage.elapsed_cclk)
-        found.setdefault((FRAME, core.core), []).append(sum(each.elapsed_cclk - each.idle_cclk for each in core.stages))
+        found.setdefault((FRAME, core.core), []).append(
+            sum(each.elapsed_cclk - each.idle_cclk for each in core.stages)
+        )
     return found
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import simpy
-from simpy.core import EventPriority
+from simpy.events import EventPriority
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine import bus_state as w

@@ -64,9 +64,12 @@ class DetailedBus(Bus):
         errand = Errand(number, plan, max(at, self._env.tick), self._env.event())
         self._done[number] = errand.done
         assert errand.done.callbacks is not None
-        errand.done.callbacks.append(lambda _event: self._done.pop(number))
+        errand.done.callbacks.append(lambda _event: self._forget(number))
         self._channels[plan.master].post(errand)
         return Transfer(self, number, w.NONE)
+
+    def _forget(self, number: int) -> None:
+        del self._done[number]
 
     def when_done(self, transfer: Transfer) -> simpy.Event:
         """Return the event at a transfer's end, which must not be known yet."""
