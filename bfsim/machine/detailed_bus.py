@@ -32,7 +32,7 @@ class DetailedBus(Bus):
         self._ports = [
             CorePort(env, board, sdram, l2, memories.sdram_end, number) for number in range(w.CORES)
         ]
-        self._done: dict[int, simpy.Event] = {}
+        self._errands: dict[int, Errand] = {}
 
     # ---- time: nothing here is ever behind the simulation
 
@@ -62,18 +62,24 @@ class DetailedBus(Bus):
         self._transfers = number + 1
         self.words[w.ENDS_AT + number % w.ENDS] = w.NONE
         errand = Errand(number, plan, max(at, self._env.tick), self._env.event())
-        self._done[number] = errand.done
+        self._errands[number] = errand
         assert errand.done.callbacks is not None
         errand.done.callbacks.append(lambda _event: self._forget(number))
         self._channels[plan.master].post(errand)
         return Transfer(self, number, w.NONE)
 
     def _forget(self, number: int) -> None:
-        del self._done[number]
+        del self._errands[number]
 
     def when_done(self, transfer: Transfer) -> simpy.Event:
         """Return the event at a transfer's end, which must not be known yet."""
-        return self._done[transfer.number]
+        return self._errands[transfer.number].done
+
+    def when_row(self, transfer: Transfer) -> simpy.Event:
+        """Return the event at the end of the next row that a transfer writes, or at its own end; neither is known yet."""
+        event = self._env.event()
+        self._errands[transfer.number].rows.append(event)
+        return event
 
     def lost_by(self, master: int) -> int:
         """Return how many elements of a device found the FIFO of its DMA full."""

@@ -7,7 +7,7 @@ channel starts. A side that is a device keeps the device's pace, and loses what 
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil
 from typing import Any
@@ -40,12 +40,24 @@ class DetailedPlan(Plan):
 
 @dataclass(slots=True)
 class Errand:
-    """A plan on its way, from tick `at` on. `done` happens at its end."""
+    """A plan on its way, from tick `at` on. `done` happens at its end; `rows` at the end of the next row that it writes."""
 
     number: int
     plan: DetailedPlan
     at: int
     done: simpy.Event
+    rows: list[simpy.Event] = field(default_factory=list)
+
+    def tell_row(self, moved: int) -> None:
+        """Tell those who wait for a row, if the last of `moved` elements ended one. The last row ends with the errand."""
+        if moved % self.plan.destination.x_count == 0 and moved < self.plan.count:
+            self.tell()
+
+    def tell(self) -> None:
+        """Tell those who wait for a row."""
+        waiting, self.rows = self.rows, []
+        for event in waiting:
+            event.succeed()
 
 
 def offsets(walk: Walk, count: int) -> Iterator[int]:
@@ -101,8 +113,9 @@ class DmaChannel:
             yield from wait_until(self._env, self._edge(max(self._env.tick, errand.at) + plan.setup))
             fifo = Fifo(self._env, self._depth(), takes_turns=plan.mode == w.BOTH)
             self._env.process(self._source(plan, fifo))
-            yield self._env.process(self._sink(plan, fifo))
+            yield self._env.process(self._sink(errand, fifo))
             self._words[w.ENDS_AT + errand.number % w.ENDS] = self._env.tick
+            errand.tell()
             errand.done.succeed()
 
     def _edge(self, tick: int) -> int:
@@ -121,13 +134,14 @@ class DmaChannel:
             yield from self._read_on_chip(plan, fifo)
         fifo.close()
 
-    def _sink(self, plan: DetailedPlan, fifo: Fifo) -> Play:
+    def _sink(self, errand: Errand, fifo: Fifo) -> Play:
+        plan = errand.plan
         if plan.mode == w.PACED_OUT:
-            yield from self._send(plan, fifo)
+            yield from self._send(errand, fifo)
         elif plan.destination.offset < self._memories.sdram_end:
-            yield from self._write_sdram(plan, fifo)
+            yield from self._write_sdram(errand, fifo)
         else:
-            yield from self._write_on_chip(plan, fifo)
+            yield from self._write_on_chip(errand, fifo)
 
     # ---- sides in SDRAM
 
@@ -157,18 +171,18 @@ class DmaChannel:
             pause = self._pause(dma.read_word_sclk) if plan.mode == w.READ else 0
             yield from wait_until(self._env, grant.free + pause)
 
-    def _write_sdram(self, plan: DetailedPlan, fifo: Fifo) -> Play:
-        dma = self._board.chip.dma
-        places, through = offsets(plan.destination, plan.count), 0
-        while (yield from self._next(fifo)):
-            offset = next(places)
+    def _write_sdram(self, errand: Errand, fifo: Fifo) -> Play:
+        dma, plan = self._board.chip.dma, errand.plan
+        for number, offset in enumerate(offsets(plan.destination, plan.count)):
+            if not (yield from self._next(fifo)):
+                return
             grant = yield from self._word(plan, fifo, offset, write=True)
             self._store(plan, offset, fifo.first.value)
-            through = grant.through
             fifo.take()
+            yield from wait_until(self._env, grant.through)
+            errand.tell_row(number + 1)
             pause = self._pause(dma.write_word_sclk) if plan.mode == w.WRITE else 0
             yield from wait_until(self._env, grant.free + pause)
-        yield from wait_until(self._env, through)
 
     def _pause(self, word_sclk: Fraction) -> int:
         """Add up what a word takes beyond a cycle; return the ticks of the whole cycles that are due."""
@@ -199,12 +213,14 @@ class DmaChannel:
                 yield fifo.changed()
             fifo.put(Element(self._load(plan, offset), self._env.tick))
 
-    def _write_on_chip(self, plan: DetailedPlan, fifo: Fifo) -> Play:
-        for offset in offsets(plan.destination, plan.count):
+    def _write_on_chip(self, errand: Errand, fifo: Fifo) -> Play:
+        plan = errand.plan
+        for number, offset in enumerate(offsets(plan.destination, plan.count)):
             if not (yield from self._next(fifo)):
                 return
             self._store(plan, offset, fifo.first.value)
             fifo.take()
+            errand.tell_row(number + 1)
 
     # ---- sides that are devices
 
@@ -216,12 +232,14 @@ class DmaChannel:
             else:
                 self.lost += 1
 
-    def _send(self, plan: DetailedPlan, fifo: Fifo) -> Play:
+    def _send(self, errand: Errand, fifo: Fifo) -> Play:
+        plan = errand.plan
         for number, offset in enumerate(offsets(plan.destination, plan.count)):
             yield from wait_until(self._env, arrival(plan.pace, number))
             yield from self._next(fifo)
             self._store(plan, offset, fifo.first.value)
             fifo.take()
+            errand.tell_row(number + 1)
 
     # ---- bytes
 

@@ -207,6 +207,22 @@ def test_a_picture_ends_with_its_last_word(board: str) -> None:
     assert bytes(bench.memories.arena[:320]) == bytes(bench.memories.arena[bench.outside :][:320])
 
 
+def test_rows_of_a_picture_are_told_one_by_one() -> None:
+    """The end of each line, and of the picture with its last one."""
+    bench = Bench()
+    picture, ends = bench.camera(0, 3, 16, Fraction(20)), []
+
+    def watch() -> Any:
+        while picture.end is None:
+            yield bench.bus.when_row(picture)
+            ends.append(bench.env.tick)
+
+    watcher = bench.env.process(watch())
+    bench.play()
+    assert watcher.processed
+    assert ends == [((18 * line + 16) * 20 + 1) * bench.sclk for line in range(3)] == [*ends[:2], picture.end]
+
+
 # ---- arbitration
 
 
