@@ -98,6 +98,13 @@ _RUN_PARAMETERS = (
         type=click.Path(path_type=Path),
         help="Script, JSON or TOML, of what the strategy unit sends over SPI and when.",
     ),
+    click.option(
+        "--fidelity",
+        type=click.Choice(["fast", "detailed"]),
+        default="fast",
+        show_default=True,
+        help="How the buses are simulated: fast, or with every transaction an event, to judge the fast way. Slow.",
+    ),
     click.option("--sanitize", is_flag=True, help="Stop at the first index outside an array. Slower."),
 )
 
@@ -245,12 +252,12 @@ def check(path: Path, update: bool, **what: Any) -> None:
         raise SystemExit(LIMIT_BROKEN)
 
 
-def _simulate(*, feed: str, **what: Any) -> RunRecord:
+def _simulate(*, feed: str, fidelity: str, **what: Any) -> RunRecord:
     """Run the simulation behind a progress bar and return at least one frame."""
-    from bfsim.run import Feed, simulate
+    from bfsim.run import Feed, Fidelity, simulate
 
     with progress_bar("Simulating frames") as progress:
-        done = simulate(feed=Feed(feed), progress=progress, **what)
+        done = simulate(feed=Feed(feed), fidelity=Fidelity(fidelity), progress=progress, **what)
     if not done.frames:
         if done.interrupted:
             raise KeyboardInterrupt

@@ -15,7 +15,7 @@ from bfsim.errors import ConfigError, RecordingError
 from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
 from bfsim.linker import LinkerScript, link, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
-from bfsim.machine.board import Board, Outcome, symbols_of
+from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
 from bfsim.machine.capture import Feed
 from bfsim.machine.program import FrameSize
 from bfsim.machine.strategy import ScriptedMessage
@@ -37,6 +37,7 @@ def simulate(
     ldf: Path | None = None,
     frames: int | None = None,
     feed: Feed = Feed.DEMAND,
+    fidelity: Fidelity = Fidelity.FAST,
     sanitize: bool = False,
     profile: str = VDSP_O2.name,
     strategy: Path | None = None,
@@ -67,6 +68,7 @@ def simulate(
             sanitize=sanitize,
             profile=compiler,
             script=script,
+            fidelity=fidelity,
         )
         total = min(frames or reader.frame_count, reader.frame_count)
         if not total:
@@ -81,7 +83,7 @@ def simulate(
                 progress(done, total)
 
         outcome = machine.run(iter(source), count)
-    return _record(outcome, spec, loaded, placement, feed, size, source, compiler, script)
+    return _record(outcome, spec, loaded, placement, feed, fidelity, size, source, compiler, script)
 
 
 def _read_strategy(path: Path | None) -> Sequence[ScriptedMessage]:
@@ -120,6 +122,7 @@ def _record(
     loaded: LoadedFirmware,
     placement: LinkerScript,
     feed: Feed,
+    fidelity: Fidelity,
     size: FrameSize,
     source: _DigestedFrames,
     compiler: CompilerProfile,
@@ -137,6 +140,7 @@ def _record(
         compiler=compiler.name,
         feed=feed.value,
         strategy_digest=hashlib.sha256(repr(script).encode()).hexdigest() if script else "",
+        fidelity=fidelity.value,
         bfsim_version=__version__,
         llvm_version=".".join(map(str, llvm.llvm_version_info)),
         cclk_hz=float(spec.clocks.cclk_hz),
@@ -159,4 +163,4 @@ def _record(
     )
 
 
-__all__ = ["BUILT_IN_RECORDING", "THESIS_LDF", "Feed", "simulate"]
+__all__ = ["BUILT_IN_RECORDING", "THESIS_LDF", "Feed", "Fidelity", "simulate"]

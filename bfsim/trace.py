@@ -149,6 +149,7 @@ class Identity:
     compiler: str
     feed: str
     strategy_digest: str
+    fidelity: str
     bfsim_version: str
     llvm_version: str
     cclk_hz: float

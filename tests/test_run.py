@@ -17,7 +17,7 @@ import pytest
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, LinkError, RecordingError
 from bfsim.recording import RecordingWriter
 from bfsim.report.digest import cycle_digest, identity_digest
-from bfsim.run import Feed, simulate
+from bfsim.run import Feed, Fidelity, simulate
 from bfsim.trace import RunRecord
 
 FIRMWARE = '''\
@@ -69,7 +69,7 @@ DIGESTS = """\
 import json, sys
 from pathlib import Path
 from bfsim.report.digest import cycle_digest, identity_digest
-from bfsim.run import Feed, simulate
+from bfsim.run import Feed, Fidelity, simulate
 runs = [simulate(Path(sys.argv[1]), firmware="fw_eyes:eyes", feed=feed) for feed in Feed]
 print(json.dumps([[identity_digest(run.identity), cycle_digest(run.frames)] for run in runs]))
 """
@@ -131,13 +131,14 @@ def test_the_same_run_has_the_same_digests_everywhere(home: Path, tmp_path: Path
 
 
 def test_what_the_result_depends_on_changes_the_identity(home: Path) -> None:
-    """Another recording, board, feed or firmware: each is another identity."""
+    """Another recording, board, feed, fidelity or firmware: each is another identity."""
     first, second = record(home / "drive.mcap", 2), record(home / "other.mcap", 3)
     runs = [
         run_eyes(first),
         run_eyes(second),
         run_eyes(second, frames=2),
         run_eyes(first, feed=Feed.RECORDED),
+        run_eyes(first, fidelity=Fidelity.DETAILED),
         run_eyes(first, board="cm-bf561-ratings"),
     ]
     (home / "fw_eyes.py").write_text(FIRMWARE + "\n# another version\n")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 import simpy
 
@@ -21,6 +22,7 @@ from bfsim.machine.capture import Capture, Feed, Pair, StereoPictures
 from bfsim.machine.code import code_outside_l1, code_records, code_symbols
 from bfsim.machine.conflicts import SubBanks
 from bfsim.machine.core import Core
+from bfsim.machine.detailed_bus import DetailedBus
 from bfsim.machine.dma_checks import DmaSpace
 from bfsim.machine.fetch import CodeCache, CodeOutside
 from bfsim.machine.interrupts import Interrupts
@@ -43,6 +45,16 @@ MDMA_MASTERS = (
     (w.MDMA1_0, w.MDMA1_1),
     (w.MDMA2_0, w.MDMA2_1),
 )  # of each core: for its input and its output rings
+
+
+class Fidelity(StrEnum):
+    """How the buses are played: in compiled code, runs of words at once; or every transaction an event, which is slow."""
+
+    FAST = "fast"
+    DETAILED = "detailed"
+
+
+BUSES = {Fidelity.FAST: Bus, Fidelity.DETAILED: DetailedBus}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,6 +101,7 @@ class Board:
     profile: CompilerProfile = VDSP_O2
     sanitize: bool = False
     script: Sequence[ScriptedMessage] = ()
+    fidelity: Fidelity = Fidelity.FAST
     cores: dict[str, Core] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -97,7 +110,7 @@ class Board:
         chip = self.spec.chip
         self._memories = Memories(self.spec, outside_nbytes=chip.ppis * pictures_nbytes + OUTSIDE_BYTES)
         self._outside = [self._memories.outside + number * pictures_nbytes for number in range(chip.ppis + 1)]
-        self._bus = Bus(self._env, self.spec, self._memories)
+        self._bus = BUSES[self.fidelity](self._env, self.spec, self._memories)
         self._calls: dict[str, CallBook] = {}
         self._frames: list[FrameRecord] = []
         self._caches = {core: caches_of(self.link_map, PROCESSORS[core]) for core in self.spec.chip.cores}

@@ -47,6 +47,7 @@ class MeasuredOn(_Table):
     ldf: str
     compiler: str
     feed: str
+    fidelity: str = "fast"  # all there was when the first baselines were written
 
 
 class MeasuredBy(_Table):

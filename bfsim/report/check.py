@@ -92,7 +92,7 @@ def _require_comparable(theirs: MeasuredOn, ours: MeasuredOn, path: Path) -> Non
             f"{theirs.recording} (sha256 {theirs.recording_digest}), not {ours.recording} "
             f"(sha256 {ours.recording_digest}); give another baseline file, or replace this one with --update"
         )
-    for key in ("firmware", "board", "ldf", "compiler", "feed", "frames"):
+    for key in ("firmware", "board", "ldf", "compiler", "feed", "fidelity", "frames"):
         limit, now = getattr(theirs, key), getattr(ours, key)
         if limit != now:
             raise ConfigError(

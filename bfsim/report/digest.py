@@ -15,7 +15,7 @@ from bfsim.trace import FrameRecord, Identity
 
 
 def identity_digest(identity: Identity) -> str:
-    """Return the sha256, in hex, over recording, firmware, board, LDF, compiler, feed and versions."""
+    """Return the sha256, in hex, over recording, firmware, board, LDF, compiler, feed, fidelity and versions."""
     return hashlib.sha256(_canonical(identity)).hexdigest()
 
 

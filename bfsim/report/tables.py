@@ -219,6 +219,7 @@ def configuration(run: RunRecord) -> Table:
     for each in run.code:
         table.add_row(f"Code of {each.core}", _code(each))
     table.add_row("Feed", identity.feed)
+    table.add_row("Fidelity", identity.fidelity)
     if run.messages:
         table.add_row("SPI messages", _messages(run))
     if run.interrupts:

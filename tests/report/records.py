@@ -33,6 +33,7 @@ IDENTITY = Identity(
     compiler="gcc-O2",
     feed="demand",
     strategy_digest="5e",
+    fidelity="fast",
     bfsim_version="0.1.0",
     llvm_version="20.1.8",
     cclk_hz=1_000_000.0,

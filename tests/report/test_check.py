@@ -154,7 +154,7 @@ def test_renamed_recording_is_the_same(baseline: Path) -> None:
     assert hold(run, baseline).passed
 
 
-@pytest.mark.parametrize("key", ["firmware", "board", "ldf", "compiler", "feed"])
+@pytest.mark.parametrize("key", ["firmware", "board", "ldf", "compiler", "feed", "fidelity"])
 def test_other_set_up_is_refused(baseline: Path, key: str) -> None:
     """Apples are not compared with pears: the message names the key and both values."""
     change: dict[str, Any] = {key: "other"}
