@@ -139,7 +139,7 @@ class Bus:
             fields = {
                 w.RANK: rank, w.READY: w.NEVER, w.SLOT: w.NONE, w.LAST_SLOT: w.NONE, w.PARTNER: partners.get(number, w.NONE),
                 w.FIFO: chip.dma.fifo_words + (chip.ppi_fifo_words if number in (w.PPI0, w.PPI1) else 0),
-                w.GAP_NUMERATOR: gap.numerator, w.GAP_DENOMINATOR: gap.denominator * chip.dma.fifo_words,
+                w.GAP_NUMERATOR: gap.numerator, w.GAP_DENOMINATOR: gap.denominator,
             }  # fmt: skip
             for field, value in fields.items():
                 self._state[w.MASTERS_AT + number + field] = value
@@ -215,7 +215,7 @@ class Bus:
                 setup, 0, mode, element_bytes.bit_length() - 1, count, 0, 0,
                 source.offset, source.x_count, source.x_modify, source.y_modify, source.x_count,
                 destination.offset, destination.x_count, destination.x_modify, destination.y_modify, destination.x_count,
-                pace.start, parts, element, line, pace.line_elements, 0, 0,
+                pace.start, parts, element, line, pace.line_elements, 0, 0, 0,
             ),
         )  # fmt: skip
 

@@ -112,6 +112,7 @@ def serve_stores(state: State, core: int, at: int) -> int:
         more = (nbytes >> state[w.WORD_BITS]) - 1
         if more > 0:
             stream(state, more, True, offset)
+        state[w.LAST_CORE] = core
         count_access(state, w.STORES_A + core, 1 + max(0, more))
         count_traffic(state, w.STORES_A + core, w.IN_SDRAM, True, nbytes)
         free = state[w.COMMAND_FREE]

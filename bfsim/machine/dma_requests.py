@@ -57,12 +57,25 @@ def count_access(state: State, master: int, elements: int) -> None:
 
 
 @compiled
-def lot_of(state: State, slot: int) -> int:
-    """How many elements a device's DMA moves at once: a lot, or what is left of the line on either side.
+def only_cameras_move(state: State) -> bool:
+    """Whether nothing but PPIs has anything to move."""
+    moving = 0
+    for number in range(w.SPI, w.MASTERS):
+        moving += state[w.MASTERS_AT + number + w.READY] < w.NEVER
+    return moving == 0
 
-    To a device it moves half a lot, so that the other half is there while it waits for the bus.
+
+@compiled
+def lot_of(state: State, slot: int) -> int:
+    """How many elements a device's DMA moves at once next, of one line.
+
+    In: each as it comes, but a lot of them while nobody is there to care. Out: half a FIFO, so that the other half is there
+    while it waits for the bus.
     """
-    lot = state[w.LOT] if state[slot + w.MODE] == w.PACED_IN else max(1, state[w.LOT] // 2)
+    if state[slot + w.MODE] == w.PACED_OUT:
+        lot = max(1, state[w.LOT] // 2)
+    else:
+        lot = state[w.LOT] if only_cameras_move(state) else 1
     left = min(state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT])
     return min(lot, left, state[slot + w.LINE_ELEMENTS] - state[slot + w.PLACE])
 
@@ -70,11 +83,12 @@ def lot_of(state: State, slot: int) -> int:
 @compiled
 def next_paced(state: State, master: int, slot: int) -> None:
     """Set when the device's next lot wants to move: when it is there, or when the FIFO has room for it."""
-    ready = state[slot + w.START]
+    lot, ready = lot_of(state, slot), state[slot + w.START]
     if state[slot + w.MODE] == w.PACED_IN:
-        ready = arrival(state, slot, lot_of(state, slot) - 1)
+        ready = arrival(state, slot, lot - 1)
     elif state[slot + w.MOVED] >= state[master + w.FIFO]:
-        ready = arrival(state, slot, lot_of(state, slot) - 1 - state[master + w.FIFO])
+        ready = arrival(state, slot, lot - 1 - state[master + w.FIFO])
+    state[slot + w.TOGETHER] = lot
     state[master + w.READY] = aligned(ready, state[w.SCLK])
 
 
@@ -199,8 +213,8 @@ def run_ahead(state: State, number: int, slot: int, ahead: int, ticks: int, unti
         return max(0, min(ahead, (room + ticks - 1) // ticks))
     parts = state[master + w.GAP_DENOMINATOR]
     room = alone_until(state, number, until) - state[w.COMMAND_FREE]
-    longest = ticks * parts + state[w.LOT] * state[w.SCLK] * state[master + w.GAP_NUMERATOR]
-    alone = max(0, min(ahead, (room - state[w.LOT] * state[w.SCLK]) * parts // longest))
+    longest = ticks * parts + state[w.SCLK] * state[master + w.GAP_NUMERATOR]
+    alone = max(0, min(ahead, (room - state[w.SCLK]) * parts // longest))
     if alone:
         return alone
     room = preferred_until(state, number, until) - state[w.COMMAND_FREE]
@@ -210,11 +224,11 @@ def run_ahead(state: State, number: int, slot: int, ahead: int, ticks: int, unti
 
 @compiled
 def pause(state: State, master: int, elements: int) -> int:
-    """Add up what a memory DMA pauses for `elements` that it reads; return the ticks that are due, whole lots of them."""
+    """Add up what a memory DMA pauses for `elements` that it reads; return the ticks that are due, whole cycles."""
     state[master + w.GAP] += elements * state[master + w.GAP_NUMERATOR]
-    lots = state[master + w.GAP] // state[master + w.GAP_DENOMINATOR]
-    state[master + w.GAP] -= lots * state[master + w.GAP_DENOMINATOR]
-    return lots * state[w.LOT] * state[w.SCLK]
+    cycles = state[master + w.GAP] // state[master + w.GAP_DENOMINATOR]
+    state[master + w.GAP] -= cycles * state[master + w.GAP_DENOMINATOR]
+    return cycles * state[w.SCLK]
 
 
 @compiled
@@ -351,6 +365,7 @@ def lose(state: State, memory: Memory, master: int, slot: int, at: int) -> None:
     for _ in range(lost):
         go_on(state, slot + w.FROM, 1)
         step_device(state, slot, 1)
+    state[slot + w.TOGETHER] = lot_of(state, slot)
     state[slot + w.MOVED] += lost
     state[slot + w.LEFT] -= lost
     state[slot + w.LOST] += lost
@@ -365,7 +380,7 @@ def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> 
     write = state[slot + w.MODE] == w.PACED_IN
     if write and at > state[master + w.READY]:
         lose(state, memory, master, slot, at)
-    count = lot_of(state, slot)
+    count = state[slot + w.TOGETHER]
     offset = state[slot + w.TO] if write else state[slot + w.FROM]
     through, nbytes = at, count << state[slot + w.ELEMENT_BITS]
     if state[master + w.USES_BUS]:

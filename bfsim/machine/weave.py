@@ -24,10 +24,8 @@ def rank_of(state: State, number: int, at: int) -> int:
     rank = state[master + w.RANK]
     if not state[master + w.USES_BUS]:
         return rank + NO_BUS
-    if number >= w.CORE_A:
-        return rank + (HAD_THE_BUS if state[w.LAST_CORE] == number - w.CORE_A else 0)
-    if number >= w.STORES_A:
-        return rank
+    if number >= w.STORES_A:  # the cores take turns, with their loads and with their stores
+        return rank + (HAD_THE_BUS if state[w.LAST_CORE] == (number - w.STORES_A) % w.CORES else 0)
     if state[w.DEB_LEFT] > 0 and state[master + w.WRITES] != state[w.LAST_WRITE]:
         rank += AGAINST
     if state[master + w.PARTNER] != w.NONE and 0 < state[w.MDMA_PERIOD] <= state[master + w.SERVED]:
