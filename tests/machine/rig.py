@@ -3,28 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+import simpy
 from numpy.typing import NDArray
 
 from bfsim.api import BudgetRow, Buffer, Core, Firmware, Frame, FrameSize, i32, u8, u16
 from bfsim.chip.boards import board_named
-from bfsim.kernel import Kernel
+from bfsim.chip.spec import BoardSpec
+from bfsim.kernel import Kernel, followers
 from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
+from bfsim.machine import bus_state as w
 from bfsim.machine.board import Board, Outcome, symbols_of
+from bfsim.machine.bus import Bus, Transfer
 from bfsim.machine.capture import Feed
-from bfsim.machine.ebiu import Ebiu
+from bfsim.machine.core import BUS_STALLS
 from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.program import Main
-from bfsim.machine.sdram import Sdram
-from bfsim.machine.simulation import Simulation
-from bfsim.machine.traffic import Traffic
+from bfsim.machine.simulation import END_OF_TIME, Simulation
 from bfsim.run import THESIS_LDF
-from bfsim.trace import CoreFrame, FrameRecord, StageCost
+from bfsim.trace import CoreFrame, FrameRecord, StageCost, StallReason
 
 SIZE = FrameSize(16, 8)
 STAGES = ("Work", "More work")
@@ -154,36 +156,94 @@ def stage_of(frame: FrameRecord, stage: str, core: str = "A") -> StageCost:
     return found
 
 
+class Traffic(NamedTuple):
+    """What one master moved to and from one memory. `busy`: ticks that it held the SDRAM bus."""
+
+    read_bytes: int
+    written_bytes: int
+    page_hits: int
+    page_misses: int
+    page_conflicts: int
+    busy: int
+
+
+class Call:
+    """One kernel call of a core, as the bus sees it: `end` is the tick at which it is over, known when it was played."""
+
+    def __init__(self, bench: Bench, core: int, event: simpy.Event) -> None:
+        self.end: int | None = None
+        self.stalls: dict[StallReason, int] = {}
+        self._bench, self._core = bench, core
+        assert event.callbacks is not None
+        event.callbacks.append(self._finish)
+
+    def _finish(self, _event: simpy.Event) -> None:
+        self.end = self._bench.env.tick
+        stalls = zip(BUS_STALLS, self._bench.bus.stalls_of(self._core), strict=True)
+        self.stalls = {reason: cclk for reason, cclk in stalls if cclk}
+
+
 class Bench:
-    """The bus, the SDRAM and one MDMA stream of a board, without cores."""
+    """The bus of a board with its memories and masters; what tests post is all that happens on it."""
 
-    def __init__(self, board: str = "cm-bf561") -> None:
-        self.spec = board_named(board)
+    def __init__(
+        self, board: str | BoardSpec = "cm-bf561", *, outside_nbytes: int = 0, **changes: Any
+    ) -> None:
+        """`changes`: fields of the board that are other than the shipped ones."""
+        spec = board_named(board) if isinstance(board, str) else board
+        self.spec = replace(spec, **changes)
         self.env = Simulation()
-        self.sdram = Sdram(self.spec.sdram)
-        self.traffic = Traffic()
-        self.account = self.traffic.account("SDRAM", "bench")
-        self.ebiu = Ebiu(self.spec.clocks, self.sdram)
+        self.memories = Memories(self.spec, outside_nbytes)
+        self.bus = Bus(self.env, self.spec, self.memories)
         self.stream = self.new_stream()
-        self._memories = Memories(self.spec)
 
-    def new_stream(self) -> MdmaStream:
-        """Return another MDMA stream."""
-        return MdmaStream(self.env, self.spec, self.ebiu, self.account)
+    def new_stream(self, master: int = w.MDMA1_0) -> MdmaStream:
+        """Return the queue of copies of a memory DMA stream."""
+        return MdmaStream(self.bus, self.spec, master)
 
-    def advance(self, tick: int = 1_000_000_000) -> None:
-        """Let time pass until `tick`, or for as long as anything here can take, and everything happen that is due."""
-        self.env.run(until=tick)
-        self.env.settle()
+    def play(self) -> None:
+        """Play everything that was posted to its end."""
+        self.env.run()
+        self.bus.play_until(END_OF_TIME)
+
+    def ends(self, *transfers: Transfer) -> list[int]:
+        """Play everything and return when each transfer was done."""
+        self.play()
+        found = [each.end for each in transfers if each.end is not None]
+        assert len(found) == len(transfers), "every transfer comes to an end"
+        return found
 
     def sclk(self, cycles: int) -> int:
         """Return SCLK cycles in ticks."""
         return cycles * self.spec.clocks.sclk_ticks
 
+    def cclk(self, cycles: int) -> int:
+        """Return CCLK cycles in ticks."""
+        return cycles * self.spec.clocks.cclk_ticks
+
     def row(self, address: int, nbytes: int) -> Row:
         """Return a row of `nbytes` at any address of the chip's memory map, full of its own noise."""
         symbol = Symbol("row", "anywhere", nbytes)
         place = Placement(symbol=symbol, segment="", output_section="", address=address, line=0)
-        (row,) = self._memories.place(Buffer("row", u8, nbytes, "anywhere"), place)
+        (row,) = self.memories.place(Buffer("row", u8, nbytes, "anywhere"), place)
         row.octets[:] = np.random.default_rng(address).integers(0, 256, nbytes, np.uint8)
         return row
+
+    def call(
+        self, core: int, accesses: Iterable[tuple[int, int, int]], *, begin: int = 0, cclk: int = 0
+    ) -> Call:
+        """Let core 0 or 1 access memories from tick `begin`, in a call of `cclk` cycles without stalls.
+
+        Each access: (cycle of the call, kind, address).
+        """
+        log, count = self.bus.room_of(core)[followers.LOG :], 0
+        for stamp, kind, address in accesses:
+            offset = self.row(address, 1).offset
+            log[count] = stamp << followers.STAMP_BIT | kind << followers.KIND_BIT | offset
+            count += 1
+        return Call(self, core, self.bus.access(core, begin, cclk, count))
+
+    def traffic(self, master: int, memory: int = w.IN_SDRAM) -> Traffic:
+        """Return what a master moved so far."""
+        first = w.TRAFFIC_AT + (master * w.MEMORIES + memory) * w.TRAFFIC_WORDS
+        return Traffic(*self.bus.words[first : first + w.TRAFFIC_WORDS].tolist())

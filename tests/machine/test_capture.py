@@ -6,7 +6,7 @@ The camera here needs 100 ns a line, 200 for a picture of two lines and 300 for 
 from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import cycle
 from typing import Any
@@ -18,15 +18,17 @@ from hypothesis import strategies as st
 
 from bfsim.chip.spec import SensorMode
 from bfsim.clocks import Clocks
+from bfsim.machine import bus_state as w
 from bfsim.machine.capture import Capture, Feed, Pair
 from bfsim.machine.ppi import Ppi
 from tests.machine.rig import Bench, Picture
 
 GHZ = 10**9
-CLOCKS = Clocks(cclk_hz=Fraction(GHZ), sclk_hz=Fraction(GHZ, 5))
+CLOCKS = Clocks(cclk_hz=Fraction(GHZ), sclk_hz=Fraction(GHZ))
 MODE = SensorMode(
-    width_px=4, height_px=2, ppi_clk_hz=Fraction(GHZ, 10), line_clocks=10, frame_lines=3, lines_before=0
+    width_px=4, height_px=2, ppi_clk_hz=Fraction(8 * GHZ, 100), line_clocks=8, frame_lines=3, lines_before=0
 )
+PICTURE_NBYTES = 16
 Stamps = Sequence[tuple[int, int]]
 
 
@@ -57,11 +59,19 @@ class Studio:
     """Two cameras, frame buffers in L1 and two cores that only take their time."""
 
     def __init__(self, stamps: Stamps, *, frame_buffers: int, feed: Feed) -> None:
-        bench = Bench()
+        bench = Bench(clocks=CLOCKS, outside_nbytes=2 * PICTURE_NBYTES)
         self.env = bench.env
         ppis = {
-            core: Ppi(bench.env, replace(bench.spec, clocks=CLOCKS), MODE, bench.ebiu, bench.account)
-            for core in ("A", "B")
+            core: Ppi(
+                bench.env,
+                bench.spec,
+                MODE,
+                bench.bus,
+                bench.memories,
+                master=master,
+                outside=bench.memories.outside + master * PICTURE_NBYTES,
+            )
+            for core, master in (("A", w.PPI0), ("B", w.PPI1))
         }
         starts = {"A": 0xFF80_0000, "B": 0xFF40_0000}
         pairs = [
