@@ -16,6 +16,7 @@ from bfsim.machine.dma_channel import DmaChannel, Step, check_pair
 from bfsim.machine.dma_checks import DmaSpace
 from bfsim.machine.dma_config import DmaConfig
 from bfsim.machine.dma_unit import WorkUnit
+from bfsim.machine.firmware_lines import running_line
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
 
@@ -82,7 +83,7 @@ class MemoryDma:
 
     def program(self, *, source: Mapping[str, int], destination: Mapping[str, int]) -> None:
         """Set registers of the two channels, such as START_ADDR=row.address, X_COUNT=160, X_MODIFY=4."""
-        place = self.core.place()[2:-1]
+        place = running_line()
         for channel, registers in ((self.source, source), (self.destination, destination)):
             for register, value in registers.items():
                 channel.write(register, value, place)
@@ -90,7 +91,7 @@ class MemoryDma:
 
     def start(self, source: DmaConfig, destination: DmaConfig) -> Generator[Any, Any, None]:
         """Write both CONFIG registers; the first work unit begins. MmrError for what the chip would flag."""
-        place = self.core.place()[2:-1]
+        place = running_line()
         self.core.program_device(writes=2)
         if late := self.core.catch_up():
             yield late

@@ -7,6 +7,7 @@ from typing import Any
 
 from bfsim.errors import FirmwareError
 from bfsim.machine.core_clock import CoreClock
+from bfsim.machine.firmware_lines import running_line
 from bfsim.machine.interrupts import Handler, Interrupts
 from bfsim.machine.semaphore import Semaphore
 from bfsim.machine.spin_lock import SpinLock
@@ -60,21 +61,17 @@ class SynchronisedCore(CoreClock):
 
     def unlock(self, name: str) -> Generator[Any, Any, None]:
         """Give the spin lock `name` back."""
+        self.issue(1)  # a store of zero, posted
+        yield from self._sync()
         lock = self._lock(name)
         if lock.core != self.name:
             raise FirmwareError(
                 f"core {self.name} must not give lock {name!r} back, which {lock.holder or 'nobody'} holds"
             )
-        self.issue(1)  # a store of zero, posted
-        yield from self._sync()
         lock.release()
 
     def _described(self) -> str:
-        return f"core {self.name} since cycle {self._cclk:,}{self.place()}"
-
-    def place(self) -> str:
-        """Return the line of the firmware that is being played, as ` (file:line)`."""
-        raise NotImplementedError
+        return f"core {self.name} since cycle {self._cclk:,} ({running_line()})"
 
     def _test_and_set_cclk(self) -> int:
         chip = self._board.chip
