@@ -76,6 +76,7 @@ class MemoryDma:
         self.destination = DmaChannel(BF561_CHANNELS[f"{controller}_D{number}"], space, self._read16)
         self.done: simpy.Event | None = None
         """The event at which the present work ends, None when nothing was started."""
+        self._stopping = False
 
     def _read16(self, address: int) -> int:
         offset = self._memories.offset_of(address, 2)
@@ -97,10 +98,16 @@ class MemoryDma:
             yield late
         steps = self.source.start(source, place), self.destination.start(destination, place)
         check_pair(self.source, self.destination)
+        self._stopping = False
         self.done = self._env.process(self._run(*steps))
 
+    def stop(self) -> None:
+        """Write both CONFIG registers with DMAEN=0. The work unit under way is still moved; the chip would cut it."""
+        self.core.program_device(writes=2)
+        self._stopping = True
+
     def wait(self) -> Generator[Any, Any, None]:
-        """Stall until the work that was started is done; work with FLOW=AUTO never is."""
+        """Stall until the work that was started is done; with FLOW=AUTO it is after a `stop` only."""
         yield from self.core.wait_event(self.done, f"{self.name}")
 
     def _run(self, source: Step, destination: Step) -> Generator[Any, Any, None]:
@@ -120,6 +127,8 @@ class MemoryDma:
             self.destination.fetched()
             source, destination = self.source.unit_done(), self.destination.unit_done()
             self._interrupt(wanted=source.interrupt or destination.interrupt)
+            if self._stopping:
+                break
             if source.unit and destination.unit:
                 check_pair(self.source, self.destination)
         self.source.stop()
