@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import pytest
@@ -95,7 +96,7 @@ def test_no_increment_is_lost(pauses_a: list[int], pauses_b: list[int]) -> None:
     both = len(pauses_a) + len(pauses_b)
     assert last == list(range(1, both + 1))
     inside.sort()
-    assert all(before[1] <= after[0] for before, after in zip(inside, inside[1:], strict=False))
+    assert all(before[1] <= after[0] for before, after in itertools.pairwise(inside))
     assert_accounted(outcome)
 
 
