@@ -27,7 +27,7 @@ def packed(sequence: int, left: int, right: int) -> bytes:
 def test_the_numbers_of_the_protocol_are_the_same_on_both_sides() -> None:
     """The firmware knows nothing of bfsim but its api."""
     assert (results.SYNC, results.RESULTS) == (SYNC, MessageType.RESULTS)
-    assert 2 * MESSAGE_WORDS == message_nbytes(2 * PAYLOAD_WORDS)
+    assert message_nbytes(2 * PAYLOAD_WORDS) == 2 * MESSAGE_WORDS
 
 
 @given(SEQUENCES, EDGES, EDGES)
