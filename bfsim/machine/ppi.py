@@ -63,6 +63,10 @@ class Ppi:
         """Give the camera new settings: the next pictures are off until they have worked."""
         self._settling.change(settings)
 
+    def skip(self, picture: NDArray[np.uint8]) -> None:
+        """Let a picture go by: the camera sends it and goes on settling, but nobody takes it."""
+        self._settling.next_picture(picture)
+
     def receive(self, picture: NDArray[np.uint8], rows: Sequence[Row], start: int) -> simpy.Event:
         """Write `picture` (height, 2 · width) to `rows`; its first line begins at tick `start`. Return the event at its end."""
         words = picture.shape[1] // self._word_bytes
