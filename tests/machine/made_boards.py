@@ -38,13 +38,20 @@ def made_board(
     ldf: LinkerScript | None = None,
     size: FrameSize = SIZE,
     more: Sequence[Buffer] = (),
+    camera_frames: int = 3,
     **how: Any,
 ) -> Board:
-    """Put firmware with these main loops on a board. `more`: buffers of core A beside the rig's."""
+    """Put firmware with these main loops on a board.
+
+    `more`: buffers of core A beside the rig's. `camera_frames`: how many pictures there is room for.
+    """
 
     def all_buffers(size: FrameSize) -> dict[str, Sequence[Buffer]]:
-        known = buffers(size)
-        return {each: (*known[each], *(more if each == "A" else ())) for each in (*spec.chip.cores, "shared")}
+        known = {owner: list(each) for owner, each in buffers(size).items()}
+        known["A"] += more
+        for core in spec.chip.cores:
+            known[core][0] = replace(known[core][0], rows=camera_frames * size.height_px)
+        return {owner: known[owner] for owner in (*spec.chip.cores, "shared")}
 
     firmware = Firmware(
         mains=dict(zip(spec.chip.cores, (main_a, main_b), strict=False)),
