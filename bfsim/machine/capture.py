@@ -227,7 +227,12 @@ class Capture:
     def _receive(
         self, ppi: Ppi, image: NDArray[np.uint8], rows: Sequence[Row], start: int
     ) -> Generator[simpy.Event, Any, None]:
-        """Let a PPI receive a picture that begins at tick `start`; until then it may still be at the one before."""
+        """Let a PPI receive a picture that begins at tick `start`; until then it may still be at the one before.
+
+        The last words of that one may be in its FIFO even longer.
+        """
         if start > self._env.tick:
             yield self._env.after(start - self._env.tick)
+        if ppi.through is not None and not ppi.through.processed:
+            yield ppi.through
         yield ppi.receive(image, rows, start)
