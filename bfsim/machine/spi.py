@@ -105,7 +105,9 @@ class Spi:
         transfer = self._bus.post(plan)
         begin, self.busy = self._env.tick, self._bus.when_done(transfer)
         assert self.busy.callbacks is not None
-        self.busy.callbacks.append(lambda done: self._received(done, octets, begin))  # before any core goes on
+        self.busy.callbacks.append(
+            lambda done: self._received(done, octets, begin)
+        )  # before any core goes on
         return transfer, nbytes
 
     def _received(self, transfer: simpy.Event, octets: bytes, begin: int) -> None:
