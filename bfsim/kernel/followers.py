@@ -125,11 +125,12 @@ class Follower:
         return self._state[LOG : LOG + count]
 
     def insert(self, count: int, entries: NDArray[np.int64]) -> int:
-        """Add `entries` to the first `count` of the log, in order of time; return how many there are then."""
+        """Add `entries` to the first `count` of the log, by their stamps and behind those of the same; return the new count."""
         total = count + len(entries)
         self._check_room(total)
         self._state[LOG + count : LOG + total] = entries
-        self._state[LOG : LOG + total].sort()  # the stamp is what weighs most in an entry
+        merged = self.entries(total)
+        merged[:] = merged[np.argsort(merged >> STAMP_BIT, kind="stable")]
         return total
 
     def _check_room(self, count: int) -> None:

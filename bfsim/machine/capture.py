@@ -184,16 +184,18 @@ class Capture:
 
         Recorded time stamps jitter; a picture may come as early as in the vertical blanking of the one before.
         """
+        images = dict(zip(self._ppis, (pictures.left, pictures.right), strict=False))
         receiving = any(start < self._receiving_until[core] for core, start in starts.items())
         pair = None if receiving else self._empty_pair()
         if pair is None:
             self.missed.append(pictures.index)
+            for core, ppi in self._ppis.items():
+                ppi.skip(images[core])
             return
         pair.state, pair.index = State.FILLING, pictures.index
         for core, start in starts.items():
             self._receiving_until[core] = start + self._ppis[core].picture_ticks
             self._sensors_ready_at = max(self._sensors_ready_at, start + self._ppis[core].frame_ticks)
-        images = dict(zip(self._ppis, (pictures.left, pictures.right), strict=False))
         self._env.process(self._fill(pair, images, starts))
 
     def _empty_pair(self) -> Pair | None:
@@ -212,9 +214,25 @@ class Capture:
         self, pair: Pair, images: Mapping[str, NDArray[np.uint8]], starts: Mapping[str, int]
     ) -> Generator[simpy.Event, Any, None]:
         yield self._env.all_of(
-            [ppi.receive(images[core], pair.rows[core], starts[core]) for core, ppi in self._ppis.items()]
+            [
+                self._env.process(self._receive(ppi, images[core], pair.rows[core], starts[core]))
+                for core, ppi in self._ppis.items()
+            ]
         )
         pair.lost = {core: ppi.take_lost() for core, ppi in self._ppis.items()}
         pair.state = State.FULL
         pair.full_at_ticks = self._env.tick
         self._notify()
+
+    def _receive(
+        self, ppi: Ppi, image: NDArray[np.uint8], rows: Sequence[Row], start: int
+    ) -> Generator[simpy.Event, Any, None]:
+        """Let a PPI receive a picture that begins at tick `start`; until then it may still be at the one before.
+
+        The last words of that one may be in its FIFO even longer.
+        """
+        if start > self._env.tick:
+            yield self._env.after(start - self._env.tick)
+        if ppi.through is not None and not ppi.through.processed:
+            yield ppi.through
+        yield ppi.receive(image, rows, start)

@@ -33,6 +33,7 @@ class CoreClock:
         self._bus = bus
         self._cclk_ticks = board.clocks.cclk_ticks
         self._cclk = 0
+        self._owed_cclk = 0  # of a wait: what passed before its interrupts, on no account yet
         self._accounts = FrameAccounts(name, stages)
         self._account = self._accounts.now
 
@@ -61,12 +62,8 @@ class CoreClock:
             yield from self._sync()
             self._bus.settle()
             if transfer.end is None:
-                yield self._bus.when_done(transfer)
-        end = transfer.end
-        assert end is not None
-        late_ticks = end - self._cclk * self._cclk_ticks
-        if late_ticks > 0:
-            self.stall(reason, -(-late_ticks // self._cclk_ticks))
+                yield from self._blocked(iter([self._bus.when_done(transfer)]), "DMA")
+        self._charge(reason, self._until(transfer.end))
 
     def wait_event(self, event: simpy.Event | None, what: str) -> Generator[Any, Any, None]:
         """Stall until `event`, the end of a DMA that this core started."""
@@ -95,17 +92,24 @@ class CoreClock:
         if late := self.catch_up():
             yield late
 
+    def _until(self, tick: int | None) -> int:
+        """Return the cycles up to the first CCLK edge from `tick` on, which must be known; 0 if that is over."""
+        assert tick is not None
+        return max(0, -(-tick // self._cclk_ticks) - self._cclk)
+
     def _wake(self, reason: StallReason | None, step_cclk: int = 1) -> None:
         """Go on at the first CCLK edge from now, or whole `step_cclk` later; that was a stall, or idle without a reason."""
-        waited_cclk = -(-self._env.tick // self._cclk_ticks) - self._cclk
-        if waited_cclk <= 0:
-            return
-        waited_cclk = -(-waited_cclk // step_cclk) * step_cclk
+        self._charge(reason, -(-self._until(self._env.tick) // step_cclk) * step_cclk)
+
+    def _charge(self, reason: StallReason | None, waited_cclk: int) -> None:
+        """Let `waited_cclk` pass, and charge them with what the wait owes from before its interrupts."""
+        self._cclk += waited_cclk
+        waited_cclk, self._owed_cclk = waited_cclk + self._owed_cclk, 0
         if reason is None:
-            self._cclk += waited_cclk
             self._account.idle_cclk += waited_cclk
-        else:
-            self.stall(reason, waited_cclk)
+        elif waited_cclk:
+            stalls = self._account.stall_cclk
+            stalls[reason] = stalls.get(reason, 0) + waited_cclk
 
     def _blocked(self, wait: Any, what: str) -> Generator[Any, Any, Any]:
         """Play `wait`, a generator of events, saying meanwhile what the core waits for."""

@@ -48,7 +48,8 @@ class CodeCache:
                 kept.remove(line)
             else:
                 missed.append(line)
-                del kept[: len(kept) - self._ways + 1]
+                if len(kept) == self._ways:
+                    del kept[0]
             kept.append(line)
         return missed
 

@@ -52,6 +52,11 @@ class Interrupts:
             event.succeed()
 
     @property
+    def are_handled(self) -> bool:
+        """Whether any interrupt has a handler."""
+        return bool(self._handlers)
+
+    @property
     def is_waiting(self) -> bool:
         """Whether any interrupt waits."""
         return bool(self._waiting)

@@ -16,6 +16,7 @@ from bfsim.machine.dma_channel import DmaChannel, Step, check_pair
 from bfsim.machine.dma_checks import DmaSpace
 from bfsim.machine.dma_config import DmaConfig
 from bfsim.machine.dma_unit import WorkUnit
+from bfsim.machine.firmware_lines import running_line
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
 
@@ -75,6 +76,7 @@ class MemoryDma:
         self.destination = DmaChannel(BF561_CHANNELS[f"{controller}_D{number}"], space, self._read16)
         self.done: simpy.Event | None = None
         """The event at which the present work ends, None when nothing was started."""
+        self._stopping = False
 
     def _read16(self, address: int) -> int:
         offset = self._memories.offset_of(address, 2)
@@ -82,7 +84,7 @@ class MemoryDma:
 
     def program(self, *, source: Mapping[str, int], destination: Mapping[str, int]) -> None:
         """Set registers of the two channels, such as START_ADDR=row.address, X_COUNT=160, X_MODIFY=4."""
-        place = self.core.place()[2:-1]
+        place = running_line()
         for channel, registers in ((self.source, source), (self.destination, destination)):
             for register, value in registers.items():
                 channel.write(register, value, place)
@@ -90,16 +92,22 @@ class MemoryDma:
 
     def start(self, source: DmaConfig, destination: DmaConfig) -> Generator[Any, Any, None]:
         """Write both CONFIG registers; the first work unit begins. MmrError for what the chip would flag."""
-        place = self.core.place()[2:-1]
+        place = running_line()
         self.core.program_device(writes=2)
         if late := self.core.catch_up():
             yield late
         steps = self.source.start(source, place), self.destination.start(destination, place)
         check_pair(self.source, self.destination)
+        self._stopping = False
         self.done = self._env.process(self._run(*steps))
 
+    def stop(self) -> None:
+        """Write both CONFIG registers with DMAEN=0. The work unit under way is still moved; the chip would cut it."""
+        self.core.program_device(writes=2)
+        self._stopping = True
+
     def wait(self) -> Generator[Any, Any, None]:
-        """Stall until the work that was started is done; work with FLOW=AUTO never is."""
+        """Stall until the work that was started is done; with FLOW=AUTO it is after a `stop` only."""
         yield from self.core.wait_event(self.done, f"{self.name}")
 
     def _run(self, source: Step, destination: Step) -> Generator[Any, Any, None]:
@@ -119,6 +127,8 @@ class MemoryDma:
             self.destination.fetched()
             source, destination = self.source.unit_done(), self.destination.unit_done()
             self._interrupt(wanted=source.interrupt or destination.interrupt)
+            if self._stopping:
+                break
             if source.unit and destination.unit:
                 check_pair(self.source, self.destination)
         self.source.stop()

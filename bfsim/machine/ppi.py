@@ -61,10 +61,16 @@ class Ppi:
             camera, CameraSettings(exposure_lines=0, gain=0, red_gain=0, blue_gain=0), camera.settling_frames
         )
         self._lost = 0
+        self.through: simpy.Event | None = None
+        """The event at which the last picture that was begun is in its frame buffer."""
 
     def change(self, settings: CameraSettings) -> None:
         """Give the camera new settings: the next pictures are off until they have worked."""
         self._settling.change(settings)
+
+    def skip(self, picture: NDArray[np.uint8]) -> None:
+        """Let a picture go by: the camera sends it and goes on settling, but nobody takes it."""
+        self._settling.next_picture(picture)
 
     def receive(self, picture: NDArray[np.uint8], rows: Sequence[Row], start: int) -> simpy.Event:
         """Write `picture` (height, 2 · width) to `rows`; its first line begins at tick `start`. Return the event at its end."""
@@ -84,7 +90,8 @@ class Ppi:
             element_bytes=self._word_bytes,
             pace=Pace(start, words, self._word_ticks, self._line_ticks),
         )
-        return self._bus.when_done(self._bus.post(plan))
+        self.through = self._bus.when_done(self._bus.post(plan))
+        return self.through
 
     def take_lost(self) -> int:
         """Return how many words found the FIFO full since the last time; any of them sets OVR."""

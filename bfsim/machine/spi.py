@@ -63,22 +63,30 @@ class Spi:
             raise FirmwareError(
                 f"a message must have 2 to {min(row.nbytes, OUTSIDE_BYTES)} bytes of {row.buffer}, whole words, not {nbytes}"
             )
+        self.busy = self._env.process(self._send(row, nbytes, self.busy))
+
+    def _send(self, row: Row, nbytes: int, before: simpy.Event | None) -> Generator[Any, Any, None]:
+        """Send, once the transfer `before` is through: both cores may have waited for that one."""
+        if before is not None:
+            yield before
+        begin = self._env.tick
         plan = self._bus.plan_send(
             w.SPI, self._walk(row.offset, nbytes), self._walk(self._outside, nbytes), nbytes // WORD_BYTES,
             element_bytes=WORD_BYTES, pace=self._pace(nbytes),
         )  # fmt: skip
-        self.busy = self._env.process(self._finish_sending(self._bus.post(plan), nbytes))
-
-    def _finish_sending(self, transfer: Transfer, nbytes: int) -> Generator[Any, Any, None]:
-        begin = self._env.tick
-        yield self._bus.when_done(transfer)
+        yield self._bus.when_done(self._bus.post(plan))
         octets = self._memories.bytes_from(self._outside, nbytes).tobytes()
         message = self._strategy.receive(octets, self._env.tick)
         self._record("out", message.type, message.sequence, nbytes, begin)
         if message.type is MessageType.RESULTS:
             self._results += 1
             self._waiting.extend(self._strategy.due(self._results))
-        self.busy = None
+        self._finish(self._env.active_process)
+
+    def _finish(self, transfer: simpy.Event | None) -> None:
+        """End `transfer`, which is the present one unless another one has queued up behind it."""
+        if self.busy is transfer:
+            self.busy = None
         self._on_interrupt()
 
     def receive(self, row: Row) -> tuple[Transfer, int]:
@@ -95,16 +103,17 @@ class Spi:
             element_bytes=WORD_BYTES, pace=self._pace(nbytes),
         )  # fmt: skip
         transfer = self._bus.post(plan)
-        self.busy = self._env.process(self._finish_receiving(transfer, octets))
+        begin, self.busy = self._env.tick, self._bus.when_done(transfer)
+        assert self.busy.callbacks is not None
+        self.busy.callbacks.append(
+            lambda done: self._received(done, octets, begin)
+        )  # before any core goes on
         return transfer, nbytes
 
-    def _finish_receiving(self, transfer: Transfer, octets: bytes) -> Generator[Any, Any, None]:
-        begin = self._env.tick
-        yield self._bus.when_done(transfer)
+    def _received(self, transfer: simpy.Event, octets: bytes, begin: int) -> None:
         message = decode(octets)
         self._record("in", message.type, message.sequence, len(octets), begin)
-        self.busy = None
-        self._on_interrupt()
+        self._finish(transfer)
 
     def _walk(self, offset: int, nbytes: int) -> Walk:
         return Walk(offset, nbytes // WORD_BYTES, WORD_BYTES, WORD_BYTES)

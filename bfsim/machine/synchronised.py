@@ -7,6 +7,7 @@ from typing import Any
 
 from bfsim.errors import FirmwareError
 from bfsim.machine.core_clock import CoreClock
+from bfsim.machine.firmware_lines import running_line
 from bfsim.machine.interrupts import Handler, Interrupts
 from bfsim.machine.semaphore import Semaphore
 from bfsim.machine.spin_lock import SpinLock
@@ -29,6 +30,7 @@ class SynchronisedCore(CoreClock):
 
     _shared: SharedObjects
     _interrupts: Interrupts
+    _in_handler: bool
 
     # ---- semaphores and locks, in L2
 
@@ -59,21 +61,17 @@ class SynchronisedCore(CoreClock):
 
     def unlock(self, name: str) -> Generator[Any, Any, None]:
         """Give the spin lock `name` back."""
+        self.issue(1)  # a store of zero, posted
+        yield from self._sync()
         lock = self._lock(name)
         if lock.core != self.name:
             raise FirmwareError(
                 f"core {self.name} must not give lock {name!r} back, which {lock.holder or 'nobody'} holds"
             )
-        self.issue(1)  # a store of zero, posted
-        yield from self._sync()
         lock.release()
 
     def _described(self) -> str:
-        return f"core {self.name} since cycle {self._cclk:,}{self.place()}"
-
-    def place(self) -> str:
-        """Return the line of the firmware that is being played, as ` (file:line)`."""
-        raise NotImplementedError
+        return f"core {self.name} since cycle {self._cclk:,} ({running_line()})"
 
     def _test_and_set_cclk(self) -> int:
         chip = self._board.chip
@@ -115,16 +113,47 @@ class SynchronisedCore(CoreClock):
         others[other].request(OTHER_CORE)
 
     def idle(self) -> Generator[Any, Any, None]:
-        """Wait for an interrupt, and let its handler run."""
+        """Wait for an interrupt, and let its handler run; one that was asked for already ends the wait at once."""
+        before, self._in_handler = self._in_handler, True
         yield from self._sync()
+        self._in_handler = before
         if not self._interrupts.is_waiting:
             yield from self._blocked(iter([self._interrupts.next_request()]), "an interrupt")
             self._wake(None)
-        yield from self._take_interrupts()
+        if not self._in_handler:
+            yield from self._take_interrupts()
+
+    def _blocked(self, wait: Any, what: str) -> Generator[Any, Any, Any]:
+        """Play `wait`, a generator of events, saying meanwhile what the core waits for; interrupts are taken as they come."""
+        if self._interrupts.are_handled and not self._in_handler:
+            wait = self._interruptible(wait)
+        return super()._blocked(wait, what)
+
+    def _interruptible(self, wait: Any) -> Generator[Any, Any, Any]:
+        owed_cclk, what = 0, self.waiting_for
+        self._in_handler = True  # the clock still stands where the wait began: nobody else may take them
+        while True:
+            try:
+                event = next(wait)
+            except StopIteration as end:
+                result = end.value
+                break
+            while not event.processed:
+                yield self._env.any_of([event, self._interrupts.next_request()])
+                if self._interrupts.is_waiting:
+                    passed_cclk = self._until(self._env.tick)
+                    self._cclk += passed_cclk
+                    owed_cclk += passed_cclk
+                    yield from self._take_interrupts()
+                    self.waiting_for = what
+        self._in_handler = False
+        self._owed_cclk = owed_cclk
+        return result
 
     def _take_interrupts(self) -> Generator[Any, Any, None]:
         """Run the handlers of all interrupts that wait; the way in and out is a stall."""
         events = self._board.chip.events
+        before, self._in_handler = self._in_handler, True
         while self._interrupts.is_waiting:
             handler = self._interrupts.take()
             self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk)
@@ -132,6 +161,7 @@ class SynchronisedCore(CoreClock):
             if isinstance(task, Generator):
                 yield from self._perform(task)
             self.stall(StallReason.INTERRUPT, events.interrupt_exit_cclk)
+        self._in_handler = before
 
     def _perform(self, task: Generator[Any, Any, Any]) -> Generator[Any, Any, None]:
         """Play a generator of the firmware."""

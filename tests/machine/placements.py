@@ -1,0 +1,47 @@
+"""Shipped LDFs, and others made of their text: code outside L1, caches beside what must not be there."""
+
+from __future__ import annotations
+
+import tempfile
+from functools import cache
+from pathlib import Path
+
+from bfsim.linker import LinkerScript, parse_ldf
+from bfsim.run import PLACEMENTS
+
+CODE = "INPUT_SECTIONS($OBJECTS(program))"
+
+
+@cache
+def shipped(name: str) -> LinkerScript:
+    """Return one of the shipped placements, read once."""
+    return parse_ldf(PLACEMENTS / name)
+
+
+@cache
+def changed(name: str, *changes: tuple[str, str]) -> LinkerScript:
+    """Return a shipped placement with parts of the text of core.ldfi replaced."""
+    with tempfile.TemporaryDirectory() as folder:
+        for path in PLACEMENTS.iterdir():
+            text = path.read_text()
+            if path.name == "core.ldfi":
+                for old, new in changes:
+                    assert old in text, old
+                    text = text.replace(old, new)
+            (Path(folder) / path.name).write_text(text)
+        return parse_ldf(Path(folder) / name)
+
+
+def code_in(memory: str, name: str = "thesis.ldf") -> LinkerScript:
+    """Return a shipped placement whose code is in L2 or in SDRAM."""
+    away = (CODE, "")
+    if memory == "L2":
+        return changed(name, away)
+    return changed(
+        name,
+        away,
+        (
+            "noncache_code program))\n         INPUT_SECTIONS($OBJECTS(voldata constdata data1))\n         INPUT_SECTIONS($OBJECTS(L2_bsz",
+            "noncache_code))\n         INPUT_SECTIONS($OBJECTS(voldata constdata data1))\n         INPUT_SECTIONS($OBJECTS(L2_bsz",
+        ),
+    )

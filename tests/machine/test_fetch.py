@@ -1,0 +1,190 @@
+"""Instruction fetch: code outside L1, with and without the code cache, closed forms beside the simulation."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bfsim.api import Core, Frame
+from bfsim.chip.boards import CM_BF561
+from bfsim.kernel import VDSP_O2, Kernel, followers
+from bfsim.kernel.followers import Follower
+from bfsim.linker import LinkerScript, link
+from bfsim.machine.bus_state import FETCH_BYTES
+from bfsim.machine.code import code_symbols
+from bfsim.machine.fetch import CodeCache
+from bfsim.trace import StallReason
+from tests.machine.kernels import copy, spin, total
+from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, in_work, play
+from tests.machine.placements import code_in, shipped
+from tests.machine.rig import Play, cycles_of, stage_of
+
+LINE = CHIP.cache.line_bytes
+FETCH_L2_CCLK = CHIP.l2.read_cclk - 1
+FETCH_HIT_CCLK = (CHIP.external.core_sync_sclk + CM_BF561.sdram.nCL) * CCLK_PER_SCLK - 1
+OPEN_CCLK = CM_BF561.sdram.nRCD * CCLK_PER_SCLK
+TURNS = [0, 1, 10, 300]
+
+
+def executed_bytes(kernel: Kernel, *arguments: Any) -> int:
+    """Bytes of code that a call executes: those of each block, as often as it runs."""
+    code = kernel.compiled(VDSP_O2)
+    totals = code.new_totals()
+    kernel.prepare(code, [], totals).run(arguments)
+    return sum(count * each.nbytes for count, each in zip(totals.tolist(), code.counters, strict=False))
+
+
+def code_lines(kernel: Kernel, at: int) -> int:
+    """Cache lines that a kernel's code at an address fills."""
+    nbytes = sum(kernel.code_bytes(VDSP_O2).values())
+    return (at + nbytes - 1) // LINE - at // LINE + 1
+
+
+def spinning(*turns: int) -> Any:
+    """Make a main loop that spins so often, call by call."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        for each in turns:
+            yield core.run(spin, each)
+
+    return in_work(work)
+
+
+def address_of_code(ldf: LinkerScript) -> int:
+    """Where the LDF puts the only kernel of core A."""
+    link_map = link(ldf, code_symbols(spinning(1), "p0", VDSP_O2), CHIP.regions)
+    (placed,) = link_map.placements
+    return placed.address
+
+
+@pytest.mark.parametrize("turns", TURNS)
+def test_code_in_l1_costs_nothing(turns: int) -> None:
+    """A fetch is part of issue."""
+    cost = stage_of(play(spinning(turns)).frames[0], "Work")
+    assert (cost.issue_cclk, cost.stall_cclk) == (cycles_of(spin, turns), {})
+
+
+@pytest.mark.parametrize("turns", TURNS)
+def test_code_in_l2_is_fetched_as_often_as_it_runs(turns: int) -> None:
+    """64 bits at a time, each as long as a read of L2; the issue cycles are those of L1."""
+    outcome = play(spinning(turns), ldf=code_in("L2"))
+    fetches = -(-executed_bytes(spin, turns) // FETCH_BYTES)
+    cost = stage_of(outcome.frames[0], "Work")
+    assert cost.issue_cclk == cycles_of(spin, turns)
+    assert cost.stall_cclk == {StallReason.CODE_FETCH: fetches * FETCH_L2_CCLK}
+    (l2,) = [each for each in outcome.traffic if each.memory == "L2"]
+    assert (l2.master, l2.read_bytes) == ("core A", fetches * FETCH_BYTES)
+    assert_accounted(outcome)
+
+
+@pytest.mark.parametrize("turns", TURNS)
+def test_code_in_sdram_pays_its_way_for_every_fetch(turns: int) -> None:
+    """An open page each, but for the first access and those behind a refresh."""
+    outcome = play(spinning(turns), ldf=code_in("SDRAM"))
+    fetches = -(-executed_bytes(spin, turns) // FETCH_BYTES)
+    (core_a,) = [each for each in outcome.traffic if (each.memory, each.master) == ("SDRAM", "core A")]
+    assert core_a.read_bytes == fetches * FETCH_BYTES
+    assert core_a.page_conflicts == 0
+    stalls = dict(stage_of(outcome.frames[0], "Work").stall_cclk)
+    refreshed = stalls.pop(StallReason.SDRAM_REFRESH, 0)
+    assert stalls == {StallReason.CODE_FETCH: fetches * FETCH_HIT_CCLK + core_a.page_misses * OPEN_CCLK}
+    elapsed = stage_of(outcome.frames[0], "Work").elapsed_cclk
+    refreshes = elapsed // (CM_BF561.sdram.refresh_interval_sclk(CM_BF561.clocks.sclk_hz) * CCLK_PER_SCLK) + 1
+    assert 1 <= core_a.page_misses <= 1 + refreshes
+    assert refreshed <= refreshes * CM_BF561.sdram.refresh_sclk * CCLK_PER_SCLK
+
+
+@pytest.mark.parametrize("memory", ["L2", "SDRAM"])
+def test_the_code_cache_fills_its_lines_once(memory: str) -> None:
+    """The first call brings every line of the code, later ones none, however long they are."""
+    ldf = code_in(memory, "cache.ldf")
+    outcome = play(spinning(10, 300, 0), ldf=ldf)
+    lines = code_lines(spin, address_of_code(ldf))
+    cost = stage_of(outcome.frames[0], "Work")
+    assert cost.issue_cclk == sum(cycles_of(spin, each) for each in (10, 300, 0))
+    line_cclk = FETCH_L2_CCLK if memory == "L2" else FETCH_HIT_CCLK
+    assert cost.stall_cclk == {
+        StallReason.CODE_FETCH: lines * line_cclk + (OPEN_CCLK if memory == "SDRAM" else 0)
+    }
+    (moved,) = [each for each in outcome.traffic if (each.memory, each.master) == (memory, "core A")]
+    assert moved.read_bytes == lines * LINE
+
+
+def test_each_core_has_a_code_cache_of_its_own() -> None:
+    """Both fill their lines, though they run the same kernel."""
+    outcome = play(spinning(10), spinning(10), ldf=code_in("L2", "cache.ldf"))
+    read = {each.master: each.read_bytes for each in outcome.traffic if each.memory == "L2"}
+    assert set(read) == {"core A", "core B"}
+    assert all(each > 0 for each in read.values())
+
+
+@pytest.mark.parametrize("memory", ["L2", "SDRAM"])
+@pytest.mark.parametrize("name", ["thesis.ldf", "cache.ldf"])
+def test_values_do_not_depend_on_where_the_code_is(memory: str, name: str) -> None:
+    """Fetches cost time only, and issue stays what it was; data in SDRAM among them."""
+    seen = []
+
+    def work(core: Core, frame: Frame) -> Play:
+        yield core.run(copy, frame.rows[0], core.array("single_row"))
+        seen.append((bytes(core.array("single_row").octets), (yield core.run(total, core.array("in_sdram")))))
+
+    costs = [
+        stage_of(play(in_work(work), ldf=ldf).frames[0], "Work")
+        for ldf in (shipped(name), code_in(memory, name))
+    ]
+    assert seen[0] == seen[1]
+    assert costs[0].issue_cclk == costs[1].issue_cclk
+    assert costs[0].elapsed_cclk < costs[1].elapsed_cclk
+    assert StallReason.CODE_FETCH not in costs[0].stall_cclk
+
+
+@given(st.lists(st.lists(st.integers(0, 5).map(lambda tag: tag * 128), max_size=8), max_size=8))
+def test_the_line_used_last_stays_longest(calls: list[list[int]]) -> None:
+    """Four ways, LRU: beside a model in plain Python, in one set, call by call."""
+    cache, plain = CodeCache(CHIP.cache), OrderedDict[int, None]()
+    for lines in calls:
+        expected = []
+        for line in lines:
+            if line not in plain:
+                expected.append(line)
+                if len(plain) == CHIP.cache.code_ways:
+                    plain.popitem(last=False)
+            plain[line] = None
+            plain.move_to_end(line)
+        assert cache.miss(lines) == expected
+
+
+def test_lines_of_different_sets_do_not_push_each_other_out() -> None:
+    """As many lines as the cache has: all of them stay."""
+    lines = range(CHIP.cache.code_bytes // LINE)
+    cache = CodeCache(CHIP.cache)
+    assert cache.miss(lines) == list(lines)
+    assert cache.miss(lines) == []
+    assert cache.miss([len(lines)]) == [len(lines)]
+    assert cache.miss([0]) == [0], "the one that was used first has left"
+
+
+def test_fetches_come_between_the_accesses_without_reordering_them() -> None:
+    """The log is in order of time; accesses of one block, which have one stamp, stay as the block made them."""
+    follower = Follower(np.zeros(64, np.uint8), 64, np.zeros(followers.LOG + 16, np.int64))
+
+    def entry(stamp: int, kind: int, offset: int) -> int:
+        return stamp << followers.STAMP_BIT | kind << followers.KIND_BIT | offset
+
+    block = [entry(5, followers.WRITE_BACK, 32), entry(5, followers.FILL, 0), entry(5, followers.LOAD, 60)]
+    follower.entries(3)[:] = block
+    fetches = [entry(0, followers.FETCH, 8), entry(5, followers.FETCH, 16), entry(9, followers.FETCH, 24)]
+    assert follower.insert(3, np.array(fetches)) == 6
+    assert follower.entries(6).tolist() == [fetches[0], *block, fetches[1], fetches[2]]
+
+
+def test_the_record_says_where_the_code_is() -> None:
+    """Code outside L1 is told apart."""
+    for ldf, in_l1 in ((shipped("thesis.ldf"), True), (code_in("L2"), False), (code_in("SDRAM"), False)):
+        outcome = play(spinning(1), ldf=ldf)
+        assert {each.in_l1 for each in outcome.code if each.core == "A"} == {in_l1}

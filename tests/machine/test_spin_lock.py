@@ -1,0 +1,209 @@
+"""Spin locks: one core at a time, whole turns of waiting, and what is told of a lock that never comes."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bfsim.api import Core, Frame, i32, kernel
+from bfsim.errors import DeadlockError, FirmwareError
+from bfsim.trace import StallReason
+from tests.machine.kernels import spin
+from tests.machine.made_boards import CHIP, assert_accounted, cclk_now, in_work
+from tests.machine.rig import Play, cycles_of, every_frame, run, stage_of
+
+TESTSET_CCLK = CHIP.events.testset_cclk + CHIP.l2.read_cclk
+TURN_CCLK = TESTSET_CCLK + CHIP.events.spin_cclk
+UNLOCK_CCLK = 1
+
+
+@kernel
+def load(words: i32[:]) -> i32:
+    return words[0]
+
+
+@kernel
+def store(words: i32[:], value: i32):
+    words[0] = value
+
+
+def test_a_free_lock_costs_one_testset() -> None:
+    """Two issue cycles and the way to L2; giving it back is a store."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        yield from core.lock("word")
+        yield from core.unlock("word")
+
+    outcome = run(in_work(work))
+    cost = stage_of(outcome.frames[0], "Work")
+    assert cost.issue_cclk == CHIP.events.testset_cclk + UNLOCK_CCLK
+    assert cost.stall_cclk == {StallReason.L2_LATENCY: CHIP.l2.read_cclk}
+    assert_accounted(outcome)
+
+
+@pytest.mark.parametrize("turns", [0, 1, 5, 100, 1000])
+def test_whole_turns_of_the_spin_loop_are_waited(turns: int) -> None:
+    """B comes while A has the lock: it tries again every turn, and has it at the first try after A's store."""
+
+    def hold(core: Core, frame: Frame) -> Play:
+        yield from core.lock("word")
+        yield core.run(spin, turns)
+        yield from core.unlock("word")
+
+    def wait(core: Core, frame: Frame) -> Play:
+        yield core.run(spin, 0)
+        with core.stage("Work"):
+            yield from core.lock("word")
+        yield from core.unlock("word")
+
+    outcome = run(in_work(hold), every_frame(wait))
+    first_try_cclk = cycles_of(spin, 0) + TESTSET_CCLK
+    free_cclk = TESTSET_CCLK + cycles_of(spin, turns) + UNLOCK_CCLK
+    tries = max(0, -(-(free_cclk - first_try_cclk) // TURN_CCLK))
+    cost = stage_of(outcome.frames[0], "Work", "B")
+    assert cost.stall_cclk.get(StallReason.SEMAPHORE, 0) == tries * TURN_CCLK
+    assert cost.elapsed_cclk == TESTSET_CCLK + tries * TURN_CCLK
+    assert_accounted(outcome)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.lists(st.integers(0, 60), max_size=8), st.lists(st.integers(0, 60), max_size=8))
+def test_no_increment_is_lost(pauses_a: list[int], pauses_b: list[int]) -> None:
+    """Both cores load a word of L2, wait and store it back greater by one: under the lock all of them count."""
+    inside: list[tuple[int, int]] = []
+    last = []
+
+    def counting(pauses: list[int]) -> Any:
+        def count(core: Core, frame: Frame) -> Play:
+            for pause in pauses:
+                yield core.run(spin, pause)
+                yield from core.lock("word")
+                begin = cclk_now(core)
+                value = yield core.run(load, core.array("in_l2"))
+                yield core.run(spin, pause)
+                yield core.run(store, core.array("in_l2"), value + 1)
+                inside.append((begin, cclk_now(core)))
+                last.append(value + 1)
+                yield from core.unlock("word")
+
+        return every_frame(count)
+
+    outcome = run(counting(pauses_a), counting(pauses_b))
+    both = len(pauses_a) + len(pauses_b)
+    assert last == list(range(1, both + 1))
+    inside.sort()
+    assert all(before[1] <= after[0] for before, after in itertools.pairwise(inside))
+    assert_accounted(outcome)
+
+
+def test_two_locks_do_not_disturb_each_other() -> None:
+    """Each core has its own: nobody waits."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        yield from core.lock(core.name)
+        yield core.run(spin, 1000)
+        yield from core.unlock(core.name)
+
+    (frame,) = run(in_work(work), in_work(work)).frames
+    for core in ("A", "B"):
+        assert StallReason.SEMAPHORE not in stage_of(frame, "Work", core).stall_cclk
+
+
+def test_taking_a_lock_twice_is_an_error() -> None:
+    """It would spin for ever on itself."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        yield from core.lock("word")
+        yield from core.lock("word")
+
+    with pytest.raises(
+        FirmwareError,
+        match=r"core A must not take lock 'word' again: it holds it already \(.*test_spin_lock.py:",
+    ):
+        run(every_frame(work))
+
+
+def give_back(core: Core, frame: Frame) -> Play:
+    """Unlock what was never locked, or another core has."""
+    yield core.run(spin, 100)
+    yield from core.unlock("word")
+
+
+def test_giving_back_what_nobody_holds_is_an_error() -> None:
+    """The lock is free."""
+    with pytest.raises(
+        FirmwareError,
+        match=r"core A must not give lock 'word' back, which nobody holds \(.*test_spin_lock.py:",
+    ):
+        run(every_frame(give_back))
+
+
+def test_giving_back_what_the_other_core_holds_is_an_error() -> None:
+    """Who holds it, since when, and from which line."""
+
+    def hold(core: Core, frame: Frame) -> Play:
+        yield from core.lock("word")
+        yield core.run(spin, 10_000)
+        yield from core.unlock("word")
+
+    with pytest.raises(
+        FirmwareError,
+        match=r"core B must not give lock 'word' back, which core A since cycle [\d,]+ \(.*test_spin_lock.py:\d+\) holds",
+    ):
+        run(every_frame(hold), every_frame(give_back))
+
+
+def taking(first: str, second: str) -> Any:
+    """Make a main loop that takes two locks, works in between, and gives none back in time."""
+
+    def take(core: Core, frame: Frame) -> Play:
+        yield from core.lock(first)
+        yield core.run(spin, 1000)
+        yield from core.lock(second)
+        yield from core.unlock(second)
+        yield from core.unlock(first)
+
+    return every_frame(take)
+
+
+def test_two_locks_in_opposite_order_are_told_with_their_holders() -> None:
+    """Who waits for what, since when, where; and who holds it, since when, where: for both cores."""
+    with pytest.raises(DeadlockError) as caught:
+        run(taking("left", "right"), taking("right", "left"))
+    line = taking.__code__.co_firstlineno + 4
+    taken, waited = f"({__file__}:{line})", f"({__file__}:{line + 2})"
+    core_a, core_b = str(caught.value).removeprefix("nothing can happen any more: ").split("; ")
+    for told, core, other, name in ((core_a, "A", "B", "right"), (core_b, "B", "A", "left")):
+        begin, _, rest = told.partition(
+            f"core {core} waits for lock {name!r}, held by core {other} since cycle "
+        )
+        assert begin == ""
+        held, _, rest = rest.partition(f" {taken}, since cycle ")
+        since, _, rest = rest.partition(f" {waited}")
+        assert rest == ""
+        held_cclk, since_cclk = (int(each.replace(",", "")) for each in (held, since))
+        assert since_cclk - held_cclk == cycles_of(spin, 1000) + TESTSET_CCLK
+
+
+def test_the_same_order_is_no_deadlock() -> None:
+    """Whoever comes second waits at the first lock, and both get through."""
+    outcome = run(taking("left", "right"), taking("left", "right"))
+    assert len(outcome.frames) == 1
+
+
+def test_a_lock_that_is_kept_is_told() -> None:
+    """Core A ends its frame with the lock; core B waits for ever."""
+
+    def keep(core: Core, frame: Frame) -> Play:
+        if frame.index == 0:
+            yield from core.lock("word")
+
+    with pytest.raises(
+        DeadlockError,
+        match=r"core A waits for .*; core B waits for lock 'word', held by core A since cycle [\d,]+ \(.*\), since",
+    ):
+        run(every_frame(keep), taking("word", "other"), frames=5)
