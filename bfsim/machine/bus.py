@@ -215,7 +215,7 @@ class Bus:
                 setup, 0, mode, element_bytes.bit_length() - 1, count, 0, 0,
                 source.offset, source.x_count, source.x_modify, source.y_modify, source.x_count,
                 destination.offset, destination.x_count, destination.x_modify, destination.y_modify, destination.x_count,
-                pace.start, parts, element, line, pace.line_elements, 0, 0, 0,
+                pace.start, parts, element, line, pace.line_elements, 0, 0,
             ),
         )  # fmt: skip
 

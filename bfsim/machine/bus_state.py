@@ -91,10 +91,9 @@ MASTER_WORDS = 15
     TO, TO_X_COUNT, TO_X_MODIFY, TO_Y_MODIFY, TO_X_LEFT,
     # The pace of a device, in parts of a tick: an element and a line take so many PARTS, PARTS make a tick.
     START, PARTS, ELEMENT, LINE, LINE_ELEMENTS,
-    TOGETHER,       # elements that move at once next
     PLACE, LINE_BEGAN,  # where the next element is: in its line, and when that began, in parts from the start
-) = range(28)  # fmt: skip
-SLOT_WORDS = 28
+) = range(27)  # fmt: skip
+SLOT_WORDS = 27
 SLOTS = 256
 ENDS = 1 << 16
 """Transfers whose end is remembered: the latest so many."""

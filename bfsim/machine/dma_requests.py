@@ -57,27 +57,15 @@ def count_access(state: State, master: int, elements: int) -> None:
 
 
 @compiled
-def only_cameras_move(state: State) -> bool:
-    """Whether nothing but PPIs has anything to move."""
-    moving = 0
-    for number in range(w.SPI, w.MASTERS):
-        moving += state[w.MASTERS_AT + number + w.READY] < w.NEVER
-    return moving == 0
-
-
-@compiled
 def lot_of(state: State, slot: int) -> int:
-    """How many elements a device's DMA moves at once next, of one line.
+    """How many elements a device's DMA moves at once: each as it comes in, but half a FIFO on its way out.
 
-    In: each as it comes, but a lot of them while nobody is there to care. Out: half a FIFO, so that the other half is there
-    while it waits for the bus.
+    So the other half is there while the DMA waits for the bus.
     """
-    if state[slot + w.MODE] == w.PACED_OUT:
-        lot = max(1, state[w.LOT] // 2)
-    else:
-        lot = state[w.LOT] if only_cameras_move(state) else 1
+    if state[slot + w.MODE] == w.PACED_IN:
+        return 1
     left = min(state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT])
-    return min(lot, left, state[slot + w.LINE_ELEMENTS] - state[slot + w.PLACE])
+    return min(max(1, state[w.LOT] // 2), left, state[slot + w.LINE_ELEMENTS] - state[slot + w.PLACE])
 
 
 @compiled
@@ -88,7 +76,6 @@ def next_paced(state: State, master: int, slot: int) -> None:
         ready = arrival(state, slot, lot - 1)
     elif state[slot + w.MOVED] >= state[master + w.FIFO]:
         ready = arrival(state, slot, lot - 1 - state[master + w.FIFO])
-    state[slot + w.TOGETHER] = lot
     state[master + w.READY] = aligned(ready, state[w.SCLK])
 
 
@@ -365,7 +352,6 @@ def lose(state: State, memory: Memory, master: int, slot: int, at: int) -> None:
     for _ in range(lost):
         go_on(state, slot + w.FROM, 1)
         step_device(state, slot, 1)
-    state[slot + w.TOGETHER] = lot_of(state, slot)
     state[slot + w.MOVED] += lost
     state[slot + w.LEFT] -= lost
     state[slot + w.LOST] += lost
@@ -380,7 +366,7 @@ def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> 
     write = state[slot + w.MODE] == w.PACED_IN
     if write and at > state[master + w.READY]:
         lose(state, memory, master, slot, at)
-    count = state[slot + w.TOGETHER]
+    count = lot_of(state, slot)
     offset = state[slot + w.TO] if write else state[slot + w.FROM]
     through, nbytes = at, count << state[slot + w.ELEMENT_BITS]
     if state[master + w.USES_BUS]:
