@@ -344,6 +344,25 @@ def test_an_idle_core_without_interrupts_is_told() -> None:
         run(every_frame(work))
 
 
+@pytest.mark.xfail(strict=True, reason="the line told is the main loop's, though its handler waits")
+def test_a_handler_that_waits_for_ever_is_told_with_its_own_line() -> None:
+    """The deadlock is in the handler, not where it came between."""
+
+    def handler(core: Core) -> Play:
+        yield from core.wait("never")
+
+    def work(core: Core, frame: Frame) -> Play:
+        core.on_interrupt("TIMER0", handler)
+        core.request_interrupt("TIMER0")
+        yield core.run(spin, 10)
+
+    line = handler.__code__.co_firstlineno + 1
+    with pytest.raises(
+        DeadlockError, match=f"core A waits for semaphore 'never', .*test_interrupts.py:{line}\\)"
+    ):
+        run(every_frame(work))
+
+
 STEPS = st.lists(
     st.tuples(st.sampled_from(["spin", "sdram", "l2", "interrupt", "line", "self"]), st.integers(0, 300)),
     max_size=10,

@@ -12,16 +12,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from bfsim.api import Buffer, Core, Frame, u8, u16
+from bfsim.api import Buffer, Core, Firmware, Frame, FrameSize, u8, u16
+from bfsim.chip.boards import CM_BF533
 from bfsim.chip.dma_registers import Flow, WdSize
 from bfsim.errors import FirmwareError, MmrError
-from bfsim.machine.board import Outcome
+from bfsim.linker import link
+from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.dma_config import DmaConfig
 from bfsim.machine.dma_descriptors import write_descriptor
 from bfsim.trace import StallReason
 from tests.machine.kernels import spin
 from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, cclk_now, in_work, play
-from tests.machine.rig import Play, every_frame, stage_of
+from tests.machine.placements import shipped
+from tests.machine.rig import SIZE, Play, every_frame, stage_of
+from tests.machine.rig import noise as pictures
 
 DMA = CHIP.dma
 NBYTES = 512
@@ -617,3 +621,20 @@ def test_registers_of_a_running_stream_must_not_be_written() -> None:
     line = work.__code__.co_firstlineno + 4
     with pytest.raises(MmrError, match=f"MDMA1_S0_START_ADDR must not be written while .*py:{line}"):
         play(every_frame(work), more=MORE)
+
+
+@pytest.mark.parametrize("name", ["MDMA2_0", "IMDMA_0"])
+def test_a_chip_has_its_own_streams_only(name: str) -> None:
+    """The BF533 has one controller, and no internal DMA."""
+
+    def buffers(size: FrameSize) -> dict[str, Sequence[Buffer]]:
+        return {"A": (Buffer("camera", u8, 2 * size.width_px, "sdram_bank0", rows=3 * size.height_px),)}
+
+    def work(core: Core, frame: Frame) -> Play:
+        yield from core.memory_dma(name).wait()
+
+    firmware = Firmware(mains={"A": every_frame(work)}, buffers=buffers, camera="camera", rows=())
+    chip = CM_BF533.chip
+    link_map = link(shipped("cm-bf533.ldf"), symbols_of(firmware, SIZE), chip.regions, chip=chip.name)
+    with pytest.raises(FirmwareError, match=f"must be one of MDMA1_0, MDMA1_1, not '{name}'"):
+        Board(CM_BF533, firmware, SIZE, link_map).run(pictures(1))
