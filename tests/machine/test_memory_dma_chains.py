@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from itertools import count
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from bfsim.api import Core, Frame
 from bfsim.chip.dma_registers import Flow
+from bfsim.errors import DeadlockError
 from bfsim.machine.board import Outcome
 from bfsim.machine.dma_config import DmaConfig
+from bfsim.machine.simulation import Simulation
 from tests.machine.kernels import spin
 from tests.machine.made_boards import assert_accounted, cclk_now, in_work, play
 from tests.machine.rig import Play, every_frame
@@ -212,3 +216,25 @@ def test_a_stopped_stream_can_be_started_again() -> None:
 
     play(every_frame(work), more=MORE)
     assert runs == [(False, False)] * 2
+
+
+@pytest.mark.xfail(strict=True, reason="a stream that goes on for ever hides that nobody else can")
+def test_a_deadlock_is_told_while_a_stream_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Autobuffer without interrupts: nothing it does can wake the core."""
+    steps = count()
+    step = Simulation.step
+
+    def counted(self: Simulation) -> None:
+        assert next(steps) < 10_000, "the simulation goes on for ever"
+        step(self)
+
+    def work(core: Core, frame: Frame) -> Play:
+        dma = core.memory_dma("MDMA1_0")
+        here, there = core.array("from_L1"), core.array("to_L2")
+        dma.program(source=linear(here.address, 100), destination=linear(there.address, 100))
+        yield from dma.start(DmaConfig(FLOW=Flow.AUTO), DmaConfig(FLOW=Flow.AUTO, WNR=True))
+        yield from core.wait("never")
+
+    monkeypatch.setattr(Simulation, "step", counted)
+    with pytest.raises(DeadlockError, match="core A waits for semaphore 'never'"):
+        play(every_frame(work), more=MORE)
