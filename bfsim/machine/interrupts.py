@@ -1,6 +1,6 @@
 """Interrupts of one core: SIC and CEC, from a device's request to the handler that the firmware attached.
 
-A core takes an interrupt where it meets the rest of the machine, or between two kernel calls: a call is never cut. Of several
+A core takes an interrupt where it meets the rest of the machine, or while it waits for that: a call is never cut. Of several
 that wait, the one of the lowest IVG level comes first, then the lowest number; handlers are not interrupted themselves.
 """
 

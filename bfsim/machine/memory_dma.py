@@ -44,8 +44,9 @@ class Dma:
 
     def stream(self, name: str, core: Core) -> MemoryDma:
         """Return the stream `name`, whose registers `core` programs from now on."""
-        if name not in STREAMS:
-            raise FirmwareError(f"a memory DMA stream must be one of {', '.join(STREAMS)}, not {name!r}")
+        known = [each for each in STREAMS if each in self._board.chip.interrupts.__members__]
+        if name not in known:
+            raise FirmwareError(f"a memory DMA stream must be one of {', '.join(known)}, not {name!r}")
         if name not in self._streams:
             self._streams[name] = MemoryDma(
                 self._env, self._board, self._bus, self._memories, self._space, name
