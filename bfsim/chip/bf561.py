@@ -44,7 +44,6 @@ BF561 = ChipSpec(
         startup_sclk=15,                # [assumed] start-up and turn-round of a work unit, range 10..20
         descriptor_sclk=2,              # [assumed] per 16-bit element, beside what its memory takes
         read_word_sclk=Fraction(11, 10),  # [assumed] HRM table as recalled: MDMA read 1.1 SCLK a word
-        write_word_sclk=Fraction(1),    # [assumed] HRM table as recalled: MDMA write 1 SCLK a word
         on_chip_word_sclk=Fraction(1),  # HRM of the BF537, 5-50: internal memory DMA at the full SCLK rate
         imdma_word_cclk=2,              # [assumed] anomaly 05000182: never reaches its full speed of one word a CCLK
     ),

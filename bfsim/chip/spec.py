@@ -110,7 +110,7 @@ class DmaSpec:
     """The DMA controllers. A work unit starts in `startup_sclk`; a descriptor costs `descriptor_sclk` an element.
 
     `word_bytes`: width of their buses, and the longest word; `mdma_streams`: memory DMA, of all controllers together.
-    `read_word_sclk` and `write_word_sclk`: memory DMA, cycles per word from and to SDRAM on an open page;
+    `read_word_sclk`: memory DMA, cycles per word from SDRAM on an open page (to SDRAM it is one);
     `on_chip_word_sclk`: between L1 and L2; `imdma_word_cclk`: the internal DMA, 0 without one.
     """
 
@@ -121,7 +121,6 @@ class DmaSpec:
     startup_sclk: int
     descriptor_sclk: int
     read_word_sclk: Fraction
-    write_word_sclk: Fraction
     on_chip_word_sclk: Fraction
     imdma_word_cclk: int
 

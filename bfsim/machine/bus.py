@@ -139,7 +139,7 @@ class Bus:
             fields = {
                 w.RANK: rank, w.READY: w.NEVER, w.SLOT: w.NONE, w.LAST_SLOT: w.NONE, w.PARTNER: partners.get(number, w.NONE),
                 w.FIFO: chip.dma.fifo_words + (chip.ppi_fifo_words if number in (w.PPI0, w.PPI1) else 0),
-                w.GAP_NUMERATOR: gap.numerator, w.GAP_DENOMINATOR: gap.denominator,
+                w.GAP_NUMERATOR: gap.numerator, w.GAP_DENOMINATOR: gap.denominator * chip.dma.fifo_words,
             }  # fmt: skip
             for field, value in fields.items():
                 self._state[w.MASTERS_AT + number + field] = value

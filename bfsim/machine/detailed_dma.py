@@ -172,7 +172,7 @@ class DmaChannel:
             yield from wait_until(self._env, grant.free + pause)
 
     def _write_sdram(self, errand: Errand, fifo: Fifo) -> Play:
-        dma, plan = self._board.chip.dma, errand.plan
+        plan = errand.plan
         for number, offset in enumerate(offsets(plan.destination, plan.count)):
             if not (yield from self._next(fifo)):
                 return
@@ -181,13 +181,13 @@ class DmaChannel:
             fifo.take()
             yield from wait_until(self._env, grant.through)
             errand.tell_row(number + 1)
-            pause = self._pause(dma.write_word_sclk) if plan.mode == w.WRITE else 0
-            yield from wait_until(self._env, grant.free + pause)
+            yield from wait_until(self._env, grant.free)
 
     def _pause(self, word_sclk: Fraction) -> int:
-        """Add up what a word takes beyond a cycle; return the ticks of the whole cycles that are due."""
+        """Add up what a word takes beyond a cycle; return the ticks that are due, always those of a FIFO of words."""
+        lot = self._board.chip.dma.fifo_words
         self._late += word_sclk - 1
-        cycles = int(self._late)
+        cycles = int(self._late / lot) * lot
         self._late -= cycles
         return cycles * self._sclk
 

@@ -146,6 +146,9 @@ def count_subbanks(state: State, side: int, count: int) -> None:
     at = state[side + w.POSITION] - first
     if at < 0:
         return
+    if (at + (count - 1) * state[side + w.X_MODIFY]) >> bits == at >> bits:
+        state[w.SUBBANKS_AT + (at >> bits)] += count
+        return
     for _ in range(count):
         state[w.SUBBANKS_AT + (at >> bits)] += 1
         at += state[side + w.X_MODIFY]
@@ -200,8 +203,8 @@ def run_ahead(state: State, number: int, slot: int, ahead: int, ticks: int, unti
         return max(0, min(ahead, (room + ticks - 1) // ticks))
     parts = state[master + w.GAP_DENOMINATOR]
     room = alone_until(state, number, until) - state[w.COMMAND_FREE]
-    longest = ticks * parts + state[w.SCLK] * state[master + w.GAP_NUMERATOR]
-    alone = max(0, min(ahead, (room - state[w.SCLK]) * parts // longest))
+    longest = ticks * parts + state[w.LOT] * state[w.SCLK] * state[master + w.GAP_NUMERATOR]
+    alone = max(0, min(ahead, (room - state[w.LOT] * state[w.SCLK]) * parts // longest))
     if alone:
         return alone
     room = preferred_until(state, number, until) - state[w.COMMAND_FREE]
@@ -211,11 +214,14 @@ def run_ahead(state: State, number: int, slot: int, ahead: int, ticks: int, unti
 
 @compiled
 def pause(state: State, master: int, elements: int) -> int:
-    """Add up what a memory DMA pauses for `elements` that it reads; return the ticks that are due, whole cycles."""
+    """Add up what a memory DMA pauses for `elements` that it reads; return the ticks that are due.
+
+    It pauses for as long as another stream moves a FIFO of words ([assumed]; the sum of the pauses is data of the chip).
+    """
     state[master + w.GAP] += elements * state[master + w.GAP_NUMERATOR]
-    cycles = state[master + w.GAP] // state[master + w.GAP_DENOMINATOR]
-    state[master + w.GAP] -= cycles * state[master + w.GAP_DENOMINATOR]
-    return cycles * state[w.SCLK]
+    lots = state[master + w.GAP] // state[master + w.GAP_DENOMINATOR]
+    state[master + w.GAP] -= lots * state[master + w.GAP_DENOMINATOR]
+    return lots * state[w.LOT] * state[w.SCLK]
 
 
 @compiled

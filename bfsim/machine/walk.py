@@ -34,10 +34,16 @@ def copy_element(memory: Memory, source: int, target: int, bits: int) -> None:
 def move(state: State, memory: Memory, slot: int, count: int) -> None:
     """Move `count` elements, none beyond the end of either side's line, and step both sides on."""
     source, target, bits = state[slot + w.FROM], state[slot + w.TO], state[slot + w.ELEMENT_BITS]
-    for _ in range(count):
-        copy_element(memory, source, target, bits)
-        source += state[slot + w.FROM_X_MODIFY]
-        target += state[slot + w.TO_X_MODIFY]
+    source_step, target_step = state[slot + w.FROM_X_MODIFY], state[slot + w.TO_X_MODIFY]
+    if bits == WORD_BITS and source_step == target_step == WORD_BYTES:
+        source, target = source >> WORD_BITS, target >> WORD_BITS
+        for word in range(count):
+            memory[target + word] = memory[source + word]
+    else:
+        for _ in range(count):
+            copy_element(memory, source, target, bits)
+            source += source_step
+            target += target_step
     go_on(state, slot + w.FROM, count)
     go_on(state, slot + w.TO, count)
     state[slot + w.MOVED] += count
