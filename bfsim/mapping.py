@@ -7,13 +7,13 @@ from pathlib import Path
 from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import profile_named
-from bfsim.linker import LinkerScript, link, parse_ldf
+from bfsim.linker import LinkerScript, link
 from bfsim.loading import load_firmware
 from bfsim.machine.board import PROCESSORS, symbols_of
 from bfsim.machine.program import Buffer, Firmware, FrameSize
 from bfsim.report.ldf_layout import Memories, memory_map
 from bfsim.report.ldf_map import Kind, MemoryMap
-from bfsim.run import THESIS_LDF
+from bfsim.run import read_placement
 
 
 def map_memory(
@@ -25,13 +25,13 @@ def map_memory(
     width_px: int,
     height_px: int,
 ) -> MemoryMap:
-    """Return where the LDF (the thesis's without one) puts `firmware` for pictures of that size.
+    """Return where the LDF (the board's own without one) puts `firmware` for pictures of that size.
 
     Firmware for other cores than the LDF's is left out, and the map holds what the LDF says by itself. Raises a
     BfsimError for anything that is wrong with what was given, a firmware that does not fit included.
     """
     spec, compiler = board_named(board), profile_named(profile)
-    script = parse_ldf(ldf or THESIS_LDF)
+    script = read_placement(ldf, spec)
     program, size = load_firmware(firmware).firmware, FrameSize(width_px, height_px)
     fits = _fits(program, script, spec)
     link_map = None

@@ -54,7 +54,7 @@ def simulate(
         raise ConfigError(f"frames must be at least 1, not {frames}")
     spec, compiler = board_named(board), profile_named(profile)
     loaded, script = load_firmware(firmware), _read_strategy(strategy)
-    placement = parse_ldf(ldf or DEFAULT_LDF[spec.chip.name])
+    placement = read_placement(ldf, spec)
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
         size = FrameSize(reader.width, reader.height)
         symbols = symbols_of(loaded.firmware, size, compiler)
@@ -84,6 +84,13 @@ def simulate(
 
         outcome = machine.run(iter(source), count)
     return _record(outcome, spec, loaded, placement, feed, fidelity, size, source, compiler, script)
+
+
+def read_placement(ldf: Path | None, spec: BoardSpec) -> LinkerScript:
+    """Read an LDF, or the shipped one that suits the board's chip, for the SDRAM of the board."""
+    return parse_ldf(
+        ldf or DEFAULT_LDF[spec.chip.name], defines={"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes)}
+    )
 
 
 def _read_strategy(path: Path | None) -> Sequence[ScriptedMessage]:

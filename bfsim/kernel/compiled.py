@@ -1,13 +1,14 @@
 """Compiled Python: what looks at every access to a memory or at every word on a bus, through numba.
 
-The machine code is kept in the cache of bfsim, in a folder named after the sources around it: a change in one file never
-meets code that another file was compiled against.
+The machine code is kept in the cache of bfsim, in a folder named after the sources: a change in one file never meets code
+that was compiled against another one.
 """
 
 from __future__ import annotations
 
 import hashlib
 import importlib
+import os
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -20,10 +21,28 @@ _extending: Any = importlib.import_module("numba.extending")
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+ROOMS = ("kernel", "machine")
+"""Folders of bfsim with compiled parts; those of one use numbers and functions of the other."""
+
+
 @cache
-def _folder(room: Path) -> str:
-    digest = hashlib.sha256(b"".join(path.read_bytes() for path in sorted(room.glob("*.py"))))
-    return str(store.folder() / f"{room.name}-{digest.hexdigest()[:24]}")
+def _folder() -> Path:
+    package = Path(__file__).parent.parent
+    digest = hashlib.sha256()
+    for path in sorted(path for room in ROOMS for path in (package / room).glob("*.py")):
+        digest.update(path.read_bytes())
+    return store.folder() / f"compiled-{digest.hexdigest()[:24]}"
+
+
+@cache
+def _is_kept() -> bool:
+    """Have numba keep what it compiles in the cache of bfsim, if that can be written, and nowhere else."""
+    try:
+        _folder().mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    numba.config.CACHE_DIR = str(_folder())
+    return os.access(_folder(), os.W_OK)
 
 
 def compiled(function: Function) -> Function:
@@ -34,21 +53,13 @@ def compiled(function: Function) -> Function:
 
 def entry(function: Function) -> Function:
     """Compile `function` and all that it calls at its first call from Python, or take it from the cache."""
-    numba.config.CACHE_DIR = _folder(Path(function.__code__.co_filename).parent)
-    try:
-        made: Function = numba.njit(cache=True, no_cfunc_wrapper=True, error_model="numpy")(function)
-    except RuntimeError:  # no folder can be written: compile in every process
-        made = numba.njit(no_cfunc_wrapper=True, error_model="numpy")(function)
+    made: Function = numba.njit(cache=_is_kept(), no_cfunc_wrapper=True, error_model="numpy")(function)
     return made
 
 
 def callback(signature: Any, function: Callable[..., None]) -> int:
     """Compile `function` for calls from machine code, or take it from the cache; return its host address."""
-    numba.config.CACHE_DIR = _folder(Path(function.__code__.co_filename).parent)
-    try:
-        made = numba.cfunc(signature, cache=True)(function)
-    except RuntimeError:
-        made = numba.cfunc(signature)(function)
+    made = numba.cfunc(signature, cache=_is_kept())(function)
     _kept.append(made)  # the code lives as long as this object
     return int(made.address)
 

@@ -38,10 +38,14 @@ def look_up(state: State, line: int, changed: int, allocate: bool) -> tuple[bool
     last = state[log.WAYS] - 1
     while way < last and state[first + way] >> 1 != line:
         way += 1
-    tag = state[first + way]
-    hit = tag >> 1 == line
+    hit = state[first + way] >> 1 == line
     if not hit and not allocate:
         return False, log.EMPTY
+    if not hit:  # a way without a line comes before the line used longest ago
+        way = 0
+        while way < last and state[first + way] != log.EMPTY:
+            way += 1
+    tag = state[first + way]
     left = tag >> 1 if not hit and tag != log.EMPTY and tag & 1 else log.EMPTY
     while way > 0:
         state[first + way] = state[first + way - 1]

@@ -86,6 +86,11 @@ class PreparedCall:
         self._follower = follower
         self._is_plain = result is None and follower is None
 
+    @property
+    def stays_in_l1(self) -> bool:
+        """Whether no access of it can leave L1."""
+        return self._follower is None
+
     def run(self, arguments: Sequence[Any]) -> Work:
         """Run the kernel now and say what it cost. Of `arguments`, only the integers are read."""
         if self._integers:

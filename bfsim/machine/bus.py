@@ -1,7 +1,7 @@
 """What moves between the memories: transfers of the DMAs and accesses of the cores, played by the compiled weave.
 
-The bus keeps its own time, which is behind the simulated time until somebody looks. Whoever posts something, or wants to know
-whether something is done, settles it first; the simulation settles it up to each event, and wakes those who wait.
+The bus keeps its own time, which is behind the simulated time until somebody looks. Whoever wants to know whether something is
+done settles it first; while anybody waits, the simulation plays it up to each event, and wakes those whose transfer is over.
 """
 
 from __future__ import annotations
@@ -26,12 +26,10 @@ from bfsim.machine.simulation import Simulation
 from bfsim.machine.weave import advance
 
 SLOT = struct.Struct(f"@{w.SLOT_WORDS}q")
-TRACED_STALLS = w.STALLS
 
 # Ranks of DMA: HRM of the BF537, 5-50 to 5-54 (lower channel first, memory DMA last); DMA1 before DMA2 [assumed].
 RANKS = {
-    w.PPI0: 0, w.PPI1: 1, w.SPI: 20,
-    w.MDMA1_0: 40, w.MDMA1_1: 41, w.MDMA2_0: 44, w.MDMA2_1: 45, w.IMDMA_0: 48, w.IMDMA_1: 49,
+    w.PPI0: 0, w.PPI1: 1, w.MDMA1_0: 20, w.MDMA1_1: 21, w.SPI: 40, w.MDMA2_0: 44, w.MDMA2_1: 45, w.IMDMA_0: 48, w.IMDMA_1: 49,
 }  # fmt: skip
 PARTNERS = ((w.MDMA1_0, w.MDMA1_1), (w.MDMA2_0, w.MDMA2_1))
 CORE_FIRST, CORE_LAST = -100, 200  # ranks of core A; core B has its own turn after A had the bus
@@ -251,6 +249,10 @@ class Bus:
         """Return the event at the end of the next row that a transfer writes, or at its own end; neither is known yet."""
         self.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.WAKE] = w.AT_ROWS
         return self._await(transfer.number)
+
+    def moved_by(self, transfer: Transfer) -> int:
+        """Return how many elements a transfer that is not over has moved."""
+        return int(self.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.MOVED])
 
     def _await(self, number: int) -> simpy.Event:
         event = self._waiting.get(number)

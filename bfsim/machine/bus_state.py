@@ -115,9 +115,10 @@ AT_END, AT_ROWS = 1, 2  # what wakes somebody
     STALLED,        # ticks that it was stalled
     ISSUED_AT,      # tick of the present access
     STORE_HEAD, STORES,  # store buffer: the oldest, and how many
-) = range(9)  # fmt: skip
+    LINE_DONE,      # when the last line that was fetched is whole
+) = range(10)  # fmt: skip
 IDLE, STARTING, RUNNING, BUFFER_FULL, BUFFER_NOT_EMPTY = range(5)
-STALL = 9
+STALL = 10
 (
     L2_LATENCY, L2_PORT, PAGE_HIT, PAGE_MISS, PAGE_CONFLICT, REFRESHING, ARBITRATION, STORE_BUFFER, CACHE_FILL, CODE_FETCH,
 ) = range(10)  # fmt: skip

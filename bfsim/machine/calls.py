@@ -19,6 +19,10 @@ from bfsim.trace import REST
 class Call(Protocol):
     """A kernel bound to its rows, ready to run."""
 
+    @property
+    def stays_in_l1(self) -> bool:
+        """Whether neither its accesses nor its code can leave L1."""
+
     def run(self, arguments: tuple[Row | int, ...]) -> Work:
         """Run the kernel now and say what it cost."""
 
@@ -30,10 +34,30 @@ class CheckedCall:
     call: Call
     kernel: Kernel
 
+    @property
+    def stays_in_l1(self) -> bool:
+        """Whether neither its accesses nor its code can leave L1."""
+        return self.call.stays_in_l1
+
     def run(self, arguments: tuple[Row | int, ...]) -> Work:
         """Run the kernel, if its indexes are right, and say what it cost."""
         self.kernel.sanitize([each.array if isinstance(each, Row) else each for each in arguments])
         return self.call.run(arguments)
+
+
+class DeferredWork(Work):
+    """A call that is still to be made, with `run`."""
+
+    __slots__ = ("_arguments", "_call")
+
+    def __init__(self, call: Call, arguments: tuple[Row | int, ...]) -> None:
+        super().__init__(0, 0)
+        self._call = call
+        self._arguments = arguments
+
+    def run(self) -> Work:
+        """Run the kernel now and say what it cost."""
+        return self._call.run(self._arguments)
 
 
 class CallBook:

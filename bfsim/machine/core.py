@@ -19,7 +19,7 @@ from bfsim.kernel import Kernel, Work
 from bfsim.kernel.followers import Follower
 from bfsim.machine.bus import Bus
 from bfsim.machine.cached_lines import CachedInput, CachedOutput
-from bfsim.machine.calls import CallBook
+from bfsim.machine.calls import CallBook, DeferredWork
 from bfsim.machine.capture import Capture
 from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Row
@@ -150,7 +150,8 @@ class Core(SynchronisedCore):
             call = self._calls.known[kernel, kernel.arrays_of(arguments)]
         except (LookupError, TypeError):  # the first time, or something is wrong with the arguments
             call = self._calls.prepare(kernel, arguments)
-        work = self._unclaimed = call.run(arguments)
+        # what reaches outside L1 may meet what others do: it runs when the simulated time is there
+        work = self._unclaimed = call.run(arguments) if call.stays_in_l1 else DeferredWork(call, arguments)
         return work
 
     @contextlib.contextmanager
@@ -217,6 +218,8 @@ class Core(SynchronisedCore):
             return 0
         self.program_device(writes=SPI_WRITES)
         yield from self._sync()
+        if not self._spi.has_message:  # the other core was faster
+            return 0
         transfer, nbytes = self._spi.receive(row)
         yield from self.wait_transfer(transfer, StallReason.RING_EMPTY)
         return nbytes
@@ -265,8 +268,11 @@ class Core(SynchronisedCore):
                 raise self._told(error) from error
             if item is self._unclaimed and item is not None:
                 self._unclaimed = None
-                if item.accesses:
-                    yield from self._outside_l1(item)
+                if isinstance(item, DeferredWork):
+                    yield from self._sync()
+                    item = item.run()
+                    if item.accesses:
+                        yield from self._outside_l1(item)
                 self._cclk += item.issue_cclk + item.stall_cclk
                 self._account.issue_cclk += item.issue_cclk
                 if item.stall_cclk:
@@ -280,10 +286,9 @@ class Core(SynchronisedCore):
                     f"core {self.name}: firmware must yield each core.run(...) once, or `yield from` a wait, "
                     f"not {item!r}{self.place()}"
                 )
-            if self._interrupts.is_waiting and not self._in_handler:
-                self._in_handler = True
+            if self._interrupts.are_handled and not self._in_handler:
+                yield from self._sync()
                 yield from self._take_interrupts()
-                self._in_handler = False
         self._check_claimed()
 
     @property
@@ -327,7 +332,6 @@ class Core(SynchronisedCore):
 
     def _outside_l1(self, work: Work) -> Generator[Any, Any, None]:
         """Play the accesses of a call outside L1 from the core's clock on, and charge what they stall."""
-        yield from self._sync()
         begin, cclk = self.now_ticks, work.issue_cclk + work.stall_cclk
         yield self._bus.access(self._number, begin, cclk, work.accesses)
         for reason, stalled in zip(BUS_STALLS, self._bus.stalls_of(self._number), strict=True):

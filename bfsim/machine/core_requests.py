@@ -37,6 +37,11 @@ def next_entry(state: State, core: int, not_before: int) -> int:
     issued = max(not_before, state[job + w.BEGIN] + (entry >> log.STAMP_BIT) * cclk + state[job + w.STALLED])
     kind = entry >> log.KIND_BIT & log.KIND_MASK
     waits = kind not in (log.STORE, log.WRITE_BACK)
+    if waits and state[job + w.LINE_DONE] > issued:  # a core reads one line at a time
+        cycles = (state[job + w.LINE_DONE] - issued + cclk - 1) // cclk
+        state[job + w.STALL + w.CACHE_FILL] += cycles
+        state[job + w.STALLED] += cycles * cclk
+        issued += cycles * cclk
     state[job + w.ISSUED_AT] = issued
     state[master + w.USES_BUS] = waits and entry & log.OFFSET_MASK < state[w.SDRAM_END]
     state[master + w.READY] = aligned(issued, state[w.SCLK]) if state[master + w.USES_BUS] else issued
@@ -180,6 +185,7 @@ def read_l2(state: State, core: int, at: int, kind: int) -> int:
         stall(state, job, state[w.CCLK], start + state[w.CCLK], w.L2_PORT)
         state[job + w.ISSUED_AT] = start
     done = start + state[w.L2_READ]
+    state[job + w.LINE_DONE] = done + (nbytes - 1 >> state[w.L2_PORT_BITS]) * state[w.L2_NEXT]
     stall(
         state,
         job,
@@ -204,8 +210,8 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
     more = max(0, (nbytes >> state[w.WORD_BITS]) - 1)
     if kind == log.LOAD and more:
         through = stream(state, more, False, offset)  # a load needs all of its word
-    elif more:
-        stream(state, more, False, offset)  # of a line, the core goes on with the first word
+    elif more:  # of a line, the core goes on with the first word
+        state[job + w.LINE_DONE] = stream(state, more, False, offset) + state[w.CORE_SYNC] - state[w.SCLK]
     count_access(state, w.CORE_A + core, 1 + more)
     count_traffic(state, w.CORE_A + core, w.IN_SDRAM, False, nbytes)
     state[w.LAST_CORE] = core

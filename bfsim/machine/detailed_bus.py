@@ -81,6 +81,10 @@ class DetailedBus(Bus):
         self._errands[transfer.number].rows.append(event)
         return event
 
+    def moved_by(self, transfer: Transfer) -> int:
+        """Return how many elements a transfer that is not over has moved."""
+        return self._errands[transfer.number].moved
+
     def lost_by(self, master: int) -> int:
         """Return how many elements of a device found the FIFO of its DMA full."""
         return self._channels[master].lost

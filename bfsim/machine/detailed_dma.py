@@ -47,9 +47,11 @@ class Errand:
     at: int
     done: simpy.Event
     rows: list[simpy.Event] = field(default_factory=list)
+    moved: int = 0
 
     def tell_row(self, moved: int) -> None:
         """Tell those who wait for a row, if the last of `moved` elements ended one. The last row ends with the errand."""
+        self.moved = moved
         if moved % self.plan.destination.x_count == 0 and moved < self.plan.count:
             self.tell()
 

@@ -22,6 +22,8 @@ from bfsim.kernel.schedule import Counter
 from bfsim.machine.bus_state import FETCH_BYTES
 from bfsim.machine.memories import Row
 
+SUBBANK_BYTES = 4096
+
 
 class Runnable(Protocol):
     """A kernel bound to its rows."""
@@ -39,11 +41,17 @@ class CodeCache:
         sets = spec.code_bytes // (spec.line_bytes * spec.code_ways)
         self._sets: list[list[int]] = [[] for _ in range(sets)]
 
+    def _set_of(self, line: int) -> int:
+        """Return the set of a line: addr[9:5] in the sub-bank of 4 KB that addr[13:12] names (Programming Reference p.243)."""
+        at = line * self.line_bytes
+        per_bank = SUBBANK_BYTES // (self.line_bytes * self._ways)
+        return at // SUBBANK_BYTES * per_bank % len(self._sets) + line % per_bank
+
     def miss(self, lines: Iterable[int]) -> list[int]:
         """Use `lines` one after the other; return those that were not there."""
         missed = []
         for line in lines:
-            kept = self._sets[line % len(self._sets)]
+            kept = self._sets[self._set_of(line)]
             if line in kept:
                 kept.remove(line)
             else:
@@ -99,6 +107,11 @@ class FetchedCall:
         self._lines = code.lines(cache.line_bytes) if cache else []
         outside = [each.nbytes if each.routine in code.places else 0 for each in counters]
         self._nbytes = np.array(outside or [0], np.int64)
+
+    @property
+    def stays_in_l1(self) -> bool:
+        """Whether no access can leave L1: its code does."""
+        return False
 
     def run(self, arguments: tuple[Row | int, ...]) -> Work:
         """Run the kernel now and say what it cost."""

@@ -114,16 +114,24 @@ class MemoryDma:
     def _run(self, source: Step, destination: Step) -> Generator[Any, Any, None]:
         """Move one work unit after the other, until one of the channels stops."""
         while source.unit and destination.unit:
-            transfer = self._post(source, destination)
+            transfer, rows = self._post(source, destination), destination.unit.y_count
+            noted = 0
             while transfer.end is None:
                 yield (
                     self._bus.when_row(transfer)
                     if destination.unit.row_interrupt
                     else self._bus.when_done(transfer)
                 )
-                if transfer.end is None:
+                # several rows may be over; the last one ends with the unit
+                moved = (
+                    self._bus.moved_by(transfer) // destination.unit.x_count
+                    if transfer.end is None
+                    else rows - 1
+                )
+                for _ in range(noted, moved):
                     self.source.row_done()
                     self._interrupt(wanted=self.destination.row_done())
+                noted = max(noted, moved)
             self.source.fetched()
             self.destination.fetched()
             source, destination = self.source.unit_done(), self.destination.unit_done()
