@@ -132,38 +132,51 @@ def written_at(bench: Bench, ticks: int) -> int:
 
 
 def test_the_lower_channel_comes_first() -> None:
-    """The picture's four words are there at cycle 80 and the copy is not through: the camera has the next cycle."""
+    """The picture's first word is there at cycle 20 and the copy is not through: the camera has the next cycle."""
     bench = Bench(outside_nbytes=4096)
     write_all(bench)
     receive(bench)
-    assert written_at(bench, 4 * WORD_TICKS) == 0
-    assert written_at(bench, 4 * WORD_TICKS + bench.sclk(1)) == 4
+    assert written_at(bench, WORD_TICKS) == 0
+    assert written_at(bench, WORD_TICKS + bench.sclk(1)) == 1
+
+
+def turned_round(bench: Bench, ticks: int) -> int:
+    """Return when the word behind the first can be written, if that one is granted at `ticks`, right behind a read."""
+    sdram = bench.spec.sdram
+    return ticks + bench.sclk(sdram.nCL + sdram.turn_round_sclk + 1)
 
 
 def test_a_request_against_the_direction_waits_until_it_is_urgent() -> None:
-    """DEB_TRAFFIC_PERIOD prefers the reads of a copy; the camera gets the bus when half of its FIFO is full."""
+    """DEB_TRAFFIC_PERIOD prefers the reads of a copy; the camera gets the bus when half of its FIFO is full.
+
+    Then writes are preferred: all that waits goes at once.
+    """
     bench = Bench(without_pauses(), deb_period=LONG, outside_nbytes=4096)
     bench.bus.words[w.LAST_WRITE] = 1  # the copy's first word begins a period
     bench.stream.copy(bench.row(SDRAM, 32 * 1024), bench.row(L1, 32 * 1024), 0)
     transfer = receive(bench)
     half = (12 // 2 + 1) * WORD_TICKS  # six wait, and the seventh comes
     assert written_at(bench, half) == 0
-    assert written_at(bench, half + bench.sclk(1)) == 4
+    assert written_at(bench, half + bench.sclk(1)) == 1
+    assert written_at(bench, turned_round(bench, half)) == 1
+    assert written_at(bench, turned_round(bench, half) + bench.sclk(6)) == 7
     bench.play()
     assert bench.bus.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.LOST] == 0
 
 
 def test_a_period_ends() -> None:
-    """After so many words of a direction the camera has its turn, as it would without the rule."""
+    """After so many words of a direction the camera has its turn, as it would without the rule: five words wait."""
     bench = Bench(without_pauses(), deb_period=85, outside_nbytes=4096)
     bench.bus.words[w.LAST_WRITE] = 1
     sdram = bench.spec.sdram
     bench.stream.copy(bench.row(SDRAM, 32 * 1024), bench.row(L1, 32 * 1024), 0)
     receive(bench)
     over = bench.sclk(15 + sdram.nRCD + 1 + 85)
-    assert over > 4 * WORD_TICKS
+    assert over // WORD_TICKS == 5
     assert written_at(bench, over) == 0
-    assert written_at(bench, over + bench.sclk(1)) == 4
+    assert written_at(bench, over + bench.sclk(1)) == 1
+    assert written_at(bench, turned_round(bench, over)) == 1
+    assert written_at(bench, turned_round(bench, over) + bench.sclk(4)) == 5
 
 
 def opposite_streams(bench: Bench, nbytes: int = 4096) -> tuple[int, int]:

@@ -140,9 +140,9 @@ def test_latency_is_counted_from_the_later_picture_s_last_line() -> None:
         feed=Feed.RECORDED,
     )
     (frame,) = outcome.frames
-    # 7 of 9 lines and 32 of the eighth's 40 clocks, 30 frames a second; an SCLK edge, tRCD and the last four words
+    # 7 of 9 lines and 32 of the eighth's 40 clocks, 30 frames a second; an SCLK edge, tRCD and the last word
     picture_cclk = 600_000_000 * (7 * 40 + 32) // (30 * 9 * 40)
-    assert frame.last_line_cclk == -(-(600_000 + picture_cclk) // 5) * 5 + (2 + 4) * 5
+    assert frame.last_line_cclk == -(-(600_000 + picture_cclk) // 5) * 5 + (2 + 1) * 5
     assert frame.result_cclk == frame.last_line_cclk + INTERRUPT_CCLK
 
 
@@ -150,11 +150,11 @@ def test_a_core_goes_on_at_its_own_clock_s_next_edge() -> None:
     """At 600/133 1/3 a CCLK is two ticks, an SCLK nine; a picture that is there at an odd one is seen half a cycle later."""
     flat = np.zeros((8, 32), np.uint8)
     outcome = run(
-        see_all, frames=[Picture(0, flat, flat, 0, 107)], feed=Feed.RECORDED, board="cm-bf561-ratings"
+        see_all, frames=[Picture(0, flat, flat, 0, 114)], feed=Feed.RECORDED, board="cm-bf561-ratings"
     )
-    # 107 ns and the picture, each rounded up to a tick; an SCLK edge, tRCD and the last four words
-    last_ticks = 129 + -(-1_200_000_000 * (7 * 40 + 32) // (30 * 9 * 40))
-    ready_ticks = -(-last_ticks // 9) * 9 + (2 + 4) * 9
+    # 114 ns and the picture, each rounded up to a tick; an SCLK edge, tRCD and the last word
+    last_ticks = 137 + -(-1_200_000_000 * (7 * 40 + 32) // (30 * 9 * 40))
+    ready_ticks = -(-last_ticks // 9) * 9 + (2 + 1) * 9
     assert ready_ticks % 2 == 1
     (frame,) = outcome.frames
     assert frame.last_line_cclk == frame.result_cclk - INTERRUPT_CCLK == (ready_ticks + 1) // 2

@@ -177,13 +177,13 @@ def test_stores_to_l2_go_no_faster_than_its_port() -> None:
 @each_board
 @pytest.mark.parametrize("count", [1, 10, 11, 41, 160, 250])
 def test_streams_of_one_memory_dma(board: str, count: int) -> None:
-    """Within a page: to SDRAM a word in a cycle, from it a word in 1.1; opening and the last data come on top."""
-    sdram = board_named(board).sdram
+    """Within a page: to SDRAM a word in a cycle; from it the same, with a pause of 4 after every 40; the rest on top."""
+    sdram, fifo_words = board_named(board).sdram, board_named(board).chip.dma.fifo_words
     words_sclk = sdram.nRCD + count * WORD // sdram.word_bytes
     bench = Bench(board=board)
     assert bench.ends(bench.copy(bench.l1, 0, count)) == [words_sclk * bench.sclk]
     bench = Bench(board=board)
-    pauses_sclk = (count - 1) // 10
+    pauses_sclk = (count - 1) // (10 * fifo_words) * fifo_words
     assert bench.ends(bench.copy(0, bench.l1, count)) == [(words_sclk + pauses_sclk + sdram.nCL) * bench.sclk]
 
 

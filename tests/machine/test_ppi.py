@@ -67,13 +67,13 @@ def test_a_line_is_in_memory_at_the_end_of_its_pixels(board: str, start: int) ->
 
 
 def test_the_event_is_at_the_end_of_the_last_word() -> None:
-    """The closed bank is opened and the last lot of words written, a cycle each."""
+    """The closed bank is opened and the last word written."""
     bench = Bench(outside_nbytes=OUTSIDE)
     ppi, (picture, rows) = new_ppi(bench), picture_of(bench)
     end = ppi.receive(picture, rows, 0)
     bench.env.run(until=end)
     last = ceil(ppi.picture_ticks / bench.sclk(1)) * bench.sclk(1)
-    assert bench.env.tick == last + bench.sclk(bench.spec.sdram.nRCD + 4)
+    assert bench.env.tick == last + bench.sclk(bench.spec.sdram.nRCD + 1)
 
 
 def test_a_picture_is_shorter_than_a_frame_by_its_blanking() -> None:
@@ -87,16 +87,16 @@ def test_a_picture_is_shorter_than_a_frame_by_its_blanking() -> None:
 
 
 def test_lines_use_the_bus_and_are_counted() -> None:
-    """Every byte of the picture is written once, a word a cycle; a refresh has closed the page before each lot."""
+    """Every byte of the picture is written once, in a cycle; refreshes have closed the page since the word before."""
     bench = Bench(outside_nbytes=OUTSIDE)
     picture, rows = picture_of(bench)
     new_ppi(bench).receive(picture, rows, 0)
     bench.play()
-    lots, words = HEIGHT * 2 * WIDTH // 16, HEIGHT * 2 * WIDTH // 4
+    words = HEIGHT * 2 * WIDTH // 4
     traffic = bench.traffic(w.PPI0)
     assert (traffic.read_bytes, traffic.written_bytes) == (0, 4 * words)
-    assert (traffic.page_misses, traffic.page_hits) == (lots, words - lots)
-    assert traffic.busy == bench.sclk(words + lots * bench.spec.sdram.nRCD)
+    assert (traffic.page_misses, traffic.page_hits) == (words, 0)
+    assert traffic.busy == bench.sclk(words * (bench.spec.sdram.nRCD + 1))
 
 
 # ---- The FIFO
@@ -172,7 +172,7 @@ def test_what_is_in_the_fifo_is_not_lost() -> None:
 
 
 def test_two_fast_cameras_are_too_much_for_one_bank() -> None:
-    """A word in 4 cycles each: two banks take it, one bank that is opened anew for every lot does not."""
+    """A word in 4 cycles each: two banks take it, one bank that is opened anew for every word does not."""
     losses = {}
     for name, other in (("one bank", SDRAM + 8 * KIB), ("two banks", OTHER_BANK)):
         bench = Bench(outside_nbytes=OUTSIDE)
@@ -182,13 +182,13 @@ def test_two_fast_cameras_are_too_much_for_one_bank() -> None:
         ]
         bench.play()
         losses[name] = [lost(bench, each) for each in transfers]
-    # from one lot to the next tRCD, four words, tWR and tRP: 10 cycles, and two of them come in 16
+    # from one word to the next tRAS and tRP: 9 cycles, and two of them come in 4
     assert losses["two banks"] == [0, 0]
     assert sum(losses["one bank"]) > 0
 
 
 def test_a_saturating_copy_does_not_disturb_a_camera() -> None:
-    """The PPI comes first: every lot is written when it is there, or a word of the copy later."""
+    """The PPI comes first: every word is written when it is there, or a word of the copy later."""
     alone, crowded = Bench(outside_nbytes=OUTSIDE), Bench(outside_nbytes=OUTSIDE)
     ends = []
     for bench in (alone, crowded):

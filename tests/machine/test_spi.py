@@ -74,26 +74,28 @@ def run(main_a: Any, main_b: Any = None, *, frames: int = 1, **made: Any) -> tup
 @pytest.mark.parametrize("board", [CM_BF561, CM_BF561_RATINGS], ids=lambda each: each.name)
 @pytest.mark.parametrize("payload", [0, 1, 8, 100])
 def test_words_and_gaps_make_the_time_on_the_wire(payload: int, board: BoardSpec, spi_mhz: int) -> None:
-    """From the last register write to the last word's gap; BAUD makes no faster SCK than a quarter of SCLK."""
+    """From the SCLK edge behind the last register write to the last word's gap; SCK is at most a quarter of SCLK."""
     spec = replace(board, spi_clk_hz=Fraction(spi_mhz * 1_000_000))
     written = []
 
     def work(core: Core, frame: Frame) -> Play:
         nbytes = put(core, results(7, bytes(payload)))
         yield from core.send(core.array("message"), nbytes)
-        written.append(core.now_ticks // spec.clocks.cclk_ticks)
+        written.append(core.now_ticks)
 
     outcome, received = run(every_frame(work), spec=spec)
     nbytes = message_nbytes(payload)
     assert received == [results(7, bytes(payload))]
-    end_cclk = ceil(written[0] + wire_cclk(nbytes, spec))
+    clocks = spec.clocks
+    edge_ticks = ceil(Fraction(written[0], clocks.sclk_ticks)) * clocks.sclk_ticks
+    end_cclk = ceil(Fraction(edge_ticks, clocks.cclk_ticks) + wire_cclk(nbytes, spec))
     assert outcome.messages == (
         MessageRecord(
             direction="out",
             type="RESULTS",
             sequence=7,
             nbytes=nbytes,
-            begin_cclk=written[0],
+            begin_cclk=written[0] // clocks.cclk_ticks,
             end_cclk=end_cclk,
         ),
     )
