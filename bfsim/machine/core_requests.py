@@ -39,7 +39,7 @@ def next_entry(state: State, core: int, not_before: int) -> int:
     waits = kind not in (log.STORE, log.WRITE_BACK)
     if waits and state[job + w.LINE_DONE] > issued:  # a core reads one line at a time
         cycles = (state[job + w.LINE_DONE] - issued + cclk - 1) // cclk
-        state[job + w.STALL + w.CACHE_FILL] += cycles
+        state[job + w.STALL + (w.CODE_FETCH if kind == log.FETCH_LINE else w.CACHE_FILL)] += cycles
         state[job + w.STALLED] += cycles * cclk
         issued += cycles * cclk
     state[job + w.ISSUED_AT] = issued
@@ -210,8 +210,10 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
     more = max(0, (nbytes >> state[w.WORD_BITS]) - 1)
     if kind == log.LOAD and more:
         through = stream(state, more, False, offset)  # a load needs all of its word
-    elif more:  # of a line, the core goes on with the first word
-        state[job + w.LINE_DONE] = stream(state, more, False, offset) + state[w.CORE_SYNC] - state[w.SCLK]
+    elif more:  # the core goes on with the first word
+        whole = stream(state, more, False, offset) + state[w.CORE_SYNC] - state[w.SCLK]
+        if kind != log.FETCH:
+            state[job + w.LINE_DONE] = whole
     count_access(state, w.CORE_A + core, 1 + more)
     count_traffic(state, w.CORE_A + core, w.IN_SDRAM, False, nbytes)
     state[w.LAST_CORE] = core

@@ -22,7 +22,7 @@ from bfsim.machine.program import FrameSize
 from bfsim.trace import StallReason
 from firmware import tinyphoon
 from tests.machine.kernels import copy, fill, first, spin, total
-from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, cclk_now, in_work, play
+from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, in_work, play
 from tests.machine.placements import changed, shipped
 from tests.machine.rig import Play, every_frame, noise, of_core, see_all, stage_of
 
@@ -119,10 +119,10 @@ def test_a_line_costs_once() -> None:
             times.append((yield from timed(core, walk)))
 
     def timed(core: Core, walk: Sequence[int]) -> Play:
-        work = core.run(visit, core.array("far_image"), core.array("order"), len(walk))
-        issued, before = work.issue_cclk + work.stall_cclk, cclk_now(core)
-        yield work
-        return cclk_now(core) - before - issued
+        stalls = core._account.stall_cclk
+        before = stalls.get(StallReason.CACHE_FILL, 0)
+        yield core.run(visit, core.array("far_image"), core.array("order"), len(walk))
+        return stalls.get(StallReason.CACHE_FILL, 0) - before
 
     outcome = play(in_work(work), ldf=shipped("cache.ldf"), more=(FAR, ORDER))
     sdram = CM_BF561.sdram

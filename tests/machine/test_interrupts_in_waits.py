@@ -76,9 +76,6 @@ def test_an_interrupt_during_a_call_outside_l1_is_taken_behind_it() -> None:
     assert cost.elapsed_cclk > cycles_of(spin, 100) + 1000, "the call goes on for long after the request"
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a core that runs ahead sees an interrupt only where it meets another device"
-)
 def test_calls_in_l1_are_interrupted_between_two_of_them() -> None:
     """A hundred calls that meet no other device: the handler runs behind the one in which B asks for it."""
     handled = []

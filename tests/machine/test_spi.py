@@ -238,7 +238,6 @@ def test_a_message_in_is_waited_for_and_an_empty_wire_is_not() -> None:
     assert (record.begin_cclk, record.end_cclk) == (before + SETUP_CCLK, got)
 
 
-@pytest.mark.xfail(strict=True, reason="a core does not look again after its register writes")
 def test_two_cores_take_one_message_once() -> None:
     """Both look at the same time; one of them gets it, and the other one nothing."""
     got = []
