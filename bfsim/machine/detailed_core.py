@@ -50,6 +50,7 @@ class CorePort:
         self._number = number
         self._cclk, self._sclk = board.clocks.cclk_ticks, board.clocks.sclk_ticks
         self._buffer: deque[CoreAccess] = deque()
+        self._line_done = 0
         self._buffer_changed = env.event()
         self.stalls = [0] * w.STALLS
         env.process(self._drain())
@@ -67,11 +68,21 @@ class CorePort:
                 self._buffer.append(access)
                 self._change_buffer()
                 continue
+            yield from self._wait_for_line(begin, access)
             if any(access.overlaps(store) for store in self._buffer):
                 yield from self._wait_for_buffer(begin, access, self._has_stores)
             yield from (self._read_sdram if access.offset < self._sdram_end else self._read_l2)(access)
         yield from wait_until(self._env, begin + (cclk + sum(self.stalls)) * self._cclk)
         done.succeed()
+
+    def _wait_for_line(self, begin: int, access: CoreAccess) -> Generator[simpy.Event, Any, None]:
+        """Stall until the last line is whole: a core reads one at a time."""
+        late = self._line_done - self._env.tick
+        if late > 0:
+            self.stalls[w.CODE_FETCH if access.kind == log.FETCH_LINE else w.CACHE_FILL] += -(
+                -late // self._cclk
+            )
+            yield from self._issue(begin, access)
 
     def _access(self, entry: int) -> CoreAccess:
         kind = entry >> log.KIND_BIT & log.KIND_MASK
@@ -105,6 +116,8 @@ class CorePort:
         through = grant.through if access.kind == log.LOAD else grant.first_through
         sync = (self._board.chip.external.core_sync_sclk - 1) * self._sclk
         done = through + sync - (edge - issued)
+        if access.kind in (log.FILL, log.FETCH_LINE):
+            self._line_done = grant.through + sync
         self._charge_read(access, grant, self._cycles_since(issued, done))
         yield from wait_until(self._env, done)
 
@@ -126,6 +139,10 @@ class CorePort:
         grant: Grant = yield self._l2.ask(w.CORE_A + self._number, access.offset, access.nbytes, write=False)
         self.stalls[w.L2_PORT] += -(-(grant.at - issued) // self._cclk)
         self._charge(access, w.L2_LATENCY, self._cycles_since(grant.at, grant.through))
+        l2 = self._board.chip.l2
+        assert l2 is not None, "a board without L2 has no accesses to it"
+        if access.kind in (log.FILL, log.FETCH_LINE):
+            self._line_done = grant.through + (access.nbytes // l2.port_bytes - 1) * l2.next_cclk * self._cclk
         yield from wait_until(self._env, grant.through)
 
     def _charge(self, access: CoreAccess, of_load: int, cycles: int) -> None:

@@ -296,32 +296,27 @@ def access_lot(state: State, number: int, at: int, offset: int, step: int, count
 
 @compiled
 def exchange(state: State, memory: Memory, number: int, at: int) -> int:
-    """Move a FIFO full of elements within SDRAM: first all are read, the next time they are written."""
+    """Move an element within SDRAM, into the FIFO or out of it: when that is full, all of it is written again."""
     master = w.MASTERS_AT + number
     slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
-    write = state[master + w.IN_FIFO] > 0
-    count = (
-        state[master + w.IN_FIFO]
-        if write
-        else min(state[w.LOT], state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT])
-    )
-    offset, step = (
-        (state[slot + w.TO], state[slot + w.TO_X_MODIFY])
-        if write
-        else (state[slot + w.FROM], state[slot + w.FROM_X_MODIFY])
-    )
-    through = access_lot(state, number, at, offset, step, count, write)
-    count_traffic(state, number, w.IN_SDRAM, write, count << state[slot + w.ELEMENT_BITS])
-    take_turn(state, master, count)
-    state[master + w.WRITES] = not write
-    if not write:
-        state[master + w.IN_FIFO] = count
-        state[master + w.READY] = aligned(through, state[w.SCLK])
-        return w.NONE
-    state[master + w.IN_FIFO] = 0
+    if state[master + w.WRITES]:
+        through = access_lot(state, number, at, state[slot + w.TO], 0, 1, True)
+        count_traffic(state, number, w.IN_SDRAM, True, 1 << state[slot + w.ELEMENT_BITS])
+        state[master + w.IN_FIFO] -= 1
+        state[master + w.WRITES] = state[master + w.IN_FIFO] > 0
+        state[master + w.READY] = state[w.COMMAND_FREE]
+        moved(state, memory, slot, 1)
+        return after_move(state, master, slot, through)
+    offset = state[slot + w.FROM] + state[master + w.IN_FIFO] * state[slot + w.FROM_X_MODIFY]
+    through = access_lot(state, number, at, offset, 0, 1, False)
+    count_traffic(state, number, w.IN_SDRAM, False, 1 << state[slot + w.ELEMENT_BITS])
+    take_turn(state, master, 1)
+    state[master + w.IN_FIFO] += 1
     state[master + w.READY] = state[w.COMMAND_FREE]
-    moved(state, memory, slot, count)
-    return after_move(state, master, slot, through)
+    if state[master + w.IN_FIFO] == min(state[w.LOT], state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT]):
+        state[master + w.WRITES] = 1
+        state[master + w.READY] = aligned(through, state[w.SCLK])
+    return w.NONE
 
 
 @compiled
