@@ -61,7 +61,7 @@ def record() -> None:
     "--rectification",
     nargs=2,
     metavar="LEFT RIGHT",
-    help="Two .npy files: for each pixel the index of its source pixel.",
+    help="Two .npy files of shape (2, height, width): for each pixel its source row and column, -1 for none.",
 )
 @click.option("--description", default="", help="Free text to keep with the recording.")
 @click.option("--force", is_flag=True, help="Overwrite OUTPUT if it exists.")

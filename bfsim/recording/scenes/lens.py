@@ -1,0 +1,126 @@
+"""A real pair of cameras: lenses that bend straight lines, and a right camera out of line.
+
+The lens is that of Brown and Conrady with two radial and two tangential terms, as OpenCV has it. The scene is
+rendered ideally, finer and with a wider view, and then looked up along the bent rays.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.errors import RecordingError
+from bfsim.recording.rectifying import rectified_rotation
+from bfsim.recording.scenes.pinhole import Pinhole, Vector
+
+# Points of the ideal picture for each distorted pixel, along each side. [assumed]
+FINENESS = 3
+_STEPS = 60
+_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Lens:
+    """Distortion of points on the plane one unit before the camera, radial (k1, k2) and tangential (p1, p2)."""
+
+    k1: float = 0.0
+    k2: float = 0.0
+    p1: float = 0.0
+    p2: float = 0.0
+
+    def distort(self, points: Vector) -> Vector:
+        """Return where the lens moves the ideal points (..., 2), right and down."""
+        x, y = points[..., 0], points[..., 1]
+        square = x * x + y * y
+        radial = 1 + square * (self.k1 + square * self.k2)
+        moved_x = x * radial + 2 * self.p1 * x * y + self.p2 * (square + 2 * x * x)
+        moved_y = y * radial + self.p1 * (square + 2 * y * y) + 2 * self.p2 * x * y
+        return np.stack([moved_x, moved_y], axis=-1)
+
+    def undistort(self, points: Vector) -> Vector:
+        """Return the ideal points (..., 2) that the lens moves to these. Raises RecordingError if it cannot."""
+        ideal = points.copy()
+        for _ in range(_STEPS):
+            off = points - self.distort(ideal)
+            if np.abs(off).max() < _TOLERANCE:
+                return ideal
+            ideal += off
+            if not np.abs(ideal).max() < 10 * max(1.0, np.abs(points).max()):
+                break
+        raise RecordingError(
+            f"lens must bend the picture less than k1 {self.k1:g}, k2 {self.k2:g}, p1 {self.p1:g}, p2 {self.p2:g}: "
+            "with these, rays cross within the picture"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Misfit:
+    """How a real pair differs from the ideal one: its lenses, and the right camera's turn and shift.
+
+    Turn (degrees, right-handed, in the order given) and shift (mm) are round and along the camera's right, down
+    and forward.
+    """
+
+    lens: Lens = Lens()
+    turn_deg: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    shift_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def misplaced(self, ideal: Pinhole) -> Pinhole:
+        """Return the right camera where it really is."""
+        rotation = ideal.rotation
+        for axis, angle_deg in enumerate(self.turn_deg):
+            rotation = _turn(axis, angle_deg) @ rotation
+        return replace(
+            ideal,
+            position_mm=ideal.position_mm + np.array(self.shift_mm) @ ideal.rotation,
+            rotation=rotation,
+        )
+
+
+def rectified(cameras: dict[str, Pinhole]) -> dict[str, Pinhole]:
+    """Return the ideal pair that rectification makes of a real one: at the same places, looking one way."""
+    left, right = cameras["left"], cameras["right"]
+    rotation = rectified_rotation(right.position_mm - left.position_mm, left.rotation[2])
+    return {side: replace(camera, rotation=rotation) for side, camera in cameras.items()}
+
+
+def bent_pixels(camera: Pinhole, lens: Lens) -> Vector:
+    """Return the ideal points (FINENESS * height, FINENESS * width, 2) that the parts of each pixel show."""
+    columns, rows = (
+        (np.arange(size * FINENESS) + 0.5) / FINENESS - 0.5 for size in (camera.width_px, camera.height_px)
+    )
+    grid = np.stack(np.meshgrid(columns, rows), axis=-1)
+    return lens.undistort((grid - camera.centre_px) / camera.focal_px)
+
+
+def wide_view(camera: Pinhole, bent: Vector) -> Pinhole:
+    """Return the finer and wider ideal camera whose picture holds all the bent pixels."""
+    focal_px = camera.focal_px * FINENESS
+    half_x, half_y = (math.ceil(np.abs(bent[..., axis]).max() * focal_px) + 1 for axis in (0, 1))
+    return replace(camera, focal_px=focal_px, width_px=2 * half_x, height_px=2 * half_y)
+
+
+def look_up(picture: NDArray[np.float32], view: Pinhole, bent: Vector) -> NDArray[np.float32]:
+    """Return the distorted picture (height, width, 3) from that of the wide view."""
+    columns, rows = np.moveaxis(np.rint(bent * view.focal_px + view.centre_px).astype(int), -1, 0)
+    return parts_averaged(picture[rows, columns])
+
+
+def parts_averaged(fine: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return the picture (height, width, ...) whose pixels are the means of FINENESS x FINENESS parts."""
+    height, width, *rest = fine.shape
+    parts = fine.reshape(height // FINENESS, FINENESS, width // FINENESS, FINENESS, *rest)
+    return parts.mean(axis=(1, 3), dtype=np.float32)
+
+
+def _turn(axis: int, angle_deg: float) -> Vector:
+    """Return what turns the rows of a rotation round one of its axes."""
+    angle = math.radians(angle_deg)
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    turn = np.eye(3)
+    turn[[first, second], [first, second]] = math.cos(angle)
+    turn[first, second], turn[second, first] = math.sin(angle), -math.sin(angle)
+    return turn
