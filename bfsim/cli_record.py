@@ -139,10 +139,8 @@ def _info_table(info: recording.RecordingInfo) -> Table:
     least_ms, greatest_ms = (skew / 1e6 for skew in info.skew_ns)
     table.add_row("Right after left", f"{least_ms:.3f} to {greatest_ms:.3f} ms")
     table.add_row("Geometry", _geometry_text(info.geometry))
-    table.add_row(
-        "Rectification tables", "left and right" if info.has_rectification else "none: taken as rectified"
-    )
-    table.add_row("Ground truth", f"{info.truth_count} frames" if info.truth_count else "none")
+    table.add_row("Rectification tables", _rectification_text(info.rectified_shares))
+    table.add_row("Ground truth", _truth_text(info))
     table.add_row(
         "File", f"{info.size_bytes / 1e6:.1f} MB, compression {info.compression}, checksums verified"
     )
@@ -156,6 +154,19 @@ def _timing_text(timing: recording.CameraTiming) -> str:
         return "one picture"
     shortest_ms, longest_ms = timing.shortest_interval_ns / 1e6, timing.longest_interval_ns / 1e6
     return f"{timing.rate_hz:.3f} per second, intervals {shortest_ms:.3f} to {longest_ms:.3f} ms"
+
+
+def _rectification_text(shares: tuple[float, float] | None) -> str:
+    if shares is None:
+        return "none: taken as rectified"
+    return f"left and right, {shares[0]:.1%} and {shares[1]:.1%} of the pixels have a source"
+
+
+def _truth_text(info: recording.RecordingInfo) -> str:
+    if not info.truth_count:
+        return "none"
+    disparities = f", {info.disparity_count} with disparities" if info.disparity_count else ""
+    return f"{info.truth_count} frames{disparities}"
 
 
 def _geometry_text(geometry: recording.StereoGeometry | None) -> str:

@@ -20,6 +20,7 @@ LEFT_TOPIC = "/camera/left/image_raw"
 RIGHT_TOPIC = "/camera/right/image_raw"
 TRUTH_TOPIC = "/truth"
 DISPARITY_TOPIC = "/truth/disparity"
+TOPICS = (LEFT_TOPIC, RIGHT_TOPIC, TRUTH_TOPIC, DISPARITY_TOPIC)
 
 IMAGE_SCHEMA = "foxglove.RawImage"
 IMAGE_ENCODINGS = ("uyvy", "yuv422")

@@ -77,6 +77,13 @@ class RecordingReader:
         """How many frames have exact disparities."""
         return self._file.message_count(layout.DISPARITY_TOPIC)
 
+    @property
+    def other_topics(self) -> list[str]:
+        """Topics of the file that are not bfsim's and that nothing here reads."""
+        return sorted(
+            {channel.topic for channel in self._file.summary.channels.values()} - set(layout.TOPICS)
+        )
+
     def __enter__(self) -> Self:
         return self
 

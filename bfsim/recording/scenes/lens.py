@@ -7,6 +7,7 @@ rendered ideally, finer and with a wider view, and then looked up along the bent
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,6 +16,9 @@ from numpy.typing import NDArray
 from bfsim.errors import RecordingError
 from bfsim.recording.rectifying import rectified_rotation
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
+
+Light = NDArray[np.float32]
+"""Radiance of red, green and blue that reaches each pixel: shape (height, width, 3)."""
 
 # Points of the ideal picture for each distorted pixel, along each side. [assumed]
 FINENESS = 3
@@ -72,7 +76,7 @@ class Misfit:
         """Return the right camera where it really is."""
         rotation = ideal.rotation
         for axis, angle_deg in enumerate(self.turn_deg):
-            rotation = _turn(axis, angle_deg) @ rotation
+            rotation = turned(rotation, axis, angle_deg)
         return replace(
             ideal,
             position_mm=ideal.position_mm + np.array(self.shift_mm) @ ideal.rotation,
@@ -87,6 +91,18 @@ def rectified(cameras: dict[str, Pinhole]) -> dict[str, Pinhole]:
     return {side: replace(camera, rotation=rotation) for side, camera in cameras.items()}
 
 
+def through(lens: Lens, camera: Pinhole, look: Callable[[Pinhole], Light]) -> Light:
+    """Return the light (height, width, 3) that a camera gets through a lens.
+
+    `look` gives the light that reaches an ideal camera; it is asked for one with a finer and wider picture.
+    """
+    bent = bent_pixels(camera, lens)
+    view = _wide_view(camera, bent)
+    columns, rows = np.moveaxis(np.rint(bent * view.focal_px + view.centre_px).astype(int), -1, 0)
+    parts = look(view)[rows, columns].reshape(camera.height_px, FINENESS, camera.width_px, FINENESS, 3)
+    return parts.mean(axis=(1, 3), dtype=np.float32)
+
+
 def bent_pixels(camera: Pinhole, lens: Lens) -> Vector:
     """Return the ideal points (FINENESS * height, FINENESS * width, 2) that the parts of each pixel show."""
     columns, rows = (
@@ -96,31 +112,18 @@ def bent_pixels(camera: Pinhole, lens: Lens) -> Vector:
     return lens.undistort((grid - camera.centre_px) / camera.focal_px)
 
 
-def wide_view(camera: Pinhole, bent: Vector) -> Pinhole:
+def _wide_view(camera: Pinhole, bent: Vector) -> Pinhole:
     """Return the finer and wider ideal camera whose picture holds all the bent pixels."""
     focal_px = camera.focal_px * FINENESS
     half_x, half_y = (math.ceil(np.abs(bent[..., axis]).max() * focal_px) + 1 for axis in (0, 1))
     return replace(camera, focal_px=focal_px, width_px=2 * half_x, height_px=2 * half_y)
 
 
-def look_up(picture: NDArray[np.float32], view: Pinhole, bent: Vector) -> NDArray[np.float32]:
-    """Return the distorted picture (height, width, 3) from that of the wide view."""
-    columns, rows = np.moveaxis(np.rint(bent * view.focal_px + view.centre_px).astype(int), -1, 0)
-    return parts_averaged(picture[rows, columns])
-
-
-def parts_averaged(fine: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return the picture (height, width, ...) whose pixels are the means of FINENESS x FINENESS parts."""
-    height, width, *rest = fine.shape
-    parts = fine.reshape(height // FINENESS, FINENESS, width // FINENESS, FINENESS, *rest)
-    return parts.mean(axis=(1, 3), dtype=np.float32)
-
-
-def _turn(axis: int, angle_deg: float) -> Vector:
-    """Return what turns the rows of a rotation round one of its axes."""
+def turned(rotation: Vector, axis: int, angle_deg: float) -> Vector:
+    """Return a camera's rotation after a turn round one of its own axes: right, down, forward."""
     angle = math.radians(angle_deg)
     first, second = (axis + 1) % 3, (axis + 2) % 3
     turn = np.eye(3)
     turn[[first, second], [first, second]] = math.cos(angle)
     turn[first, second], turn[second, first] = math.sin(angle), -math.sin(angle)
-    return turn
+    return turn @ rotation

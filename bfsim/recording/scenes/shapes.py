@@ -67,15 +67,14 @@ def _ball(thing: Ball, roughness: float) -> Shape:
         coat = _coat(thing.colour, roughness)
     else:
         coat = {"type": "roughplastic", "diffuse_reflectance": _seam(thing), "alpha": roughness}
-    half_mm = np.full(3, thing.radius_mm)
-    return {"type": "sphere", "to_world": placed(thing.centre_mm, half_mm, thing.seam_turn_deg), "bsdf": coat}
+    return {"type": "sphere", "center": thing.centre_mm.tolist(), "radius": thing.radius_mm, "bsdf": coat}
 
 
 def _seam(thing: Ball) -> Shape:
     """Return the texture of a ball with a seam: columns are angles round z, rows those from the upper pole."""
     heights, widths = _SEAM_TEXTURE
     polar = ((np.arange(heights) + 0.5) / heights * math.pi)[:, None]
-    azimuth = ((np.arange(widths) + 0.5) / widths * 2 * math.pi)[None, :]
+    azimuth = ((np.arange(widths) + 0.5) / widths * 2 * math.pi)[None, :] - math.radians(thing.seam_turn_deg)
     directions = np.stack(
         np.broadcast_arrays(
             np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)

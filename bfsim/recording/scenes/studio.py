@@ -6,13 +6,13 @@ import os
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
 from bfsim.recording.frames import UyvyImage
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.scenes import lens
-from bfsim.recording.scenes.lens import Lens, Misfit
+from bfsim.recording.scenes.lens import Light, Misfit
+from bfsim.recording.scenes.objects import Colour
 from bfsim.recording.scenes.pinhole import HEIGHT_PX, WIDTH_PX, Pinhole
 from bfsim.recording.scenes.renderer import Renderer
 from bfsim.recording.scenes.scene import Scene
@@ -58,61 +58,37 @@ def record_scene(
         path, width=WIDTH_PX, height=HEIGHT_PX, geometry=scene.geometry, description=description
     ) as recording:
         for index, pose in enumerate(poses):
-            cameras = ideal = pose.cameras(scene.geometry)
-            if misfit is not None:
-                cameras = {**cameras, "right": misfit.misplaced(cameras["right"])}
-                ideal = lens.rectified(cameras)
-            left, right = (
-                _photograph(renderer, camera, scene, misfit, samples=samples, index=index, eye=eye)
-                for eye, camera in enumerate(cameras.values())
-            )
+            seeds = scene.seed + 2 * index, scene.seed + 2 * index + 1
+            if index == 0 or pose != poses[index - 1]:  # from the same place the light is the same
+                cameras = ideal = pose.cameras(scene.geometry)
+                if misfit is not None:
+                    cameras = {**cameras, "right": misfit.misplaced(cameras["right"])}
+                    ideal = lens.rectified(cameras)
+                lights = [
+                    _light(renderer, camera, misfit, samples=samples, seed=seed)
+                    for camera, seed in zip(cameras.values(), seeds, strict=True)
+                ]
+                known = frame_truth(scene, ideal, renderer.sees)
+                disparity_px = disparity(renderer.depths_mm(ideal["left"]), ideal)
+            gains = scene.gains[index] if scene.gains else (1.0, 1.0, 1.0)
+            left, right = (_sent(light, gains, seed) for light, seed in zip(lights, seeds, strict=True))
             left_ns = index * scene.period_ns
-            recording.add(
-                left,
-                right,
-                left_ns,
-                left_ns + scene.right_phase_ns,
-                frame_truth(scene, ideal, renderer.sees),
-                disparity(renderer.depths_mm(ideal["left"]), ideal),
-            )
+            recording.add(left, right, left_ns, left_ns + scene.right_phase_ns, known, disparity_px)
             if progress is not None:
                 progress(index + 1, len(poses))
 
 
-def photograph(
-    look: Callable[[Pinhole], NDArray[np.float32]],
-    camera: Pinhole,
-    bent_by: Lens | None,
-) -> NDArray[np.float32]:
-    """Return the light (height, width, 3) behind a lens, or straight without one.
-
-    `look` gives the light that reaches an ideal camera.
-    """
-    if bent_by is None:
-        return look(camera)
-    bent = lens.bent_pixels(camera, bent_by)
-    view = lens.wide_view(camera, bent)
-    return lens.look_up(look(view), view, bent)
+def _light(
+    renderer: Renderer, camera: Pinhole, misfit: Misfit | None, *, samples: int, seed: int
+) -> Light:
+    """Return the light that reaches the sensor."""
+    if misfit is None:
+        return renderer.look(camera, samples=samples, seed=seed)
+    finer = max(1, samples // lens.FINENESS**2)
+    return lens.through(misfit.lens, camera, lambda view: renderer.look(view, samples=finer, seed=seed))
 
 
-def _photograph(
-    renderer: Renderer,
-    camera: Pinhole,
-    scene: Scene,
-    misfit: Misfit | None,
-    *,
-    samples: int,
-    index: int,
-    eye: int,
-) -> UyvyImage:
-    seed = scene.seed + 2 * index + eye
-    finer = lens.FINENESS**2 if misfit else 1
-    light = photograph(
-        lambda view: renderer.look(view, samples=max(1, samples // finer), seed=seed),
-        camera,
-        misfit.lens if misfit else None,
-    )
-    if scene.gains:
-        light = light * np.array(scene.gains[index], np.float32)
-    picture = expose(light, np.random.default_rng(seed))
+def _sent(light: Light, gains: Colour, seed: int) -> UyvyImage:
+    """Return what the camera makes of the light and sends."""
+    picture = expose(light * np.array(gains, np.float32), np.random.default_rng(seed))
     return YuvPlanes.from_image(Image.fromarray(picture)).to_uyvy()

@@ -38,7 +38,7 @@ LIGHT_GREY: Colour = (0.45, 0.45, 0.45)
 YELLOW_GOAL = replace(GOAL, colour=YELLOW)
 
 FRAMES = 3
-SAMPLES = 64  # light paths a pixel; where light is low their noise is that of a gain turned up
+SAMPLES = 96  # light paths a pixel; where light is low their noise is that of a gain turned up
 
 
 def _still(x_mm: float, y_mm: float, heading_deg: float, speed_mm_per_s: float = 0.0) -> Drive:
@@ -59,7 +59,7 @@ BALL_BESIDE_GOAL = replace(
         "ball": replace(BALL, x_mm=705, y_mm=-255),
         "background": Box(foot_mm=(1150, 330, 120), size_mm=(60, 110, 90), colour=ORANGE),
     },
-    floor=replace(FLOOR, arcs=(FieldArc((350, 60), 120, 0, 360, 10),)),
+    floor=replace(FLOOR, arcs=(FieldArc((260, 170), 120, 0, 360, 10),)),
     poses=_still(-140, 0, 0, 300).poses(FRAMES, FRAME_PERIOD_NS),
     samples=SAMPLES,
     seed=607,
@@ -86,7 +86,7 @@ CAMERA_INITIALISED = replace(
     floor=replace(FLOOR, colour=(0.10, 0.10, 0.10)),
     poses=_still(0, 0, 3).poses(_SETTLING_FRAMES + 1, FRAME_PERIOD_NS),
     gains=tuple(_settling(frame) for frame in range(_SETTLING_FRAMES + 1)),
-    samples=SAMPLES // 2,
+    samples=SAMPLES,
     seed=608,
 )
 
@@ -99,8 +99,8 @@ ROBOT_MARKER = replace(
         "goal": GOAL,
         **WALLS,
         "robot": replace(ROBOT, x_mm=330, y_mm=25, heading_deg=0),
-        "post": Box(foot_mm=(900, 118, 0), size_mm=(30, 60, 400), colour=LIGHT_GREY),
-        "cupboard": Box(foot_mm=(900, -230, 0), size_mm=(40, 300, 260), colour=WOOD),
+        "post": Box(foot_mm=(1000, 144.3, 0), size_mm=(30, 60, 400), colour=LIGHT_GREY),
+        "cupboard": Box(foot_mm=(1000, -250, 0), size_mm=(40, 300, 260), colour=WOOD),
     },
     poses=_still(0, 0, 0).poses(FRAMES, FRAME_PERIOD_NS),
     samples=SAMPLES,
@@ -115,9 +115,9 @@ HIDDEN_BALL = replace(
     things={
         "goal": replace(GOAL, colour=(0.30, 0.19, 0.015)),
         **WALLS,
-        "ball": replace(BALL, x_mm=455, y_mm=90),
+        "ball": replace(BALL, x_mm=455, y_mm=108),
         "robot_hiding": replace(ROBOT, x_mm=350, y_mm=100, heading_deg=12, mark_colour=CYAN),
-        "robot_right": replace(ROBOT, x_mm=480, y_mm=-80, heading_deg=350),
+        "robot_right": replace(ROBOT, x_mm=480, y_mm=-50, heading_deg=350),
     },
     light=replace(LIGHT, lamps=(*LAMPS, Lamp((200, -1300, 1100), (1400, 300), 30.0))),
     poses=_still(0, 0, 0, 200).poses(FRAMES, FRAME_PERIOD_NS),
@@ -133,7 +133,7 @@ BALL_WITH_SEAM = replace(
     things={
         "goal": GOAL,
         **WALLS,
-        "ball": replace(BALL, x_mm=330, y_mm=-25, seam_colour=WHITE, seam_turn_deg=100),
+        "ball": replace(BALL, x_mm=330, y_mm=15, seam_colour=WHITE, seam_turn_deg=100),
     },
     poses=_still(100, 40, 0, 200).poses(FRAMES, FRAME_PERIOD_NS),
     samples=SAMPLES,
@@ -146,7 +146,7 @@ BALL_TOO_CLOSE = replace(
     SOCCER,
     description="T Figure 6.13: the ball too close, only a part of it in view, its top over-exposed.",
     things={"goal": GOAL, **WALLS, "ball": replace(BALL, x_mm=148, y_mm=15)},
-    light=replace(LIGHT, lamps=(*LAMPS, Lamp((150, 0, 900), (500, 500), 55.0))),
+    light=replace(LIGHT, lamps=(*LAMPS, Lamp((120, 15, 500), (150, 150), 60.0))),
     poses=_still(0, 0, 0).poses(FRAMES, FRAME_PERIOD_NS),
     samples=SAMPLES,
     seed=613,
