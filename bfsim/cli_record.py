@@ -1,4 +1,4 @@
-"""The commands `bfsim record import` and `bfsim record info`: parse, call, print."""
+"""The commands `bfsim record import`, `info`, `render` and `calibrate`: parse, call, print."""
 
 from __future__ import annotations
 

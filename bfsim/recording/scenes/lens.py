@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,7 @@ Light = NDArray[np.float32]
 # Points of the ideal picture for each distorted pixel, along each side. [assumed]
 FINENESS = 3
 _STEPS = 60
-_TOLERANCE = 1e-9
+_TOLERANCE = 1e-8
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,20 +97,19 @@ def through(lens: Lens, camera: Pinhole, look: Callable[[Pinhole], Light]) -> Li
 
     `look` gives the light that reaches an ideal camera; it is asked for one with a finer and wider picture.
     """
-    bent = bent_pixels(camera, lens)
+    bent = _bent(lens, camera.focal_px, camera.width_px, camera.height_px)
     view = _wide_view(camera, bent)
     columns, rows = np.moveaxis(np.rint(bent * view.focal_px + view.centre_px).astype(int), -1, 0)
     parts = look(view)[rows, columns].reshape(camera.height_px, FINENESS, camera.width_px, FINENESS, 3)
     return parts.mean(axis=(1, 3), dtype=np.float32)
 
 
-def bent_pixels(camera: Pinhole, lens: Lens) -> Vector:
+@lru_cache(maxsize=4)
+def _bent(lens: Lens, focal_px: float, width_px: int, height_px: int) -> Vector:
     """Return the ideal points (FINENESS * height, FINENESS * width, 2) that the parts of each pixel show."""
-    columns, rows = (
-        (np.arange(size * FINENESS) + 0.5) / FINENESS - 0.5 for size in (camera.width_px, camera.height_px)
-    )
-    grid = np.stack(np.meshgrid(columns, rows), axis=-1)
-    return lens.undistort((grid - camera.centre_px) / camera.focal_px)
+    sizes = width_px, height_px
+    grid = np.meshgrid(*((np.arange(size * FINENESS) + 0.5 - size * FINENESS / 2) / FINENESS for size in sizes))
+    return lens.undistort(np.stack(grid, axis=-1) / focal_px)
 
 
 def _wide_view(camera: Pinhole, bent: Vector) -> Pinhole:

@@ -38,7 +38,7 @@ LIGHT_GREY: Colour = (0.45, 0.45, 0.45)
 YELLOW_GOAL = replace(GOAL, colour=YELLOW)
 
 FRAMES = 3
-SAMPLES = 96  # light paths a pixel; where light is low their noise is that of a gain turned up
+SAMPLES = 64  # light paths a pixel; where light is low their noise is that of a gain turned up
 
 
 def _still(x_mm: float, y_mm: float, heading_deg: float, speed_mm_per_s: float = 0.0) -> Drive:
@@ -113,9 +113,9 @@ HIDDEN_BALL = replace(
     SOCCER,
     description="T Figure 6.10: the ball half hidden by a robot; a red mark before yellow of the same brightness.",
     things={
-        "goal": replace(GOAL, colour=(0.30, 0.19, 0.015)),
+        "goal": YELLOW_GOAL,
         **WALLS,
-        "ball": replace(BALL, x_mm=455, y_mm=108),
+        "ball": replace(BALL, x_mm=455, y_mm=94),
         "robot_hiding": replace(ROBOT, x_mm=350, y_mm=100, heading_deg=12, mark_colour=CYAN),
         "robot_right": replace(ROBOT, x_mm=480, y_mm=-50, heading_deg=350),
     },
