@@ -12,10 +12,10 @@ from types import TracebackType
 from typing import IO, Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
 from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
+from numpy.typing import NDArray
 
 from bfsim import __version__
 from bfsim.errors import RecordingError
@@ -90,7 +90,9 @@ class RecordingWriter:
             layout.LEFT_TOPIC: self._mcap.register_channel(layout.LEFT_TOPIC, "protobuf", image_schema),
             layout.RIGHT_TOPIC: self._mcap.register_channel(layout.RIGHT_TOPIC, "protobuf", image_schema),
             layout.TRUTH_TOPIC: self._mcap.register_channel(layout.TRUTH_TOPIC, "json", truth_schema),
-            layout.DISPARITY_TOPIC: self._mcap.register_channel(layout.DISPARITY_TOPIC, "protobuf", image_schema),
+            layout.DISPARITY_TOPIC: self._mcap.register_channel(
+                layout.DISPARITY_TOPIC, "protobuf", image_schema
+            ),
         }
 
     def add(
@@ -143,7 +145,9 @@ class RecordingWriter:
                 f"disparity must be float32 of shape ({self.height}, {self.width}), not {disparity_px.dtype} of "
                 f"shape {disparity_px.shape} ({self.path}: frame {self.frame_count})"
             )
-        self._add_image(layout.DISPARITY_TOPIC, disparity_px.astype("<f4"), time_ns, layout.DISPARITY_ENCODING)
+        self._add_image(
+            layout.DISPARITY_TOPIC, disparity_px.astype("<f4"), time_ns, layout.DISPARITY_ENCODING
+        )
 
     def _add_image(
         self,

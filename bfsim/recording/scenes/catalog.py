@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from bfsim.errors import RecordingError
+from bfsim.recording.frames import StereoGeometry
 from bfsim.recording.scenes import thesis_data as thesis
 from bfsim.recording.scenes.distances import ball_at, box_at
 from bfsim.recording.scenes.scene import Scene
 from bfsim.recording.scenes.soccer_data import SOCCER
 
+THESIS = "thesis"
+"""Stands for all thesis scenes."""
+
+# T Figures 5.8, 6.7, 6.8, 6.9, 6.10, 6.12, 6.13 and 6.14.
 THESIS_SCENES: dict[str, Scene] = {
     "field-of-circles": thesis.FIELD_OF_CIRCLES,
     "ball-beside-goal": thesis.BALL_BESIDE_GOAL,
@@ -17,13 +27,27 @@ THESIS_SCENES: dict[str, Scene] = {
     "ball-too-close": thesis.BALL_TOO_CLOSE,
     "goal-sharp-angle": thesis.GOAL_SHARP_ANGLE,
 }
-"""T Figures 5.8, 6.7, 6.8, 6.9, 6.10, 6.12, 6.13 and 6.14."""
+_SCENES = {"soccer": SOCCER, **THESIS_SCENES}
+_DISTANCE_SCENES = {"box-distances": box_at, "ball-distances": ball_at}
 
-DISTANCE_SCENES = {"box-distances": box_at, "ball-distances": ball_at}
-"""T Tables 6.2 and 6.3: functions of the distances and the geometry."""
+SCENE_NAMES = (*_SCENES, *_DISTANCE_SCENES, THESIS)
 
-SCENES: dict[str, Scene] = {
-    "soccer": SOCCER,
-    **THESIS_SCENES,
-    **{name: scene_of() for name, scene_of in DISTANCE_SCENES.items()},
-}
+
+def scenes_named(
+    name: str, distances_mm: Sequence[float] | None = None, geometry: StereoGeometry | None = None
+) -> dict[str, Scene]:
+    """Return the scene of this name, or all that it stands for, by their own names.
+
+    distances_mm are those of a scene that has some; geometry is another than the scene's own. Raises
+    RecordingError.
+    """
+    if distances_mm is not None and name not in _DISTANCE_SCENES:
+        raise RecordingError(f"distances must be given for {' or '.join(_DISTANCE_SCENES)}, not for {name}")
+    if distances_mm is not None and not all(0 < distance < math.inf for distance in distances_mm):
+        raise RecordingError(f"distances must be above 0 mm, not {', '.join(map(str, distances_mm))}")
+    if name in _DISTANCE_SCENES:
+        return {name: _DISTANCE_SCENES[name](distances_mm, geometry)}
+    chosen = THESIS_SCENES if name == THESIS else {name: _SCENES[name]}
+    if geometry is None:
+        return chosen
+    return {each: replace(scene, geometry=geometry) for each, scene in chosen.items()}

@@ -56,7 +56,7 @@ class Chessboard:
 def write_chessboards(
     folder: Path, geometry: StereoGeometry, misfit: Misfit, *, seed: int, board: Chessboard | None = None
 ) -> int:
-    """Write left_00.png, right_00.png and so on to `folder`, which is made; return how many pairs.
+    """Write left_00.png, right_00.png and so on to `folder`; return how many pairs.
 
     Raises RecordingError.
     """
@@ -65,15 +65,15 @@ def write_chessboards(
     left, right = stereo_pair(np.zeros(3), heading_deg=0, geometry=geometry)
     eyes = {"left": left, "right": misfit.misplaced(right)}
     ways = list(product(_WIDTHS, _PLACES))
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for index, (width, place) in enumerate(ways):
-            held = _held(left, geometry, board, width, np.array(place), rng)
-            for side, eye in eyes.items():
-                light = through(misfit.lens, eye, partial(board.seen_by, held=held))
-                Image.fromarray(expose(light, rng)).save(folder / f"{side}_{index:02}.png")
-    except OSError as error:
-        raise RecordingError(f"{folder}: folder must be writable: {error.strerror}") from None
+    for index, (width, place) in enumerate(ways):
+        held = _held(left, geometry, board, width, np.array(place), rng)
+        for side, eye in eyes.items():
+            light = through(misfit.lens, eye, partial(board.seen_by, held=held))
+            path = folder / f"{side}_{index:02}.png"
+            try:
+                Image.fromarray(expose(light, rng)).save(path)
+            except OSError as error:
+                raise RecordingError(f"{path}: picture must be writable: {error.strerror}") from None
     return len(ways)
 
 
@@ -96,5 +96,7 @@ def _held(
     for axis, most_deg in enumerate(_MOST_TURN_DEG):
         rotation = turned(rotation, axis, rng.uniform(-most_deg, most_deg))
     return replace(
-        left, position_mm=middle_mm + aside_mm @ left.rotation[:2] + depth_mm * left.rotation[2], rotation=rotation
+        left,
+        position_mm=middle_mm + aside_mm @ left.rotation[:2] + depth_mm * left.rotation[2],
+        rotation=rotation,
     )

@@ -10,7 +10,7 @@ from bfsim.recording.frames import StereoGeometry
 from bfsim.recording.scenes.drive import Pose
 from bfsim.recording.scenes.objects import Box
 from bfsim.recording.scenes.scene import Scene
-from bfsim.recording.scenes.soccer_data import BALL, FLOOR, RED, SOCCER, WHITE
+from bfsim.recording.scenes.soccer_data import BALL, FLOOR, RED, SOCCER
 
 # Distances, focal length and baseline of the synthetic pictures: [T 6.2], [T 6.3.1]. The thesis gives the focal
 # length in mm and uses it in px. Height and tilt: [assumed]; level before the box, so that its upright edges are
@@ -31,10 +31,12 @@ _BALL = replace(BALL, x_mm=_THING_X_MM, y_mm=0)
 _FLOOR = replace(FLOOR, size_mm=(4000.0, 4000.0), lines=())
 
 
-def box_at(
-    distances_mm: Sequence[float] = BOX_DISTANCES_MM, geometry: StereoGeometry = BOX_GEOMETRY
-) -> Scene:
-    """Return a box between the axes of the cameras; its front is each of `distances_mm` from them, over the floor."""
+def box_at(distances_mm: Sequence[float] | None = None, geometry: StereoGeometry | None = None) -> Scene:
+    """Return a box between the axes of the cameras; its front is each of `distances_mm` from them, over the floor.
+
+    The distances and the geometry are those of the thesis by default.
+    """
+    distances_mm, geometry = distances_mm or BOX_DISTANCES_MM, geometry or BOX_GEOMETRY
     return replace(
         SOCCER,
         description=f"T Table 6.2: a box with its front {_listed(distances_mm)} mm before the cameras.",
@@ -47,13 +49,13 @@ def box_at(
     )
 
 
-def ball_at(
-    distances_mm: Sequence[float] = BALL_DISTANCES_MM, geometry: StereoGeometry = BALL_GEOMETRY
-) -> Scene:
+def ball_at(distances_mm: Sequence[float] | None = None, geometry: StereoGeometry | None = None) -> Scene:
     """Return a ball of 6 cm between the axes of the cameras; its centre is each of `distances_mm` deep.
 
-    Depth is along the axes, as T Eq. 4.1 measures it.
+    Depth is along the axes, as T Eq. 4.1 measures it. The distances and the geometry are those of the thesis by
+    default.
     """
+    distances_mm, geometry = distances_mm or BALL_DISTANCES_MM, geometry or BALL_GEOMETRY
     tilt = math.radians(geometry.tilt_deg)
     lower_mm = geometry.height_mm - _BALL.radius_mm
     ways_mm = [(distance - lower_mm * math.sin(tilt)) / math.cos(tilt) for distance in distances_mm]

@@ -101,14 +101,17 @@ def through(lens: Lens, camera: Pinhole, look: Callable[[Pinhole], Light]) -> Li
     view = _wide_view(camera, bent)
     columns, rows = np.moveaxis(np.rint(bent * view.focal_px + view.centre_px).astype(int), -1, 0)
     parts = look(view)[rows, columns].reshape(camera.height_px, FINENESS, camera.width_px, FINENESS, 3)
-    return parts.mean(axis=(1, 3), dtype=np.float32)
+    picture: Light = parts.mean(axis=(1, 3), dtype=np.float32)
+    return picture
 
 
 @lru_cache(maxsize=4)
 def _bent(lens: Lens, focal_px: float, width_px: int, height_px: int) -> Vector:
     """Return the ideal points (FINENESS * height, FINENESS * width, 2) that the parts of each pixel show."""
     sizes = width_px, height_px
-    grid = np.meshgrid(*((np.arange(size * FINENESS) + 0.5 - size * FINENESS / 2) / FINENESS for size in sizes))
+    grid = np.meshgrid(
+        *((np.arange(size * FINENESS) + 0.5 - size * FINENESS / 2) / FINENESS for size in sizes)
+    )
     return lens.undistort(np.stack(grid, axis=-1) / focal_px)
 
 

@@ -66,19 +66,21 @@ def _ball(thing: Ball, roughness: float) -> Shape:
     if thing.seam_colour is None:
         coat = _coat(thing.colour, roughness)
     else:
-        coat = {"type": "roughplastic", "diffuse_reflectance": _seam(thing), "alpha": roughness}
+        coat = {
+            "type": "roughplastic",
+            "diffuse_reflectance": _seam(thing, thing.seam_colour),
+            "alpha": roughness,
+        }
     return {"type": "sphere", "center": thing.centre_mm.tolist(), "radius": thing.radius_mm, "bsdf": coat}
 
 
-def _seam(thing: Ball) -> Shape:
+def _seam(thing: Ball, colour: Colour) -> Shape:
     """Return the texture of a ball with a seam: columns are angles round z, rows those from the upper pole."""
     heights, widths = _SEAM_TEXTURE
     polar = ((np.arange(heights) + 0.5) / heights * math.pi)[:, None]
     azimuth = ((np.arange(widths) + 0.5) / widths * 2 * math.pi)[None, :] - math.radians(thing.seam_turn_deg)
     directions = np.stack(
-        np.broadcast_arrays(
-            np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)
-        ),
+        np.broadcast_arrays(np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)),
         axis=-1,
     )
     t, b = np.linspace(0, 2 * math.pi, _SEAM_POINTS), 1 - _SEAM_A
@@ -90,7 +92,7 @@ def _seam(thing: Ball) -> Shape:
         ]
     )
     on_seam = (directions @ seam).max(axis=-1) > math.cos(_SEAM_HALF_WIDTH)
-    texels = np.where(on_seam[..., None], thing.seam_colour, thing.colour).astype(np.float32)
+    texels = np.where(on_seam[..., None], colour, thing.colour).astype(np.float32)
     return {"type": "bitmap", "bitmap": texels, "raw": True}
 
 

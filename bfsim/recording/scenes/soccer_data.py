@@ -60,9 +60,7 @@ LINES = (
 
 
 # The floor reaches under the walls and the goal.
-FLOOR = Floor(
-    size_mm=(1850.0, 1400.0), colour=BLACK, roughness=FLOOR_ROUGHNESS, paint=WHITE, lines=LINES
-)
+FLOOR = Floor(size_mm=(1850.0, 1400.0), colour=BLACK, roughness=FLOOR_ROUGHNESS, paint=WHITE, lines=LINES)
 
 # The walls at the far end stop at the goal.
 WALLS = {

@@ -40,12 +40,12 @@ def record_scene(
     frames: int | None = None,
     samples: int | None = None,
     misfit: Misfit | None = None,
-    progress: Callable[[int, int | None], None] | None = None,
+    progress: Callable[[int], None] | None = None,
 ) -> None:
     """Render a scene to the recording `path`: its first `frames` frames or all, `samples` a pixel or its own.
 
     With a misfit the pictures are those of a real pair of cameras; the ground truth is what rectification
-    brings back. Raises RecordingError.
+    brings back. `progress` is told the frames done. Raises RecordingError.
     """
     renderer = Renderer(scene_shapes(scene))
     poses, samples = scene.poses[:frames], samples or scene.samples
@@ -75,12 +75,10 @@ def record_scene(
             left_ns = index * scene.period_ns
             recording.add(left, right, left_ns, left_ns + scene.right_phase_ns, known, disparity_px)
             if progress is not None:
-                progress(index + 1, len(poses))
+                progress(index + 1)
 
 
-def _light(
-    renderer: Renderer, camera: Pinhole, misfit: Misfit | None, *, samples: int, seed: int
-) -> Light:
+def _light(renderer: Renderer, camera: Pinhole, misfit: Misfit | None, *, samples: int, seed: int) -> Light:
     """Return the light that reaches the sensor."""
     if misfit is None:
         return renderer.look(camera, samples=samples, seed=seed)

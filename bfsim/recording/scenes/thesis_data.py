@@ -10,8 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from bfsim.recording.scenes.drive import Drive
-from bfsim.recording.scenes.objects import Ball, Box, Colour, FieldArc, Lamp, Robot
-from bfsim.recording.scenes.scene import Light, Scene
+from bfsim.recording.scenes.objects import Ball, Box, Colour, FieldArc, Lamp
 from bfsim.recording.scenes.soccer_data import (
     BALL,
     BLACK,

@@ -143,9 +143,7 @@ def box_truth(box: Box, cameras: Cameras, sight: Sight) -> dict[str, Any]:
 
 def _edges(box: Box, cameras: Cameras, sight: Sight) -> dict[str, Any]:
     corners_mm = box.corners_mm
-    return {
-        name: segment_truth(corners_mm[list(ends)], cameras, sight) for name, ends in EDGES.items()
-    }
+    return {name: segment_truth(corners_mm[list(ends)], cameras, sight) for name, ends in EDGES.items()}
 
 
 def segment_truth(ends_mm: Vector, cameras: Cameras, sight: Sight) -> dict[str, Any]:
