@@ -169,13 +169,10 @@ def calibrate_command(
     """
     found = recording.calibrate_recording(chessboards, path, output, corners=corners, square_mm=square)
     click.echo(
-        f"{output or path}: rectification tables from {found.pair_count} chessboard pairs
-"
-        f"Reprojection error: {found.reprojection_px:.3f} px RMS
-"
+        f"{output or path}: rectification tables from {found.pair_count} chessboard pairs\n"
+        f"Reprojection error: {found.reprojection_px:.3f} px RMS\n"
         f"Vertical misalignment: {found.vertical_rms_px:.3f} px RMS, {found.vertical_worst_px:.3f} px at worst "
-        f"(before: {found.vertical_before_px:.3f} px RMS)
-"
+        f"(before: {found.vertical_before_px:.3f} px RMS)\n"
         f"Focal length {found.focal_px:.1f} px, baseline {found.baseline_mm:.2f} mm"
     )
 
