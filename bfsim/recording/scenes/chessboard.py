@@ -42,7 +42,7 @@ class Chessboard:
         return (np.array(self.corners) + 1) * self.square_mm / 2
 
     def seen_by(self, camera: Pinhole, held: Pinhole) -> Light:
-        """Return the light (height, width, 3) of a board whose right, down and normal are the axes of `held`."""
+        """Return the light (height, width, 1) of a board whose right, down and normal are the axes of `held`."""
         rays, normal = camera.rays(), held.rotation[2]
         depths = (held.position_mm - camera.position_mm) @ normal / (rays @ normal)
         points = (camera.position_mm + rays * depths[..., None] - held.position_mm) @ held.rotation[:2].T
@@ -50,7 +50,7 @@ class Chessboard:
         checks = np.where(squares.sum(axis=-1) % 2 == 0, _BLACK, _WHITE)
         beyond_mm = (np.abs(points) - self.half_mm).max(axis=-1)
         light = np.where(beyond_mm > 0, np.where(beyond_mm > self.square_mm, _BEHIND, _WHITE), checks)
-        return np.repeat(light[..., None], 3, axis=-1).astype(np.float32)
+        return light[..., None].astype(np.float32)
 
 
 def write_chessboards(
@@ -71,7 +71,7 @@ def write_chessboards(
             light = through(misfit.lens, eye, partial(board.seen_by, held=held))
             path = folder / f"{side}_{index:02}.png"
             try:
-                Image.fromarray(expose(light, rng)).save(path)
+                Image.fromarray(expose(light, rng)[..., 0]).save(path)
             except OSError as error:
                 raise RecordingError(f"{path}: picture must be writable: {error.strerror}") from None
     return len(ways)

@@ -19,7 +19,7 @@ from bfsim.recording.rectifying import rectified_rotation
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
 
 Light = NDArray[np.float32]
-"""Radiance of red, green and blue that reaches each pixel: shape (height, width, 3)."""
+"""Radiance of each colour that reaches each pixel: shape (height, width, colours)."""
 
 # Points of the ideal picture for each distorted pixel, along each side. [assumed]
 FINENESS = 3
@@ -93,15 +93,15 @@ def rectified(cameras: dict[str, Pinhole]) -> dict[str, Pinhole]:
 
 
 def through(lens: Lens, camera: Pinhole, look: Callable[[Pinhole], Light]) -> Light:
-    """Return the light (height, width, 3) that a camera gets through a lens.
+    """Return the light (height, width, colours) that a camera gets through a lens.
 
     `look` gives the light that reaches an ideal camera; it is asked for one with a finer and wider picture.
     """
     bent = _bent(lens, camera.focal_px, camera.width_px, camera.height_px)
     view = _wide_view(camera, bent)
     columns, rows = np.moveaxis(np.rint(bent * view.focal_px + view.centre_px).astype(int), -1, 0)
-    parts = look(view)[rows, columns].reshape(camera.height_px, FINENESS, camera.width_px, FINENESS, 3)
-    picture: Light = parts.mean(axis=(1, 3), dtype=np.float32)
+    parts = look(view)[rows, columns].reshape(camera.height_px, FINENESS, camera.width_px, FINENESS, -1)
+    picture: Light = parts.mean(axis=3).mean(axis=1)
     return picture
 
 
