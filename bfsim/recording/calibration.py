@@ -239,8 +239,11 @@ def _rms(values: NDArray[Any]) -> float:
 
 def _load_opencv() -> Any:
     try:
-        return importlib.import_module("cv2")
+        cv2 = importlib.import_module("cv2")
     except ImportError as error:
         raise RecordingError(
             'OpenCV must be installed to calibrate cameras: pip install "bfsim[calibration]"'
         ) from error
+    # Threads would add up in another order every time.
+    cv2.setNumThreads(1)
+    return cv2
