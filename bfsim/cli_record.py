@@ -149,7 +149,7 @@ def info_command(path: Path, as_json: bool) -> None:
 @click.option(
     "--corners",
     type=_Size(),
-    default="7x5",
+    default="9x6",
     show_default=True,
     help="Inner corners of the chessboard, across and down.",
 )
@@ -165,7 +165,7 @@ def calibrate_command(
 
     \b
     bfsim record calibrate boards/ run.mcap
-    bfsim record calibrate boards/ run.mcap --corners 9x6 --square 25 --output rectified.mcap
+    bfsim record calibrate boards/ run.mcap --corners 8x5 --square 25 --output rectified.mcap
     """
     found = recording.calibrate_recording(chessboards, path, output, corners=corners, square_mm=square)
     click.echo(

@@ -6,7 +6,6 @@ A flat board needs no renderer: each ray meets its plane in one point.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import product
 from pathlib import Path
 
@@ -15,25 +14,28 @@ from PIL import Image
 
 from bfsim.errors import RecordingError
 from bfsim.recording.frames import StereoGeometry
-from bfsim.recording.scenes.lens import Light, Misfit, through, turned
+from bfsim.recording.scenes.lens import Lens, Light, Misfit, bent_points, mean_of_parts, turned
 from bfsim.recording.scenes.pinhole import Pinhole, Vector, stereo_pair
 from bfsim.recording.scenes.sensor import expose
 
 # Reflectance times light of the board's two colours and of what is behind it. [assumed]
 _BLACK, _WHITE, _BEHIND = 0.03, 0.60, 0.12
 
+# Parts of a pixel along each side. [assumed]
+_FINENESS = 4
+
 # How the board is held: its width in that of the picture, in which part of the picture, and turned this far
 # either way round right, down and forward. [assumed]
 _WIDTHS = (0.7, 0.6, 0.5)
-_PLACES = ((0, 0), (-1, -1), (1, -1), (-1, 1), (1, 1))
-_MOST_TURN_DEG = (28.0, 28.0, 12.0)
+_PLACES = tuple(product((-1, 0, 1), repeat=2))
+_MOST_TURN_DEG = (35.0, 35.0, 15.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Chessboard:
     """A board of `corners` (across, down) inner corners; round it is a white margin, one square wide."""
 
-    corners: tuple[int, int] = (7, 5)
+    corners: tuple[int, int] = (9, 6)
     square_mm: float = 20.0
 
     @property
@@ -41,16 +43,25 @@ class Chessboard:
         """Return the half width and height of its squares together (2,)."""
         return (np.array(self.corners) + 1) * self.square_mm / 2
 
-    def seen_by(self, camera: Pinhole, held: Pinhole) -> Light:
+    def seen_by(self, camera: Pinhole, lens: Lens, held: Pinhole) -> Light:
         """Return the light (height, width, 1) of a board whose right, down and normal are the axes of `held`."""
-        rays, normal = camera.rays(), held.rotation[2]
-        depths = (held.position_mm - camera.position_mm) @ normal / (rays @ normal)
-        points = (camera.position_mm + rays * depths[..., None] - held.position_mm) @ held.rotation[:2].T
-        squares = np.floor((points + self.half_mm) / self.square_mm).astype(int)
-        checks = np.where(squares.sum(axis=-1) % 2 == 0, _BLACK, _WHITE)
-        beyond_mm = (np.abs(points) - self.half_mm).max(axis=-1)
-        light = np.where(beyond_mm > 0, np.where(beyond_mm > self.square_mm, _BEHIND, _WHITE), checks)
-        return light[..., None].astype(np.float32)
+        points = bent_points(lens, camera.focal_px, camera.width_px, camera.height_px, _FINENESS)
+        # Rays and place in the board's own axes: where depth along its normal is 0, there it is.
+        axes = camera.rotation @ held.rotation.T
+        rays = points @ axes[:2] + axes[2]
+        start_mm = held.from_world(camera.position_mm)
+        across, down = (
+            start_mm[axis] - start_mm[2] * rays[..., axis] / rays[..., 2] + self.half_mm[axis]
+            for axis in (0, 1)
+        )
+        odd = (np.floor(across / self.square_mm) + np.floor(down / self.square_mm)) % 2
+        beyond_mm = np.maximum(
+            *(np.abs(way - half) - half for way, half in zip((across, down), self.half_mm, strict=True))
+        )
+        light = np.where(odd == 0, _BLACK, _WHITE)
+        light[beyond_mm > 0] = _WHITE
+        light[beyond_mm > self.square_mm] = _BEHIND
+        return mean_of_parts(light[..., None].astype(np.float32), _FINENESS)
 
 
 def write_chessboards(
@@ -68,7 +79,7 @@ def write_chessboards(
     for index, (width, place) in enumerate(ways):
         held = _held(left, geometry, board, width, np.array(place), rng)
         for side, eye in eyes.items():
-            light = through(misfit.lens, eye, partial(board.seen_by, held=held))
+            light = board.seen_by(eye, misfit.lens, held)
             path = folder / f"{side}_{index:02}.png"
             try:
                 Image.fromarray(expose(light, rng)[..., 0]).save(path)

@@ -21,7 +21,7 @@ from bfsim.recording.scenes.pinhole import Pinhole, Vector
 Light = NDArray[np.float32]
 """Radiance of each colour that reaches each pixel: shape (height, width, colours)."""
 
-# Points of the ideal picture for each distorted pixel, along each side. [assumed]
+# Parts of a pixel along each side, each looked up in the ideal picture by itself. [assumed]
 FINENESS = 3
 _STEPS = 60
 _TOLERANCE = 1e-8
@@ -97,22 +97,29 @@ def through(lens: Lens, camera: Pinhole, look: Callable[[Pinhole], Light]) -> Li
 
     `look` gives the light that reaches an ideal camera; it is asked for one with a finer and wider picture.
     """
-    bent = _bent(lens, camera.focal_px, camera.width_px, camera.height_px)
+    bent = bent_points(lens, camera.focal_px, camera.width_px, camera.height_px, FINENESS)
     view = _wide_view(camera, bent)
     columns, rows = np.moveaxis(np.rint(bent * view.focal_px + view.centre_px).astype(int), -1, 0)
-    parts = look(view)[rows, columns].reshape(camera.height_px, FINENESS, camera.width_px, FINENESS, -1)
-    picture: Light = parts.mean(axis=3).mean(axis=1)
-    return picture
+    return mean_of_parts(look(view)[rows, columns], FINENESS)
 
 
-@lru_cache(maxsize=4)
-def _bent(lens: Lens, focal_px: float, width_px: int, height_px: int) -> Vector:
-    """Return the ideal points (FINENESS * height, FINENESS * width, 2) that the parts of each pixel show."""
+@lru_cache(maxsize=2)
+def bent_points(lens: Lens, focal_px: float, width_px: int, height_px: int, fineness: int) -> Vector:
+    """Return the ideal points, right and down at unit depth, that a picture shows through a lens.
+
+    Each pixel has fineness x fineness parts: shape (fineness * height, fineness * width, 2).
+    """
     sizes = width_px, height_px
-    grid = np.meshgrid(
-        *((np.arange(size * FINENESS) + 0.5 - size * FINENESS / 2) / FINENESS for size in sizes)
-    )
+    grid = np.meshgrid(*((np.arange(size * fineness) + 0.5) / fineness - size / 2 for size in sizes))
     return lens.undistort(np.stack(grid, axis=-1) / focal_px)
+
+
+def mean_of_parts(light: Light, fineness: int) -> Light:
+    """Return the light (height, width, colours) of pixels from that of their fineness x fineness parts."""
+    height, width, colours = light.shape
+    parts = light.reshape(height // fineness, fineness, width // fineness, fineness, colours)
+    mean: Light = parts.mean(axis=3).mean(axis=1)
+    return mean
 
 
 def _wide_view(camera: Pinhole, bent: Vector) -> Pinhole:
