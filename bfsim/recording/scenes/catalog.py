@@ -43,8 +43,9 @@ def scenes_named(
     """
     if distances_mm is not None and name not in _DISTANCE_SCENES:
         raise RecordingError(f"distances must be given for {' or '.join(_DISTANCE_SCENES)}, not for {name}")
-    if distances_mm is not None and not all(0 < distance < math.inf for distance in distances_mm):
-        raise RecordingError(f"distances must be above 0 mm, not {', '.join(map(str, distances_mm))}")
+    if distances_mm is not None and not all(0 < distance < math.inf for distance in distances_mm or (0,)):
+        listed = ", ".join(f"{distance:g}" for distance in distances_mm) or "none"
+        raise RecordingError(f"distances must be at least one and above 0 mm, not {listed}")
     if name in _DISTANCE_SCENES:
         return {name: _DISTANCE_SCENES[name](distances_mm, geometry)}
     chosen = THESIS_SCENES if name == THESIS else {name: _SCENES[name]}
