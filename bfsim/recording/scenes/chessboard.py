@@ -48,20 +48,16 @@ class Chessboard:
         points = bent_points(lens, camera.focal_px, camera.width_px, camera.height_px, _FINENESS)
         # Rays and place in the board's own axes: where depth along its normal is 0, there it is.
         axes = camera.rotation @ held.rotation.T
-        rays = points @ axes[:2] + axes[2]
-        start_mm = held.from_world(camera.position_mm)
-        across, down = (
-            start_mm[axis] - start_mm[2] * rays[..., axis] / rays[..., 2] + self.half_mm[axis]
-            for axis in (0, 1)
-        )
-        odd = (np.floor(across / self.square_mm) + np.floor(down / self.square_mm)) % 2
-        beyond_mm = np.maximum(
-            *(np.abs(way - half) - half for way, half in zip((across, down), self.half_mm, strict=True))
-        )
-        light = np.where(odd == 0, _BLACK, _WHITE)
+        rays = (points @ axes[:2] + axes[2]).astype(np.float32)
+        start_mm = held.from_world(camera.position_mm).astype(np.float32)
+        across, down = (start_mm[axis] - start_mm[2] * rays[..., axis] / rays[..., 2] for axis in (0, 1))
+        half_x, half_y = self.half_mm.tolist()
+        odd = (np.floor((across + half_x) / self.square_mm) + np.floor((down + half_y) / self.square_mm)) % 2
+        beyond_mm = np.maximum(np.abs(across) - half_x, np.abs(down) - half_y)
+        light = np.where(odd == 0, np.float32(_BLACK), np.float32(_WHITE))
         light[beyond_mm > 0] = _WHITE
         light[beyond_mm > self.square_mm] = _BEHIND
-        return mean_of_parts(light[..., None].astype(np.float32), _FINENESS)
+        return mean_of_parts(light[..., None], _FINENESS)
 
 
 def write_chessboards(
