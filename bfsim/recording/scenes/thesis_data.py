@@ -112,7 +112,7 @@ HIDDEN_BALL = replace(
     SOCCER,
     description="T Figure 6.10: the ball half hidden by a robot; a red mark before yellow of the same brightness.",
     things={
-        "goal": YELLOW_GOAL,
+        "goal": replace(GOAL, colour=(0.68, 0.46, 0.026)),  # as bright there as the mark before it
         **WALLS,
         "ball": replace(BALL, x_mm=455, y_mm=94),
         "robot_hiding": replace(ROBOT, x_mm=350, y_mm=100, heading_deg=12, mark_colour=CYAN),
