@@ -1,4 +1,4 @@
-"""The commands `bfsim record import` and `bfsim record info`: parse, call, print."""
+"""The commands `bfsim record import`, `info`, `render` and `calibrate`: parse, call, print."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import click
 from rich.table import Table
 
 from bfsim import recording
+from bfsim.recording import scenes
 from bfsim.terminal import print_report, progress_bar
 
 
@@ -23,6 +24,18 @@ class _Size(click.ParamType[tuple[int, int]]):
         if not (width.isdecimal() and height.isdecimal() and int(width) and int(height)):
             self.fail(f"size must be like 320x240, not {value!r}", param, ctx)
         return int(width), int(height)
+
+
+class _Distances(click.ParamType[tuple[float, ...]]):
+    name = "MM,MM"
+
+    def convert(
+        self, value: str, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, ...]:
+        try:
+            return tuple(float(part) for part in value.split(","))
+        except ValueError:
+            self.fail(f"distances must be like 250,300,350, not {value!r}", param, ctx)
 
 
 @click.group(name="record")
@@ -61,7 +74,7 @@ def record() -> None:
     "--rectification",
     nargs=2,
     metavar="LEFT RIGHT",
-    help="Two .npy files: for each pixel the index of its source pixel.",
+    help="Two .npy files of shape (2, height, width): for each pixel its source row and column, -1 for none.",
 )
 @click.option("--description", default="", help="Free text to keep with the recording.")
 @click.option("--force", is_flag=True, help="Overwrite OUTPUT if it exists.")
@@ -130,6 +143,136 @@ def info_command(path: Path, as_json: bool) -> None:
         print_report(_info_table(info))
 
 
+@record.command(name="calibrate")
+@click.argument("chessboards", metavar="CHESSBOARDS", type=click.Path(path_type=Path))
+@click.argument("path", metavar="RECORDING", type=click.Path(path_type=Path))
+@click.option(
+    "--corners",
+    type=_Size(),
+    default="9x6",
+    show_default=True,
+    help="Inner corners of the chessboard, across and down.",
+)
+@click.option("--square", type=float, default=20.0, show_default=True, help="Side of its squares in mm.")
+@click.option("--output", type=click.Path(path_type=Path), help="Write this file and leave RECORDING alone.")
+def calibrate_command(
+    chessboards: Path, path: Path, corners: tuple[int, int], square: float, output: Path | None
+) -> None:
+    """Write rectification tables into RECORDING, made from chessboard pictures of its cameras.
+
+    The folder CHESSBOARDS holds pictures left* and right* in pairs, each pair taken at once: the first left goes
+    with the first right, by name. Needs OpenCV: pip install "bfsim[calibration]".
+
+    \b
+    bfsim record calibrate boards/ run.mcap
+    bfsim record calibrate boards/ run.mcap --corners 8x5 --square 25 --output rectified.mcap
+    """
+    found = recording.calibrate_recording(chessboards, path, output, corners=corners, square_mm=square)
+    click.echo(
+        f"{output or path}: rectification tables from {found.pair_count} chessboard pairs\n"
+        f"Reprojection error: {found.reprojection_px:.3f} px RMS\n"
+        f"Vertical misalignment: {found.vertical_rms_px:.3f} px RMS, {found.vertical_worst_px:.3f} px at worst "
+        f"(before: {found.vertical_before_px:.3f} px RMS)\n"
+        f"Focal length {found.focal_px:.1f} px, baseline {found.baseline_mm:.2f} mm"
+    )
+
+
+@record.command(name="render")
+@click.argument("name", metavar="SCENE", type=click.Choice(scenes.SCENE_NAMES))
+@click.argument("output", type=click.Path(path_type=Path))
+@click.option("--frames", type=click.IntRange(min=1), help="Render only so many frames.")
+@click.option("--samples", type=click.IntRange(min=1), help="Light paths a pixel.  [default: the scene's]")
+@click.option(
+    "--distances",
+    type=_Distances(),
+    metavar="MM,MM,...",
+    help="Of box-distances and ball-distances: a frame for each.",
+)
+@click.option(
+    "--geometry",
+    type=float,
+    nargs=4,
+    metavar="FOCAL BASELINE HEIGHT TILT",
+    help="Other cameras: focal length in px, baseline and height in mm, degrees they look down.",
+)
+@click.option(
+    "--distort",
+    type=float,
+    nargs=4,
+    metavar="K1 K2 P1 P2",
+    help="Put lenses before both cameras: two radial and two tangential terms, as OpenCV counts them.",
+)
+@click.option(
+    "--turn-right",
+    type=float,
+    nargs=3,
+    metavar="X Y Z",
+    help="Turn the right camera, degrees round its right, down and forward.",
+)
+@click.option(
+    "--shift-right",
+    type=float,
+    nargs=3,
+    metavar="X Y Z",
+    help="Shift the right camera, mm to its right, down and forward.",
+)
+@click.option(
+    "--chessboards",
+    type=click.Path(path_type=Path),
+    metavar="FOLDER",
+    help="Also write chessboard pictures of these cameras, for `bfsim record calibrate`.",
+)
+@click.option("--force", is_flag=True, help="Overwrite OUTPUT if it exists.")
+def render_command(
+    name: str,
+    output: Path,
+    frames: int | None,
+    samples: int | None,
+    distances: tuple[float, ...] | None,
+    geometry: tuple[float, float, float, float] | None,
+    distort: tuple[float, float, float, float] | None,
+    turn_right: tuple[float, float, float] | None,
+    shift_right: tuple[float, float, float] | None,
+    chessboards: Path | None,
+    force: bool,
+) -> None:
+    """Render SCENE with exact ground truth to the recording OUTPUT.
+
+    SCENE is soccer (the built-in recording); field-of-circles, ball-beside-goal, camera-initialised, robot-marker,
+    hidden-ball, ball-with-seam, ball-too-close or goal-sharp-angle (figures of the thesis), or thesis for all of
+    these in the folder OUTPUT; box-distances or ball-distances (its Tables 6.2 and 6.3). Needs mitsuba:
+    pip install "bfsim[scenes]".
+
+    \b
+    bfsim record render ball-with-seam ball.mcap
+    bfsim record render thesis scenes/
+    bfsim record render box-distances box.mcap --distances 250,500
+    bfsim record render soccer bent.mcap --distort -0.25 0.08 0 0 --turn-right 1 -1 0.5 --chessboards boards/
+    """
+    misfit = None
+    if distort or turn_right or shift_right:
+        zeros = (0.0, 0.0, 0.0)
+        lens = scenes.Lens(*distort) if distort else scenes.Lens()
+        misfit = scenes.Misfit(lens, turn_right or zeros, shift_right or zeros)
+    with progress_bar("Rendering") as progress:
+        paths = scenes.render(
+            name,
+            output,
+            frames=frames,
+            samples=samples,
+            distances_mm=distances,
+            geometry=recording.StereoGeometry(*geometry) if geometry else None,
+            misfit=misfit,
+            chessboards=chessboards,
+            force=force,
+            progress=progress,
+        )
+    for path in paths:
+        click.echo(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
+    if chessboards:
+        click.echo(f"{chessboards}: chessboard pictures of the same cameras")
+
+
 def _info_table(info: recording.RecordingInfo) -> Table:
     table = Table(title=str(info.path), show_header=False, title_justify="left")
     table.add_row("Images", f"{info.width}x{info.height} UYVY, left and right")
@@ -139,10 +282,8 @@ def _info_table(info: recording.RecordingInfo) -> Table:
     least_ms, greatest_ms = (skew / 1e6 for skew in info.skew_ns)
     table.add_row("Right after left", f"{least_ms:.3f} to {greatest_ms:.3f} ms")
     table.add_row("Geometry", _geometry_text(info.geometry))
-    table.add_row(
-        "Rectification tables", "left and right" if info.has_rectification else "none: taken as rectified"
-    )
-    table.add_row("Ground truth", f"{info.truth_count} frames" if info.truth_count else "none")
+    table.add_row("Rectification tables", _rectification_text(info.rectified_shares))
+    table.add_row("Ground truth", _truth_text(info))
     table.add_row(
         "File", f"{info.size_bytes / 1e6:.1f} MB, compression {info.compression}, checksums verified"
     )
@@ -156,6 +297,19 @@ def _timing_text(timing: recording.CameraTiming) -> str:
         return "one picture"
     shortest_ms, longest_ms = timing.shortest_interval_ns / 1e6, timing.longest_interval_ns / 1e6
     return f"{timing.rate_hz:.3f} per second, intervals {shortest_ms:.3f} to {longest_ms:.3f} ms"
+
+
+def _rectification_text(shares: tuple[float, float] | None) -> str:
+    if shares is None:
+        return "none: taken as rectified"
+    return f"left and right, {shares[0]:.1%} and {shares[1]:.1%} of the pixels have a source"
+
+
+def _truth_text(info: recording.RecordingInfo) -> str:
+    if not info.truth_count:
+        return "none"
+    disparities = f", {info.disparity_count} with disparities" if info.disparity_count else ""
+    return f"{info.truth_count} frames{disparities}"
 
 
 def _geometry_text(geometry: recording.StereoGeometry | None) -> str:

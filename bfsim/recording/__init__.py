@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
-from bfsim.recording.frames import RectificationTables, StereoFrame, StereoGeometry, UyvyImage
+from bfsim.recording.calibration import Calibration, calibrate_recording
+from bfsim.recording.frames import (
+    DisparityImage,
+    RectificationTables,
+    StereoFrame,
+    StereoGeometry,
+    UyvyImage,
+)
 from bfsim.recording.importer import ImportSummary, import_recording, load_rectification
 from bfsim.recording.info import CameraTiming, RecordingInfo, describe_recording
 from bfsim.recording.reader import RecordingReader
@@ -11,7 +18,9 @@ from bfsim.recording.writer import RecordingWriter
 
 __all__ = [
     "SOURCE_FORMATS",
+    "Calibration",
     "CameraTiming",
+    "DisparityImage",
     "ImportSummary",
     "RecordingInfo",
     "RecordingReader",
@@ -21,6 +30,7 @@ __all__ = [
     "StereoFrame",
     "StereoGeometry",
     "UyvyImage",
+    "calibrate_recording",
     "describe_recording",
     "import_recording",
     "load_rectification",

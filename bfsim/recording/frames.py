@@ -15,6 +15,9 @@ from bfsim.errors import RecordingError
 UyvyImage = NDArray[np.uint8]
 """One picture as the camera sends it: shape (height, 2 * width), bytes U0 Y0 V0 Y1 for each two pixels."""
 
+DisparityImage = NDArray[np.float32]
+"""Exact disparity of each pixel of the left picture in px, shape (height, width)."""
+
 
 @dataclass(frozen=True, slots=True)
 class StereoGeometry:
@@ -44,9 +47,10 @@ class StereoGeometry:
 
 @dataclass(frozen=True, slots=True)
 class RectificationTables:
-    """For each camera the source pixel of each rectified pixel: `rectified[i] = picture[table[i]]`.
+    """For each camera the source pixel of each rectified pixel: `rectified[y, x] = picture[row[y, x], column[y, x]]`.
 
-    left and right are int32 of shape (height * width,), row by row, every value in 0 .. height * width - 1.
+    left and right are int32 of shape (2, height, width): the source rows, then the source columns. Where the
+    camera saw nothing of a rectified pixel, both are -1.
     """
 
     left: NDArray[np.int32]
@@ -54,18 +58,21 @@ class RectificationTables:
 
     def check(self, width: int, height: int) -> None:
         """Raise RecordingError unless both tables fit pictures of width x height pixels."""
-        pixel_count = width * height
+        shape = (2, height, width)
         for side, table in (("left", self.left), ("right", self.right)):
-            if table.dtype != np.int32 or table.shape != (pixel_count,):
+            if table.dtype != np.int32 or table.shape != shape:
                 raise RecordingError(
-                    f"{side} rectification table must be int32 of shape ({pixel_count},) for "
+                    f"{side} rectification table must be int32 of shape {shape} for "
                     f"{width}x{height} pixels, not {table.dtype} of shape {table.shape}"
                 )
-            if table.min() < 0 or table.max() >= pixel_count:
-                worst = int(np.argmax((table < 0) | (table >= pixel_count)))
+            rows, columns = table
+            inside = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
+            if not (inside | ((rows == -1) & (columns == -1))).all():
+                y, x = (int(index) for index in np.argwhere(~inside & ((rows != -1) | (columns != -1)))[0])
                 raise RecordingError(
-                    f"{side} rectification table must point at pixels 0 to {pixel_count - 1}, "
-                    f"not {table[worst]} (entry {worst})"
+                    f"{side} rectification table must point at rows 0 to {height - 1} and columns 0 to "
+                    f"{width - 1}, or at -1 and -1 for nothing, not at row {rows[y, x]} and column "
+                    f"{columns[y, x]} (pixel x {x}, y {y})"
                 )
 
 
@@ -74,7 +81,8 @@ class StereoFrame:
     """One picture of each camera, with the time each was taken and, where known, what is in the scene.
 
     left and right may be read-only. left_ns and right_ns are nanoseconds since the recording's own epoch;
-    they differ when the cameras are not locked to each other.
+    they differ when the cameras are not locked to each other. disparity_px, float32 of shape (height, width), is
+    how much farther left the right picture shows what each left pixel shows, 0 for what is infinitely far.
     """
 
     index: int
@@ -83,3 +91,4 @@ class StereoFrame:
     left_ns: int
     right_ns: int
     truth: Mapping[str, Any] | None
+    disparity_px: DisparityImage | None = None

@@ -18,8 +18,8 @@ _EIGHT_BIT_MODES = frozenset({"1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", 
 
 def open_images(source: str) -> PictureSource:
     """Images of a folder, of a pattern or of one file, in natural order of their names (2 before 10)."""
-    paths = _image_paths(source)
-    size = _load(paths[0]).size
+    paths = image_paths(source)
+    size = load_image(paths[0]).size
     return PictureSource(
         name=source, size=size, count=len(paths), fps=None, pictures=lambda: _pictures(paths, size)
     )
@@ -27,7 +27,7 @@ def open_images(source: str) -> PictureSource:
 
 def _pictures(paths: list[Path], size: tuple[int, int]) -> Iterator[YuvPlanes]:
     for path in paths:
-        image = _load(path)
+        image = load_image(path)
         if image.size != size:
             raise RecordingError(
                 f"{path}: image must be {size[0]}x{size[1]} like {paths[0].name}, the first of its folder, "
@@ -36,7 +36,8 @@ def _pictures(paths: list[Path], size: tuple[int, int]) -> Iterator[YuvPlanes]:
         yield YuvPlanes.from_image(image)
 
 
-def _image_paths(source: str) -> list[Path]:
+def image_paths(source: str) -> list[Path]:
+    """Image files of a folder, of a pattern or of one file, in natural order of their names."""
     path = Path(source)
     if is_pattern(source):
         anchor = Path(path.anchor)
@@ -64,7 +65,7 @@ def _natural_key(path: Path) -> list[tuple[int, str]]:
     return [(int(part), "") if part.isdecimal() else (0, part) for part in re.split(r"(\d+)", str(path))]
 
 
-def _load(path: Path) -> Image.Image:
+def load_image(path: Path) -> Image.Image:
     """Return the decoded image, turned upright as its EXIF orientation says."""
     try:
         with warnings.catch_warnings():

@@ -91,7 +91,7 @@ def import_recording(
 
 
 def load_rectification(left: str | os.PathLike[str], right: str | os.PathLike[str]) -> RectificationTables:
-    """Rectification tables from two .npy files of source pixel indices, one for each pixel, row by row."""
+    """Rectification tables from two .npy files of integers: source rows and source columns, -1 for nothing."""
     tables = []
     for path in (left, right):
         try:
@@ -102,11 +102,13 @@ def load_rectification(left: str | os.PathLike[str], right: str | os.PathLike[st
             ) from None
         except RecordingError as error:
             raise RecordingError(f"{path}: {error}") from None
-        if table.dtype.kind not in "iu" or table.size == 0:
+        if table.dtype.kind not in "iu" or table.ndim != 3:
             raise RecordingError(
-                f"{path}: rectification table must hold integers, not {table.size} of {table.dtype}"
+                f"{path}: rectification table must hold integers of shape (2, height, width), "
+                f"not {table.dtype} of shape {table.shape}"
             )
-        tables.append(np.clip(table.ravel(), -1, np.iinfo(np.int32).max).astype(np.int32))
+        bounds = np.iinfo(np.int32)
+        tables.append(np.clip(table, bounds.min, bounds.max).astype(np.int32))
     return RectificationTables(*tables)
 
 

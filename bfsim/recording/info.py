@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from bfsim.recording.frames import StereoGeometry
+from bfsim.recording.frames import RectificationTables, StereoGeometry
 from bfsim.recording.importer import Progress
 from bfsim.recording.reader import RecordingReader
 
@@ -24,7 +24,11 @@ class CameraTiming:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordingInfo:
-    """What `bfsim record info` shows. skew_ns: right minus left time stamp of a frame, least and greatest."""
+    """What `bfsim record info` shows.
+
+    skew_ns: right minus left time stamp of a frame, least and greatest. rectified_shares: of the left and right
+    rectified pixels, those that the camera saw (0 to 1); None without rectification tables.
+    """
 
     path: Path
     width: int
@@ -35,8 +39,9 @@ class RecordingInfo:
     right: CameraTiming
     skew_ns: tuple[int, int]
     geometry: StereoGeometry | None
-    has_rectification: bool
+    rectified_shares: tuple[float, float] | None
     truth_count: int
+    disparity_count: int
     description: str
     compression: str
     size_bytes: int
@@ -63,8 +68,9 @@ def describe_recording(reader: RecordingReader, progress: Progress | None = None
         right=_timing(right_ns),
         skew_ns=(min(skews_ns), max(skews_ns)),
         geometry=reader.geometry,
-        has_rectification=reader.rectification is not None,
+        rectified_shares=_rectified_shares(reader.rectification),
         truth_count=reader.truth_count,
+        disparity_count=reader.disparity_count,
         description=reader.description,
         compression=" and ".join(name or "none" for name in reader.compressions),
         size_bytes=reader.size_bytes,
@@ -78,3 +84,9 @@ def _timing(stamps_ns: list[int]) -> CameraTiming:
         return CameraTiming(stamps_ns[0], stamps_ns[-1], None, None, None)
     rate_hz = len(intervals_ns) * 1e9 / (stamps_ns[-1] - stamps_ns[0])
     return CameraTiming(stamps_ns[0], stamps_ns[-1], rate_hz, min(intervals_ns), max(intervals_ns))
+
+
+def _rectified_shares(tables: RectificationTables | None) -> tuple[float, float] | None:
+    if tables is None:
+        return None
+    return float((tables.left[0] >= 0).mean()), float((tables.right[0] >= 0).mean())

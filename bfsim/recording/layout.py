@@ -19,6 +19,8 @@ from bfsim.errors import RecordingError
 LEFT_TOPIC = "/camera/left/image_raw"
 RIGHT_TOPIC = "/camera/right/image_raw"
 TRUTH_TOPIC = "/truth"
+DISPARITY_TOPIC = "/truth/disparity"
+TOPICS = (LEFT_TOPIC, RIGHT_TOPIC, TRUTH_TOPIC, DISPARITY_TOPIC)
 
 IMAGE_SCHEMA = "foxglove.RawImage"
 IMAGE_ENCODINGS = ("uyvy", "yuv422")
@@ -28,9 +30,13 @@ TRUTH_SCHEMA = "bfsim.GroundTruth"
 TRUTH_JSON_SCHEMA = json.dumps({"title": TRUTH_SCHEMA, "type": "object"}).encode()
 """One object a frame; the message's sequence number is the frame's index."""
 
+DISPARITY_ENCODING = "32FC1"
+"""Little-endian float32 disparities in px of the left camera, as a RawImage with the sequence number of its frame."""
+
 GEOMETRY_RECORD = "stereo_geometry"
 DESCRIPTION_RECORD = "recording"
 RECTIFICATION_NAMES = {"left": "rectification_left.npy", "right": "rectification_right.npy"}
+"""Attachments: .npy arrays (NumPy's format 1.0), int32, (2, height, width), as `RectificationTables` says."""
 
 CHUNK_BYTES = 1 << 20
 """A chunk is decompressed as a whole: small chunks keep memory low, large ones keep the index short."""

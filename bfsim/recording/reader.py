@@ -18,7 +18,13 @@ from mcap.records import Message
 from bfsim.errors import RecordingError
 from bfsim.recording import layout
 from bfsim.recording.container import McapContainer
-from bfsim.recording.frames import RectificationTables, StereoFrame, StereoGeometry, UyvyImage
+from bfsim.recording.frames import (
+    DisparityImage,
+    RectificationTables,
+    StereoFrame,
+    StereoGeometry,
+    UyvyImage,
+)
 
 # One camera may start before the other. Farther ahead its clock is another, and waiting would fill memory.
 _AHEAD_BYTES = 64 << 20
@@ -66,6 +72,18 @@ class RecordingReader:
         """How many frames have ground truth."""
         return self._file.message_count(layout.TRUTH_TOPIC)
 
+    @property
+    def disparity_count(self) -> int:
+        """How many frames have exact disparities."""
+        return self._file.message_count(layout.DISPARITY_TOPIC)
+
+    @property
+    def other_topics(self) -> list[str]:
+        """Topics of the file that are not bfsim's and that nothing here reads."""
+        return sorted(
+            {channel.topic for channel in self._file.summary.channels.values()} - set(layout.TOPICS)
+        )
+
     def __enter__(self) -> Self:
         return self
 
@@ -97,11 +115,15 @@ class RecordingReader:
     def _pair(self) -> Iterator[StereoFrame]:
         waiting: dict[str, deque[Message]] = {layout.LEFT_TOPIC: deque(), layout.RIGHT_TOPIC: deque()}
         truths: dict[int, Mapping[str, Any]] = {}
+        disparities: dict[int, DisparityImage] = {}
         last_ns = {layout.LEFT_TOPIC: -1, layout.RIGHT_TOPIC: -1}
         index = 0
-        for channel, message in self._file.messages([*waiting, layout.TRUTH_TOPIC]):
+        for channel, message in self._file.messages([*waiting, layout.TRUTH_TOPIC, layout.DISPARITY_TOPIC]):
             if channel.topic == layout.TRUTH_TOPIC:
                 truths[message.sequence] = self._decode_truth(message)
+                continue
+            if channel.topic == layout.DISPARITY_TOPIC:
+                disparities[message.sequence] = self._decode_disparity(message)
                 continue
             place = f"({self.path}: {channel.topic}, image {index + len(waiting[channel.topic])})"
             if message.log_time <= last_ns[channel.topic]:
@@ -121,6 +143,7 @@ class RecordingReader:
                     left.log_time,
                     right.log_time,
                     truths.pop(index, None),
+                    disparities.pop(index, None),
                 )
                 index += 1
 
@@ -144,6 +167,18 @@ class RecordingReader:
         if not isinstance(truth, dict):
             raise RecordingError(f"ground truth must be a JSON object, not {type(truth).__name__} {where}")
         return truth
+
+    def _decode_disparity(self, message: Message) -> DisparityImage:
+        where = f"({self.path}: {layout.DISPARITY_TOPIC}, frame {message.sequence})"
+        image = _parse_message(message, where)
+        found = (image.encoding, image.width, image.height, len(image.data))
+        wanted = (layout.DISPARITY_ENCODING, self.width, self.height, 4 * self.width * self.height)
+        if found != wanted:
+            raise RecordingError(
+                "disparity must have encoding, width, height and bytes of "
+                f"{', '.join(map(str, wanted))}, not {', '.join(map(str, found))} {where}"
+            )
+        return np.frombuffer(image.data, "<f4").reshape(self.height, self.width)
 
     def _check_channels(self) -> None:
         topics = sorted(channel.topic for channel in self._file.summary.channels.values())
@@ -228,14 +263,19 @@ class RecordingReader:
         return rectification
 
 
-def _parse_image(message: Message, where: str) -> RawImage:
-    """Return the message as an image whose sizes fit each other and its data."""
+def _parse_message(message: Message, where: str) -> RawImage:
     try:
         image: RawImage = RawImage.FromString(message.data)
     except DecodeError:
         raise RecordingError(
             f"image must be a {layout.IMAGE_SCHEMA} message, not {len(message.data)} other bytes {where}"
         ) from None
+    return image
+
+
+def _parse_image(message: Message, where: str) -> RawImage:
+    """Return the message as an image whose sizes fit each other and its data."""
+    image = _parse_message(message, where)
     if image.encoding not in layout.IMAGE_ENCODINGS:
         raise RecordingError(f"image must be in UYVY (encoding 'uyvy'), not {image.encoding!r} {where}")
     if image.width == 0 or image.height == 0 or image.width % 2:

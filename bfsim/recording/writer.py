@@ -15,11 +15,14 @@ import numpy as np
 from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
 from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
+from numpy.typing import NDArray
 
 from bfsim import __version__
 from bfsim.errors import RecordingError
 from bfsim.recording import layout
-from bfsim.recording.frames import RectificationTables, StereoGeometry, UyvyImage
+from bfsim.recording.frames import DisparityImage, RectificationTables, StereoGeometry, UyvyImage
+
+_FRAME_IDS = {layout.LEFT_TOPIC: "left", layout.RIGHT_TOPIC: "right", layout.DISPARITY_TOPIC: "left"}
 
 
 class RecordingWriter:
@@ -87,6 +90,9 @@ class RecordingWriter:
             layout.LEFT_TOPIC: self._mcap.register_channel(layout.LEFT_TOPIC, "protobuf", image_schema),
             layout.RIGHT_TOPIC: self._mcap.register_channel(layout.RIGHT_TOPIC, "protobuf", image_schema),
             layout.TRUTH_TOPIC: self._mcap.register_channel(layout.TRUTH_TOPIC, "json", truth_schema),
+            layout.DISPARITY_TOPIC: self._mcap.register_channel(
+                layout.DISPARITY_TOPIC, "protobuf", image_schema
+            ),
         }
 
     def add(
@@ -96,23 +102,28 @@ class RecordingWriter:
         left_ns: int,
         right_ns: int,
         truth: Mapping[str, Any] | None = None,
+        disparity_px: DisparityImage | None = None,
     ) -> None:
         """Append one stereo frame.
 
         left and right are uint8 of shape (height, 2 * width) in UYVY order; left_ns and right_ns are when
-        they were taken, later than those of the frame before; truth is what JSON can hold. Raises
-        RecordingError.
+        they were taken, later than those of the frame before; truth is what JSON can hold; disparity_px is
+        float32 of shape (height, width). Raises RecordingError.
         """
         for topic, image, time_ns in (
             (layout.LEFT_TOPIC, left, left_ns),
             (layout.RIGHT_TOPIC, right, right_ns),
         ):
             self._check(topic, image, time_ns)
+        # Truth is stamped no later than its pictures: a reader in time order has it when the pair is complete.
+        truth_ns = min(left_ns, right_ns)
         if truth is not None:
-            # Stamped no later than its pictures: a reader in time order has it when the pair is complete.
-            self._add_message(layout.TRUTH_TOPIC, min(left_ns, right_ns), self._encode_truth(truth))
+            self._add_message(layout.TRUTH_TOPIC, truth_ns, self._encode_truth(truth))
+        if disparity_px is not None:
+            self._add_disparity(disparity_px, truth_ns)
         self._add_image(layout.LEFT_TOPIC, left, left_ns)
         self._add_image(layout.RIGHT_TOPIC, right, right_ns)
+        self._last_ns = {layout.LEFT_TOPIC: left_ns, layout.RIGHT_TOPIC: right_ns}
         self.frame_count += 1
 
     def _check(self, topic: str, image: UyvyImage, time_ns: int) -> None:
@@ -128,14 +139,29 @@ class RecordingWriter:
                 f"and fit 63 bits, not {time_ns} ns {where}"
             )
 
-    def _add_image(self, topic: str, image: UyvyImage, time_ns: int) -> None:
-        self._last_ns[topic] = time_ns
+    def _add_disparity(self, disparity_px: DisparityImage, time_ns: int) -> None:
+        if disparity_px.dtype != np.float32 or disparity_px.shape != (self.height, self.width):
+            raise RecordingError(
+                f"disparity must be float32 of shape ({self.height}, {self.width}), not {disparity_px.dtype} of "
+                f"shape {disparity_px.shape} ({self.path}: frame {self.frame_count})"
+            )
+        self._add_image(
+            layout.DISPARITY_TOPIC, disparity_px.astype("<f4"), time_ns, layout.DISPARITY_ENCODING
+        )
+
+    def _add_image(
+        self,
+        topic: str,
+        image: NDArray[Any],
+        time_ns: int,
+        encoding: str = layout.IMAGE_ENCODINGS[0],
+    ) -> None:
         message = RawImage(
-            frame_id=topic.split("/")[2],
+            frame_id=_FRAME_IDS[topic],
             width=self.width,
             height=self.height,
-            encoding=layout.IMAGE_ENCODINGS[0],
-            step=2 * self.width,
+            encoding=encoding,
+            step=image.nbytes // self.height,
             data=image.tobytes(),
         )
         message.timestamp.FromNanoseconds(time_ns)

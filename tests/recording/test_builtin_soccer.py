@@ -207,7 +207,7 @@ def test_sensor_has_shot_noise_and_read_noise() -> None:
 def test_drive_turns_on_a_circle() -> None:
     """After a quarter turn the robot is one radius ahead and one to the left, looking left and down."""
     drive = Drive(x_mm=0, y_mm=0, heading_deg=0, speed_mm_per_s=50 * np.pi, turn_deg_per_s=90)
-    cameras = drive.cameras(1.0, GEOMETRY)
+    cameras = drive.pose(1.0).cameras(GEOMETRY)
     left_mm, right_mm = (cameras[side].position_mm for side in SIDES)
     assert (left_mm + right_mm) / 2 == pytest.approx([100, 100, 120])
     assert right_mm - left_mm == pytest.approx([30.47, 0, 0], abs=1e-9)
@@ -218,9 +218,11 @@ def test_drive_turns_on_a_circle() -> None:
 
 def test_pinhole_projects_and_clips() -> None:
     """The axis meets the middle of the picture; a segment is cut at the border; one out of view is None."""
-    camera = Drive(x_mm=0, y_mm=0, heading_deg=0, speed_mm_per_s=0, turn_deg_per_s=0).cameras(0, GEOMETRY)[
-        "left"
-    ]
+    camera = (
+        Drive(x_mm=0, y_mm=0, heading_deg=0, speed_mm_per_s=0, turn_deg_per_s=0)
+        .pose(0)
+        .cameras(GEOMETRY)["left"]
+    )
     ahead_mm = camera.position_mm + 500 * camera.rotation[2]
     aside_mm = 2000 * camera.rotation[0]
     assert camera.project(ahead_mm) == pytest.approx([159.5, 119.5])

@@ -12,7 +12,14 @@ from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
 from mcap.reader import make_reader
 
 from bfsim.errors import RecordingError
-from bfsim.recording import RecordingReader, RecordingWriter, RectificationTables, StereoGeometry, UyvyImage
+from bfsim.recording import (
+    DisparityImage,
+    RecordingReader,
+    RecordingWriter,
+    RectificationTables,
+    StereoGeometry,
+    UyvyImage,
+)
 
 LEFT, RIGHT = "/camera/left/image_raw", "/camera/right/image_raw"
 WIDTH, HEIGHT = 16, 8
@@ -24,9 +31,15 @@ def picture(seed: int, width: int = WIDTH, height: int = HEIGHT) -> UyvyImage:
     return np.random.default_rng(seed).integers(0, 256, (height, 2 * width), dtype=np.uint8)
 
 
+def disparity(seed: int, width: int = WIDTH, height: int = HEIGHT) -> DisparityImage:
+    """Return disparities of chance, other for every seed."""
+    return np.random.default_rng(seed).random((height, width), np.float32)
+
+
 def write(path: Path, count: int = 3, width: int = WIDTH, height: int = HEIGHT) -> Path:
     """Write a recording of noise with geometry, tables and ground truth; the right camera lags by 7 us."""
-    table = np.arange(width * height, dtype=np.int32)[::-1].copy()
+    table = np.indices((height, width), np.int32)[:, ::-1].copy()
+    table[:, 0, 0] = -1
     with RecordingWriter(
         path,
         width=width,
@@ -37,7 +50,9 @@ def write(path: Path, count: int = 3, width: int = WIDTH, height: int = HEIGHT) 
     ) as writer:
         for k in range(count):
             images = picture(2 * k, width, height), picture(2 * k + 1, width, height)
-            writer.add(*images, k * 40_000_000, k * 40_000_000 + 7_000, {"frame": k})
+            writer.add(
+                *images, k * 40_000_000, k * 40_000_000 + 7_000, {"frame": k}, disparity(k, width, height)
+            )
     return path
 
 
@@ -55,18 +70,20 @@ def read(path: Path) -> list[tuple[object, ...]]:
 
 
 def test_round_trip(tmp_path: Path) -> None:
-    """Pictures, stamps, geometry, tables, description and truth come back bit for bit."""
+    """Pictures, stamps, geometry, tables, description, truth and disparities come back bit for bit."""
     with RecordingReader(write(tmp_path / "a.mcap")) as reader:
         assert (reader.width, reader.height, reader.frame_count) == (WIDTH, HEIGHT, 3)
         assert (reader.geometry, reader.description, reader.truth_count) == (GEOMETRY, "noise", 3)
         assert reader.rectification is not None
-        assert reader.rectification.right[0] == WIDTH * HEIGHT - 1
+        assert reader.rectification.right[:, 0, 0].tolist() == [-1, -1]
+        assert reader.rectification.right[:, 0, 1].tolist() == [HEIGHT - 1, 1]
         for k, frame in enumerate(reader.frames()):
             assert frame.index == k
             np.testing.assert_array_equal(frame.left, picture(2 * k))
             np.testing.assert_array_equal(frame.right, picture(2 * k + 1))
             assert (frame.left_ns, frame.right_ns) == (k * 40_000_000, k * 40_000_000 + 7_000)
             assert frame.truth == {"frame": k}
+            np.testing.assert_array_equal(frame.disparity_px, disparity(k))
 
 
 def test_bare_recording_has_no_extras(tmp_path: Path) -> None:

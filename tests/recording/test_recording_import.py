@@ -185,28 +185,32 @@ def test_resize_keeps_shapes(tmp_path: Path) -> None:
 
 
 def test_rectification_tables_from_npy(tmp_path: Path) -> None:
-    """Tables come from .npy files of any integer type, flat or as a picture."""
-    table = np.arange(32).reshape(4, 8)[::-1]
+    """Tables come from .npy files of any integer type, and reach the recording."""
+    table = np.stack([np.indices((4, 8))[0][::-1], np.indices((4, 8))[1]])
     np.save(tmp_path / "l.npy", table)
-    np.save(tmp_path / "r.npy", table.ravel().astype(np.uint16))
+    np.save(tmp_path / "r.npy", table.astype(np.uint16))
     tables = load_rectification(tmp_path / "l.npy", tmp_path / "r.npy")
     save_grey(tmp_path / "a.png", 1)
     import_recording([tmp_path / "a.png"], tmp_path / "a.mcap", mono=True, rectification=tables)
     with RecordingReader(tmp_path / "a.mcap") as reader:
         assert isinstance(reader.rectification, RectificationTables)
-        np.testing.assert_array_equal(reader.rectification.left, table.ravel())
-        np.testing.assert_array_equal(reader.rectification.right, table.ravel())
+        np.testing.assert_array_equal(reader.rectification.left, table)
+        np.testing.assert_array_equal(reader.rectification.right, table)
 
 
 def test_rectification_tables_of_other_kinds(tmp_path: Path) -> None:
-    """A missing file, a table of floats and one of 64-bit indices beyond the picture are refused."""
-    np.save(tmp_path / "float.npy", np.zeros(32))
-    np.save(tmp_path / "far.npy", np.full(32, 1 << 32))
+    """A missing file, a table of floats, a flat one and one of 64-bit rows beyond the picture are refused."""
+    np.save(tmp_path / "float.npy", np.zeros((2, 4, 8)))
+    np.save(tmp_path / "flat.npy", np.zeros(32, int))
+    np.save(tmp_path / "far.npy", np.full((2, 4, 8), 1 << 32))
     with pytest.raises(RecordingError, match=r"none\.npy: .* must be a readable file"):
         load_rectification(tmp_path / "none.npy", tmp_path / "none.npy")
-    with pytest.raises(RecordingError, match=r"float\.npy: .* must hold integers, not 32 of float64"):
-        load_rectification(tmp_path / "float.npy", tmp_path / "float.npy")
-    with pytest.raises(RecordingError, match="must point at pixels 0 to 31, not"):
+    for name, found in (("float", r"float64 of shape \(2, 4, 8\)"), ("flat", r"int64 of shape \(32,\)")):
+        with pytest.raises(
+            RecordingError, match=rf"{name}\.npy: .* must hold integers of shape .*, not {found}"
+        ):
+            load_rectification(tmp_path / f"{name}.npy", tmp_path / f"{name}.npy")
+    with pytest.raises(RecordingError, match="must point at rows 0 to 3 and columns 0 to 7"):
         load_rectification(tmp_path / "far.npy", tmp_path / "far.npy").check(8, 4)
 
 

@@ -101,19 +101,31 @@ def test_impossible_geometry(values: tuple[float, float, float, float], message:
 @pytest.mark.parametrize(
     ("table", "message"),
     [
-        (np.zeros(5, np.int32), r"shape \(128,\) for 16x8 pixels, not int32 of shape \(5,\)"),
-        (np.zeros(128, np.int64), "must be int32"),
-        (np.arange(1, 129, dtype=np.int32), r"pixels 0 to 127, not 128 \(entry 127\)"),
-        (np.full(128, -1, np.int32), r"not -1 \(entry 0\)"),
+        (np.zeros((8, 16), np.int32), r"shape \(2, 8, 16\) for 16x8 pixels, not int32 of shape \(8, 16\)"),
+        (np.zeros((2, 8, 16), np.int64), "must be int32"),
+        (np.full((2, 8, 16), 8, np.int32), r"rows 0 to 7 .*, not at row 8 and column 8 \(pixel x 0, y 0\)"),
+        (np.indices((9, 17), np.int32)[:, 1:, 1:], r"not at row 1 and column 16 \(pixel x 15, y 0\)"),
+        (np.indices((8, 16), np.int32) - 1, r"not at row -1 and column 0 \(pixel x 1, y 0\)"),
     ],
 )
 def test_impossible_table(tmp_path: Path, table: np.ndarray, message: str) -> None:
     """A table that would read outside the picture never gets into a recording."""
-    good = np.zeros(128, np.int32)
+    good = np.full((2, 8, 16), -1, np.int32)
     with pytest.raises(RecordingError, match=f"right rectification table .*{message}"):
         RecordingWriter(
             tmp_path / "a.mcap", width=16, height=8, rectification=RectificationTables(good, table)
         )
+
+
+@pytest.mark.parametrize("disparity", [np.zeros((8, 16)), np.zeros((16, 8), np.float32)])
+def test_impossible_disparity(tmp_path: Path, disparity: np.ndarray) -> None:
+    """Disparities of another type or size than the picture's pixels are refused with the frame."""
+    image = np.zeros((8, 32), np.uint8)
+    with (
+        pytest.raises(RecordingError, match=r"disparity must be float32 of shape \(8, 16\), not .*frame 0"),
+        RecordingWriter(tmp_path / "a.mcap", width=16, height=8) as writer,
+    ):
+        writer.add(image, image, 1, 1, disparity_px=disparity)
 
 
 def test_full_disk(tmp_path: Path) -> None:

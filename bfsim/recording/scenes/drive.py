@@ -1,4 +1,4 @@
-"""The robot's way over the floor, and its two cameras at any moment of it."""
+"""Where the robot stands and looks, and its way over the floor."""
 
 from __future__ import annotations
 
@@ -12,8 +12,26 @@ from bfsim.recording.scenes.pinhole import Pinhole, stereo_pair
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Pose:
+    """The middle between the cameras over the floor, and where they look; 0 degrees is along x."""
+
+    x_mm: float
+    y_mm: float
+    heading_deg: float
+
+    def cameras(self, geometry: StereoGeometry) -> dict[str, Pinhole]:
+        """Return the "left" and the "right" camera."""
+        left, right = stereo_pair(
+            np.array([self.x_mm, self.y_mm, geometry.height_mm]),
+            heading_deg=self.heading_deg,
+            geometry=geometry,
+        )
+        return {"left": left, "right": right}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Drive:
-    """A drive at constant speed and turning rate, from a first pose of the middle between the cameras."""
+    """A drive at constant speed and turning rate, from a first pose."""
 
     x_mm: float
     y_mm: float
@@ -21,17 +39,18 @@ class Drive:
     speed_mm_per_s: float
     turn_deg_per_s: float
 
-    def cameras(self, seconds: float, geometry: StereoGeometry) -> dict[str, Pinhole]:
-        """Return the "left" and the "right" camera `seconds` after the start."""
+    def pose(self, seconds: float) -> Pose:
+        """Return the pose `seconds` after the start."""
         turned_deg = self.turn_deg_per_s * seconds
         # The chord of an arc points half-way between the first heading and the last; sinc is chord over arc.
         chord = math.radians(self.heading_deg + turned_deg / 2)
         chord_mm = self.speed_mm_per_s * seconds * float(np.sinc(turned_deg / 360))
-        x_mm = self.x_mm + chord_mm * math.cos(chord)
-        y_mm = self.y_mm + chord_mm * math.sin(chord)
-        left, right = stereo_pair(
-            np.array([x_mm, y_mm, geometry.height_mm]),
+        return Pose(
+            x_mm=self.x_mm + chord_mm * math.cos(chord),
+            y_mm=self.y_mm + chord_mm * math.sin(chord),
             heading_deg=self.heading_deg + turned_deg,
-            geometry=geometry,
         )
-        return {"left": left, "right": right}
+
+    def poses(self, count: int, period_ns: int) -> tuple[Pose, ...]:
+        """Return `count` poses, one each period, from the start."""
+        return tuple(self.pose(index * period_ns / 1e9) for index in range(count))

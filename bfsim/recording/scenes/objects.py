@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -13,6 +14,9 @@ Colour = tuple[float, float, float]  # linear reflectance of red, green and blue
 
 # Height of painted lines over the floor: paint and floor in one plane would hide each other at random.
 PAINT_MM = 0.3
+
+# A chord of a circle of 250 mm then leaves it by 0.1 mm, less than the camera can see.
+ARC_STEP_DEG = 3.0
 
 
 def placed(centre_mm: Vector, half_size_mm: Vector, heading_deg: float = 0.0) -> Vector:
@@ -29,12 +33,14 @@ def placed(centre_mm: Vector, half_size_mm: Vector, heading_deg: float = 0.0) ->
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ball:
-    """A ball that rests on the floor at (x, y)."""
+    """A ball that rests on the floor at (x, y), with the seam of a tennis ball if that has a colour."""
 
     x_mm: float
     y_mm: float
     radius_mm: float
     colour: Colour
+    seam_colour: Colour | None = None
+    seam_turn_deg: float = 0.0
 
     @property
     def centre_mm(self) -> Vector:
@@ -143,6 +149,30 @@ class FieldLine:
     def ends_mm(self) -> Vector:
         """Return the world end points (2, 3)."""
         return np.array([(*self.start_mm, PAINT_MM), (*self.end_mm, PAINT_MM)])
+
+
+@dataclass(frozen=True, slots=True)
+class FieldArc:
+    """A painted arc of a circle; its radius is that of the middle of the stroke."""
+
+    centre_mm: tuple[float, float]
+    radius_mm: float
+    from_deg: float
+    to_deg: float
+    width_mm: float
+
+    @property
+    def strokes(self) -> list[FieldLine]:
+        """Return the arc as short straight strokes, one each ARC_STEP_DEG or less."""
+        count = math.ceil((self.to_deg - self.from_deg) / ARC_STEP_DEG)
+        angles = np.radians(np.linspace(self.from_deg, self.to_deg, count + 1))
+        x_mm = (self.centre_mm[0] + self.radius_mm * np.cos(angles)).tolist()
+        y_mm = (self.centre_mm[1] + self.radius_mm * np.sin(angles)).tolist()
+        points = list(zip(x_mm, y_mm, strict=True))
+        return [FieldLine("stroke", start, end, self.width_mm) for start, end in pairwise(points)]
+
+
+Thing = Ball | Box | Robot | Goal
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,7 @@
 """The ideal pinhole camera of the synthetic scenes: where a world point lands in the picture, exactly.
 
-No lens distortion: a rendered recording is rectified by construction.
+Ground truth is that of ideal cameras. A recording that is rendered without a lens is rectified by construction;
+one that is rendered through a lens, or with cameras out of line, is so after rectification.
 """
 
 from __future__ import annotations
@@ -25,16 +26,18 @@ class Pinhole:
     position_mm: Vector
     rotation: Vector
     focal_px: float
+    width_px: int = WIDTH_PX
+    height_px: int = HEIGHT_PX
 
     @property
     def centre_px(self) -> Vector:
         """Return the principal point (x, y): the middle of the picture."""
-        return np.array([(WIDTH_PX - 1) / 2, (HEIGHT_PX - 1) / 2])
+        return np.array([(self.width_px - 1) / 2, (self.height_px - 1) / 2])
 
     @property
     def horizontal_view_deg(self) -> float:
         """Return the angle from the left border of the picture to the right one."""
-        return 2 * math.degrees(math.atan(WIDTH_PX / 2 / self.focal_px))
+        return 2 * math.degrees(math.atan(self.width_px / 2 / self.focal_px))
 
     def from_world(self, points_mm: Vector) -> Vector:
         """Turn world points (..., 3) into camera points (..., 3): right, down and depth in mm."""
@@ -46,6 +49,17 @@ class Pinhole:
         inside = self.from_world(points_mm)
         projected: Vector = self.centre_px + self.focal_px * inside[..., :2] / inside[..., 2:]
         return projected
+
+    def faces(self, points_mm: Vector) -> bool:
+        """Tell if all world points (..., 3) are before the camera."""
+        return bool((self.from_world(points_mm)[..., 2] > 0).all())
+
+    def rays(self) -> Vector:
+        """Return the world directions (height, width, 3) of all pixel centres, each one long in depth."""
+        columns, rows = np.meshgrid(np.arange(self.width_px), np.arange(self.height_px))
+        slopes = (np.stack([columns, rows], axis=-1) - self.centre_px) / self.focal_px
+        rays: Vector = slopes @ self.rotation[:2] + self.rotation[2]
+        return rays
 
     def clip(self, ends_mm: Vector) -> Vector | None:
         """Cut a world segment (2, 3) to what the picture holds; None if it holds nothing of it."""

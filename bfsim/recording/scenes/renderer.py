@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
-from bfsim.recording.scenes.pinhole import HEIGHT_PX, WIDTH_PX, Pinhole, Vector
+from bfsim.recording.scenes.pinhole import Pinhole, Vector
 from bfsim.recording.scenes.shapes import Shape
 
 # Light that went from a lamp over at most three surfaces: enough for colours mirrored in the floor.
@@ -25,7 +25,7 @@ class Renderer:
 
     def __init__(self, shapes: Mapping[str, Shape]) -> None:
         self._mitsuba = _load_mitsuba()
-        scene = {name: self._with_transforms(shape) for name, shape in shapes.items()}
+        scene = {name: self._loaded(shape) for name, shape in shapes.items()}
         integrator = {"type": "path", "max_depth": MAX_DEPTH}
         self._scene = self._mitsuba.load_dict({"type": "scene", "integrator": integrator, **scene})
 
@@ -35,7 +35,7 @@ class Renderer:
         return f"mitsuba {self._mitsuba.__version__} scalar_rgb"
 
     def look(self, camera: Pinhole, *, samples: int, seed: int) -> NDArray[np.float32]:
-        """Return the radiance (HEIGHT_PX, WIDTH_PX, 3) of red, green and blue that reaches each pixel."""
+        """Return the radiance (height, width, 3) of red, green and blue that reaches each pixel."""
         picture = self._mitsuba.render(self._scene, sensor=self._sensor(camera), spp=samples, seed=seed)
         return np.asarray(picture, dtype=np.float32)
 
@@ -48,6 +48,16 @@ class Renderer:
         ray = self._mitsuba.Ray3f(origin, direction, distance_mm - 1.0, 0.0, [])
         return not self._scene.ray_test(ray)
 
+    def depths_mm(self, camera: Pinhole) -> Vector:
+        """Return how far before the camera each pixel's centre meets something (height, width); inf for nothing."""
+        origin, rays = camera.position_mm.tolist(), camera.rays()
+        lengths = np.linalg.norm(rays, axis=-1, keepdims=True)
+        directions = (rays / lengths).reshape(-1, 3).tolist()
+        ray = self._mitsuba.Ray3f
+        met = [self._scene.ray_intersect_preliminary(ray(origin, way)).t for way in directions]
+        depths: Vector = np.array(met).reshape(lengths.shape[:2]) / lengths[..., 0]
+        return depths
+
     def _sensor(self, camera: Pinhole) -> Any:
         _, down, forward = camera.rotation
         position = camera.position_mm
@@ -56,8 +66,8 @@ class Renderer:
         )
         film = {
             "type": "hdrfilm",
-            "width": WIDTH_PX,
-            "height": HEIGHT_PX,
+            "width": camera.width_px,
+            "height": camera.height_px,
             "pixel_format": "rgb",
             "rfilter": {"type": "box"},
         }
@@ -73,10 +83,17 @@ class Renderer:
             }
         )
 
-    def _with_transforms(self, shape: Shape) -> Shape:
-        if "to_world" not in shape:
-            return shape
-        return {**shape, "to_world": self._mitsuba.ScalarTransform4f(shape["to_world"])}
+    def _loaded(self, shape: Shape) -> Shape:
+        """Return the shape with the renderer's own objects in the place of numpy arrays."""
+        makers = {"to_world": self._mitsuba.ScalarTransform4f, "bitmap": self._mitsuba.Bitmap}
+        return {
+            key: makers[key](value)
+            if isinstance(value, np.ndarray)
+            else self._loaded(value)
+            if isinstance(value, dict)
+            else value
+            for key, value in shape.items()
+        }
 
 
 def _load_mitsuba() -> Any:

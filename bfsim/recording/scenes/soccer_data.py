@@ -1,4 +1,4 @@
-"""What stands where in the soccer scene, how it is lit, and how the robot drives: numbers only.
+"""The field, its things and its light; and the soccer scene of the built-in recording: numbers only.
 
 Sources: [T] the Tinyphoon thesis; [MiroSot] the rules of FIRA's league for robots of 7.5 cm, quoted from
 memory; [assumed].
@@ -9,6 +9,7 @@ from __future__ import annotations
 from bfsim.recording.frames import StereoGeometry
 from bfsim.recording.scenes.drive import Drive
 from bfsim.recording.scenes.objects import Ball, Box, Colour, FieldLine, Goal, Lamp, Robot
+from bfsim.recording.scenes.scene import Floor, Light, Scene
 
 # Focal length after rectification and baseline: [T 6.2]; height above the floor and tilt: [T 6.4].
 GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
@@ -26,8 +27,6 @@ FLOOR_ROUGHNESS = 0.25
 OBJECT_ROUGHNESS = 0.30
 
 # Field of 1500 x 1300, goal, walls and lines: [MiroSot]; height of the goal: [assumed].
-# The floor reaches under the walls and the goal.
-FLOOR_MM = (1850.0, 1400.0)
 GOAL = Goal(line_x_mm=750, width_mm=400, depth_mm=150, height_mm=100, panel_mm=10, colour=BLUE)
 
 # A ball of 6 cm: [T 6.3.1].
@@ -60,12 +59,15 @@ LINES = (
 )
 
 
+# The floor reaches under the walls and the goal.
+FLOOR = Floor(size_mm=(1850.0, 1400.0), colour=BLACK, roughness=FLOOR_ROUGHNESS, paint=WHITE, lines=LINES)
+
 # The walls at the far end stop at the goal.
 WALLS = {
-    "end_left": Box(foot_mm=(762.5, 430, 0), size_mm=(25, 440, 50), colour=WHITE),
-    "end_right": Box(foot_mm=(762.5, -430, 0), size_mm=(25, 440, 50), colour=WHITE),
-    "side_left": Box(foot_mm=(0, 662.5, 0), size_mm=(1500, 25, 50), colour=WHITE),
-    "side_right": Box(foot_mm=(0, -662.5, 0), size_mm=(1500, 25, 50), colour=WHITE),
+    "wall_end_left": Box(foot_mm=(762.5, 430, 0), size_mm=(25, 440, 50), colour=WHITE),
+    "wall_end_right": Box(foot_mm=(762.5, -430, 0), size_mm=(25, 440, 50), colour=WHITE),
+    "wall_side_left": Box(foot_mm=(0, 662.5, 0), size_mm=(1500, 25, 50), colour=WHITE),
+    "wall_side_right": Box(foot_mm=(0, -662.5, 0), size_mm=(1500, 25, 50), colour=WHITE),
 }
 
 # Two rows of office lamps, the brighter one behind the robot; 1 just saturates the sensor. [assumed]
@@ -73,15 +75,28 @@ LAMPS = (
     Lamp((-1700, 300, 1600), (300, 1600), 48.0),
     Lamp((100, -500, 1900), (1200, 300), 16.0),
 )
-ROOM_RADIANCE = 0.015
-
-# Towards the ball, in a slight left turn. [assumed]
-DRIVE = Drive(x_mm=-270, y_mm=0, heading_deg=2, speed_mm_per_s=600, turn_deg_per_s=17)
+LIGHT = Light(lamps=LAMPS, room_radiance=0.015)
 
 # 30 frames a second; the second camera has an oscillator of its own and lags by a constant phase. [assumed]
 FRAME_PERIOD_NS = 33_333_333
 RIGHT_PHASE_NS = 2_100_000
 
-FRAMES = 8
-SAMPLES = 192  # light paths a pixel; their own noise then stays below that of the sensor
-SEED = 561
+# Towards the ball, in a slight left turn. [assumed]
+DRIVE = Drive(x_mm=-270, y_mm=0, heading_deg=2, speed_mm_per_s=600, turn_deg_per_s=17)
+
+SOCCER = Scene(
+    description=(
+        "Robot soccer: a Tinyphoon robot drives at the ball (yellow, 6 cm) in a slight left turn; before it "
+        "another robot (red mark) and the goal (blue)."
+    ),
+    things={"goal": GOAL, **WALLS, "robot": ROBOT, "ball": BALL},
+    roughness=OBJECT_ROUGHNESS,
+    floor=FLOOR,
+    light=LIGHT,
+    geometry=GEOMETRY,
+    poses=DRIVE.poses(8, FRAME_PERIOD_NS),
+    period_ns=FRAME_PERIOD_NS,
+    right_phase_ns=RIGHT_PHASE_NS,
+    samples=192,  # light paths a pixel; their own noise then stays below that of the sensor
+    seed=561,
+)

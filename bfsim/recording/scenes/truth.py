@@ -1,21 +1,60 @@
 """Ground truth of one stereo frame as plain JSON data: poses and sizes in mm, picture positions in pixels.
 
+One object a frame: "cameras" and "lines", and each thing of the scene under its own name with its "kind".
 Corners and centres are those of the ideal projection, whether or not something stands before them or they are
-outside the picture. The ends of field lines are cut to the picture and say if they are visible.
+outside the picture. The ends of field lines and of the edges of boxes are cut to the picture and say if they
+are visible.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from bfsim.recording.scenes.objects import Ball, FieldLine, Goal, Robot
+from bfsim.recording.scenes.objects import Ball, Box, Goal, Robot, Thing
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
+from bfsim.recording.scenes.scene import Scene
+
+Cameras = dict[str, Pinhole]
 
 Sight = Callable[[Pinhole, Vector], bool]
 """Tells if nothing stands between a camera and a world point."""
+
+# The edges of a box seen from its front (-x), as indices of `Box.corners_mm`.
+EDGES = {
+    "bottom front": (0, 1), "bottom right": (1, 2), "bottom back": (2, 3), "bottom left": (3, 0),
+    "top front": (4, 5), "top right": (5, 6), "top back": (6, 7), "top left": (7, 4),
+    "front left": (0, 4), "front right": (1, 5), "back right": (2, 6), "back left": (3, 7),
+}  # fmt: skip
+
+
+def frame_truth(scene: Scene, cameras: Cameras, sight: Sight) -> dict[str, Any]:
+    """Return what is where in a scene, in the world and in the pictures of the "left" and "right" camera."""
+    return {
+        "cameras": {side: camera_truth(camera) for side, camera in cameras.items()},
+        **{name: _thing_truth(thing, cameras, sight) for name, thing in scene.things.items()},
+        "lines": [
+            {"name": line.name, "width_mm": line.width_mm, **segment_truth(line.ends_mm, cameras, sight)}
+            for line in scene.floor.lines
+        ],
+        "arcs": [asdict(arc) for arc in scene.floor.arcs],
+    }
+
+
+def _thing_truth(thing: Thing, cameras: Cameras, sight: Sight) -> dict[str, Any]:
+    match thing:
+        case Ball():
+            return {"kind": "ball", **ball_truth(thing, cameras)}
+        case Robot():
+            return {"kind": "robot", **robot_truth(thing, cameras, sight)}
+        case Goal():
+            return {"kind": "goal", **goal_truth(thing, cameras)}
+        case Box():
+            return {"kind": "box", **box_truth(thing, cameras, sight)}
 
 
 def camera_truth(camera: Pinhole) -> dict[str, Any]:
@@ -28,7 +67,7 @@ def camera_truth(camera: Pinhole) -> dict[str, Any]:
     }
 
 
-def ball_truth(ball: Ball, cameras: dict[str, Pinhole]) -> dict[str, Any]:
+def ball_truth(ball: Ball, cameras: Cameras) -> dict[str, Any]:
     """Return the ball in the world, and for each camera its place before it and its exact outline."""
     views = {side: _outline(ball, camera) for side, camera in cameras.items()}
     disparity_px = views["left"]["centre_px"][0] - views["right"]["centre_px"][0]
@@ -62,8 +101,8 @@ def _outline(ball: Ball, camera: Pinhole) -> dict[str, Any]:
     }
 
 
-def robot_truth(robot: Robot, cameras: dict[str, Pinhole]) -> dict[str, Any]:
-    """Return the other robot's pose and the corners of its mark: four below, then the four over them."""
+def robot_truth(robot: Robot, cameras: Cameras, sight: Sight) -> dict[str, Any]:
+    """Return the other robot's pose and its mark: corners (four below, then the four over them) and edges."""
     corners_mm = robot.mark.corners_mm
     return {
         "position_mm": [robot.x_mm, robot.y_mm],
@@ -73,38 +112,63 @@ def robot_truth(robot: Robot, cameras: dict[str, Pinhole]) -> dict[str, Any]:
         **{
             side: {"mark_corners_px": camera.project(corners_mm).tolist()} for side, camera in cameras.items()
         },
+        "mark_edges": _edges(robot.mark, cameras, sight),
     }
 
 
-def goal_truth(goal: Goal, cameras: dict[str, Pinhole]) -> dict[str, Any]:
-    """Return the corners of the goal's mouth: bottom left, bottom right, top right, top left."""
+def goal_truth(goal: Goal, cameras: Cameras) -> dict[str, Any]:
+    """Return the corners of the goal's mouth: bottom left, bottom right, top right, top left.
+
+    Their pixels are null for a camera that has some of them beside or behind it.
+    """
     corners_mm = goal.mouth_mm
     return {
         "mouth_mm": corners_mm.tolist(),
-        **{side: {"mouth_px": camera.project(corners_mm).tolist()} for side, camera in cameras.items()},
+        **{
+            side: {"mouth_px": camera.project(corners_mm).tolist() if camera.faces(corners_mm) else None}
+            for side, camera in cameras.items()
+        },
     }
 
 
-def lines_truth(
-    lines: Iterable[FieldLine], cameras: dict[str, Pinhole], sight: Sight
-) -> list[dict[str, Any]]:
-    """Return each field line, and for each camera the ends of what the picture holds of it, or null."""
-    return [
-        {
-            "name": line.name,
-            "width_mm": line.width_mm,
-            "ends_mm": line.ends_mm.tolist(),
-            **{side: _line_view(line, camera, sight) for side, camera in cameras.items()},
-        }
-        for line in lines
-    ]
+def box_truth(box: Box, cameras: Cameras, sight: Sight) -> dict[str, Any]:
+    """Return where a box stands, and its edges."""
+    return {
+        "foot_mm": list(box.foot_mm),
+        "size_mm": list(box.size_mm),
+        "heading_deg": box.heading_deg,
+        "edges": _edges(box, cameras, sight),
+    }
 
 
-def _line_view(line: FieldLine, camera: Pinhole, sight: Sight) -> dict[str, Any] | None:
-    ends_mm = camera.clip(line.ends_mm)
-    if ends_mm is None:
+def _edges(box: Box, cameras: Cameras, sight: Sight) -> dict[str, Any]:
+    corners_mm = box.corners_mm
+    return {name: segment_truth(corners_mm[list(ends)], cameras, sight) for name, ends in EDGES.items()}
+
+
+def segment_truth(ends_mm: Vector, cameras: Cameras, sight: Sight) -> dict[str, Any]:
+    """Return a world segment (2, 3), and for each camera the ends of what the picture holds of it, or null."""
+    return {
+        "ends_mm": ends_mm.tolist(),
+        **{side: _segment_view(ends_mm, camera, sight) for side, camera in cameras.items()},
+    }
+
+
+def _segment_view(ends_mm: Vector, camera: Pinhole, sight: Sight) -> dict[str, Any] | None:
+    held_mm = camera.clip(ends_mm)
+    if held_mm is None:
         return None
     return {
-        "ends_px": camera.project(ends_mm).tolist(),
-        "visible": [sight(camera, end_mm) for end_mm in ends_mm],
+        "ends_px": camera.project(held_mm).tolist(),
+        "visible": [sight(camera, end_mm) for end_mm in held_mm],
     }
+
+
+def disparity(depths_mm: Vector, cameras: Cameras) -> NDArray[np.float32]:
+    """Return the disparity in px of each pixel of the left camera from its depth: 0 where there is nothing.
+
+    It is where the right picture would show the same point, whether or not something hides it there.
+    """
+    left, right = cameras["left"], cameras["right"]
+    baseline_mm = float(np.linalg.norm(right.position_mm - left.position_mm))
+    return (left.focal_px * baseline_mm / depths_mm).astype(np.float32)

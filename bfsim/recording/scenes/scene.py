@@ -1,0 +1,54 @@
+"""A scene as data: what stands where, how it is lit, and from where each frame is taken."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from bfsim.recording.frames import StereoGeometry
+from bfsim.recording.scenes.drive import Pose
+from bfsim.recording.scenes.objects import Colour, FieldArc, FieldLine, Lamp, Thing
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Light:
+    """Lamps, and the radiance of the room behind everything; 1 just saturates the sensor."""
+
+    lamps: tuple[Lamp, ...]
+    room_radiance: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Floor:
+    """The floor, its middle at the origin, and the paint on it."""
+
+    size_mm: tuple[float, float]
+    colour: Colour
+    roughness: float
+    paint: Colour
+    lines: tuple[FieldLine, ...] = ()
+    arcs: tuple[FieldArc, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scene:
+    """A scene that does not change while the robot takes its frames, one from each pose.
+
+    `things` have the names that they have in the ground truth; `roughness` is that of their coats. Frame k is
+    taken `k * period_ns` after the first, its red, green and blue light multiplied by `gains[k]`; without gains
+    the camera's white balance is right. The right camera's time stamps come `right_phase_ns` later, but both
+    pictures are rendered at the pose of the left, so that each pair is exact.
+    """
+
+    description: str
+    things: Mapping[str, Thing]
+    roughness: float
+    floor: Floor
+    light: Light
+    geometry: StereoGeometry
+    poses: tuple[Pose, ...]
+    period_ns: int
+    right_phase_ns: int
+    samples: int
+    seed: int
+    gains: tuple[Colour, ...] = ()

@@ -1,0 +1,213 @@
+"""`bfsim record calibrate`: from drawn chessboards through known lenses back to the cameras."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from PIL import Image
+
+from bfsim.cli_record import record
+from bfsim.errors import RecordingError
+from bfsim.recording import (
+    RecordingReader,
+    RecordingWriter,
+    RectificationTables,
+    StereoGeometry,
+    calibrate_recording,
+)
+from bfsim.recording.calibration import Calibration, calibrate
+from bfsim.recording.scenes.chessboard import write_chessboards
+from bfsim.recording.scenes.drive import Pose
+from bfsim.recording.scenes.lens import Lens, Misfit, rectified
+from bfsim.recording.scenes.pinhole import Pinhole, Vector
+
+GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
+MISFIT = Misfit(Lens(-0.25, 0.08, 0.001, -0.0008), (0.8, -1.2, 0.6), (0.3, 0.5, -0.4))
+SIZE, CORNERS, SQUARE_MM = (320, 240), (9, 6), 20.0
+
+
+@pytest.fixture(scope="module")
+def chessboards(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Pairs of pictures of a chessboard through the lenses."""
+    folder = tmp_path_factory.mktemp("chessboards")
+    assert write_chessboards(folder, GEOMETRY, MISFIT, seed=1) == 27
+    return folder
+
+
+@pytest.fixture(scope="module")
+def found(chessboards: Path) -> Calibration:
+    """What calibration makes of them."""
+    pytest.importorskip("cv2", reason="calibration needs OpenCV")
+    return calibrate(chessboards, SIZE, corners=CORNERS, square_mm=SQUARE_MM, focal_px=386.0)
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> Path:
+    """A recording of two frames with truth and geometry, and no tables."""
+    path = tmp_path / "run.mcap"
+    image = np.arange(240 * 640, dtype=np.uint32).astype(np.uint8).reshape(240, 640)
+    with RecordingWriter(path, width=320, height=240, geometry=GEOMETRY, description="noise") as writer:
+        for k in range(2):
+            writer.add(image, image + k, 5 + k, 6 + k, {"k": k}, np.full((240, 320), k, np.float32))
+    return path
+
+
+def real_pair() -> dict[str, Pinhole]:
+    """The cameras that took the chessboards, without their lenses."""
+    cameras = Pose(x_mm=0, y_mm=0, heading_deg=0).cameras(GEOMETRY)
+    return {**cameras, "right": MISFIT.misplaced(cameras["right"])}
+
+
+def true_sources(side: str) -> Vector:
+    """For each rectified pixel of one camera where its light really fell, (2, 240, 320): rows, then columns."""
+    real, ideal = real_pair()[side], rectified(real_pair())[side]
+    inside = ideal.rays() @ real.rotation.T
+    bent = MISFIT.lens.distort(inside[..., :2] / inside[..., 2:]) * real.focal_px + real.centre_px
+    return np.stack([bent[..., 1], bent[..., 0]])
+
+
+def test_errors_are_a_fraction_of_a_pixel(found: Calibration) -> None:
+    """Corners fit the cameras found, and rows agree after rectification though they were five pixels apart."""
+    assert found.pair_count == 27
+    assert found.reprojection_px < 0.2
+    assert found.vertical_before_px > 4
+    assert found.vertical_rms_px < 0.15
+    assert found.vertical_worst_px < 0.5
+
+
+def test_baseline_is_measured(found: Calibration) -> None:
+    """The distance of the optical centres comes out to half a percent, the shift of the right one included."""
+    left, right = real_pair().values()
+    assert found.baseline_mm == pytest.approx(np.linalg.norm(right.position_mm - left.position_mm), rel=0.005)
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_tables_point_where_the_light_fell(found: Calibration, side: str) -> None:
+    """Tables are those of the true cameras to a pixel; they hold whole numbers, so 0.25 px on average is theirs."""
+    table, truth = getattr(found.tables, side), true_sources(side)
+    seen = table[0] >= 0
+    off_px = np.abs(table - truth)[:, seen]
+    assert off_px.mean() < 0.75
+    assert off_px.max() < 2.5
+    last = np.array([239, 319])[:, None, None]
+    assert seen[((truth > 3) & (truth < last - 3)).all(axis=0)].all()
+    outside = ((truth < -3) | (truth > last + 3)).any(axis=0)
+    assert not seen[outside].any()
+
+
+def test_straight_lines_are_straight_again(found: Calibration) -> None:
+    """The image of a wall's edge bends by pixels in the recorded picture, and by under one in the rectified."""
+    real, ideal = real_pair()["left"], rectified(real_pair())["left"]
+    edge_mm = np.linspace([500, 240, 150], [500, -200, 150], 60)
+    inside = real.from_world(edge_mm)
+    recorded = MISFIT.lens.distort(inside[:, :2] / inside[:, 2:]) * 386 + real.centre_px
+    in_view = (recorded[:, 0] > 5) & (recorded[:, 0] < 314)
+    columns, rows = recorded[in_view].T
+    # A rectified pixel is on the edge where the table points at its recorded pixels.
+    rectified_rows = [
+        np.abs(found.tables.left - np.array([row, column])[:, None, None]).sum(axis=0).argmin() // 320
+        for row, column in zip(rows, columns, strict=True)
+    ]
+    expected = ideal.project(edge_mm)[in_view, 1]
+    assert np.ptp(rows) > 3
+    assert np.abs(np.array(rectified_rows) - expected).max() < 1.5
+
+
+def test_tables_reach_the_recording_and_nothing_else_changes(
+    chessboards: Path, recording: Path, found: Calibration
+) -> None:
+    """In place: tables and the measured baseline are new; pictures, stamps, truth, description stay."""
+    command = ["calibrate", str(chessboards), str(recording)]
+    result = CliRunner().invoke(record, command, catch_exceptions=False)
+    assert "tables from 27 chessboard pairs" in result.output
+    assert f"Reprojection error: {found.reprojection_px:.3f} px RMS" in result.output
+    with RecordingReader(recording) as reader:
+        assert isinstance(reader.rectification, RectificationTables)
+        np.testing.assert_array_equal(reader.rectification.left, found.tables.left)
+        np.testing.assert_array_equal(reader.rectification.right, found.tables.right)
+        assert reader.geometry == StereoGeometry(386.0, found.baseline_mm, 120.0, 10.0)
+        assert reader.description == "noise"
+        for k, frame in enumerate(reader.frames()):
+            assert (frame.left_ns, frame.right_ns, frame.truth) == (5 + k, 6 + k, {"k": k})
+            assert frame.right[0, 1] == 1 + k
+            assert frame.disparity_px is not None
+            assert frame.disparity_px[0, 0] == k
+    shown = CliRunner().invoke(record, ["info", str(recording)]).output
+    shares = [(table[0] >= 0).mean() for table in (found.tables.left, found.tables.right)]
+    assert f"left and right, {shares[0]:.1%} and {shares[1]:.1%} of the pixels have a source" in shown
+
+
+def test_output_leaves_the_recording_alone(chessboards: Path, recording: Path, tmp_path: Path) -> None:
+    """With another output the recording keeps its bytes."""
+    pytest.importorskip("cv2")
+    before, other, few = recording.read_bytes(), tmp_path / "other.mcap", tmp_path / "few"
+    few.mkdir()
+    for picture in chessboards.glob("*_0[0-5].png"):
+        shutil.copy(picture, few)
+    calibrate_recording(few, recording, other, corners=CORNERS, square_mm=SQUARE_MM)
+    assert recording.read_bytes() == before
+    with RecordingReader(other) as reader:
+        assert reader.rectification is not None
+
+
+class TestBadPictures:
+    """What cannot be calibrated is refused with the names of the files, and the recording stays as it was."""
+
+    @pytest.fixture
+    def pictures(self, chessboards: Path, tmp_path: Path) -> Path:
+        """A copy to spoil."""
+        pytest.importorskip("cv2")
+        return Path(shutil.copytree(chessboards, tmp_path / "spoilt"))
+
+    def refusal(self, pictures: Path, corners: tuple[int, int] = CORNERS) -> str:
+        """What calibration says to them."""
+        with pytest.raises(RecordingError) as error:
+            calibrate(pictures, SIZE, corners=corners, square_mm=SQUARE_MM)
+        return str(error.value)
+
+    def test_no_chessboard(self, pictures: Path) -> None:
+        Image.new("L", SIZE, 80).save(pictures / "right_03.png")
+        assert "right_03.png: picture must show a whole chessboard of 9x6" in self.refusal(pictures)
+
+    def test_other_chessboard(self, pictures: Path) -> None:
+        assert "left_00.png: picture must show a whole chessboard of 9x8" in self.refusal(pictures, (9, 8))
+
+    def test_other_size(self, pictures: Path) -> None:
+        Image.new("L", (640, 480)).save(pictures / "left_02.png")
+        assert (
+            "left_02.png: chessboard picture must be 320x240 like the recording, not 640x480"
+            in self.refusal(pictures)
+        )
+
+    def test_too_few(self, pictures: Path) -> None:
+        for k in range(4, 27):
+            (pictures / f"left_{k:02}.png").unlink()
+            (pictures / f"right_{k:02}.png").unlink()
+        assert "pairs must be at least 5, not 4 (left_00.png to left_03.png)" in self.refusal(pictures)
+
+    def test_one_without_its_other(self, pictures: Path) -> None:
+        (pictures / "right_26.png").unlink()
+        assert "must be in pairs, not 27 left* and 26 right*" in self.refusal(pictures)
+
+    def test_none(self, tmp_path: Path) -> None:
+        pytest.importorskip("cv2")
+        assert "left*: source must hold images" in self.refusal(tmp_path)
+
+    def test_no_board(self, pictures: Path) -> None:
+        assert "at least 3x3 inner corners" in self.refusal(pictures, (2, 5))
+
+
+def test_missing_opencv_says_how_to_get_it(
+    chessboards: Path, recording: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without OpenCV calibration is a RecordingError that names the extra to install."""
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    with pytest.raises(
+        RecordingError, match=r'OpenCV must be installed .* pip install "bfsim\[calibration\]"'
+    ):
+        calibrate_recording(chessboards, recording, corners=CORNERS, square_mm=SQUARE_MM)

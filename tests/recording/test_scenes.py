@@ -1,0 +1,277 @@
+"""The scenes as data, their exact truth against closed forms, and one rendered where mitsuba is installed."""
+
+from __future__ import annotations
+
+import json
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from numpy.typing import NDArray
+
+from bfsim.cli_record import record
+from bfsim.errors import RecordingError
+from bfsim.recording import RecordingReader, StereoGeometry
+from bfsim.recording.planes import YuvPlanes
+from bfsim.recording.scenes import rendering
+from bfsim.recording.scenes.catalog import SCENE_NAMES, THESIS_SCENES, scenes_named
+from bfsim.recording.scenes.distances import BALL_DISTANCES_MM, BOX_DISTANCES_MM, ball_at, box_at
+from bfsim.recording.scenes.lens import Lens, Misfit
+from bfsim.recording.scenes.objects import Ball, FieldArc
+from bfsim.recording.scenes.pinhole import Pinhole, Vector
+from bfsim.recording.scenes.scene import Scene
+from bfsim.recording.scenes.shapes import scene_shapes
+from bfsim.recording.scenes.truth import disparity, frame_truth
+
+GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
+
+
+def truth_of(scene: Scene, frame: int = 0) -> dict[str, Any]:
+    """Truth of a frame as if nothing hid anything."""
+    return frame_truth(scene, scene.poses[frame].cameras(scene.geometry), lambda _camera, _point: True)
+
+
+@pytest.mark.parametrize("name", THESIS_SCENES)
+def test_thesis_scenes_are_taken_by_the_robot(name: str) -> None:
+    """Each has some frames, the cameras of the robot, and truth that is plain JSON."""
+    scene = THESIS_SCENES[name]
+    assert 3 <= len(scene.poses) <= 10
+    assert scene.geometry == GEOMETRY
+    for frame in range(len(scene.poses)):
+        json.dumps(truth_of(scene, frame), allow_nan=False)
+
+
+@pytest.mark.parametrize("name", THESIS_SCENES)
+def test_what_a_thesis_scene_is_about_is_in_view(name: str) -> None:
+    """Balls and marks are at least in part inside the left picture of every frame."""
+    scene = THESIS_SCENES[name]
+    for frame in range(len(scene.poses)):
+        for thing in truth_of(scene, frame).values():
+            if isinstance(thing, dict) and thing.get("kind") == "ball":
+                (x, y), (long_px, _) = (
+                    thing["left"][key] for key in ("outline_centre_px", "outline_half_axes_px")
+                )
+                assert -long_px < x < 320 + long_px
+                assert -long_px < y < 240 + long_px
+            if isinstance(thing, dict) and thing.get("kind") == "robot":
+                assert thing["mark_edges"]["front left"]["left"] is not None
+
+
+def test_shapes_of_every_scene_have_names_of_their_own() -> None:
+    """No two things of a scene end up under one name: all are drawn."""
+    for name in SCENE_NAMES:
+        for scene in scenes_named(name).values():
+            balls = sum(isinstance(thing, Ball) for thing in scene.things.values())
+            kinds = [shape["type"] for shape in scene_shapes(scene).values()]
+            assert kinds.count("sphere") == balls
+            assert kinds.count("constant") == 1
+
+
+def test_camera_settles_from_yellow_to_white() -> None:
+    """The first picture has too little blue; the gains go to 1 in a straight line and stay in order."""
+    gains = np.array(THESIS_SCENES["camera-initialised"].gains)
+    assert gains[0, 2] < 0.5
+    assert gains[0, 1] > 1
+    assert gains[-1] == pytest.approx([1, 1, 1])
+    assert np.diff(gains, axis=0) == pytest.approx(np.broadcast_to((1 - gains[0]) / 8, (8, 3)))
+
+
+def test_post_carries_on_the_left_border_of_the_mark() -> None:
+    """In the left picture the post behind the robot starts where the mark's border ends, to half a pixel."""
+    truth = truth_of(THESIS_SCENES["robot-marker"])
+    (mark_x, mark_y) = truth["robot"]["mark_edges"]["front left"]["left"]["ends_px"][1]
+    (low_x, low_y), (high_x, high_y) = truth["post"]["edges"]["front left"]["left"]["ends_px"]
+    assert np.interp(mark_y, [high_y, low_y], [high_x, low_x]) == pytest.approx(mark_x, abs=0.5)
+
+
+@pytest.mark.parametrize("geometry", [None, StereoGeometry(200.0, 60.0, 90.0, 0.0)])
+def test_box_distances(geometry: StereoGeometry | None) -> None:
+    """The front's upright edges are f w / 2d beside the middle, shifted by half the disparity f b / d."""
+    scene = box_at(geometry=geometry)
+    focal_px, baseline_mm = scene.geometry.focal_px, scene.geometry.baseline_mm
+    assert len(scene.poses) == len(BOX_DISTANCES_MM)
+    for frame, distance_mm in enumerate(BOX_DISTANCES_MM):
+        edges = truth_of(scene, frame)["box"]["edges"]
+        half_px, shift_px = focal_px * 50 / distance_mm, focal_px * baseline_mm / distance_mm / 2
+        for name, sign in (("front left", -1), ("front right", 1)):
+            for side, shift in (("left", shift_px), ("right", -shift_px)):
+                if abs(x := sign * half_px + shift) < 159:
+                    assert np.array(edges[name][side]["ends_px"])[:, 0] == pytest.approx([159.5 + x] * 2)
+
+
+def test_ball_distances() -> None:
+    """The centre is each distance deep, between the axes, and its disparity is f b / d."""
+    scene = ball_at()
+    for frame, distance_mm in enumerate(BALL_DISTANCES_MM):
+        ball = truth_of(scene, frame)["ball"]
+        assert ball["left"]["camera_mm"][::2] == pytest.approx([15.0, distance_mm])
+        assert ball["right"]["camera_mm"][::2] == pytest.approx([-15.0, distance_mm])
+        assert ball["disparity_px"] == pytest.approx(311 * 30 / distance_mm)
+
+
+@pytest.mark.parametrize("name", ["box-distances", "ball-distances"])
+def test_things_at_the_shortest_distance_are_whole(name: str) -> None:
+    """At every distance both borders of the box, or of the ball, are inside both pictures."""
+    scene = scenes_named(name)[name]
+    for frame in range(len(scene.poses)):
+        truth = truth_of(scene, frame)
+        for side in ("left", "right"):
+            if name == "box-distances":
+                assert all(truth["box"]["edges"][edge][side] for edge in ("front left", "front right"))
+            else:
+                (x, y), (long_px, _) = (
+                    truth["ball"][side][key] for key in ("outline_centre_px", "outline_half_axes_px")
+                )
+                assert long_px < x < 319 - long_px
+                assert long_px < y < 239 - long_px
+
+
+def test_disparity_is_zero_where_there_is_nothing() -> None:
+    """f b / depth, exactly; an empty pixel is infinitely deep."""
+    cameras = box_at().poses[0].cameras(GEOMETRY)
+    found = disparity(np.array([[500.0, np.inf]]), cameras)
+    assert found.dtype == np.float32
+    assert found == pytest.approx(np.array([[386 * 30.47 / 500, 0]]))
+
+
+def test_rays_go_through_their_pixels() -> None:
+    """A point along the ray of a pixel projects to that pixel, and its depth is the length given."""
+    camera = box_at().poses[0].cameras(GEOMETRY)["left"]
+    points_mm = camera.position_mm + 700 * camera.rays()
+    pixels = np.stack(np.meshgrid(np.arange(320), np.arange(240)), axis=-1)
+    np.testing.assert_allclose(camera.project(points_mm), pixels, atol=1e-9)
+    np.testing.assert_allclose(camera.from_world(points_mm)[..., 2], 700.0)
+
+
+def test_arc_is_made_of_strokes_on_its_circle() -> None:
+    """Strokes hang together, and their ends are on the circle."""
+    strokes = FieldArc((10, 20), 100, 30, 120, 5).strokes
+    assert len(strokes) == 30
+    assert all(a.end_mm == b.start_mm for a, b in pairwise(strokes))
+    assert [np.hypot(s.start_mm[0] - 10, s.start_mm[1] - 20) for s in strokes] == pytest.approx([100] * 30)
+    assert strokes[-1].end_mm == pytest.approx((10 - 50, 20 + 100 * np.sqrt(0.75)))
+
+
+@pytest.mark.parametrize(
+    ("name", "distances_mm", "message"),
+    [
+        ("soccer", (300.0,), "distances must be given for box-distances or ball-distances, not for soccer"),
+        ("thesis", (300.0,), "not for thesis"),
+        ("box-distances", (300.0, -1.0), r"above 0 mm, not 300, -1"),
+        ("box-distances", (), "at least one"),
+        ("ball-distances", (float("nan"),), "above 0 mm"),
+    ],
+)
+def test_distances_that_cannot_be(name: str, distances_mm: tuple[float, ...], message: str) -> None:
+    """Distances are for the scenes that have some, and ahead."""
+    with pytest.raises(RecordingError, match=message):
+        scenes_named(name, distances_mm)
+
+
+def run(*arguments: object) -> str:
+    """What `bfsim record` prints with these arguments."""
+    return CliRunner().invoke(record, [str(each) for each in arguments], catch_exceptions=False).output
+
+
+def test_distances_of_another_form_are_a_usage_error(tmp_path: Path) -> None:
+    """The message shows the right form."""
+    assert "distances must be like 250,300,350" in run(
+        "render", "box-distances", tmp_path / "a.mcap", "--distances", "near"
+    )
+
+
+def test_existing_recording_is_not_overwritten(tmp_path: Path) -> None:
+    """Without --force a file stays, and nothing is rendered."""
+    (tmp_path / "a.mcap").touch()
+    with pytest.raises(RecordingError, match=r"a\.mcap: recording must not exist yet"):
+        run("render", "soccer", tmp_path / "a.mcap")
+
+
+class TestRendered:
+    """Scenes as mitsuba renders them; few samples, so only what is geometry."""
+
+    @pytest.fixture(autouse=True)
+    def _mitsuba(self) -> None:
+        pytest.importorskip("mitsuba", reason="rendering needs mitsuba")
+
+    def test_ball_is_where_its_truth_says(self, tmp_path: Path) -> None:
+        """The disparities of a ball are those of its sphere; its pixels are as yellow as it; seeds repeat."""
+        command = ("render", "ball-distances", tmp_path / "a.mcap", "--distances", 400, "--samples", 4)
+        run(*command)
+        first = (tmp_path / "a.mcap").read_bytes()
+        run(*command, "--force")
+        assert (tmp_path / "a.mcap").read_bytes() == first
+        with RecordingReader(tmp_path / "a.mcap") as reader:
+            assert "mitsuba 3" in reader.description
+            (frame,) = reader.frames()
+        assert frame.truth is not None
+        assert frame.disparity_px is not None
+        ball, camera = frame.truth["ball"], pinhole(frame.truth["cameras"]["left"])
+        depths_mm = sphere_depths(camera, np.array(ball["centre_mm"]), ball["radius_mm"])
+        hit = np.isfinite(depths_mm)
+        assert frame.disparity_px[hit] == pytest.approx(311 * 30 / depths_mm[hit], rel=1e-3)
+        # Round it is the floor, below; the room above is infinitely far.
+        assert frame.disparity_px[0, 0] == 0
+        u = np.repeat(YuvPlanes.from_uyvy(frame.left).u, 2, axis=1)
+        assert (u[hit] < 118).mean() > 0.9
+        assert (u[~hit] < 118).mean() < 0.05
+
+    def test_distorted_recording_has_the_truth_of_the_rectified(self, tmp_path: Path) -> None:
+        """Rectification tables of the true lens bring the ball's outline to where the truth has it."""
+        lens = ("--distort", -0.4, 0.1, 0, 0)
+        run("render", "ball-distances", tmp_path / "a.mcap", "--distances", 400, "--samples", 9, *lens)
+        with RecordingReader(tmp_path / "a.mcap") as reader:
+            assert "k1 -0.4, k2 0.1" in reader.description
+            (frame,) = reader.frames()
+        assert frame.truth is not None
+        assert frame.disparity_px is not None
+        camera = pinhole(frame.truth["cameras"]["left"])
+        ball = frame.truth["ball"]
+        u = np.repeat(YuvPlanes.from_uyvy(frame.left).u, 2, axis=1)
+        hit = np.isfinite(sphere_depths(camera, np.array(ball["centre_mm"]), ball["radius_mm"]))
+        slopes = (np.stack(np.meshgrid(np.arange(320), np.arange(240)), -1) - camera.centre_px) / 311
+        square = (slopes**2).sum(axis=-1, keepdims=True)
+        bent = np.rint(slopes * (1 - 0.4 * square + 0.1 * square**2) * 311 + camera.centre_px).astype(int)
+        rectified_u = u[bent[..., 1], bent[..., 0]]
+        assert (rectified_u[hit] < 118).mean() > 0.9
+        assert (rectified_u[~hit] < 118).mean() < 0.05
+
+
+def pinhole(truth: dict[str, Any]) -> Pinhole:
+    """The camera of a truth."""
+    return Pinhole(np.array(truth["position_mm"]), np.array(truth["rotation"]), truth["focal_px"])
+
+
+def sphere_depths(camera: Pinhole, centre_mm: Vector, radius_mm: float) -> NDArray[np.float64]:
+    """How deep each pixel's ray meets a sphere, inf where it does not."""
+    rays, off_mm = camera.rays(), centre_mm - camera.position_mm
+    along, square = rays @ off_mm, (rays**2).sum(axis=-1)
+    root = along**2 - square * (off_mm @ off_mm - radius_mm**2)
+    return np.where(root > 0, (along - np.sqrt(np.maximum(root, 0))) / square, np.inf)
+
+
+def test_chessboards_are_taken_by_the_cameras_of_the_scene(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The options of the command line reach the chessboards and the recording alike."""
+    taken: list[tuple[Misfit | None, StereoGeometry]] = []
+
+    def board(_folder: Path, geometry: StereoGeometry, misfit: Misfit, *, seed: int) -> None:
+        assert seed == 602
+        taken.append((misfit, geometry))
+
+    def scene(scene: Scene, _path: Path, *, misfit: Misfit | None, **_: object) -> None:
+        taken.append((misfit, scene.geometry))
+        (tmp_path / "a.mcap").touch()
+
+    monkeypatch.setattr(rendering, "write_chessboards", board)
+    monkeypatch.setattr(rendering, "record_scene", scene)
+    options = "--geometry 200 40 90 5 --distort 0.1 0.2 0.3 0.4 --turn-right 1 2 3 --shift-right 4 5 6"
+    run(
+        "render", "box-distances", tmp_path / "a.mcap", "--chessboards", tmp_path / "boards", *options.split()
+    )
+    expected = Misfit(Lens(0.1, 0.2, 0.3, 0.4), (1, 2, 3), (4, 5, 6)), StereoGeometry(200, 40, 90, 5)
+    assert taken == [expected, expected]
