@@ -2,7 +2,8 @@
 
 `python benchmarks/feature_quality_lines.py [RECORDING]... [--frames N]` needs OpenCV (`pip install -e ".[quality]"`).
 A line has a partner if lines of the other kind cover half of it, within 2 pixels and 5 degrees. Directions are
-told apart only modulo half a turn.
+told apart only modulo half a turn. Edges that the edge store had no room for, at the bottom of a cluttered
+picture, are no lines of ours.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ def pictures_of(recording: Path, frames: int | None) -> list[Picture]:
 
 def comparison(recordings: Sequence[Path], frames: int | None) -> Table:
     """Return a row of numbers for each recording."""
-    long = [f"LSD from {limit:.0f} px, found" for limit in LONG_PX]
+    long = [f"LSD from {limit:.0f} px: found, %" for limit in LONG_PX]
     table = new_table(
         "Lines beside LSD",
         "Recording",
@@ -82,6 +83,8 @@ def comparison(recordings: Sequence[Path], frames: int | None) -> Table:
         own_px = np.concatenate([lengths(own) for own, _ in pairs])
         cells = [_share(found[lsd_px >= limit]) for limit in LONG_PX]
         without = percent(own_px[~partner].sum(), own_px.sum())
+        edges, lost_edges = (sum(each.results[name] for each in seen) for name in ("edges", "edges_lost"))
+        lost = percent(lost_edges, edges + lost_edges)
         cclk = np.median([each.stages_cclk["Line detection"] for each in seen])
         table.add_row(
             recording.stem,
@@ -96,7 +99,7 @@ def comparison(recordings: Sequence[Path], frames: int | None) -> Table:
 
 
 def _share(found: NDArray[np.bool_]) -> str:
-    return f"{found.sum()} of {len(found)}, {percent(found.sum(), len(found))} %"
+    return f"{found.sum()} of {len(found)}, {percent(found.sum(), len(found))}"
 
 
 @click.command()

@@ -32,9 +32,10 @@ Lines = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """The lines of a picture, and the cycles of each stage by name."""
+    """The lines of a picture, the numbers that the stages published, and the cycles of each stage."""
 
     lines: Lines
+    results: Mapping[str, int]
     stages_cclk: Mapping[str, int]
 
 
@@ -60,7 +61,13 @@ def see(pictures: Sequence[Picture]) -> list[Seen]:
     seen = []
     for frame, *both in zip(outcome.frames, found["A"], found["B"], strict=True):
         for core, lines in zip(frame.cores, both, strict=True):
-            seen.append(Seen(lines, {each.stage: each.elapsed_cclk for each in core.stages}))
+            ending = f"_{core.core}"
+            own = {
+                name.removesuffix(ending): value
+                for name, value in frame.results.items()
+                if name.endswith(ending)
+            }
+            seen.append(Seen(lines, own, {each.stage: each.elapsed_cclk for each in core.stages}))
     return seen[: len(pictures)]
 
 

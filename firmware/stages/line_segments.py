@@ -169,6 +169,14 @@ def add_edge(segments: i32[:], place: i32, x: i32, y: i32, direction: i32, mean_
 
 
 @kernel
+def line_length(segments: i32[:], base: i32) -> i32:
+    """Return how long a segment is: its edges, but not more than have room between its outermost ones."""
+    dx = segments[base + END_X] - segments[base + START_X]
+    dy = segments[base + END_Y] - segments[base + START_Y]
+    return min(segments[base + EDGES], max(abs(dx), abs(dy)) + 1)
+
+
+@kernel
 def close_segments(
     edge_data: u32[:],
     begin: i32,
@@ -177,17 +185,17 @@ def close_segments(
     segments: i32[:],
     scan: i32[:],
     y: i32,
-    min_edges: i32,
+    min_length: i32,
 ) -> None:
-    """Wipe the labels of the row above row `y`, and empty what ended in it with fewer than `min_edges` edges."""
+    """Wipe the labels of the row above row `y`, and empty what ended in it shorter than `min_length`."""
     for edge in range(begin, stop):
         x = i32(edge_data[edge] >> 16)
         if above[x] != 0:
             place = above[x] - 1
             above[x] = 0
             base = place * SEGMENT_WORDS
-            edges = segments[base + EDGES]
-            if segments[base + LAST_ROW] < y and 0 < edges < min_edges:
+            length = line_length(segments, base)
+            if segments[base + LAST_ROW] < y and 0 < length < min_length:
                 segments[base + EDGES] = 0
                 segments[base + LAST_ROW] = scan[FREE]
                 scan[FREE] = place
@@ -205,7 +213,7 @@ def segments_row(
     scan: i32[:],
     angle_range: i32,
     mean_edges: i32,
-    min_edges: i32,
+    min_length: i32,
 ) -> None:
     """Put the edges of row `y` into segments.
 
@@ -235,7 +243,7 @@ def segments_row(
         begin = begin + length
     if y > 0:
         begin = i32(edge_index[y - 1])
-        close_segments(edge_data, begin, begin + edge_counts[y - 1], above, segments, scan, y, min_edges)
+        close_segments(edge_data, begin, begin + edge_counts[y - 1], above, segments, scan, y, min_length)
 
 
 @kernel
@@ -257,15 +265,15 @@ def turn_round(segments: i32[:], base: i32) -> None:
 
 
 @kernel
-def keep_segments(segments: i32[:], min_edges: i32, mean_edges: i32) -> i32:
-    """Move the segments of `min_edges` edges and more to the front of the table and return how many they are.
+def keep_segments(segments: i32[:], min_length: i32, mean_edges: i32) -> i32:
+    """Move the segments of `min_length` and more to the front of the table and return how many they are.
 
     Start and end are placed so that each has its bright side on the left and its dark side on the right: it
     goes a quarter turn on from the gradient. DIRECTION becomes the mean, for the connectors.
     """
     count = 0
     for place in range(len(segments) // SEGMENT_WORDS):
-        if segments[place * SEGMENT_WORDS + EDGES] >= min_edges:
+        if line_length(segments, place * SEGMENT_WORDS) >= min_length:
             copy_segment(segments, place, count)
             base = count * SEGMENT_WORDS
             # The scan has led flat lines to the right and the others downwards: wrong for two of four sides.

@@ -20,7 +20,7 @@ class Thresholds:
 
     angle_range: int = 16
     mean_edges: int = 8
-    min_edges: int = 8
+    min_length: int = 8
     near_angle: int = 8
     near_gap: int = 4
     muff_range: int = 4
@@ -42,6 +42,12 @@ class Segment:
     def is_flat(self) -> bool:
         """Whether the gradient of its first edge looks more up or down than to a side."""
         return 32 <= self.direction % 128 < 96
+
+    @property
+    def length(self) -> int:
+        """Its edges, or the pixels from start to end if these are fewer."""
+        sides = (abs(a - b) for a, b in zip(self.start, self.end, strict=True))
+        return min(len(self.points), max(sides) + 1)
 
     def mean(self, edges: int) -> Fraction:
         """Mean direction of its first edges."""
@@ -98,7 +104,7 @@ def scan(rows: Sequence[Row], capacity: int, wanted: Thresholds) -> Scan:
         for x in sorted(above):
             old = above[x]
             ended = old not in here.values() and result.places[old.place] is old
-            if ended and len(old.points) < wanted.min_edges:
+            if ended and old.length < wanted.min_length:
                 result.places[old.place] = None
                 free.append(old.place)
         above = here
@@ -143,7 +149,7 @@ def keep(places: Sequence[Segment | None], wanted: Thresholds) -> list[Kept]:
     """Take what is long enough, orient it and round its mean direction."""
     kept = []
     for segment in places:
-        if segment is not None and len(segment.points) >= wanted.min_edges:
+        if segment is not None and segment.length >= wanted.min_length:
             ends = [segment.start, segment.end]
             # what was collected to the right must be bright above, what was collected downwards bright on the right
             bright = 192 if segment.is_flat else 0

@@ -47,10 +47,10 @@ def edge_rows(draw: st.DrawFn) -> tuple[list[Row], int]:
 
 @settings(max_examples=150, deadline=None)
 @given(edge_rows(), st.sampled_from([1, 2, 3, 20]), st.integers(1, 6), st.integers(1, 9))
-def test_any_edges(picture: tuple[list[Row], int], capacity: int, min_edges: int, mean_edges: int) -> None:
+def test_any_edges(picture: tuple[list[Row], int], capacity: int, min_length: int, mean_edges: int) -> None:
     """Any edges at all, in tables that overflow and in one that does not."""
     rows, width = picture
-    check(rows, width, capacity=capacity, min_edges=min_edges, mean_edges=mean_edges, muff_range=12)
+    check(rows, width, capacity=capacity, min_length=min_length, mean_edges=mean_edges, muff_range=12)
 
 
 @settings(max_examples=30, deadline=None)
@@ -71,8 +71,8 @@ def test_noise(seed: int) -> None:
     noise = np.random.default_rng(seed).integers(0, 256, (40, 120)).astype(np.uint8)
     rows = edges_of(noise)
     check(rows, 120)
-    check(rows, 120, capacity=9, min_edges=3)
-    assert find_lines(rows, 120, replace(FIELD_LINES, min_edges=3), capacity=9).lost > 100
+    check(rows, 120, capacity=9, min_length=3)
+    assert find_lines(rows, 120, replace(FIELD_LINES, min_length=3), capacity=9).lost > 100
 
 
 def test_faint_noise_has_no_lines() -> None:

@@ -130,6 +130,12 @@ def test_crossing_edges() -> None:
     assert sorted(map(tuple, np.sign(ways).astype(int).tolist())) == [(-1, 0), (0, -1), (0, 1), (1, 0)]
 
 
+def test_ladder_is_no_line() -> None:
+    """Edges below each other whose gradients look down are many, but no line of any length."""
+    rows = store(30, *((y, [7, 8], DOWN) for y in range(30)))
+    assert len(find_lines(rows, 20).lines) == 0
+
+
 def test_full_table_counts_the_edges_it_leaves_out() -> None:
     """Of five upright lines three have a place; the edges of the others are counted, all of them."""
     rows = store(20, *((y, range(4, 44, 8), RIGHT) for y in range(20)))
