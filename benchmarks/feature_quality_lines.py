@@ -63,39 +63,32 @@ def pictures_of(recording: Path, frames: int | None) -> list[Picture]:
 def comparison(recordings: Sequence[Path], frames: int | None) -> Table:
     """Return a row of numbers for each recording."""
     long = [f"LSD from {limit:.0f} px: found, %" for limit in LONG_PX]
-    table = new_table(
-        "Lines beside LSD",
-        "Recording",
-        "Pictures",
-        *long,
-        "Ours",
-        "Ours, px",
-        "Without LSD partner, %",
-        "Median ms",
-    )
+    ours = "Ours", "Ours, px", "Without LSD partner, %"
+    table = new_table("Lines beside LSD", "Recording", "Pictures", "Edges lost, %", *long, *ours, "Median ms")
     for recording in recordings:
         pictures = pictures_of(recording, frames)
-        seen, theirs = see(pictures), [lsd_lines(each) for each in pictures]
-        pairs = [(each.lines, lsd) for each, lsd in zip(seen, theirs, strict=True)]
-        found = np.concatenate([has_partner(lsd, own) for own, lsd in pairs])
-        lsd_px = np.concatenate([lengths(lsd) for _, lsd in pairs])
-        partner = np.concatenate([has_partner(own, lsd) for own, lsd in pairs])
-        own_px = np.concatenate([lengths(own) for own, _ in pairs])
-        cells = [_share(found[lsd_px >= limit]) for limit in LONG_PX]
-        without = percent(own_px[~partner].sum(), own_px.sum())
-        edges, lost_edges = (sum(each.results[name] for each in seen) for name in ("edges", "edges_lost"))
-        lost = percent(lost_edges, edges + lost_edges)
-        cclk = np.median([each.stages_cclk["Line detection"] for each in seen])
-        table.add_row(
-            recording.stem,
-            f"{len(pictures)}",
-            *cells,
-            f"{len(own_px)}",
-            f"{own_px.sum():.0f}",
-            without,
-            f"{1000 * cclk / CM_BF561.clocks.cclk_hz:.2f}",
-        )
+        table.add_row(recording.stem, f"{len(pictures)}", *quality(pictures))
     return table
+
+
+def quality(pictures: Sequence[Picture]) -> list[str]:
+    """Return the numbers of the pictures of one recording, from the edges lost on."""
+    seen = see(pictures)
+    pairs = [(each.lines, lsd_lines(picture)) for each, picture in zip(seen, pictures, strict=True)]
+    found = np.concatenate([has_partner(lsd, own) for own, lsd in pairs])
+    lsd_px = np.concatenate([lengths(lsd) for _, lsd in pairs])
+    partner = np.concatenate([has_partner(own, lsd) for own, lsd in pairs])
+    own_px = np.concatenate([lengths(own) for own, _ in pairs])
+    stored, lost = (sum(each.results[name] for each in seen) for name in ("edges", "edges_lost"))
+    cclk = np.median([each.stages_cclk["Line detection"] for each in seen])
+    return [
+        percent(lost, stored + lost),
+        *(_share(found[lsd_px >= limit]) for limit in LONG_PX),
+        f"{len(own_px)}",
+        f"{own_px.sum():.0f}",
+        percent(own_px[~partner].sum(), own_px.sum()),
+        f"{1000 * cclk / CM_BF561.clocks.cclk_hz:.2f}",
+    ]
 
 
 def _share(found: NDArray[np.bool_]) -> str:
