@@ -13,6 +13,7 @@ from bfsim.api import Buffer, Core, Frame, FrameSize, i16, i32, kernel, u8
 from firmware.line_store import LINE_WORDS
 from firmware.stages.line_connectors import connect_far, connect_near
 from firmware.stages.line_fit import fit_line
+from firmware.stages.line_scan import segments_row
 from firmware.stages.line_segments import (
     SCAN_WORDS,
     SEGMENT_CAPACITY,
@@ -20,7 +21,6 @@ from firmware.stages.line_segments import (
     UNPLACED,
     clear_segments,
     keep_segments,
-    segments_row,
 )
 
 
