@@ -90,34 +90,15 @@ def line_detection(core: Core, frame: Frame, mode: LineMode) -> Generator[Any, A
     segments, lines, scan = core.array("segments"), core.array("lines"), core.array("line_scan")
     labels, atan = core.rows("line_labels"), core.array("atan")
     yield core.run(clear_segments, segments, scan, *labels)
+    thresholds = mode.angle_range, mode.mean_edges, mode.min_length
     for y in range(frame.height):
-        above, here = labels[y + 1 & 1], labels[y & 1]
-        yield core.run(
-            segments_row,
-            *store,
-            y,
-            above,
-            here,
-            segments,
-            scan,
-            mode.angle_range,
-            mode.mean_edges,
-            mode.min_length,
-        )
+        near = labels[y + 1 & 1], labels[y & 1]
+        yield core.run(segments_row, *store, y, *near, segments, scan, *thresholds)
     count = yield core.run(keep_segments, segments, mode.min_length, mode.mean_edges)
     count = yield core.run(connect_near, segments, count, mode.near_gap, mode.near_angle)
-    yield core.run(fit_lines, segments, count, lines, atan, frame.width, frame.height)
-    count = yield core.run(
-        connect_far,
-        segments,
-        lines,
-        count,
-        atan,
-        frame.width,
-        frame.height,
-        mode.far_gap,
-        mode.muff_range,
-    )
+    size = frame.width, frame.height
+    yield core.run(fit_lines, segments, count, lines, atan, *size)
+    count = yield core.run(connect_far, segments, lines, count, atan, *size, mode.far_gap, mode.muff_range)
     lost = yield core.run(unplaced_edges, scan)
     core.publish(lines=count, line_edges_lost=lost)
     return count
