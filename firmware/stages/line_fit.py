@@ -108,17 +108,21 @@ def fit_line(
     end_y = SUBPIXELS * segments[base + END_Y] - middle_y
     if xx >= yy:
         rise = slope(xx, xy)
-        reach = HALF_PIXEL if start_x < end_x else -HALF_PIXEL
-        start_x = foot(start_x, start_y, rise) - reach
+        start_x = foot(start_x, start_y, rise)
+        end_x = foot(end_x, end_y, rise)
+        reach = HALF_PIXEL if start_x <= end_x else -HALF_PIXEL
+        start_x = start_x - reach
         start_y = start_x * rise >> SLOPE_BITS
-        end_x = foot(end_x, end_y, rise) + reach
+        end_x = end_x + reach
         end_y = end_x * rise >> SLOPE_BITS
     else:
         rise = slope(yy, xy)
-        reach = HALF_PIXEL if start_y < end_y else -HALF_PIXEL
-        start_y = foot(start_y, start_x, rise) - reach
+        start_y = foot(start_y, start_x, rise)
+        end_y = foot(end_y, end_x, rise)
+        reach = HALF_PIXEL if start_y <= end_y else -HALF_PIXEL
+        start_y = start_y - reach
         start_x = start_y * rise >> SLOPE_BITS
-        end_y = foot(end_y, end_x, rise) + reach
+        end_y = end_y + reach
         end_x = end_y * rise >> SLOPE_BITS
     dx = end_x - start_x
     dy = end_y - start_y

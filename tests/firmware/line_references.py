@@ -212,12 +212,14 @@ def fit(segment: Kept) -> tuple[int, int, int, int]:
         run, rise = run // 2, rise // 2
     slope = 4096 * rise // run if run else 0
     middle = [(16 * sum(each) + len(each) // 2) // len(each) for each in (along, across)]
-    reach = 8 if segment.start[axis] < segment.end[axis] else -8
-    ends: list[int] = []
-    for point, further in ((segment.start, -reach), (segment.end, reach)):
+    length = 4096 + slope * slope // 4096
+    feet = []
+    for point in (segment.start, segment.end):
         off = 16 * point[axis] - middle[0], 16 * point[1 - axis] - middle[1]
-        length = 4096 + slope * slope // 4096
-        foot = (4096 * off[0] + slope * off[1] + length // 2) // length + further
+        feet.append((4096 * off[0] + slope * off[1] + length // 2) // length)
+    reach = 8 if feet[0] <= feet[1] else -8
+    ends: list[int] = []
+    for foot in (feet[0] - reach, feet[1] + reach):
         place = middle[0] + foot, middle[1] + foot * slope // 4096
         ends += place if axis == 0 else place[::-1]
     return ends[0], ends[1], ends[2], ends[3]

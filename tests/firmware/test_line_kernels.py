@@ -100,6 +100,12 @@ def test_one_edge_through_the_picture(degrees: int) -> None:
     assert check(edges_of(edge_across(degrees)), 64) == 1
 
 
+def test_single_edge_is_a_pixel_long() -> None:
+    """The shortest line there can be goes across its pixel."""
+    found = find_lines([[(3, 192)]], 8, replace(FIELD_LINES, min_length=1))
+    assert found.lines[:, :7].tolist() == [[40, 0, 56, 0, 0, 1, 255]]
+
+
 @given(st.integers(0, 255), st.integers(0, 255))
 def test_turn_is_the_shorter_way(one: int, other: int) -> None:
     """The turn leads from one angle to the other and is half a turn at most."""
@@ -130,3 +136,20 @@ def test_foot_is_the_nearest_point(along: int, across: int, rise: int) -> None:
     gradient = rise / 4096
     exact = (along + gradient * across) / (1 + gradient**2)
     assert abs(foot(along, across, rise) - exact) < 3.5
+
+
+@pytest.mark.parametrize("quarter", range(4))
+def test_every_direction_has_its_side(quarter: int) -> None:
+    """A level and an upright line of each of the 256 directions start where the reference says."""
+    for direction in range(64 * quarter, 64 * quarter + 64):
+        assert check([[(x, direction) for x in range(2, 14)]], 16) <= 1
+        assert check([[(5, direction)] for _ in range(12)], 16) <= 1
+
+
+def test_of_two_pieces_equally_near_the_first_is_taken() -> None:
+    """A line may go on in the row above or in the one below, six pixels on."""
+    rows: list[Row] = [[] for _ in range(20)]
+    rows[10] = [(x, 192) for x in range(5, 31)]
+    rows[9] = [(x, 192) for x in range(36, 60)]
+    rows[11] = [(x, 192) for x in range(36, 60)]
+    assert check(rows, 64) == 2
