@@ -19,7 +19,7 @@ from firmware.buffers import buffers
 from firmware.line_store import LINE_WORDS, LINE_X0, LINE_Y1, SUBPIXELS
 from firmware.modes import INDOOR_FIELD
 from firmware.stages.edge_detection import edge_detection
-from firmware.stages.line_detection import FIELD_LINES, line_buffers, line_detection
+from firmware.stages.line_detection import FIELD_LINES, line_detection
 
 STAGES = ("Edge detection", "Line detection")
 
@@ -73,8 +73,7 @@ def see(pictures: Sequence[Picture]) -> list[Seen]:
 
 def _own_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     """The firmware's buffers without what the cores share."""
-    own = {core: each for core, each in buffers(size).items() if core != "shared"}
-    return {core: (*each, *line_buffers(size)) for core, each in own.items()}
+    return {core: each for core, each in buffers(size).items() if core != "shared"}
 
 
 def _frames(pictures: Sequence[Picture]) -> Iterator[StereoFrame]:
