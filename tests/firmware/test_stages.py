@@ -19,6 +19,7 @@ from firmware import tinyphoon
 from firmware.edge_store import EDGE_CAPACITY
 from firmware.modes import INDOOR_FIELD
 from tests.firmware import references
+from tests.firmware.line_rig import find_lines
 from tests.firmware.pictures import Bytes, random_uyvy
 
 
@@ -71,6 +72,15 @@ def check_core(board: Board, core: str, uyvy: Bytes, results: dict[str, int]) ->
     assert buffer(board, core, "edge_counts")[0].tolist() == store.counts
     assert results[f"edges_{core}"] == len(store.data)
     assert results[f"edges_lost_{core}"] == store.lost
+    rows = [
+        [(word >> 16, word >> 8 & 255) for word in store.data[first : first + count]]
+        for first, count in zip(store.index, store.counts, strict=True)
+    ]
+    lines = find_lines(rows, edges.shape[1])
+    assert results[f"lines_{core}"] == len(lines.lines)
+    assert results[f"line_edges_lost_{core}"] == lines.lost
+    words = buffer(board, core, "lines")[0, : lines.lines.size]
+    np.testing.assert_array_equal(words, lines.lines.ravel())
 
 
 def check_last_frame(frames: Sequence[StereoFrame]) -> Outcome:
@@ -103,7 +113,8 @@ def test_flat_pictures_have_no_edges(value: int) -> None:
     """A picture of one value has no edge anywhere, not even at its border."""
     flat = np.full((12, 40), value, np.uint8)
     outcome = check_last_frame(stereo((flat, flat)))
-    assert outcome.frames[0].results == {"edges_A": 0, "edges_lost_A": 0, "edges_B": 0, "edges_lost_B": 0}
+    names = ("edges", "edges_lost", "lines", "line_edges_lost")
+    assert outcome.frames[0].results == {f"{name}_{core}": 0 for name in names for core in "AB"}
 
 
 def test_full_edge_store_keeps_the_top_of_the_picture_and_says_what_it_lost() -> None:
@@ -128,8 +139,9 @@ def test_frames_leave_nothing_behind() -> None:
 def test_everything_fits_in_the_memories_of_the_thesis(width: int, height: int) -> None:
     """Every buffer of all three picture sizes of the robot finds its place, the rings and the edge store in L1."""
     placements = board_for(width, height).link_map.placements
-    in_l1 = [each for each in placements if "L1_DATA" in each.segment]
-    assert len(in_l1) == 2 * 17
+    for_l1 = [each for each in placements if each.symbol.section.startswith("L1_data")]
+    assert len(for_l1) == 2 * 17
+    assert all("L1_DATA" in each.segment for each in for_l1)
 
 
 def test_lines_too_wide_for_l1_are_a_link_error() -> None:
