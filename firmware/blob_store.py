@@ -84,15 +84,21 @@ def add_segment(blob_data: u32[:], label: i32, other: i32) -> None:
 
 
 @kernel
-def close_blob(blob_data: u32[:], label: i32, blob: i32) -> None:
-    """Make the record of segment `label` that of number `blob`, with position and centre of mass.
+def move_segment(blob_data: u32[:], label: i32, to: i32) -> None:
+    """Make the record of segment `label` that of number `to`."""
+    at = to * BLOB_WORDS
+    source = label * BLOB_WORDS
+    for word in range(COLOURS, DOWN + 1):
+        blob_data[at + word] = blob_data[source + word]
+
+
+@kernel
+def close_blob(blob_data: u32[:], blob: i32) -> None:
+    """Complete the record of a blob with its position and its centre of mass.
 
     The centre is rounded to the nearest pixel, halves upwards; the sums stay for who needs it finer.
     """
     at = blob * BLOB_WORDS
-    source = label * BLOB_WORDS
-    for word in range(COLOURS, DOWN + 1):
-        blob_data[at + word] = blob_data[source + word]
     blob_data[at + POSITION] = pair(middle(blob_data[at + ACROSS]), middle(blob_data[at + DOWN]))
     pixels = blob_data[at + PIXELS]
     x = (blob_data[at + SUM_X] + (pixels >> 1)) // pixels

@@ -2,10 +2,12 @@
 
 One pass over the picture, line by line. A run is a row's stretch of pixels of one colour group; all of it gets
 the label of the runs of that group that it touches in the line above, by side or by corner. A run that touches
-none gets a new label; where labels meet, the equivalence table makes them one segment. Two choices are ours:
+none gets a new label; where labels meet, the equivalence table makes them one segment. Three choices are ours:
 
 - T §2.3.3 labels pixel by pixel and renames a label in both lines when it meets another. Labels by runs make
   the same segments with fewer labels: only a run at the top of a shape needs one, not every step of a slope.
+- The table is small. When most of its labels are taken, those that no blob can come from are given back: of
+  segments that became one with another, and of those that ended too small.
 - No label image is kept: the blobs are summed up on the way, and what needs the colour of a pixel later reads
   it in the opened image.
 """
@@ -23,14 +25,17 @@ from firmware.blob_store import (
     BLOB_WORDS,
     COLOURS,
     PIXELS,
+    POSITION,
     add_run,
     add_segment,
     close_blob,
+    move_segment,
     open_segment,
 )
 from firmware.stages.colour_reduction import FIRST_HUE
 
-LABELS = 256  # what a byte tells apart, 0 for no label: 8 KB of records
+LABELS = 128  # 0 for no label; 4 KB of records
+RECYCLE_AT = 96  # so many taken: a row can still begin 31 segments
 COLOUR_GROUPS = 8  # room for the colours of as many kinds of objects
 
 
@@ -40,7 +45,7 @@ class BlobThresholds:
 
     `colour_groups`: the colours of interest as bits of the 32-colour image; the colours of a group count as one,
     and no colour is in two. `min_pixels`, `max_pixels`: smaller and bigger segments are no blobs.
-    `max_blobs`: how many are kept, 0..255.
+    `max_blobs`: how many are kept, 0..127.
     """
 
     colour_groups: tuple[int, ...]
@@ -152,15 +157,16 @@ def segment_row(
     colour_groups: u32[:],
     interest: u32,
     y: i32,
-    wanted: i32,
+    used: i32,
 ) -> i32:
-    """Segment row `y` and return how many labels the picture has wanted so far.
+    """Segment row `y`, where labels 1 to `used` are taken, and return how many there would have to be for it.
 
     `words` have at most one colour each, as opened pixels do; `interest` are the colours of all groups. `labels`
-    are those of the line above and become those of this row. `wanted` is the result of the row before. A run
-    for which `parents` has no label left belongs to no segment.
+    are those of the line above and become those of this row. A run for which `parents` has no label left
+    belongs to no segment.
     """
     width = len(words)
+    wanted = used
     corner: i32 = 0  # the label above of the pixel to the left
     x: i32 = 0
     while x < width:
@@ -204,6 +210,36 @@ def unite_segments(parents: u8[:], blob_data: u32[:], used: i32) -> None:
 
 
 @kernel
+def recycle_labels(labels: u8[:], parents: u8[:], blob_data: u32[:], used: i32, min_pixels: u32) -> i32:
+    """Number the segments anew that can still be blobs, in the same order, and return how many they are.
+
+    These are the segments in the last row, `labels`, and those of `min_pixels` or more.
+    """
+    unite_segments(parents, blob_data, used)
+    for label in range(1, used + 1):
+        blob_data[label * BLOB_WORDS + POSITION] = 0  # not a position yet: whether the last row has it
+    for x in range(len(labels)):
+        if labels[x] != 0:
+            labels[x] = root_of(labels[x], parents)
+            blob_data[labels[x] * BLOB_WORDS + POSITION] = 1
+    kept: i32 = 0
+    for label in range(1, used + 1):
+        at = label * BLOB_WORDS
+        if parents[label] == label and (
+            blob_data[at + POSITION] != 0 or blob_data[at + PIXELS] >= min_pixels
+        ):
+            kept = kept + 1
+            move_segment(blob_data, label, kept)
+            parents[label] = kept
+    for x in range(len(labels)):
+        if labels[x] != 0:
+            labels[x] = parents[labels[x]]
+    for label in range(1, kept + 1):
+        parents[label] = label
+    return kept
+
+
+@kernel
 def select_blobs(
     parents: u8[:], blob_data: u32[:], used: i32, min_pixels: u32, max_pixels: u32, max_blobs: i32
 ) -> i32:
@@ -217,7 +253,8 @@ def select_blobs(
         pixels = blob_data[label * BLOB_WORDS + PIXELS]
         if parents[label] == label and min_pixels <= pixels <= max_pixels:
             if found < max_blobs:
-                close_blob(blob_data, label, found)
+                move_segment(blob_data, label, found)
+                close_blob(blob_data, found)
             found = found + 1
     return found
 
@@ -226,7 +263,7 @@ def blob_detection(core: Core, frame: Frame, thresholds: BlobThresholds) -> Gene
     """Find the blobs of a picture in one pass of DMA lines over `opened_image`, and leave them in `blob_data`.
 
     Publishes `blobs`, how many are stored; `blobs_lost`, how many had no room; and `labels_lost`, how many
-    runs were left out because the labels had run out. Returns how many blobs are stored.
+    runs were left out because no label was left. Returns how many blobs are stored.
     """
     opened = core.input_ring(core.rows("opened_image"), "opened_ring")
     labels, parents, blobs = core.array("label_row"), core.array("label_parents"), core.array("blob_data")
@@ -234,14 +271,18 @@ def blob_detection(core: Core, frame: Frame, thresholds: BlobThresholds) -> Gene
     for number, colours in enumerate(thresholds.colour_groups):
         yield core.run(store_group, groups, number, colours)
     yield core.run(clear_labels, labels)
-    tables, wanted = (parents, blobs, groups), 0
+    used = lost = 0
     for y in range(frame.height):
         line = yield from opened.line()
-        wanted = yield core.run(segment_row, line, labels, *tables, thresholds.colours, y, wanted)
-    used = min(wanted, LABELS - 1)
+        row = line, labels, parents, blobs, groups, thresholds.colours, y
+        wanted = yield core.run(segment_row, *row, used)
+        used = min(wanted, LABELS - 1)
+        lost += wanted - used
+        if used >= RECYCLE_AT:
+            used = yield core.run(recycle_labels, labels, parents, blobs, used, thresholds.min_pixels)
     yield core.run(unite_segments, parents, blobs, used)
     sizes = thresholds.min_pixels, thresholds.max_pixels, thresholds.max_blobs
     found = yield core.run(select_blobs, parents, blobs, used, *sizes)
     stored: int = min(found, thresholds.max_blobs)
-    core.publish(blobs=stored, blobs_lost=found - stored, labels_lost=wanted - used)
+    core.publish(blobs=stored, blobs_lost=found - stored, labels_lost=lost)
     return stored
