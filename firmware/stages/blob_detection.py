@@ -83,7 +83,7 @@ INDOOR_BLOBS = BlobThresholds(
     min_pixels=36,
     # Half a picture of 320x240 in one colour is no object but a camera that has not settled (T Figure 6.8).
     max_pixels=38_400,
-    max_blobs=32,
+    max_blobs=64,
 )
 """For the field of `modes.INDOOR_FIELD`."""
 

@@ -63,24 +63,35 @@ def components(mask: Picture) -> Iterator[list[Pixel]]:
 
 @dataclass(frozen=True, slots=True)
 class Labelled:
-    """A picture without the runs that no label was left for, and how many labels its runs wanted."""
+    """A picture without the runs that got no label, how many these were, and how many labels are taken at its end."""
 
     picture: Picture
-    wanted: int
+    lost: int
+    used: int
 
 
-def labelled(picture: Picture, groups: Sequence[int], labels: int) -> Labelled:
-    """Leave out each run that touches no run of its group above that has a label, once `labels` are given away."""
-    kept, wanted = np.zeros_like(picture), 0
+def labelled(
+    picture: Picture, groups: Sequence[int], labels: int, recycle_at: int, min_pixels: int
+) -> Labelled:
+    """Leave out each run that touches no kept run of its group in the row above when all `labels` are taken.
+
+    After a row with `recycle_at` labels or more, only segments in that row and those of `min_pixels` or more
+    have one.
+    """
+    kept, lost, used = np.zeros_like(picture), 0, 0
     for y in range(len(picture)):
         for group, first, end in runs(picture[y], groups):
             above = kept[y - 1, max(first - 1, 0) : end + 1] if y else kept[:0]
             if not (above & group).any():
-                wanted += 1
-                if wanted > labels:
+                if used == labels:
+                    lost += 1
                     continue
+                used += 1
             kept[y, first:end] = picture[y, first:end]
-    return Labelled(kept, wanted)
+        if used >= recycle_at:
+            found = segments(kept[: y + 1], groups)
+            used = sum(each.pixels[-1][0] == y or len(each.pixels) >= min_pixels for each in found)
+    return Labelled(kept, lost, used)
 
 
 def runs(row: Picture, groups: Sequence[int]) -> list[tuple[int, int, int]]:
