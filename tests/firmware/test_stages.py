@@ -103,7 +103,7 @@ def test_flat_pictures_have_no_edges(value: int) -> None:
     """A picture of one value has no edge anywhere, not even at its border."""
     flat = np.full((12, 40), value, np.uint8)
     outcome = check_last_frame(stereo((flat, flat)))
-    assert outcome.frames[0].results == {"edges_A": 0, "edges_lost_A": 0, "edges_B": 0, "edges_lost_B": 0}
+    assert set(outcome.frames[0].results.values()) == {0}
 
 
 def test_full_edge_store_keeps_the_top_of_the_picture_and_says_what_it_lost() -> None:
@@ -124,12 +124,12 @@ def test_frames_leave_nothing_behind() -> None:
     assert both.frames[1].results == alone.frames[0].results
 
 
-@pytest.mark.parametrize(("width", "height"), [(160, 120), (320, 240), (640, 480)])
-def test_everything_fits_in_the_memories_of_the_thesis(width: int, height: int) -> None:
-    """Every buffer of all three picture sizes of the robot finds its place, the rings and the edge store in L1."""
+@pytest.mark.parametrize(("width", "height", "buffers"), [(160, 120, 21), (320, 240, 21), (640, 480, 20)])
+def test_everything_fits_in_the_memories_of_the_thesis(width: int, height: int, buffers: int) -> None:
+    """Every buffer of all three picture sizes of the robot finds its place, in L1 but for the blobs of the largest."""
     placements = board_for(width, height).link_map.placements
     in_l1 = [each for each in placements if "L1_DATA" in each.segment]
-    assert len(in_l1) == 2 * 17
+    assert len(in_l1) == 2 * buffers
 
 
 def test_lines_too_wide_for_l1_are_a_link_error() -> None:
