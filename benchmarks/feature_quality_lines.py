@@ -1,6 +1,6 @@
 """Lines of the firmware beside OpenCV's line segment detector (LSD), on the pictures of recordings.
 
-`python benchmarks/feature_quality_lines.py [RECORDING]... [--frames N]` needs OpenCV (`pip install -e ".[quality]"`).
+`python benchmarks/feature_quality_lines.py [RECORDING]... [--frames N]` needs OpenCV (`pip install -e ".[opencv]"`).
 A line has a partner if lines of the other kind cover half of it, within 2 pixels and 5 degrees. Directions are
 told apart only modulo half a turn. Edges that the edge store had no room for, at the bottom of a cluttered
 picture, are no lines of ours.

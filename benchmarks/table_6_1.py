@@ -1,6 +1,6 @@
 """T Table 6.1: the sides of four squares, found by the firmware, by OpenCV and by the thesis.
 
-`python benchmarks/table_6_1.py` needs OpenCV (`pip install -e ".[quality]"`). A line's difference is the distance
+`python benchmarks/table_6_1.py` needs OpenCV (`pip install -e ".[opencv]"`). A line's difference is the distance
 of its start and of its end from those of the side (T Eq. 6.1). Hough gives no direction, so its lines, like those
 of LSD, are taken in the one that suits them; ours must have the right one.
 """

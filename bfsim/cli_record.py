@@ -161,7 +161,7 @@ def calibrate_command(
     """Write rectification tables into RECORDING, made from chessboard pictures of its cameras.
 
     The folder CHESSBOARDS holds pictures left* and right* in pairs, each pair taken at once: the first left goes
-    with the first right, by name. Needs OpenCV: pip install "bfsim[calibration]".
+    with the first right, by name. Needs OpenCV: pip install "bfsim[opencv]".
 
     \b
     bfsim record calibrate boards/ run.mcap

@@ -11,6 +11,7 @@ from firmware.one_core import one_core
 ROWS = (
     BudgetRow(stage="Edge detection", thesis_ms=87.0),  # T Table 6.4, average
     BudgetRow(stage="Open & closing", thesis_ms=26.0),
+    BudgetRow(stage="Blob detection", thesis_ms=68.0),
     BudgetRow(stage="Line detection", thesis_ms=19.0),  # 3-D lines and edges included
 )
 

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from bfsim.api import Buffer, FrameSize, i16, u8, u16, u32
 from firmware.edge_store import EDGE_CAPACITY
 from firmware.results import MESSAGE_WORDS
+from firmware.stages.blob_detection import blob_buffers
 from firmware.stages.line_detection import line_buffers
 from firmware.tables import arctangent_table
 
@@ -58,5 +59,6 @@ def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buff
         Buffer("edge_counts", u16, height, "L1_data_b"),
         Buffer("results", u16, MESSAGE_WORDS, "L1_data_b"),
         Buffer("orders", u16, ORDERS_WORDS, "L1_data_b"),
+        *blob_buffers(size),
         *line_buffers(size),
     )

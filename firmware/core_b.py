@@ -8,6 +8,7 @@ from typing import Any
 from bfsim.api import Core
 from firmware.modes import INDOOR_FIELD
 from firmware.results import store_word
+from firmware.stages.blob_detection import INDOOR_BLOBS, blob_detection
 from firmware.stages.edge_detection import edge_detection
 from firmware.stages.line_detection import FIELD_LINES, line_detection
 from firmware.stages.open_closing import open_closing
@@ -20,6 +21,8 @@ def core_b(core: Core) -> Generator[Any, Any, None]:
             found = yield from edge_detection(core, frame, INDOOR_FIELD)
         with core.stage("Open & closing"):
             yield from open_closing(core, frame)
+        with core.stage("Blob detection"):
+            yield from blob_detection(core, frame, INDOOR_BLOBS)
         with core.stage("Line detection"):
             yield from line_detection(core, frame, FIELD_LINES)
         yield core.run(store_word, core.array("right_edges"), found)

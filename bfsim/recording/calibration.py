@@ -242,7 +242,7 @@ def _load_opencv() -> Any:
         cv2 = importlib.import_module("cv2")
     except ImportError as error:
         raise RecordingError(
-            'OpenCV must be installed to calibrate cameras: pip install "bfsim[calibration]"'
+            'OpenCV must be installed to calibrate cameras: pip install "bfsim[opencv]"'
         ) from error
     # Threads would add up in another order every time.
     cv2.setNumThreads(1)
