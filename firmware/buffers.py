@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from bfsim.api import Buffer, FrameSize, i16, u8, u16, u32
 from firmware.edge_store import EDGE_CAPACITY
 from firmware.results import MESSAGE_WORDS
+from firmware.stages.hysteresis import hysteresis_buffers
 from firmware.tables import arctangent_table
 
 ORDERS_WORDS = 256  # room for a message of the strategy unit
@@ -55,6 +56,7 @@ def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buff
         Buffer("edge_data", u32, EDGE_CAPACITY, "L1_data_b"),
         Buffer("edge_index", u32, height, "L1_data_b"),
         Buffer("edge_counts", u16, height, "L1_data_b"),
+        *hysteresis_buffers(),
         Buffer("results", u16, MESSAGE_WORDS, "L1_data_b"),
         Buffer("orders", u16, ORDERS_WORDS, "L1_data_b"),
     )
