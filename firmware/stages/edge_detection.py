@@ -49,14 +49,14 @@ def gauss5_row(
     second_above: u8[:], above: u8[:], here: u8[:], below: u8[:], second_below: u8[:], smooth: u8[:]
 ) -> None:
     """Smooth one row with the 5x5 binomial 1-4-6-4-1 by itself; the two pixels at each border stay as they are."""
-    width = len(here)
-    for x in range(width):
-        if 2 <= x and x < width - 2:
-            outer = across5(second_above, x) + across5(second_below, x)
-            inner = across5(above, x) + across5(below, x)
-            smooth[x] = outer + 4 * inner + 6 * across5(here, x) >> 8
-        else:
-            smooth[x] = here[x]
+    last = len(here) - 1
+    for x in range(2):
+        smooth[x] = here[x]
+        smooth[last - x] = here[last - x]
+    for x in range(2, last - 1):
+        outer = across5(second_above, x) + across5(second_below, x)
+        inner = across5(above, x) + across5(below, x)
+        smooth[x] = outer + 4 * inner + 6 * across5(here, x) >> 8
 
 
 @kernel
@@ -147,7 +147,6 @@ def edge_detection(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, 
     )
     edges = core.rows("edge_ring")[0]
     gx, gy, atan = core.array("gx"), core.array("gy"), core.array("atan")
-    store = core.array("edge_data"), core.array("edge_index"), core.array("edge_counts")
     groups = EdgeGroups.of(core, frame.width)
     found = given = 0
     for y in range(height + reach + 2):
@@ -169,10 +168,10 @@ def edge_detection(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, 
         if done >= 0:
             near = window(magnitude, done, height)
             yield core.run(suppress_row, *near, direction[done], edges, mode.edge_threshold)
-            found = yield core.run(store_edges_row, edges, direction[done], *store, done, found)
-            given = yield from groups.add(done, edges, given)
+            found = yield core.run(store_edges_row, edges, direction[done], *groups.store, done, found)
+            given = yield from groups.add(done, given)
     yield from colours.flush()
-    kept = yield from hysteresis(core, height, groups, mode.strong_threshold)
+    kept = yield from hysteresis(groups, height, mode.strong_threshold)
     core.publish(
         edges=kept, edges_lost=max(0, found - EDGE_CAPACITY), edge_groups_shared=max(0, given - LABELS + 1)
     )

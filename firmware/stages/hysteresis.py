@@ -17,8 +17,9 @@ from typing import Any
 
 from bfsim.api import Buffer, Core, Row, i32, kernel, u8, u16, u32
 
-# 3 KB with both tables: they fit in the scratchpad. Frames of a soccer field have up to 400 labels.
-LABELS = 1024
+# 1.5 KB for both tables, in the scratchpad. Frames of the recording that comes with bfsim ask for up to 218; only where
+# the edge store is full of specks, of 8 edges and less each, are these too few.
+LABELS = 512
 
 
 @kernel
@@ -72,34 +73,44 @@ def join_groups(groups: u16[:], strongest: u8[:], one: i32, other: i32) -> None:
 
 @kernel
 def group_edges_row(
-    edges: u8[:], above: u16[:], here: u16[:], groups: u16[:], strongest: u8[:], given: i32
+    edge_data: u32[:],
+    edge_index: u32[:],
+    edge_counts: u16[:],
+    y: i32,
+    above: u16[:],
+    here: u16[:],
+    groups: u16[:],
+    strongest: u8[:],
+    given: i32,
 ) -> i32:
-    """Label the edges of one row and join what meets there; return how many labels the picture has asked for.
+    """Label the stored edges of row `y` and join what meets there; return how many labels the picture has asked for.
 
-    `edges` are gradients, 0 at both borders; `above` and `here` the labels of the row before and of this one; `given`
-    is the number before this row. The labels beyond the last of `groups` are that last one.
+    `above` and `here` are the labels of the row before and of this one, `given` is the number before this row. The
+    labels beyond the last of `groups` are that last one. No edge lies in the first or the last column.
     """
+    clear_labels(here)
     last = len(groups) - 1
-    for x in range(len(edges)):
-        label = 0
-        if edges[x] != 0:
-            label = known_label(above, here, x)
-            if label == 0:
-                label = new_label(given, last)
-                given = given + 1
-                if given <= last:
-                    groups[label] = label
-                    strongest[label] = 0
-            elif above[x] == 0 and above[x + 1] != 0:  # the only case in which two groups can meet
-                join_groups(groups, strongest, label, above[x + 1])
-            group = group_of(groups, label)
-            strongest[group] = max(strongest[group], edges[x])
+    first = i32(edge_index[y])
+    for position in range(first, first + edge_counts[y]):
+        edge = edge_data[position]
+        x = i32(edge >> 16)
+        label = known_label(above, here, x)
+        if label == 0:
+            label = new_label(given, last)
+            given = given + 1
+            if given <= last:
+                groups[label] = label
+                strongest[label] = 0
+        elif above[x] == 0 and above[x + 1] != 0:  # the only case in which two groups can meet
+            join_groups(groups, strongest, label, above[x + 1])
         here[x] = label
+        group = group_of(groups, label)
+        strongest[group] = max(strongest[group], i32(edge & 255))
     return given
 
 
 @kernel
-def label_stored_row(
+def label_edges_row(
     edge_data: u32[:],
     edge_index: u32[:],
     edge_counts: u16[:],
@@ -164,9 +175,10 @@ def hysteresis_buffers() -> Sequence[Buffer]:
 
 @dataclass(frozen=True, slots=True)
 class EdgeGroups:
-    """What the groups of edges take in memory, lines of labels included."""
+    """The edge store, the tables of its groups, and two lines of labels."""
 
     core: Core
+    store: tuple[Row, Row, Row]
     tables: tuple[Row, Row]
     lines: tuple[Row, Row]
 
@@ -174,7 +186,8 @@ class EdgeGroups:
     def of(cls, core: Core, width: int) -> EdgeGroups:
         """Return those of a core. The lines lie over a ring that only later stages use."""
         even, odd, *_ = core.overlay("eroded_ring", u16, width)
-        return cls(core, (core.array("edge_groups"), core.array("edge_strongest")), (even, odd))
+        store = core.array("edge_data"), core.array("edge_index"), core.array("edge_counts")
+        return cls(core, store, (core.array("edge_groups"), core.array("edge_strongest")), (even, odd))
 
     def labels(self, y: int) -> Generator[Any, Any, tuple[Row, Row]]:
         """Return the labels of the line before `y` and those of `y`, which are to be written."""
@@ -183,25 +196,28 @@ class EdgeGroups:
             yield self.core.run(clear_labels, above)
         return above, here
 
-    def add(self, y: int, edges: Row, given: int) -> Generator[Any, Any, int]:
-        """Group the edges of line `y`; returns the number of labels asked for, which was `given` before."""
-        above, here = yield from self.labels(y)
-        result: int = yield self.core.run(group_edges_row, edges, above, here, *self.tables, given)
+    def add(self, y: int, given: int) -> Generator[Any, Any, int]:
+        """Group the stored edges of line `y`; returns the number of labels asked for, which was `given` before."""
+        lines = yield from self.labels(y)
+        result: int = yield self.core.run(group_edges_row, *self.store, y, *lines, *self.tables, given)
         return result
 
 
-def hysteresis(
-    core: Core, height: int, groups: EdgeGroups, strong_threshold: int
-) -> Generator[Any, Any, int]:
-    """Remove the stored edges without a strong one in their group; leaves `edge_image`, returns how many are kept."""
+def hysteresis(groups: EdgeGroups, height: int, strong_threshold: int) -> Generator[Any, Any, int]:
+    """Remove the stored edges without a strong one in their group; leaves `edge_image`, returns how many are kept.
+
+    The edge image is written from the store. Clearing what was removed in a picture written during the scan would take
+    the same lines of DMA twice more, there and back, and leave edges in it that the store had no room for.
+    """
+    core = groups.core
     edges = core.output_ring("edge_ring", core.rows("edge_image"))
-    store = core.array("edge_data"), core.array("edge_index"), core.array("edge_counts")
     given = kept = 0
     for y in range(height):
         above, here = yield from groups.labels(y)
-        given = yield core.run(label_stored_row, *store, y, above, here, LABELS - 1, given)
+        given = yield core.run(label_edges_row, *groups.store, y, above, here, LABELS - 1, given)
         row = yield from edges.row()
-        kept = yield core.run(keep_edges_row, here, *groups.tables, strong_threshold, row, *store, y, kept)
+        decided = here, *groups.tables, strong_threshold
+        kept = yield core.run(keep_edges_row, *decided, row, *groups.store, y, kept)
         edges.send()
     yield from edges.flush()
     return kept
