@@ -10,12 +10,15 @@ from firmware.modes import INDOOR_FIELD
 from firmware.results import MESSAGE_WORDS, load_word, pack_results
 from firmware.stages.edge_detection import edge_detection
 from firmware.stages.open_closing import open_closing
+from firmware.stages.rectification import rectification
 
 
 def core_a(core: Core) -> Generator[Any, Any, None]:
     """See every picture of the left camera. The cores end a frame together, to take the same next pair."""
     while (frame := (yield from core.next_frame())) is not None:
         with core.stage("Edge detection"):
+            with core.stage("Rectification"):
+                frame = yield from rectification(core, frame)
             found = yield from edge_detection(core, frame, INDOOR_FIELD)
         with core.stage("Open & closing"):
             yield from open_closing(core, frame)
