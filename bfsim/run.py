@@ -57,7 +57,7 @@ def simulate(
     placement = parse_ldf(ldf or DEFAULT_LDF[spec.chip.name])
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
         size = FrameSize(reader.width, reader.height)
-        program = loaded.firmware.rectifying(_source_pixels(reader.rectification, size))
+        program = loaded.firmware.rectifying(source_pixels(reader.rectification, size))
         symbols = symbols_of(program, size, compiler)
         link_map = link(placement, symbols, spec.chip.regions, chip=spec.chip.name)
         machine = Board(
@@ -94,7 +94,7 @@ def _read_strategy(path: Path | None) -> Sequence[ScriptedMessage]:
     return read_script(path)
 
 
-def _source_pixels(tables: RectificationTables | None, size: FrameSize) -> dict[str, SourcePixels]:
+def source_pixels(tables: RectificationTables | None, size: FrameSize) -> dict[str, SourcePixels]:
     """Return the tables of a recording by the cores that take the cameras; none of a rectified recording."""
     if tables is None:
         return {}
