@@ -118,7 +118,7 @@ def test_rectification_needs_few_cycles(width: int, height: int) -> None:
 
 
 def test_one_table_is_two_grey_levels_from_four_weighted_ones() -> None:
-    """The luma of the first real picture: mean absolute difference between the nearest pixel and the bilinear one."""
+    """The luma of the built-in recording's first picture: mean absolute difference between the nearest pixel and the bilinear one."""
     with RecordingReader(BUILT_IN_RECORDING) as reader:
         (frame,) = reader.frames(1)
         rows, columns = source_points(reader.width, reader.height, **CAMERA)
