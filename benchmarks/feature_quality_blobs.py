@@ -33,7 +33,7 @@ from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
 from firmware import tinyphoon
 from firmware.blob_store import ACROSS, BLOB_WORDS, COLOURS, DOWN, PIXELS, SUM_X, SUM_Y
-from firmware.stages.blob_detection import INDOOR_BLOBS
+from firmware.modes import INDOOR_FIELD
 
 CAMERAS = {"A": "left", "B": "right"}
 COLUMNS = ("blobs", "OpenCV", "rectangle", "pixels", "centre", "lost", "runs lost")
@@ -66,7 +66,7 @@ def theirs(opened: NDArray[Any], colours: int) -> Iterator[Region]:
     for (left, top, width, height, pixels), (x, y) in zip(
         stats[1:].tolist(), centres[1:].tolist(), strict=True
     ):
-        if INDOOR_BLOBS.min_pixels <= pixels <= INDOOR_BLOBS.max_pixels:
+        if INDOOR_FIELD.blobs.min_pixels <= pixels <= INDOOR_FIELD.blobs.max_pixels:
             yield Region((left, top, width, height), pixels, (x, y))
 
 
@@ -95,7 +95,7 @@ def compare_frame(frame: StereoFrame) -> Iterator[tuple[str, str, Counter[str]]]
     for core, camera in CAMERAS.items():
         blobs = list(ours(board, core, record.results[f"blobs_{core}"]))
         opened = np.array([row.array for row in board.cores[core].rows("opened_image")])
-        for colours in INDOOR_BLOBS.colour_groups:
+        for colours in INDOOR_FIELD.blobs.colour_groups:
             found = [region for group, region in blobs if group == colours]
             yield camera, f"0x{colours:08X}", compare(found, list(theirs(opened, colours)))
         lost = {

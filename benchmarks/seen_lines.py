@@ -19,7 +19,7 @@ from firmware.buffers import buffers
 from firmware.line_store import LINE_WORDS, LINE_X0, LINE_Y1, SUBPIXELS
 from firmware.modes import INDOOR_FIELD
 from firmware.stages.edge_detection import edge_detection
-from firmware.stages.line_detection import FIELD_LINES, line_detection
+from firmware.stages.line_detection import line_detection
 
 STAGES = ("Edge detection", "Line detection")
 
@@ -48,9 +48,9 @@ def see(pictures: Sequence[Picture]) -> list[Seen]:
     def main(core: Core) -> Generator[Any, Any, None]:
         while (frame := (yield from core.next_frame())) is not None:
             with core.stage("Edge detection"):
-                yield from edge_detection(core, frame, INDOOR_FIELD)
+                yield from edge_detection(core, frame, INDOOR_FIELD.edges)
             with core.stage("Line detection"):
-                count = yield from line_detection(core, frame, FIELD_LINES)
+                count = yield from line_detection(core, frame, INDOOR_FIELD.lines)
             records = core.array("lines").array[: count * LINE_WORDS].reshape(count, LINE_WORDS)
             found[core.name].append(records[:, LINE_X0 : LINE_Y1 + 1] / SUBPIXELS)
 

@@ -128,10 +128,14 @@ class TrafficRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BudgetRow:
-    """A row of the budget: a stage of the firmware, and what the thesis measured for it (T Table 6.4), if it did."""
+    """A row of the budget: a stage of the firmware, and what the thesis measured for it (T Table 6.4), if it did.
+
+    `within` is the stage that this one is a part of; its row holds the cycles of its parts too. One level is all.
+    """
 
     stage: str
     thesis_ms: float | None
+    within: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,9 +7,11 @@ from firmware.buffers import buffers, one_core_buffers
 from firmware.core_a import core_a
 from firmware.core_b import core_b
 from firmware.one_core import one_core
+from firmware.stages.rectification import rectification_buffers
 
 ROWS = (
     BudgetRow(stage="Edge detection", thesis_ms=87.0),  # T Table 6.4, average
+    BudgetRow(stage="Rectification", thesis_ms=None, within="Edge detection"),
     BudgetRow(stage="Open & closing", thesis_ms=26.0),
     BudgetRow(stage="Blob detection", thesis_ms=68.0),
     BudgetRow(stage="Line detection", thesis_ms=19.0),  # 3-D lines and edges included
@@ -20,7 +22,14 @@ tinyphoon = Firmware(
     buffers=buffers,
     camera="camera",
     rows=ROWS,
+    rectification=rectification_buffers,
 )
 
-one_eye = Firmware(mains={"A": one_core}, buffers=one_core_buffers, camera="camera", rows=ROWS)
+one_eye = Firmware(
+    mains={"A": one_core},
+    buffers=one_core_buffers,
+    camera="camera",
+    rows=ROWS,
+    rectification=rectification_buffers,
+)
 """The same stages for a board with one core and one camera, such as cm-bf533."""

@@ -12,6 +12,7 @@ from bfsim.api import Buffer, FrameSize, i16, u8, u16, u32
 from firmware.edge_store import EDGE_CAPACITY
 from firmware.results import MESSAGE_WORDS
 from firmware.stages.blob_detection import blob_buffers
+from firmware.stages.hysteresis import hysteresis_buffers
 from firmware.stages.line_detection import line_buffers
 from firmware.tables import arctangent_table
 
@@ -57,6 +58,7 @@ def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buff
         Buffer("edge_data", u32, EDGE_CAPACITY, "L1_data_b"),
         Buffer("edge_index", u32, height, "L1_data_b"),
         Buffer("edge_counts", u16, height, "L1_data_b"),
+        *hysteresis_buffers(),
         Buffer("results", u16, MESSAGE_WORDS, "L1_data_b"),
         Buffer("orders", u16, ORDERS_WORDS, "L1_data_b"),
         *blob_buffers(size),

@@ -6,25 +6,15 @@ from collections.abc import Generator
 from typing import Any
 
 from bfsim.api import Core
+from firmware.features import features
 from firmware.modes import INDOOR_FIELD
 from firmware.results import store_word
-from firmware.stages.blob_detection import INDOOR_BLOBS, blob_detection
-from firmware.stages.edge_detection import edge_detection
-from firmware.stages.line_detection import FIELD_LINES, line_detection
-from firmware.stages.open_closing import open_closing
 
 
 def core_b(core: Core) -> Generator[Any, Any, None]:
     """See every picture of the right camera. The cores end a frame together, to take the same next pair."""
     while (frame := (yield from core.next_frame())) is not None:
-        with core.stage("Edge detection"):
-            found = yield from edge_detection(core, frame, INDOOR_FIELD)
-        with core.stage("Open & closing"):
-            yield from open_closing(core, frame)
-        with core.stage("Blob detection"):
-            yield from blob_detection(core, frame, INDOOR_BLOBS)
-        with core.stage("Line detection"):
-            yield from line_detection(core, frame, FIELD_LINES)
+        found = yield from features(core, frame, INDOOR_FIELD)
         yield core.run(store_word, core.array("right_edges"), found)
         yield from core.post("core B is done")
         yield from core.wait("core A is done")

@@ -1,4 +1,4 @@
-"""Picture lines on their way through L1: rings keep the latest, and a window of three moves down them."""
+"""Picture lines on their way through L1: rings keep the latest, and a window moves down them."""
 
 from __future__ import annotations
 
@@ -21,6 +21,6 @@ def line_ring(rows: Sequence[Row], height: int) -> Lines:
     return tuple(islice(cycle(rows), height))
 
 
-def window(lines: Lines, y: int, height: int) -> tuple[Row, Row, Row]:
-    """Return the lines above, at and below `y`; the first and the last line of the picture repeat."""
-    return lines[y - 1 if y else y], lines[y], lines[y + 1 if y + 1 < height else y]
+def window(lines: Lines, y: int, height: int, reach: int = 1) -> tuple[Row, ...]:
+    """Return line `y` and `reach` lines on both sides, from above; the first and the last line of the picture repeat."""
+    return tuple(lines[min(max(each, 0), height - 1)] for each in range(y - reach, y + reach + 1))

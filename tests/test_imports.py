@@ -20,7 +20,7 @@ MAY_IMPORT = {
     "kernel": {"errors"},
     "linker": {"errors", "chip"},
     "machine": {"errors", "clocks", "trace", "chip", "kernel", "linker"},
-    "api": {"chip", "kernel", "machine", "trace"},
+    "api": {"chip", "errors", "kernel", "machine", "trace"},
     "recording": {"errors"},
     "report": {"errors", "clocks", "trace", "chip", "linker"},  # the last two hold data: memories, and a link
     "loading": {"errors", "kernel", "machine"},

@@ -248,6 +248,7 @@ class Board:
             self._env,
             name,
             self.spec,
+            memories=memories,
             buffers=self._buffers[name],
             calls=book,
             bus=self._bus,

@@ -17,12 +17,13 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, FirmwareError
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel.followers import Follower
+from bfsim.kernel.types import Number
 from bfsim.machine.bus import Bus
 from bfsim.machine.cached_lines import CachedInput, CachedOutput
 from bfsim.machine.calls import CallBook, DeferredWork
 from bfsim.machine.capture import Capture
 from bfsim.machine.mdma import MdmaStream
-from bfsim.machine.memories import Row
+from bfsim.machine.memories import Memories, Row
 from bfsim.machine.memory_dma import Dma, MemoryDma
 from bfsim.machine.program import Main
 from bfsim.machine.ring import InputRing, OutputRing
@@ -73,6 +74,7 @@ class Core(SynchronisedCore):
         name: str,
         board: BoardSpec,
         *,
+        memories: Memories,
         buffers: Mapping[str, tuple[Row, ...]],
         calls: CallBook,
         bus: Bus,
@@ -93,7 +95,9 @@ class Core(SynchronisedCore):
         self._entered_at_cclk = 0
         self._stages = stages
         self._on_finished = on_finished
+        self._memories = memories
         self._buffers = buffers
+        self._overlays: dict[tuple[str, Number, int], tuple[Row, ...]] = {}
         self._calls = calls
         self._number = number
         self._follower = follower
@@ -127,6 +131,17 @@ class Core(SynchronisedCore):
             raise FirmwareError(f"buffer {name} has {len(rows)} rows; use core.rows({name!r})")
         return rows[0]
 
+    def has_buffer(self, name: str) -> bool:
+        """Whether there is a buffer called `name`: some come only with the tables of a recording."""
+        return name in self._buffers
+
+    def overlay(self, name: str, element: Number, columns: int) -> tuple[Row, ...]:
+        """Return the memory of buffer `name`, all its rows as one, as rows of another kind: a union in C."""
+        kind = (name, element, columns)
+        if kind not in self._overlays:  # the same rows every time, so that calls with them are prepared once
+            self._overlays[kind] = self._memories.overlay(self.rows(name), element, columns)
+        return self._overlays[kind]
+
     def input_ring(self, image: Sequence[Row], ring: str) -> InputRing | CachedInput:
         """Return a ring that fetches the lines of `image` into the rows of buffer `ring`, one line ahead.
 
@@ -134,7 +149,11 @@ class Core(SynchronisedCore):
         """
         if self._is_cached(image):
             return CachedInput(image)
-        return InputRing(self, self._streams[0], image, self.rows(ring))
+        return self.window_ring(image, self.rows(ring))
+
+    def window_ring(self, image: Sequence[Row], rows: Sequence[Row]) -> InputRing:
+        """Return a ring that fetches the lines of `image` into `rows`, where kernels need them, even if it is cached."""
+        return InputRing(self, self._streams[0], image, rows)
 
     def output_ring(self, ring: str, image: Sequence[Row]) -> OutputRing | CachedOutput:
         """Return a ring that takes finished lines from the rows of buffer `ring` to `image`, which may be cached as above."""

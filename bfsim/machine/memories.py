@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,8 @@ from numpy.typing import NDArray
 
 from bfsim.chip.memory_map import Region, region_of
 from bfsim.chip.spec import BoardSpec
-from bfsim.errors import LinkError
+from bfsim.errors import FirmwareError, LinkError
+from bfsim.kernel.types import Number
 from bfsim.linker import Placement
 from bfsim.machine.program import Buffer
 
@@ -86,16 +88,26 @@ class Memories:
         )
         if buffer.values is not None:
             grid[:] = np.reshape(buffer.values, grid.shape)
-        stride = buffer.columns * buffer.element.nbytes
-        return tuple(
-            Row(
-                buffer.name,
-                region.name,
-                placement.address + number * stride,
-                offset + number * stride,
-                grid[number],
+        return self._rows(buffer.name, region.name, placement.address, offset, grid)
+
+    def overlay(self, rows: Sequence[Row], element: Number, columns: int) -> tuple[Row, ...]:
+        """Return the memory of all `rows` of a buffer as rows of `columns` elements; what is left over is in none."""
+        first, nbytes = rows[0], sum(each.nbytes for each in rows)
+        stride = columns * element.nbytes
+        if not 0 < stride <= nbytes:
+            raise FirmwareError(
+                f"a row over buffer {first.buffer} must have 1 to {nbytes // element.nbytes} elements, not {columns}"
             )
-            for number in range(buffer.rows)
+        part = self.bytes_from(first.offset, nbytes // stride * stride)
+        grid = part.view(element.dtype).reshape(-1, columns)
+        return self._rows(first.buffer, first.memory, first.address, first.offset, grid)
+
+    @staticmethod
+    def _rows(name: str, memory: str, address: int, offset: int, grid: NDArray[Any]) -> tuple[Row, ...]:
+        stride = grid.strides[0]
+        return tuple(
+            Row(name, memory, address + number * stride, offset + number * stride, row)
+            for number, row in enumerate(grid)
         )
 
 

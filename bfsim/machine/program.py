@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +25,14 @@ class FrameSize:
 
     width_px: int
     height_px: int
+
+
+@dataclass(frozen=True, slots=True)
+class SourcePixels:
+    """Where each pixel of a rectified picture comes from: int32 rows and columns of shape (height, width), -1 for nowhere."""
+
+    rows: NDArray[np.int32]
+    columns: NDArray[np.int32]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,16 +79,32 @@ class Buffer:
         return self.rows * self.columns * self.element.nbytes
 
 
+Buffers = Mapping[str, Sequence[Buffer]]
+"""The buffers of each core, and under "shared" those of both."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Firmware:
     """A program for the whole chip.
 
-    `mains`: the main loop of each core. `buffers`: size of the pictures → buffers of each core, and under
-    "shared" those of both. `camera`: the buffer of each core that the PPI fills, a whole number of frames.
-    `rows`: the stages in the order of the budget.
+    `mains`: the main loop of each core. `buffers`: size of the pictures → buffers. `camera`: the buffer of each core
+    that the PPI fills, a whole number of frames. `rows`: the stages in the order of the budget. `rectification`: the
+    source pixels of each core's camera → the buffers that they take beside the others, where a recording has tables.
     """
 
     mains: Mapping[str, Main]
-    buffers: Callable[[FrameSize], Mapping[str, Sequence[Buffer]]]
+    buffers: Callable[[FrameSize], Buffers]
     camera: str
     rows: tuple[BudgetRow, ...]
+    rectification: Callable[[Mapping[str, SourcePixels]], Buffers] | None = None
+
+    def rectifying(self, sources: Mapping[str, SourcePixels]) -> Firmware:
+        """Return this firmware with the buffers for a recording's tables, if it rectifies."""
+        if self.rectification is None or not sources:
+            return self
+        plain, more = self.buffers, self.rectification(sources)
+
+        def buffers(size: FrameSize) -> Buffers:
+            return {owner: (*each, *more.get(owner, ())) for owner, each in plain(size).items()}
+
+        return replace(self, buffers=buffers)

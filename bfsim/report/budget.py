@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
-from bfsim.trace import REST, CoreFrame, FrameRecord, RunRecord, StageCost, StallReason
+from bfsim.trace import REST, BudgetRow, CoreFrame, FrameRecord, RunRecord, StageCost, StallReason
 
 FRAME = "Frame"
 """The row that sums all others."""
@@ -45,9 +46,13 @@ def _nearest_rank(ranked: Sequence[int], percent: int) -> int:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
-    """One row of one core's budget. `issue_cclk`, `stall_cclk` and `idle_cclk` are totals over all frames."""
+    """One row of one core's budget. `issue_cclk`, `stall_cclk` and `idle_cclk` are totals over all frames.
+
+    `within` is the row that this one is a part of, and that holds its cycles too.
+    """
 
     name: str
+    within: str | None
     thesis_ms: float | None
     elapsed_cclk: Spread
     issue_cclk: int
@@ -57,7 +62,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoreBudget:
-    """The rows of one core, and `frame`, which they sum to."""
+    """The rows of one core, and `frame`, which those that are no part of another sum to."""
 
     core: str
     rows: tuple[Row, ...]
@@ -107,52 +112,55 @@ def stage_names(run: RunRecord) -> tuple[str, ...]:
     return (*(name for name in dict.fromkeys([*declared, *seen]) if name != REST), REST)
 
 
+def budget_rows(run: RunRecord) -> tuple[BudgetRow, ...]:
+    """The rows of the budget, with those that the firmware did not declare."""
+    declared = {row.stage: row for row in run.rows}
+    return tuple(declared.get(name, BudgetRow(stage=name, thesis_ms=None)) for name in stage_names(run))
+
+
+def costs_of(frame: CoreFrame, row: BudgetRow, rows: Sequence[BudgetRow]) -> list[StageCost]:
+    """What `row` cost one core in one frame, with its parts among `rows`."""
+    stages = {row.stage, *(each.stage for each in rows if each.within == row.stage)}
+    return [cost for cost in frame.stages if cost.stage in stages]
+
+
+def elapsed_cclk(costs: Iterable[StageCost]) -> int:
+    """Cycles of all these together."""
+    return sum(cost.elapsed_cclk for cost in costs)
+
+
 def budget_of(run: RunRecord) -> Budget:
     """Derive the budget of a run of at least one frame."""
-    names = stage_names(run)
-    thesis_ms = {row.stage: row.thesis_ms for row in run.rows}
+    rows = budget_rows(run)
     cores = zip(*(frame.cores for frame in run.frames), strict=True)
     return Budget(
-        cores=tuple(_core_budget(frames, names, thesis_ms) for frames in cores),
+        cores=tuple(_core_budget(frames, rows) for frames in cores),
         frame_rate_hz=frame_rate_hz(run.frames, run.identity.cclk_hz),
         latency_cclk=Spread.of([latency_cclk(frame) for frame in run.frames]),
     )
 
 
-def _core_budget(
-    frames: Sequence[CoreFrame], names: Sequence[str], thesis_ms: Mapping[str, float | None]
-) -> CoreBudget:
-    costs = [cost for frame in frames for cost in frame.stages]
-    rows = [
-        _row(
-            name,
-            thesis_ms.get(name),
-            [elapsed_cclk(frame, name) for frame in frames],
-            [cost for cost in costs if cost.stage == name],
-        )
-        for name in names
-    ]
+def _core_budget(frames: Sequence[CoreFrame], rows: Sequence[BudgetRow]) -> CoreBudget:
     known_ms = [row.thesis_ms for row in rows if row.thesis_ms is not None]
-    elapsed = [frame.end_cclk - frame.begin_cclk for frame in frames]
-    frame_row = _row(FRAME, sum(known_ms) if known_ms else None, elapsed, costs)
-    return CoreBudget(core=frames[0].core, rows=tuple(rows), frame=frame_row)
+    whole = BudgetRow(stage=FRAME, thesis_ms=sum(known_ms) if known_ms else None)
+    return CoreBudget(
+        core=frames[0].core,
+        rows=tuple(_row(row, [costs_of(frame, row, rows) for frame in frames]) for row in rows),
+        frame=_row(whole, [frame.stages for frame in frames]),
+    )
 
 
-def elapsed_cclk(frame: CoreFrame, stage: str) -> int:
-    """Cycles that one core spent in one stage of one frame."""
-    return sum(cost.elapsed_cclk for cost in frame.stages if cost.stage == stage)
-
-
-def _row(name: str, thesis_ms: float | None, elapsed: Sequence[int], costs: Iterable[StageCost]) -> Row:
-    costs = tuple(costs)
+def _row(row: BudgetRow, costs: Sequence[Sequence[StageCost]]) -> Row:
+    """Sum up a row whose costs are given for each frame."""
     stall: Counter[StallReason] = Counter()
-    for cost in costs:
+    for cost in chain(*costs):
         stall.update(cost.stall_cclk)
     return Row(
-        name=name,
-        thesis_ms=thesis_ms,
-        elapsed_cclk=Spread.of(elapsed),
-        issue_cclk=sum(cost.issue_cclk for cost in costs),
+        name=row.stage,
+        within=row.within,
+        thesis_ms=row.thesis_ms,
+        elapsed_cclk=Spread.of([elapsed_cclk(each) for each in costs]),
+        issue_cclk=sum(cost.issue_cclk for cost in chain(*costs)),
         stall_cclk={reason: stall[reason] for reason in StallReason if stall[reason]},
-        idle_cclk=sum(cost.idle_cclk for cost in costs),
+        idle_cclk=sum(cost.idle_cclk for cost in chain(*costs)),
     )

@@ -16,13 +16,14 @@ from bfsim.report.budget import (
     Row,
     Spread,
     budget_of,
+    budget_rows,
+    costs_of,
     elapsed_cclk,
     latency_cclk,
     milliseconds,
-    stage_names,
 )
 from bfsim.report.digest import cycle_digest, identity_digest
-from bfsim.trace import REST, CodeRecord, FrameRecord, RunRecord, StallReason
+from bfsim.trace import REST, BudgetRow, CodeRecord, FrameRecord, RunRecord, StallReason
 
 SHOWN_AT_EACH_END = 4
 """Frames listed at the beginning and at the end of a long run."""
@@ -105,7 +106,7 @@ def _budget_table(core: CoreBudget, hz: float) -> Table:
     )
     for row in core.all_rows:
         table.add_row(
-            row.name,
+            _name(row),
             *(f"{milliseconds(cclk, hz):.2f}" for cclk in _columns(row.elapsed_cclk)),
             "" if row.thesis_ms is None else f"{row.thesis_ms:g}",
             percent(core.share(row), 1),
@@ -114,6 +115,11 @@ def _budget_table(core: CoreBudget, hz: float) -> Table:
             style="bold" if row is core.frame else None,
         )
     return table
+
+
+def _name(row: Row) -> str:
+    """Return the name of a row; that of a part stands in from the row before, which holds it."""
+    return row.name if row.within is None else f"  {row.name}"
 
 
 def _columns(spread: Spread) -> tuple[int, int, int, int]:
@@ -128,7 +134,8 @@ def _start_up_note(run: RunRecord, budget: Budget) -> Iterator[Text]:
     """Say why the first frame stands out, if it does."""
     first = run.frames[0]
     medians = [row.elapsed_cclk.median for core in budget.cores for row in core.rows if row.name == REST]
-    if any(elapsed_cclk(core, REST) > 2 * median for core, median in zip(first.cores, medians, strict=True)):
+    rests = [elapsed_cclk(each for each in core.stages if each.stage == REST) for core in first.cores]
+    if any(rest > 2 * median for rest, median in zip(rests, medians, strict=True)):
         yield Text(f"{REST} of frame {first.index} holds the start-up too: the wait for the first picture.")
 
 
@@ -145,7 +152,7 @@ def _stall_table(budget: Budget, frames: int, hz: float) -> Iterator[Table]:
                 _stall_cells(core, row, reason, frames, hz)
                 for core, row in zip(budget.cores, rows, strict=True)
             ]
-            name = rows[0].name if reason is reasons[0] else ""
+            name = _name(rows[0]) if reason is reasons[0] else ""
             table.add_row(name, reason, *sum(cells, ()), end_section=reason is reasons[-1])
     if table.row_count:
         yield table
@@ -162,30 +169,34 @@ def _cycle_table(core: CoreBudget) -> Table:
     )
     for row in core.all_rows:
         cells = [f"{cclk:,}" for cclk in (*_columns(row.elapsed_cclk), row.elapsed_cclk.total)]
-        table.add_row(row.name, *cells, end_section=row is core.rows[-1])
+        table.add_row(_name(row), *cells, end_section=row is core.rows[-1])
     return table
 
 
 def _frame_table(run: RunRecord) -> Table:
-    names = stage_names(run)
+    rows = budget_rows(run)
+    names = [row.stage for row in rows if row.within is None]
     table = new_table("Frames: ms", "Frame", "Core", *names, FRAME, "Latency")
     table.columns[1].min_width = None
     long = len(run.frames) > 2 * SHOWN_AT_EACH_END + 1
     head = run.frames[:SHOWN_AT_EACH_END] if long else run.frames
     tail = run.frames[-SHOWN_AT_EACH_END:] if long else ()
-    _add_frames(table, head, names, run.identity.cclk_hz)
+    _add_frames(table, head, rows, run.identity.cclk_hz)
     if long:
         table.add_row("…")
         table.caption = "--json has all of them."
         table.caption_justify = "left"
-    _add_frames(table, tail, names, run.identity.cclk_hz)
+    _add_frames(table, tail, rows, run.identity.cclk_hz)
     return table
 
 
-def _add_frames(table: Table, frames: tuple[FrameRecord, ...], names: tuple[str, ...], hz: float) -> None:
+def _add_frames(
+    table: Table, frames: tuple[FrameRecord, ...], rows: tuple[BudgetRow, ...], hz: float
+) -> None:
     for frame in frames:
         for core in frame.cores:
-            cclk = [*(elapsed_cclk(core, name) for name in names), core.end_cclk - core.begin_cclk]
+            costs = [elapsed_cclk(costs_of(core, row, rows)) for row in rows if row.within is None]
+            cclk = [*costs, core.end_cclk - core.begin_cclk]
             first = core is frame.cores[0]
             table.add_row(
                 str(frame.index) if first else "",

@@ -75,19 +75,6 @@ def hues(first: int, last: int) -> int:
     return (1 << last + 1) - (1 << first) << FIRST_HUE
 
 
-INDOOR_BLOBS = BlobThresholds(
-    # The hues of the recording's blue goal, yellow ball and red mark, each with the hue on either side: noise
-    # and shade move a colour by one.
-    colour_groups=(hues(9, 11), hues(21, 23), hues(25, 27)),
-    # A mark of 5 cm that is 3 m away still has 6 x 6 pixels; what is smaller is a reflection or noise.
-    min_pixels=36,
-    # Half a picture of 320x240 in one colour is no object but a camera that has not settled (T Figure 6.8).
-    max_pixels=38_400,
-    max_blobs=64,
-)
-"""For the field of `modes.INDOOR_FIELD`."""
-
-
 def blob_buffers(size: FrameSize) -> Sequence[Buffer]:
     """Return the buffers of the stage for a core; it also uses those of the opened image and its ring.
 

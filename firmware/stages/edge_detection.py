@@ -1,24 +1,39 @@
-"""Edge detection: the first four steps of the scan-line Canny (T §2.1.4, §5.2.1), with the colour reduction.
+"""Edge detection: the scan-line Canny (T §2.1.4, §5.2.1), with the colour reduction.
 
-Every kernel makes one row. The task reads the picture once, top to bottom; each step lags one line behind
-the step that it reads from. Hysteresis, the fifth step, is not here.
+Every kernel makes one row. The task reads the picture once, top to bottom; each step lags behind the step that it
+reads from. The fifth step is in `hysteresis.py`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Generator
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Literal
 
 from bfsim.api import Core, Frame, i16, i32, kernel, u8, u32
 from firmware.arithmetic import angle8, isqrt32
 from firmware.edge_store import EDGE_CAPACITY, store_edges_row
-from firmware.modes import Mode
 from firmware.scan_lines import line_ring, window
 from firmware.stages.colour_reduction import colour_row
+from firmware.stages.hysteresis import LABELS, EdgeGroups, hysteresis
 
-# Gauss, Sobel and suppression each need one line below theirs, so the finished line trails the one that
-# comes in.
-LAG_LINES = 3
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EdgeThresholds:
+    """Thresholds of the edge detection and the colour reduction.
+
+    `gauss_px`: size of the Gauss before the edge detection, 3 or 5. `edge_threshold`: the tau_e and the tau_l of
+    T §2.1.4 in one, and `strong_threshold`: its tau_h, that one edge of a group must reach; both in stored gradient
+    units, a quarter of a Sobel gradient; 1..255.
+    `eps_black`, `eps_white`: limits of luma minus chroma in grey levels (T Eq. 5.2); -182..255. A pixel
+    below the first is black, above the second white, and has a hue between them.
+    """
+
+    gauss_px: Literal[3, 5]
+    edge_threshold: int
+    strong_threshold: int
+    eps_black: int
+    eps_white: int
 
 
 @kernel
@@ -39,6 +54,27 @@ def gauss3_row(above: u8[:], here: u8[:], below: u8[:], smooth: u8[:]) -> None:
         bottom = below[x - 1] + 2 * below[x] + below[x + 1]
         smooth[x] = top + 2 * middle + bottom >> 4
     smooth[last] = here[last]
+
+
+@kernel
+def across5(line: u8[:], x: i32) -> i32:
+    """Return 1-4-6-4-1 times the pixels round `x`."""
+    return line[x - 2] + line[x + 2] + 4 * (line[x - 1] + line[x + 1]) + 6 * line[x]
+
+
+@kernel
+def gauss5_row(
+    second_above: u8[:], above: u8[:], here: u8[:], below: u8[:], second_below: u8[:], smooth: u8[:]
+) -> None:
+    """Smooth one row with the 5x5 binomial 1-4-6-4-1 by itself; the two pixels at each border stay as they are."""
+    last = len(here) - 1
+    for x in range(2):
+        smooth[x] = here[x]
+        smooth[last - x] = here[last - x]
+    for x in range(2, last - 1):
+        outer = across5(second_above, x) + across5(second_below, x)
+        inner = across5(above, x) + across5(below, x)
+        smooth[x] = outer + 4 * inner + 6 * across5(here, x) >> 8
 
 
 @kernel
@@ -112,43 +148,49 @@ def suppress_row(
     edges[last] = 0
 
 
-def edge_detection(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, int]:
+def edge_detection(core: Core, frame: Frame, thresholds: EdgeThresholds) -> Generator[Any, Any, int]:
     """Detect the edges of a picture and reduce its colours, in one pass of DMA lines (T Figure 5.3).
 
-    Leaves `edge_image` (gradients) and `colour_image` in SDRAM and the edge store in L1; publishes `edges`,
-    how many are stored, and `edges_lost`, how many had no room; returns how many there are.
+    Leaves `edge_image` (gradients) and `colour_image` in SDRAM and the edge store in L1; returns how many edges are
+    stored and publishes it as `edges`. Also publishes `edges_lost`, how many had no room in the store, and
+    `edge_groups_shared`, how many groups had to share a label.
     """
     camera = core.input_ring(frame.rows, "camera_ring")
     colours = core.output_ring("colour_ring", core.rows("colour_image"))
-    edges = core.output_ring("edge_ring", core.rows("edge_image"))
-    height, found = frame.height, 0
-    grey, smooth, magnitude, direction = (
-        line_ring(core.rows(name), height)
-        for name in ("grey_ring", "smooth_ring", "magnitude_ring", "direction_ring")
+    height, reach = frame.height, thresholds.gauss_px // 2
+    # the opening comes later: two lines of its ring are enough for the larger Gauss
+    grey = line_ring((*core.rows("grey_ring"), *core.overlay("opened_ring", u8, frame.width)[:2]), height)
+    smooth, magnitude, direction = (
+        line_ring(core.rows(name), height) for name in ("smooth_ring", "magnitude_ring", "direction_ring")
     )
+    edges = core.rows("edge_ring")[0]
     gx, gy, atan = core.array("gx"), core.array("gy"), core.array("atan")
-    store = core.array("edge_data"), core.array("edge_index"), core.array("edge_counts")
-    for y in range(height + LAG_LINES):
+    groups = EdgeGroups.of(core, frame.width)
+    found = given = 0
+    for y in range(height + reach + 2):
         if y < height:
             line = yield from camera.line()
             yield core.run(grey_row, line, grey[y])
             row = yield from colours.row()
-            yield core.run(colour_row, line, atan, row, mode.eps_black, mode.eps_white)
+            yield core.run(colour_row, line, atan, row, thresholds.eps_black, thresholds.eps_white)
             colours.send()
-        if 1 <= y <= height:
-            yield core.run(gauss3_row, *window(grey, y - 1, height), smooth[y - 1])
-        if 2 <= y <= height + 1:
-            yield core.run(sobel_row, *window(smooth, y - 2, height), gx, gy)
-            yield core.run(magnitude_row, gx, gy, magnitude[y - 2])
-            yield core.run(direction_row, gx, gy, atan, direction[y - 2])
-        if y >= LAG_LINES:
-            done = y - LAG_LINES
-            row = yield from edges.row()
+        # Gauss, Sobel and suppression each need lines below theirs
+        smoothed, sloped, done = y - reach, y - reach - 1, y - reach - 2
+        if 0 <= smoothed < height:
+            gauss_row = gauss3_row if reach == 1 else gauss5_row
+            yield core.run(gauss_row, *window(grey, smoothed, height, reach), smooth[smoothed])
+        if 0 <= sloped < height:
+            yield core.run(sobel_row, *window(smooth, sloped, height), gx, gy)
+            yield core.run(magnitude_row, gx, gy, magnitude[sloped])
+            yield core.run(direction_row, gx, gy, atan, direction[sloped])
+        if done >= 0:
             near = window(magnitude, done, height)
-            yield core.run(suppress_row, *near, direction[done], row, mode.edge_threshold)
-            found = yield core.run(store_edges_row, row, direction[done], *store, done, found)
-            edges.send()
+            yield core.run(suppress_row, *near, direction[done], edges, thresholds.edge_threshold)
+            found = yield core.run(store_edges_row, edges, direction[done], *groups.store, done, found)
+            given = yield from groups.add(done, given)
     yield from colours.flush()
-    yield from edges.flush()
-    core.publish(edges=min(found, EDGE_CAPACITY), edges_lost=max(0, found - EDGE_CAPACITY))
-    return found
+    kept = yield from hysteresis(groups, height, thresholds.strong_threshold)
+    core.publish(
+        edges=kept, edges_lost=max(0, found - EDGE_CAPACITY), edge_groups_shared=max(0, given - LABELS + 1)
+    )
+    return kept

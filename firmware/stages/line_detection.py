@@ -25,7 +25,7 @@ from firmware.stages.line_segments import (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LineMode:
+class LineThresholds:
     """Thresholds of the line detection, by their names in T §5.2.2. Angles in 1/256 of a turn, lengths in pixels.
 
     `angle_range`: how far an edge may be off the mean direction of its segment. `mean_edges`: of how many
@@ -41,21 +41,6 @@ class LineMode:
     near_gap: int
     muff_range: int
     far_gap: int
-
-
-FIELD_LINES = LineMode(
-    # A sixteenth of a turn, the finer partition of Burns's line detector (T §2.2.1). With 12 the stairs of drawn
-    # edges break one line in fifty.
-    angle_range=16,
-    mean_edges=8,
-    min_length=8,
-    near_angle=8,
-    near_gap=4,
-    # Twice this and lines of cluttered pictures are connected that have nothing to do with each other.
-    muff_range=4,
-    far_gap=24,
-)
-"""The field and what stands on it in pictures of 320x240; found on drawn squares and recordings of three kinds."""
 
 
 def line_buffers(size: FrameSize) -> Sequence[Buffer]:
@@ -81,7 +66,7 @@ def unplaced_edges(scan: i32[:]) -> i32:
     return scan[UNPLACED]
 
 
-def line_detection(core: Core, frame: Frame, mode: LineMode) -> Generator[Any, Any, int]:
+def line_detection(core: Core, frame: Frame, thresholds: LineThresholds) -> Generator[Any, Any, int]:
     """Find the lines in the edge store. Leaves them in `lines` and returns how many there are.
 
     Publishes `lines`, that number, and `line_edges_lost`, the edges that found the table of segments full.
@@ -90,15 +75,17 @@ def line_detection(core: Core, frame: Frame, mode: LineMode) -> Generator[Any, A
     segments, lines, scan = core.array("segments"), core.array("lines"), core.array("line_scan")
     labels, atan = core.rows("line_labels"), core.array("atan")
     yield core.run(clear_segments, segments, scan, *labels)
-    thresholds = mode.angle_range, mode.mean_edges, mode.min_length
+    thresholds = thresholds.angle_range, thresholds.mean_edges, thresholds.min_length
     for y in range(frame.height):
         near = labels[y + 1 & 1], labels[y & 1]
         yield core.run(segments_row, *store, y, *near, segments, scan, *thresholds)
-    count = yield core.run(keep_segments, segments, mode.min_length, mode.mean_edges)
-    count = yield core.run(connect_near, segments, count, mode.near_gap, mode.near_angle)
+    count = yield core.run(keep_segments, segments, thresholds.min_length, thresholds.mean_edges)
+    count = yield core.run(connect_near, segments, count, thresholds.near_gap, thresholds.near_angle)
     size = frame.width, frame.height
     yield core.run(fit_lines, segments, count, lines, atan, *size)
-    count = yield core.run(connect_far, segments, lines, count, atan, *size, mode.far_gap, mode.muff_range)
+    count = yield core.run(
+        connect_far, segments, lines, count, atan, *size, thresholds.far_gap, thresholds.muff_range
+    )
     lost = yield core.run(unplaced_edges, scan)
     core.publish(lines=count, line_edges_lost=lost)
     return count

@@ -10,7 +10,8 @@ import numpy as np
 
 from bfsim.api import FrameSize
 from firmware.line_store import LINE_WORDS
-from firmware.stages.line_detection import FIELD_LINES, LineMode, line_buffers, line_detection
+from firmware.modes import INDOOR_FIELD
+from firmware.stages.line_detection import LineThresholds, line_buffers, line_detection
 from firmware.stages.line_segments import SEGMENT_CAPACITY, SEGMENT_WORDS
 from firmware.tables import arctangent_table
 from tests.firmware import references
@@ -59,7 +60,10 @@ class Found:
 
 
 def find_lines(
-    rows: Sequence[Row], width: int, mode: LineMode = FIELD_LINES, capacity: int = SEGMENT_CAPACITY
+    rows: Sequence[Row],
+    width: int,
+    mode: LineThresholds = INDOOR_FIELD.lines,
+    capacity: int = SEGMENT_CAPACITY,
 ) -> Found:
     """Run the line detection on an edge store with these rows of (x, direction)."""
     size = FrameSize(width, len(rows))

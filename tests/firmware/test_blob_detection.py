@@ -18,7 +18,6 @@ from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
 from firmware.blob_store import BLOB_WORDS
 from firmware.modes import INDOOR_FIELD
 from firmware.stages.blob_detection import (
-    INDOOR_BLOBS,
     LABELS,
     RECYCLE_AT,
     BlobThresholds,
@@ -115,14 +114,14 @@ def shipped() -> list[tuple[Words, Words]]:
 
 def opened(uyvy: np.ndarray) -> Words:
     """Return the opened colour image of a picture."""
-    colours = references.colours(uyvy, INDOOR_FIELD.eps_black, INDOOR_FIELD.eps_white)
+    colours = references.colours(uyvy, INDOOR_FIELD.edges.eps_black, INDOOR_FIELD.edges.eps_white)
     return references.dilate(references.erode(colours)).astype(np.uint32)
 
 
 def test_ball_goal_and_mark_of_the_built_in_recording(shipped: list[tuple[Words, Words]]) -> None:
     """Both cores find the blobs of the flood fill, and among them one of each colour that is on the field."""
-    for found in check(shipped[0], INDOOR_BLOBS):
-        assert {record[0] for record in found.records} == set(INDOOR_BLOBS.colour_groups)
+    for found in check(shipped[0], INDOOR_FIELD.blobs):
+        assert {record[0] for record in found.records} == set(INDOOR_FIELD.blobs.colour_groups)
 
 
 @pytest.mark.parametrize("name", [name for name, each in HARD_PICTURES.items() if each.shape[1] % 2 == 0])
@@ -157,7 +156,7 @@ def test_a_frame_leaves_nothing_behind_for_the_next() -> None:
 
 def test_cycles_vary_little_over_the_shipped_frames(shipped: list[tuple[Words, Words]]) -> None:
     """T §6.6: the time hardly depends on the scene. Here it varies by 3.5 %, as the area of the colours does."""
-    cycles = [seen.issue_cclk for pair in shipped for seen in on_machine(pair, INDOOR_BLOBS)]
+    cycles = [seen.issue_cclk for pair in shipped for seen in on_machine(pair, INDOOR_FIELD.blobs)]
     assert max(cycles) < 1.05 * min(cycles)
 
 

@@ -15,7 +15,7 @@ from firmware.tables import arctangent_table
 from tests.firmware import references
 from tests.firmware.pictures import WIDTHS, Bytes, random_uyvy
 
-THRESHOLDS = [(INDOOR_FIELD.eps_black, INDOOR_FIELD.eps_white), (-40, 60), (-182, 255), (60, 59)]
+THRESHOLDS = [(INDOOR_FIELD.edges.eps_black, INDOOR_FIELD.edges.eps_white), (-40, 60), (-182, 255), (60, 59)]
 ANY_WORDS = st.integers(2, 30).flatmap(
     lambda width: arrays(
         np.uint32,

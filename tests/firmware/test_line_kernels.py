@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from firmware.stages.line_detection import FIELD_LINES
+from firmware.modes import INDOOR_FIELD
 from firmware.stages.line_fit import foot, slope, spread
 from firmware.stages.line_segments import turn_between
 from tests.firmware import line_references, references
@@ -24,7 +24,7 @@ def angle(x: int, y: int) -> int:
 
 def check(rows: list[Row], width: int, *, capacity: int = 192, **thresholds: int) -> int:
     """Compare all words of all lines, and the edges lost; return how many lines there are."""
-    mode = replace(FIELD_LINES, **thresholds)
+    mode = replace(INDOOR_FIELD.lines, **thresholds)
     found = find_lines(rows, width, mode, capacity)
     wanted = Thresholds(**asdict(mode))
     expected, lost = line_references.lines(rows, (width, len(rows)), capacity, wanted, angle)
@@ -72,7 +72,7 @@ def test_noise(seed: int) -> None:
     rows = edges_of(noise)
     check(rows, 120)
     check(rows, 120, capacity=9, min_length=3)
-    assert find_lines(rows, 120, replace(FIELD_LINES, min_length=3), capacity=9).lost > 100
+    assert find_lines(rows, 120, replace(INDOOR_FIELD.lines, min_length=3), capacity=9).lost > 100
 
 
 def test_faint_noise_has_no_lines() -> None:
@@ -102,7 +102,7 @@ def test_one_edge_through_the_picture(degrees: int) -> None:
 
 def test_single_edge_is_a_pixel_long() -> None:
     """The shortest line there can be goes across its pixel."""
-    found = find_lines([[(3, 192)]], 8, replace(FIELD_LINES, min_length=1))
+    found = find_lines([[(3, 192)]], 8, replace(INDOOR_FIELD.lines, min_length=1))
     assert found.lines[:, :7].tolist() == [[40, 0, 56, 0, 0, 1, 255]]
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from benchmarks.seen_lines import see
 from benchmarks.table_6_1 import SQUARES, differences, sides, squares_picture, turned_squares
-from firmware.stages.line_detection import FIELD_LINES
+from firmware.modes import INDOOR_FIELD
 from tests.firmware.line_references import Row
 from tests.firmware.line_rig import edge_across, edges_of, find_lines
 from tests.firmware.pictures import random_uyvy
@@ -91,7 +91,7 @@ def test_near_connector(missing: int) -> None:
     """Rows without edges cut an upright line in two; the local connector joins it up to its gap."""
     pieces = [*range(5, 20), *range(20 + missing, 40)]
     rows = store(45, *((y, [9], RIGHT) for y in pieces))
-    mode = replace(FIELD_LINES, near_gap=missing + 1, far_gap=0)
+    mode = replace(INDOOR_FIELD.lines, near_gap=missing + 1, far_gap=0)
     (line,) = find_lines(rows, 20, mode).lines
     assert line[[0, 1, 2, 3]].tolist() == [144, 72, 144, 632]
     assert line[6] == 256 * len(pieces) // 35
@@ -110,7 +110,7 @@ def test_far_connector() -> None:
     (line,) = find_lines(store(20, *pieces), 100).lines
     assert line[[0, 1, 2, 3, 5]].tolist() == [152, 112, 1112, 112, 40]
     assert line[6] == 256 * 40 // 60
-    assert len(find_lines(store(20, *pieces), 100, replace(FIELD_LINES, far_gap=20)).lines) == 2
+    assert len(find_lines(store(20, *pieces), 100, replace(INDOOR_FIELD.lines, far_gap=20)).lines) == 2
 
 
 def test_far_connector_tells_parallels_and_directions_apart() -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from bfsim.api import Core, Firmware
 from bfsim.chip.boards import CM_BF561
 from bfsim.errors import LinkError
 from bfsim.linker import link, parse_ldf
@@ -18,16 +20,18 @@ from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
 from firmware import tinyphoon
 from firmware.edge_store import EDGE_CAPACITY
 from firmware.modes import INDOOR_FIELD
-from tests.firmware import references
+from firmware.stages.edge_detection import EdgeThresholds, edge_detection
+from firmware.stages.hysteresis import LABELS
+from tests.firmware import edge_references, references
 from tests.firmware.line_rig import find_lines
 from tests.firmware.pictures import Bytes, random_uyvy
 
 
-def board_for(width: int, height: int) -> Board:
+def board_for(width: int, height: int, firmware: Firmware = tinyphoon) -> Board:
     """A board with the firmware in it, linked for pictures of that size."""
     size = FrameSize(width, height)
-    link_map = link(parse_ldf(THESIS_LDF), symbols_of(tinyphoon, size), CM_BF561.chip.regions)
-    return Board(CM_BF561, tinyphoon, size, link_map)
+    link_map = link(parse_ldf(THESIS_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
+    return Board(CM_BF561, firmware, size, link_map)
 
 
 def stereo(*pairs: tuple[Bytes, Bytes]) -> list[StereoFrame]:
@@ -44,10 +48,10 @@ def random_frames(width: int, height: int, count: int) -> list[StereoFrame]:
     return stereo(*zip(pictures[::2], pictures[1::2], strict=True))
 
 
-def run(frames: Sequence[StereoFrame]) -> tuple[Board, Outcome]:
+def run(frames: Sequence[StereoFrame], firmware: Firmware = tinyphoon) -> tuple[Board, Outcome]:
     """Play the frames through the firmware; the board's memories hold what is left of the last one."""
     height, double_width = frames[0].left.shape
-    board = board_for(double_width // 2, height)
+    board = board_for(double_width // 2, height, firmware)
     return board, board.run(iter(frames))
 
 
@@ -56,31 +60,48 @@ def buffer(board: Board, core: str, name: str) -> np.ndarray:
     return np.array([row.array for row in board.cores[core].rows(name)])
 
 
-def check_core(board: Board, core: str, uyvy: Bytes, results: dict[str, int]) -> None:
-    """Compare all that core `core` left in memory and published for the picture `uyvy`."""
-    gx, gy = references.sobel(references.gauss3(references.luma(uyvy)))
+def check_edges(
+    board: Board, core: str, uyvy: Bytes, results: dict[str, int], thresholds: EdgeThresholds
+) -> None:
+    """Compare the edge image, the edge store and the counts that core `core` left for the picture `uyvy`."""
+    smooth = {3: references.gauss3, 5: edge_references.gauss5}[thresholds.gauss_px](references.luma(uyvy))
+    gx, gy = references.sobel(smooth)
     direction = references.angle(gx, gy)
-    edges = references.suppress(references.magnitude(gx, gy), direction, INDOOR_FIELD.edge_threshold)
-    colours = references.colours(uyvy, INDOOR_FIELD.eps_black, INDOOR_FIELD.eps_white)
-    opened = references.dilate(references.erode(colours))
-    np.testing.assert_array_equal(buffer(board, core, "edge_image"), edges)
-    np.testing.assert_array_equal(buffer(board, core, "colour_image"), colours)
-    np.testing.assert_array_equal(buffer(board, core, "opened_image"), opened)
-    store = references.edge_store(edges, direction, EDGE_CAPACITY)
-    assert buffer(board, core, "edge_data")[0, : len(store.data)].tolist() == store.data
-    assert buffer(board, core, "edge_index")[0].tolist() == store.index
-    assert buffer(board, core, "edge_counts")[0].tolist() == store.counts
-    assert results[f"edges_{core}"] == len(store.data)
-    assert results[f"edges_lost_{core}"] == store.lost
+    edges = references.suppress(references.magnitude(gx, gy), direction, thresholds.edge_threshold)
+    expected = edge_references.hysteresis(edges, thresholds.strong_threshold, EDGE_CAPACITY, LABELS)
+    data, index, counts = edge_references.hysteresis_store(expected.edges, direction)
+    np.testing.assert_array_equal(buffer(board, core, "edge_image"), expected.edges)
+    assert buffer(board, core, "edge_data")[0, : len(data)].tolist() == data
+    assert buffer(board, core, "edge_index")[0].tolist() == index
+    assert buffer(board, core, "edge_counts")[0].tolist() == counts
+    assert results[f"edges_{core}"] == len(data)
+    assert results[f"edges_lost_{core}"] == expected.lost
+    assert results[f"edge_groups_shared_{core}"] == expected.sharing
+
+
+def check_lines(board: Board, core: str, results: dict[str, int]) -> None:
+    """Compare the lines that core `core` found with those of the edges that it left."""
+    data, index, counts = (
+        buffer(board, core, f"edge_{name}")[0].tolist() for name in ("data", "index", "counts")
+    )
     rows = [
-        [(word >> 16, word >> 8 & 255) for word in store.data[first : first + count]]
-        for first, count in zip(store.index, store.counts, strict=True)
+        [(word >> 16, word >> 8 & 255) for word in data[first : first + count]]
+        for first, count in zip(index, counts, strict=True)
     ]
-    lines = find_lines(rows, edges.shape[1])
+    lines = find_lines(rows, buffer(board, core, "edge_image").shape[1])
     assert results[f"lines_{core}"] == len(lines.lines)
     assert results[f"line_edges_lost_{core}"] == lines.lost
-    words = buffer(board, core, "lines")[0, : lines.lines.size]
-    np.testing.assert_array_equal(words, lines.lines.ravel())
+    np.testing.assert_array_equal(buffer(board, core, "lines")[0, : lines.lines.size], lines.lines.ravel())
+
+
+def check_core(board: Board, core: str, uyvy: Bytes, results: dict[str, int]) -> None:
+    """Compare all that core `core` left in memory and published for the picture `uyvy`."""
+    check_edges(board, core, uyvy, results, INDOOR_FIELD.edges)
+    colours = references.colours(uyvy, INDOOR_FIELD.edges.eps_black, INDOOR_FIELD.edges.eps_white)
+    opened = references.dilate(references.erode(colours))
+    np.testing.assert_array_equal(buffer(board, core, "colour_image"), colours)
+    np.testing.assert_array_equal(buffer(board, core, "opened_image"), opened)
+    check_lines(board, core, results)
 
 
 def check_last_frame(frames: Sequence[StereoFrame]) -> Outcome:
@@ -121,9 +142,40 @@ def test_full_edge_store_keeps_the_top_of_the_picture_and_says_what_it_lost() ->
     noise = np.random.default_rng(5).integers(0, 256, (240, 640), np.uint8)
     outcome = check_last_frame(stereo((noise, np.zeros_like(noise))))
     results = outcome.frames[0].results
-    assert results["edges_A"] == EDGE_CAPACITY
+    assert EDGE_CAPACITY // 2 < results["edges_A"] <= EDGE_CAPACITY
     assert results["edges_lost_A"] > 1000
     assert (results["edges_B"], results["edges_lost_B"]) == (0, 0)
+
+
+def specks(width: int, height: int) -> Bytes:
+    """As many bright points as find room without touching each other's edges."""
+    uyvy = np.full((height, 2 * width), 128, np.uint8)
+    uyvy[:, 1::2] = 0
+    uyvy[4::8, 9::16] = 200
+    return uyvy
+
+
+def test_more_groups_than_labels_are_counted() -> None:
+    """Bright specks, each a group of few edges, ask for more labels than there are."""
+    picture = specks(640, 480)
+    outcome = check_last_frame(stereo((picture, np.zeros_like(picture))))
+    assert outcome.frames[0].results["edge_groups_shared_A"] > 0
+
+
+@pytest.mark.parametrize(("width", "height"), [(6, 4), (34, 50), (160, 121)])
+def test_larger_gauss(width: int, height: int) -> None:
+    """The edges behind the 5x5 Gauss, which needs two lines more of the picture at a time."""
+    thresholds = replace(INDOOR_FIELD.edges, gauss_px=5)
+
+    def main(core: Core) -> Generator[Any, Any, None]:
+        while (frame := (yield from core.next_frame())) is not None:
+            with core.stage("Edge detection"):
+                yield from edge_detection(core, frame, thresholds)
+
+    frames = random_frames(width, height, count=2)
+    board, outcome = run(frames, replace(tinyphoon, mains={"A": main, "B": main}))
+    check_edges(board, "A", frames[-1].left, dict(outcome.frames[-1].results), thresholds)
+    check_edges(board, "B", frames[-1].right, dict(outcome.frames[-1].results), thresholds)
 
 
 def test_frames_leave_nothing_behind() -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 
 from bfsim.report.budget import FRAME, Spread, budget_of, frame_rate_hz, latency_cclk, milliseconds
-from bfsim.trace import REST, RunRecord, StallReason
+from bfsim.trace import REST, BudgetRow, RunRecord, StallReason
 from tests.report.records import core_frame, cost, edge_run, frame, run_of, runs
 
 
@@ -52,6 +54,23 @@ def test_stage_that_no_row_declares_is_still_listed_before_the_rest() -> None:
     run = run_of([frame(0, core_frame("A", 0, cost(REST, 1), cost("Rectification", 2)))])
     names = [row.name for row in budget_of(run).cores[0].rows]
     assert names == ["Edge detection", "Open & closing", "Rectification", REST]
+
+
+def test_a_part_is_a_row_of_its_own_and_in_the_row_of_its_stage() -> None:
+    """A part's cycles count in its stage, frame by frame, and once in the frame."""
+    part = BudgetRow(stage="Rectification", thesis_ms=None, within="Edge detection")
+    stall = {StallReason.RING_EMPTY: 3}
+    first = core_frame("A", 0, cost("Edge detection", 100), cost("Rectification", 7, stall))
+    second = core_frame("A", 110, cost("Edge detection", 50), cost("Rectification", 20))
+    run = run_of([frame(0, first), frame(1, second)])
+    (core,) = budget_of(replace(run, rows=(*run.rows, part))).cores
+    rows = {row.name: row for row in core.rows}
+    edge, rectification = rows["Edge detection"], rows["Rectification"]
+    assert (edge.within, rectification.within) == (None, "Edge detection")
+    assert (edge.elapsed_cclk.minimum, edge.elapsed_cclk.maximum) == (70, 110)
+    assert (rectification.elapsed_cclk.minimum, rectification.elapsed_cclk.maximum) == (10, 20)
+    assert (edge.issue_cclk, edge.stall_cclk) == (177, stall)
+    assert core.frame.elapsed_cclk.total == 180
 
 
 def test_frame_rate_runs_from_frame_end_to_frame_end() -> None:
