@@ -75,10 +75,10 @@ def line_detection(core: Core, frame: Frame, thresholds: LineThresholds) -> Gene
     segments, lines, scan = core.array("segments"), core.array("lines"), core.array("line_scan")
     labels, atan = core.rows("line_labels"), core.array("atan")
     yield core.run(clear_segments, segments, scan, *labels)
-    thresholds = thresholds.angle_range, thresholds.mean_edges, thresholds.min_length
+    limits = thresholds.angle_range, thresholds.mean_edges, thresholds.min_length
     for y in range(frame.height):
         near = labels[y + 1 & 1], labels[y & 1]
-        yield core.run(segments_row, *store, y, *near, segments, scan, *thresholds)
+        yield core.run(segments_row, *store, y, *near, segments, scan, *limits)
     count = yield core.run(keep_segments, segments, thresholds.min_length, thresholds.mean_edges)
     count = yield core.run(connect_near, segments, count, thresholds.near_gap, thresholds.near_angle)
     size = frame.width, frame.height
