@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 
 from bfsim.api import FrameSize
+from firmware.edge_store import EDGE_CAPACITY
 from firmware.line_store import LINE_WORDS
 from firmware.modes import INDOOR_FIELD
+from firmware.stages.hysteresis import LABELS
 from firmware.stages.line_detection import LineThresholds, line_buffers, line_detection
 from firmware.stages.line_segments import SEGMENT_CAPACITY, SEGMENT_WORDS
 from firmware.tables import arctangent_table
-from tests.firmware import references
+from tests.firmware import edge_references, references
 from tests.firmware.line_references import Row
 
 GARBAGE = 77
@@ -108,14 +110,16 @@ def size_of(size: FrameSize) -> Any:
     return FrameStandIn(size.width_px, size.height_px)
 
 
-def edges_of(picture: np.ndarray, threshold: int = 8) -> list[Row]:
-    """The edges of a grey picture, by the reference of the edge detection."""
+def edges_of(picture: np.ndarray) -> list[Row]:
+    """The edges of a grey picture, by the references of the edge detection."""
+    thresholds = INDOOR_FIELD.edges
     gx, gy = references.sobel(references.gauss3(picture))
     direction = references.angle(gx, gy)
-    edges = references.suppress(references.magnitude(gx, gy), direction, threshold)
+    edges = references.suppress(references.magnitude(gx, gy), direction, thresholds.edge_threshold)
+    kept = edge_references.hysteresis(edges, thresholds.strong_threshold, EDGE_CAPACITY, LABELS).edges
     return [
         [(x, int(directions[x])) for x in np.flatnonzero(row)]
-        for row, directions in zip(edges, direction, strict=True)
+        for row, directions in zip(kept, direction, strict=True)
     ]
 
 

@@ -207,7 +207,5 @@ def test_missing_opencv_says_how_to_get_it(
 ) -> None:
     """Without OpenCV calibration is a RecordingError that names the extra to install."""
     monkeypatch.setitem(sys.modules, "cv2", None)
-    with pytest.raises(
-        RecordingError, match=r'OpenCV must be installed .* pip install "bfsim\[calibration\]"'
-    ):
+    with pytest.raises(RecordingError, match=r'OpenCV must be installed .* pip install "bfsim\[opencv\]"'):
         calibrate_recording(chessboards, recording, corners=CORNERS, square_mm=SQUARE_MM)
