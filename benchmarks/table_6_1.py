@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 from rich.table import Table
 
-from benchmarks.seen_lines import Lines, Picture, see
+from benchmarks.quality.seen import Lines, Picture, see_pictures
 from bfsim.report.tables import new_table
 from bfsim.terminal import print_report
 
@@ -150,7 +150,7 @@ def over_many(count: int) -> Table:
     many = turned_squares(count)
     pictures = [squares_picture(each) for each in many]
     found = {
-        "ours": [each.lines for each in see(pictures)],
+        "ours": [each.lines for each in see_pictures(pictures)],
         "Hough": [either_way(hough_lines(each)) for each in pictures],
         "LSD": [either_way(lsd_lines(each)) for each in pictures],
     }
@@ -173,7 +173,7 @@ def main(pictures: int) -> None:
     """Print T Table 6.1 with our lines and OpenCV's, and the same over many other squares."""
     picture = squares_picture()
     columns = {
-        "ours": differences(see([picture])[0].lines, sides()),
+        "ours": differences(see_pictures([picture])[0].lines, sides()),
         "Hough": differences(either_way(hough_lines(picture)), sides()),
         "LSD": differences(either_way(lsd_lines(picture)), sides()),
         "thesis": thesis_differences(THESIS_SQUARED),

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.seen_lines import see
+from benchmarks.quality.seen import see_pictures
 from benchmarks.table_6_1 import SQUARES, differences, sides, squares_picture, turned_squares
 from firmware.modes import INDOOR_FIELD
 from tests.firmware.line_references import Row
@@ -154,7 +154,7 @@ def test_short_segments_give_their_places_back() -> None:
 
 def test_table_6_1() -> None:
     """All 16 sides, start to end in a loop round each square, nearer than the thesis's on average."""
-    lines = see([squares_picture()])[0].lines
+    lines = see_pictures([squares_picture()])[0].lines
     found = differences(lines, sides())
     assert len(lines) == 4 * len(SQUARES)
     assert np.isfinite(found).all()
@@ -165,7 +165,7 @@ def test_table_6_1() -> None:
 def test_squares_by_chance() -> None:
     """So it is for squares of other sizes, places and angles."""
     many = turned_squares(12, seed=6)
-    seen = see([squares_picture(each) for each in many])
+    seen = see_pictures([squares_picture(each) for each in many])
     found = [differences(each.lines, sides(squares)) for each, squares in zip(seen, many, strict=True)]
     assert np.isfinite(found).all()
     assert np.mean(found) < 1.3
@@ -175,7 +175,7 @@ def test_squares_by_chance() -> None:
 def test_on_the_board(width: int, height: int) -> None:
     """On the simulated board, after another picture, it finds what it finds without one; so does the other core."""
     pictures = [luma(random_uyvy(width, height, seed)) for seed in range(4)]
-    for picture, each in zip(pictures, see(pictures), strict=True):
+    for picture, each in zip(pictures, see_pictures(pictures), strict=True):
         np.testing.assert_array_equal(each.lines, find_lines(edges_of(picture), width).ends)
 
 
@@ -184,7 +184,7 @@ def test_cycles_depend_on_the_picture() -> None:
     empty = np.full((240, 320), 255, np.uint8)
     x = np.arange(320)
     striped = np.where(x // 12 % 2, 255, 0).astype(np.uint8) + np.zeros((240, 1), np.uint8)
-    blank, squares, stripes = (each.stages_cclk for each in see([empty, squares_picture(), striped]))
+    blank, squares, stripes = (each.stages_cclk for each in see_pictures([empty, squares_picture(), striped]))
     assert 5 * blank["Line detection"] < squares["Line detection"]
     assert 2 * squares["Line detection"] < stripes["Line detection"]
     assert max(each["Edge detection"] for each in (squares, stripes)) < 1.2 * blank["Edge detection"]

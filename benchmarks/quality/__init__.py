@@ -1,0 +1,1 @@
+"""How well the firmware sees: what it finds beside what OpenCV finds in the same pictures."""
