@@ -17,9 +17,10 @@ from typing import Any
 
 from bfsim.api import Buffer, Core, Row, i32, kernel, u8, u16, u32
 
-# 1.5 KB for both tables, in the scratchpad. Frames of the recording that comes with bfsim ask for up to 218; only where
-# the edge store is full of specks, of 8 edges and less each, are these too few.
-LABELS = 512
+# 3 KB for both tables, of the scratchpad's 4. Noise makes most of the groups: the rendered scenes of the thesis ask for
+# up to 724 labels, 28 real pictures of a large field for 514. Only where the edge store is full of specks of 4 edges
+# and less are these too few.
+LABELS = 1024
 
 
 @kernel
