@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,3 +39,85 @@ def random_uyvy(width: int, height: int, seed: int) -> Bytes:
     uyvy[:, 1::2] = noisy[:, :, 0]
     uyvy[:, 0::4], uyvy[:, 2::4] = noisy[:, ::2, 1], noisy[:, ::2, 2]
     return uyvy
+
+
+def grey_uyvy(luma: NDArray[np.integer]) -> Bytes:
+    """A picture of these grey levels without colour."""
+    height, width = luma.shape
+    uyvy = np.full((height, 2 * width), 128, np.uint8)
+    uyvy[:, 1::2] = luma
+    return uyvy
+
+
+def grid(width: int, height: int) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
+    """Columns and rows of a picture's pixels."""
+    x, y = np.meshgrid(np.arange(width), np.arange(height))
+    return x, y
+
+
+def flat(value: int) -> Callable[[int, int], Bytes]:
+    """Pictures with this value in every byte."""
+    return lambda width, height: np.full((height, 2 * width), value, np.uint8)
+
+
+def stripes(period: int, across: int, down: int) -> Callable[[int, int], Bytes]:
+    """Black and white stripes; `across` and `down` are the steps that the phase takes from pixel to pixel."""
+
+    def picture(width: int, height: int) -> Bytes:
+        x, y = grid(width, height)
+        return grey_uyvy((across * x + down * y) // period % 2 * 255)
+
+    return picture
+
+
+def checkerboard(square: int) -> Callable[[int, int], Bytes]:
+    """Black and white squares."""
+
+    def picture(width: int, height: int) -> Bytes:
+        x, y = grid(width, height)
+        return grey_uyvy((x // square + y // square) % 2 * 255)
+
+    return picture
+
+
+def coloured_squares(square: int, bright: int) -> Callable[[int, int], Bytes]:
+    """Squares of the colours of the mode by turns, as strong as the camera can send them, and black between."""
+    pairs = np.array([(180, 90), (60, 150), (110, 180), (128, 128)])  # U and V: blue, yellow, red, none
+
+    def picture(width: int, height: int) -> Bytes:
+        x, y = grid(width // 2, height)
+        number = (2 * x // square + 3 * (y // square)) % len(pairs)
+        uyvy = np.full((height, 2 * width), bright, np.uint8)
+        uyvy[:, 0::4], uyvy[:, 2::4] = np.moveaxis(pairs[number], -1, 0)
+        return uyvy
+
+    return picture
+
+
+def noise(values: int) -> Callable[[int, int], Bytes]:
+    """Bytes by chance below `values`."""
+    return lambda width, height: np.random.default_rng(values).integers(
+        0, values, (height, 2 * width), np.uint8
+    )
+
+
+EXTREMES: dict[str, Callable[[int, int], Bytes]] = {
+    "all black": lambda width, height: grey_uyvy(np.zeros((height, width), np.uint8)),
+    "all white": lambda width, height: grey_uyvy(np.full((height, width), 255, np.uint8)),
+    "zeros": flat(0),
+    "ones": flat(255),
+    "checkerboard of pixels": checkerboard(1),
+    "checkerboard of two pixels": checkerboard(2),
+    "checkerboard of five pixels": checkerboard(5),
+    "columns": stripes(1, 1, 0),
+    "an edge in every second column": stripes(2, 1, 0),
+    "an edge in every second row": stripes(2, 0, 1),
+    "slopes": stripes(6, 1, 2),
+    "flat slopes to the left": stripes(12, -1, 7),
+    "coloured squares": coloured_squares(6, 100),
+    "coloured columns": coloured_squares(2, 100),
+    "coloured specks": coloured_squares(3, 180),
+    "faint noise": noise(30),
+    "noise": noise(256),
+}
+"""Pictures of any size that no camera takes."""

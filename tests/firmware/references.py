@@ -72,6 +72,11 @@ def angle(x: Picture, y: Picture) -> NDArray[np.int64]:
     return np.where(y < 0, 256 - half, half) % 256
 
 
+def angle_of(x: int, y: int) -> int:
+    """Return the 8-bit angle of one vector."""
+    return int(angle(np.array([x]), np.array([y]))[0])
+
+
 def suppress(gradient: Picture, direction: Picture, threshold: int) -> Picture:
     """Remove what is under the threshold first, then what is no maximum along the gradient (T §2.1.4)."""
     strong = np.where(gradient >= threshold, gradient, 0).astype(np.int64)

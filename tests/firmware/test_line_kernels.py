@@ -17,17 +17,12 @@ from tests.firmware.line_references import Row, Thresholds
 from tests.firmware.line_rig import edge_across, edges_of, find_lines
 
 
-def angle(x: int, y: int) -> int:
-    """The 8-bit angle of the references."""
-    return int(references.angle(np.array([x]), np.array([y]))[0])
-
-
 def check(rows: list[Row], width: int, *, capacity: int = 192, **thresholds: int) -> int:
     """Compare all words of all lines, and the edges lost; return how many lines there are."""
     mode = replace(INDOOR_FIELD.lines, **thresholds)
     found = find_lines(rows, width, mode, capacity)
     wanted = Thresholds(**asdict(mode))
-    expected, lost = line_references.lines(rows, (width, len(rows)), capacity, wanted, angle)
+    expected, lost = line_references.lines(rows, (width, len(rows)), capacity, wanted, references.angle_of)
     assert found.lines.tolist() == expected
     assert found.lost == lost
     return len(expected)

@@ -23,7 +23,7 @@ from firmware.stages.rectification import (
 )
 from tests.firmware.lenses import bilinear, nearest, rectified, source_points
 from tests.firmware.pictures import random_uyvy
-from tests.firmware.test_stages import buffer, check_core, random_frames, run
+from tests.firmware.whole_pictures import buffer, check_core, random_frames, run
 
 GARBAGE = 170
 CAMERA = {"barrel": 0.06, "turn_deg": 1.0, "down_px": 2.5}

@@ -2,116 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from bfsim.api import Core, Firmware
-from bfsim.chip.boards import CM_BF561
+from bfsim.api import Core
 from bfsim.errors import LinkError
-from bfsim.linker import link, parse_ldf
-from bfsim.machine.board import Board, Outcome, symbols_of
-from bfsim.machine.program import FrameSize
-from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
+from bfsim.recording import RecordingReader
+from bfsim.run import BUILT_IN_RECORDING
 from firmware import tinyphoon
 from firmware.edge_store import EDGE_CAPACITY
 from firmware.modes import INDOOR_FIELD
-from firmware.stages.edge_detection import EdgeThresholds, edge_detection
-from firmware.stages.hysteresis import LABELS
-from tests.firmware import edge_references, references
-from tests.firmware.line_rig import find_lines
-from tests.firmware.pictures import Bytes, random_uyvy
-
-
-def board_for(width: int, height: int, firmware: Firmware = tinyphoon) -> Board:
-    """A board with the firmware in it, linked for pictures of that size."""
-    size = FrameSize(width, height)
-    link_map = link(parse_ldf(THESIS_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
-    return Board(CM_BF561, firmware, size, link_map)
-
-
-def stereo(*pairs: tuple[Bytes, Bytes]) -> list[StereoFrame]:
-    """Stereo frames of these pictures."""
-    return [
-        StereoFrame(index, left, right, left_ns=index, right_ns=index, truth=None)
-        for index, (left, right) in enumerate(pairs)
-    ]
-
-
-def random_frames(width: int, height: int, count: int) -> list[StereoFrame]:
-    """Stereo frames that have nothing to do with each other."""
-    pictures = [random_uyvy(width, height, seed) for seed in range(2 * count)]
-    return stereo(*zip(pictures[::2], pictures[1::2], strict=True))
-
-
-def run(frames: Sequence[StereoFrame], firmware: Firmware = tinyphoon) -> tuple[Board, Outcome]:
-    """Play the frames through the firmware; the board's memories hold what is left of the last one."""
-    height, double_width = frames[0].left.shape
-    board = board_for(double_width // 2, height, firmware)
-    return board, board.run(iter(frames))
-
-
-def buffer(board: Board, core: str, name: str) -> np.ndarray:
-    """Contents of a buffer of a core, row by row."""
-    return np.array([row.array for row in board.cores[core].rows(name)])
-
-
-def check_edges(
-    board: Board, core: str, uyvy: Bytes, results: dict[str, int], thresholds: EdgeThresholds
-) -> None:
-    """Compare the edge image, the edge store and the counts that core `core` left for the picture `uyvy`."""
-    smooth = {3: references.gauss3, 5: edge_references.gauss5}[thresholds.gauss_px](references.luma(uyvy))
-    gx, gy = references.sobel(smooth)
-    direction = references.angle(gx, gy)
-    edges = references.suppress(references.magnitude(gx, gy), direction, thresholds.edge_threshold)
-    expected = edge_references.hysteresis(edges, thresholds.strong_threshold, EDGE_CAPACITY, LABELS)
-    data, index, counts = edge_references.hysteresis_store(expected.edges, direction)
-    np.testing.assert_array_equal(buffer(board, core, "edge_image"), expected.edges)
-    assert buffer(board, core, "edge_data")[0, : len(data)].tolist() == data
-    assert buffer(board, core, "edge_index")[0].tolist() == index
-    assert buffer(board, core, "edge_counts")[0].tolist() == counts
-    assert results[f"edges_{core}"] == len(data)
-    assert results[f"edges_lost_{core}"] == expected.lost
-    assert results[f"edge_groups_shared_{core}"] == expected.sharing
-
-
-def check_lines(board: Board, core: str, results: dict[str, int]) -> None:
-    """Compare the lines that core `core` found with those of the edges that it left."""
-    data, index, counts = (
-        buffer(board, core, f"edge_{name}")[0].tolist() for name in ("data", "index", "counts")
-    )
-    rows = [
-        [(word >> 16, word >> 8 & 255) for word in data[first : first + count]]
-        for first, count in zip(index, counts, strict=True)
-    ]
-    lines = find_lines(rows, buffer(board, core, "edge_image").shape[1])
-    assert results[f"lines_{core}"] == len(lines.lines)
-    assert results[f"line_edges_lost_{core}"] == lines.lost
-    np.testing.assert_array_equal(buffer(board, core, "lines")[0, : lines.lines.size], lines.lines.ravel())
-
-
-def check_core(board: Board, core: str, uyvy: Bytes, results: dict[str, int]) -> None:
-    """Compare all that core `core` left in memory and published for the picture `uyvy`."""
-    check_edges(board, core, uyvy, results, INDOOR_FIELD.edges)
-    colours = references.colours(uyvy, INDOOR_FIELD.edges.eps_black, INDOOR_FIELD.edges.eps_white)
-    opened = references.dilate(references.erode(colours))
-    np.testing.assert_array_equal(buffer(board, core, "colour_image"), colours)
-    np.testing.assert_array_equal(buffer(board, core, "opened_image"), opened)
-    check_lines(board, core, results)
-
-
-def check_last_frame(frames: Sequence[StereoFrame]) -> Outcome:
-    """Run the frames and compare what both cores made of the last one."""
-    board, outcome = run(frames)
-    assert [each.index for each in outcome.frames] == [each.index for each in frames]
-    results = dict(outcome.frames[-1].results)
-    check_core(board, "A", frames[-1].left, results)
-    check_core(board, "B", frames[-1].right, results)
-    return outcome
+from firmware.stages.edge_detection import edge_detection
+from tests.firmware.pictures import EXTREMES
+from tests.firmware.whole_pictures import board_for, check_edges, check_last_frame, random_frames, run, stereo
 
 
 @pytest.mark.parametrize("count", [1, 2])
@@ -127,6 +34,20 @@ def test_built_in_recording(count: int) -> None:
 def test_pictures_of_any_size(width: int, height: int) -> None:
     """Narrow, low and wide pictures, three frames after each other in all three frame buffers."""
     check_last_frame(random_frames(width, height, count=3))
+
+
+@pytest.mark.parametrize("name", EXTREMES)
+def test_extremes(name: str) -> None:
+    """Pictures that no camera takes: as drawn on one core, upside down on the other, after another picture."""
+    picture = EXTREMES[name](64, 45)
+    check_last_frame([*random_frames(64, 45, count=1), *stereo((picture, picture[::-1].copy()))[:1]])
+
+
+@pytest.mark.parametrize("name", EXTREMES)
+def test_extremes_overflow_with_a_count(name: str) -> None:
+    """The same on pictures with more of everything than the stores hold."""
+    picture = EXTREMES[name](640, 48)
+    check_last_frame(stereo((picture, picture[::-1].copy())))
 
 
 @pytest.mark.parametrize("value", [0, 128, 255])

@@ -1,0 +1,138 @@
+"""Whole pictures through the stages on the simulated machine, and all that is left in memory against the references."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+
+import numpy as np
+
+from bfsim.api import Firmware
+from bfsim.chip.boards import CM_BF561
+from bfsim.linker import link, parse_ldf
+from bfsim.machine.board import Board, Outcome, symbols_of
+from bfsim.machine.program import FrameSize
+from bfsim.recording import StereoFrame
+from bfsim.run import THESIS_LDF
+from firmware import tinyphoon
+from firmware.blob_store import BLOB_WORDS
+from firmware.edge_store import EDGE_CAPACITY
+from firmware.line_store import LINE_WORDS
+from firmware.modes import INDOOR_FIELD
+from firmware.stages.blob_detection import LABELS as BLOB_LABELS
+from firmware.stages.blob_detection import RECYCLE_AT
+from firmware.stages.edge_detection import EdgeThresholds
+from firmware.stages.hysteresis import LABELS
+from firmware.stages.line_segments import SEGMENT_CAPACITY
+from tests.firmware import blob_references, edge_references, line_references, references
+from tests.firmware.pictures import Bytes, random_uyvy
+
+
+def board_for(width: int, height: int, firmware: Firmware = tinyphoon) -> Board:
+    """A board with the firmware in it, linked for pictures of that size."""
+    size = FrameSize(width, height)
+    link_map = link(parse_ldf(THESIS_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
+    return Board(CM_BF561, firmware, size, link_map)
+
+
+def stereo(*pairs: tuple[Bytes, Bytes]) -> list[StereoFrame]:
+    """Stereo frames of these pictures."""
+    return [
+        StereoFrame(index, left, right, left_ns=index, right_ns=index, truth=None)
+        for index, (left, right) in enumerate(pairs)
+    ]
+
+
+def random_frames(width: int, height: int, count: int) -> list[StereoFrame]:
+    """Stereo frames that have nothing to do with each other."""
+    pictures = [random_uyvy(width, height, seed) for seed in range(2 * count)]
+    return stereo(*zip(pictures[::2], pictures[1::2], strict=True))
+
+
+def run(frames: Sequence[StereoFrame], firmware: Firmware = tinyphoon) -> tuple[Board, Outcome]:
+    """Play the frames through the firmware; the board's memories hold what is left of the last one."""
+    height, double_width = frames[0].left.shape
+    board = board_for(double_width // 2, height, firmware)
+    return board, board.run(iter(frames))
+
+
+def buffer(board: Board, core: str, name: str) -> np.ndarray:
+    """Contents of a buffer of a core, row by row."""
+    return np.array([row.array for row in board.cores[core].rows(name)])
+
+
+def check_edges(
+    board: Board, core: str, uyvy: Bytes, results: dict[str, int], thresholds: EdgeThresholds
+) -> None:
+    """Compare the edge image, the edge store and the counts that core `core` left for the picture `uyvy`."""
+    smooth = {3: references.gauss3, 5: edge_references.gauss5}[thresholds.gauss_px](references.luma(uyvy))
+    gx, gy = references.sobel(smooth)
+    direction = references.angle(gx, gy)
+    edges = references.suppress(references.magnitude(gx, gy), direction, thresholds.edge_threshold)
+    expected = edge_references.hysteresis(edges, thresholds.strong_threshold, EDGE_CAPACITY, LABELS)
+    data, index, counts = edge_references.hysteresis_store(expected.edges, direction)
+    np.testing.assert_array_equal(buffer(board, core, "edge_image"), expected.edges)
+    assert buffer(board, core, "edge_data")[0, : len(data)].tolist() == data
+    assert buffer(board, core, "edge_index")[0].tolist() == index
+    assert buffer(board, core, "edge_counts")[0].tolist() == counts
+    assert results[f"edges_{core}"] == len(data)
+    assert results[f"edges_lost_{core}"] == expected.lost
+    assert results[f"edge_groups_shared_{core}"] == expected.sharing
+
+
+def check_lines(board: Board, core: str, results: dict[str, int]) -> None:
+    """Compare the lines that core `core` found with those of the edges that it left."""
+    data, index, counts = (
+        buffer(board, core, f"edge_{name}")[0].tolist() for name in ("data", "index", "counts")
+    )
+    rows = [
+        [(word >> 16, word >> 8 & 255) for word in data[first : first + count]]
+        for first, count in zip(index, counts, strict=True)
+    ]
+    size = buffer(board, core, "edge_image").shape[1], len(rows)
+    wanted = line_references.Thresholds(**asdict(INDOOR_FIELD.lines))
+    lines, lost = line_references.lines(rows, size, SEGMENT_CAPACITY, wanted, references.angle_of)
+    assert results[f"lines_{core}"] == len(lines)
+    assert results[f"line_edges_lost_{core}"] == lost
+    stored = buffer(board, core, "lines")[0, : len(lines) * LINE_WORDS]
+    assert stored.reshape(-1, LINE_WORDS).tolist() == lines
+
+
+def check_blobs(board: Board, core: str, opened: references.Picture, results: dict[str, int]) -> None:
+    """Compare the blobs that core `core` found with the components of the opened picture."""
+    wanted = INDOOR_FIELD.blobs
+    left = blob_references.labelled(
+        opened, wanted.colour_groups, BLOB_LABELS - 1, RECYCLE_AT, wanted.min_pixels
+    )
+    found = [
+        each.words
+        for each in blob_references.segments(left.picture, wanted.colour_groups)
+        if wanted.min_pixels <= len(each.pixels) <= wanted.max_pixels
+    ]
+    kept = found[: wanted.max_blobs]
+    stored = buffer(board, core, "blob_data")[0, : len(kept) * BLOB_WORDS]
+    assert stored.reshape(-1, BLOB_WORDS).tolist() == kept
+    assert results[f"blobs_{core}"] == len(kept)
+    assert results[f"blobs_lost_{core}"] == len(found) - len(kept)
+    assert results[f"labels_lost_{core}"] == left.lost
+
+
+def check_core(board: Board, core: str, uyvy: Bytes, results: dict[str, int]) -> None:
+    """Compare all that core `core` left in memory and published for the picture `uyvy`."""
+    check_edges(board, core, uyvy, results, INDOOR_FIELD.edges)
+    colours = references.colours(uyvy, INDOOR_FIELD.edges.eps_black, INDOOR_FIELD.edges.eps_white)
+    opened = references.dilate(references.erode(colours))
+    np.testing.assert_array_equal(buffer(board, core, "colour_image"), colours)
+    np.testing.assert_array_equal(buffer(board, core, "opened_image"), opened)
+    check_blobs(board, core, opened.astype(np.uint32), results)
+    check_lines(board, core, results)
+
+
+def check_last_frame(frames: Sequence[StereoFrame]) -> Outcome:
+    """Run the frames and compare what both cores made of the last one."""
+    board, outcome = run(frames)
+    assert [each.index for each in outcome.frames] == [each.index for each in frames]
+    results = dict(outcome.frames[-1].results)
+    check_core(board, "A", frames[-1].left, results)
+    check_core(board, "B", frames[-1].right, results)
+    return outcome
