@@ -1,4 +1,7 @@
-"""Settings for every test: kernels are compiled into a cache of this test run, not the user's."""
+"""Settings for every test: kernels are compiled into a cache of this test run, not the user's.
+
+`pytest --recording FILE tests/firmware` also compares what the firmware makes of the pictures of a recording.
+"""
 
 from __future__ import annotations
 
@@ -14,3 +17,15 @@ def kernel_cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("kernels")
     os.environ["BFSIM_CACHE_DIR"] = str(folder)
     return folder
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Take recordings beside those that the tests have themselves."""
+    parser.addoption("--recording", action="append", default=[], type=Path, help="play these pictures, too")
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Let a test that takes a `given_recording` run on each of them."""
+    if "given_recording" in metafunc.fixturenames:
+        given = metafunc.config.getoption("recording")
+        metafunc.parametrize("given_recording", given, ids=[path.stem for path in given])

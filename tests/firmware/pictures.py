@@ -81,12 +81,12 @@ def checkerboard(square: int) -> Callable[[int, int], Bytes]:
 
 
 def coloured_squares(square: int, bright: int) -> Callable[[int, int], Bytes]:
-    """Squares of the colours of the mode by turns, as strong as the camera can send them, and black between."""
+    """Squares of the colours of the mode and of none by turns, so that none touches another of its colour."""
     pairs = np.array([(180, 90), (60, 150), (110, 180), (128, 128)])  # U and V: blue, yellow, red, none
 
     def picture(width: int, height: int) -> Bytes:
         x, y = grid(width // 2, height)
-        number = (2 * x // square + 3 * (y // square)) % len(pairs)
+        number = (2 * x // square + 2 * (y // square)) % len(pairs)
         uyvy = np.full((height, 2 * width), bright, np.uint8)
         uyvy[:, 0::4], uyvy[:, 2::4] = np.moveaxis(pairs[number], -1, 0)
         return uyvy
@@ -110,8 +110,9 @@ EXTREMES: dict[str, Callable[[int, int], Bytes]] = {
     "checkerboard of two pixels": checkerboard(2),
     "checkerboard of five pixels": checkerboard(5),
     "columns": stripes(1, 1, 0),
-    "an edge in every second column": stripes(2, 1, 0),
-    "an edge in every second row": stripes(2, 0, 1),
+    "columns of two pixels": stripes(2, 1, 0),
+    "an edge in every third column": stripes(3, 1, 0),
+    "an edge in every third row": stripes(3, 0, 1),
     "slopes": stripes(6, 1, 2),
     "flat slopes to the left": stripes(12, -1, 7),
     "coloured squares": coloured_squares(6, 100),

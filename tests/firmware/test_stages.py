@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,13 +13,22 @@ import pytest
 from bfsim.api import Core
 from bfsim.errors import LinkError
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING
+from bfsim.run import BUILT_IN_RECORDING, source_pixels
 from firmware import tinyphoon
 from firmware.edge_store import EDGE_CAPACITY
 from firmware.modes import INDOOR_FIELD
 from firmware.stages.edge_detection import edge_detection
+from tests.firmware.lenses import rectified
 from tests.firmware.pictures import EXTREMES
-from tests.firmware.whole_pictures import board_for, check_edges, check_last_frame, random_frames, run, stereo
+from tests.firmware.whole_pictures import (
+    board_for,
+    check_core,
+    check_edges,
+    check_last_frame,
+    random_frames,
+    run,
+    stereo,
+)
 
 
 @pytest.mark.parametrize("count", [1, 2])
@@ -26,6 +36,17 @@ def test_built_in_recording(count: int) -> None:
     """The first and the second frame of the soccer scene come out as in numpy, on both cores."""
     with RecordingReader(BUILT_IN_RECORDING) as reader:
         check_last_frame(list(reader.frames(count)))
+
+
+def test_given_recordings(given_recording: Path) -> None:
+    """Every frame of the recordings that the command line names, real ones above all."""
+    with RecordingReader(given_recording) as reader:
+        sources = source_pixels(reader.rectification)
+        for frame in reader.frames():
+            board, outcome = run([replace(frame, index=0)], tinyphoon.rectifying(sources))
+            for core, picture in (("A", frame.left), ("B", frame.right)):
+                seen = rectified(picture, sources[core]) if sources else picture
+                check_core(board, core, seen, dict(outcome.frames[0].results))
 
 
 @pytest.mark.parametrize(
@@ -43,11 +64,23 @@ def test_extremes(name: str) -> None:
     check_last_frame([*random_frames(64, 45, count=1), *stereo((picture, picture[::-1].copy()))[:1]])
 
 
-@pytest.mark.parametrize("name", EXTREMES)
-def test_extremes_overflow_with_a_count(name: str) -> None:
-    """The same on pictures with more of everything than the stores hold."""
-    picture = EXTREMES[name](640, 48)
-    check_last_frame(stereo((picture, picture[::-1].copy())))
+OVERFLOWS = {
+    "an edge in every third column": ("edges_lost",),
+    "noise": ("edges_lost", "line_edges_lost"),
+    "slopes": ("edges_lost", "edge_groups_shared"),
+    "coloured squares": ("blobs_lost", "labels_lost"),
+}
+"""Pictures with more than there is room for, and what they must say of it."""
+
+
+@pytest.mark.parametrize("name", OVERFLOWS)
+def test_overflow_is_counted(name: str) -> None:
+    """What has no room is left out as in the references, and counted, on each core for itself."""
+    picture = EXTREMES[name](640, 36)
+    results = check_last_frame(stereo((picture, np.zeros_like(picture)))).frames[0].results
+    for count in OVERFLOWS[name]:
+        assert results[f"{count}_A"] > 0
+        assert results[f"{count}_B"] == 0
 
 
 @pytest.mark.parametrize("value", [0, 128, 255])
