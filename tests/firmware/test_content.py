@@ -1,0 +1,72 @@
+"""What the cycles of the stages depend on: lines on what is in the picture, the others hardly (T §6.6)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from benchmarks.quality.seen import Seen, see, see_recording
+from bfsim.run import BUILT_IN_RECORDING
+from tests.firmware.pictures import Bytes, grey_uyvy, random_uyvy, stripes
+from tests.firmware.whole_pictures import stereo
+
+WIDTH, HEIGHT = 320, 240
+STEADY = ("Edge detection", "Open & closing", "Blob detection")
+
+
+@pytest.fixture(scope="module")
+def shipped() -> list[Seen]:
+    """Both pictures of every frame of the built-in recording."""
+    return see_recording(BUILT_IN_RECORDING, 8)
+
+
+def covered() -> Bytes:
+    """What a camera with its cap on sends: black and noise."""
+    noise = np.random.default_rng(0).normal(16, 2, (HEIGHT, WIDTH))
+    return grey_uyvy(noise.round().astype(np.uint8))
+
+
+@pytest.fixture(scope="module")
+def far_apart() -> list[Seen]:
+    """Pictures as unlike as a camera can send them: dark, over-exposed, many lines, and coloured clutter all over."""
+    pictures = (
+        covered(),
+        grey_uyvy(np.full((HEIGHT, WIDTH), 255)),
+        stripes(12, 1, 0)(WIDTH, HEIGHT),
+        random_uyvy(WIDTH, HEIGHT, seed=1),
+    )
+    return see(stereo(pictures[:2], pictures[2:]))
+
+
+def ratio(seen: Sequence[Seen], stage: str) -> float:
+    """Most by least cycles of a stage."""
+    cycles = [each.stages_cclk[stage] for each in seen]
+    return max(cycles) / min(cycles)
+
+
+@pytest.mark.parametrize(
+    ("stage", "most"), [("Edge detection", 1.01), ("Open & closing", 1.005), ("Blob detection", 1.05)]
+)
+def test_steady_stages_over_the_built_in_recording(shipped: list[Seen], stage: str, most: float) -> None:
+    """From frame to frame they differ by 0.7, 0.2 and 3.6 percent."""
+    assert ratio(shipped, stage) < most
+
+
+@pytest.mark.parametrize(
+    ("stage", "most"), [("Edge detection", 1.4), ("Open & closing", 1.005), ("Blob detection", 1.65)]
+)
+def test_steady_stages_between_nothing_and_clutter(far_apart: list[Seen], stage: str, most: float) -> None:
+    """They differ by 38, 0 and 58 percent: flat pixels are spared the divisions for direction and hue."""
+    assert ratio(far_apart, stage) < most
+
+
+def test_lines_depend_on_the_picture(shipped: list[Seen], far_apart: list[Seen]) -> None:
+    """An empty picture costs little but to look at its rows; the soccer field over thirty times as much, clutter more."""
+    dark, white, lines, clutter = (each.stages_cclk["Line detection"] for each in far_apart)
+    field = min(each.stages_cclk["Line detection"] for each in shipped)
+    assert dark == white
+    assert field > 30 * white
+    assert 30 * white < lines < clutter
+    assert ratio(shipped, "Line detection") > 1.2
