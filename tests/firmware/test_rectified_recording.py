@@ -1,0 +1,94 @@
+"""From bent pictures through `bfsim record calibrate` to what the firmware sees: rows of both cameras agree."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from PIL import Image
+
+from bfsim.cli import main
+from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
+from bfsim.recording.planes import YuvPlanes
+from bfsim.recording.scenes.chessboard import write_chessboards
+from bfsim.recording.scenes.lens import Lens, Misfit
+from bfsim.run import simulate, source_pixels
+from firmware import tinyphoon
+from tests.firmware.lenses import rectified
+from tests.firmware.whole_pictures import buffer, check_core, run
+
+cv2 = pytest.importorskip("cv2", reason="calibration needs OpenCV")
+
+GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
+MISFIT = Misfit(Lens(-0.25, 0.08, 0.001, -0.0008), (0.8, -1.2, 0.6), (0.3, 0.5, -0.4))
+CORNERS = (9, 6)
+HELD = 3
+"""How often the board is held differently from the pictures of the calibration."""
+
+
+def corners_of(uyvy: np.ndarray) -> np.ndarray:
+    """Corners of the chessboard in a picture (count, 2), from its left end."""
+    luma = np.ascontiguousarray(uyvy[:, 1::2])
+    found, points = cv2.findChessboardCornersSB(luma, CORNERS, flags=cv2.CALIB_CB_ACCURACY)
+    assert found
+    flat = points.reshape(-1, 2)
+    return flat if flat[0, 0] < flat[-1, 0] else flat[::-1]
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A recording of a chessboard by two bent cameras, calibrated by the command with other pictures of it."""
+    folder = tmp_path_factory.mktemp("bent")
+    for name, seed in (("calibration", 1), ("scene", 2)):
+        (folder / name).mkdir()
+        write_chessboards(folder / name, GEOMETRY, MISFIT, seed=seed)
+    path = folder / "bent.mcap"
+    with RecordingWriter(
+        path, width=320, height=240, geometry=GEOMETRY, description="a chessboard"
+    ) as writer:
+        pairs = zip(
+            sorted((folder / "scene").glob("left*")), sorted((folder / "scene").glob("right*")), strict=True
+        )
+        for number, pair in enumerate(list(pairs)[:HELD]):
+            left, right = (YuvPlanes.from_image(Image.open(each).convert("RGB")).to_uyvy() for each in pair)
+            writer.add(left, right, number, number, None, None)
+    CliRunner().invoke(
+        main, ["record", "calibrate", str(folder / "calibration"), str(path)], catch_exceptions=False
+    )
+    return path
+
+
+def test_rows_agree_in_what_the_cores_see(recording: Path) -> None:
+    """Corners that were pixels apart in height lie in one row of both rectified pictures, to the rounding of the tables."""
+    before, after = [], []
+    with RecordingReader(recording) as reader:
+        firmware = tinyphoon.rectifying(source_pixels(reader.rectification))
+        for frame in reader.frames():
+            board, _ = run([frame], firmware)
+            before.append(corners_of(frame.left) - corners_of(frame.right))
+            left, right = (corners_of(buffer(board, core, "rectified_image")) for core in "AB")
+            after.append(left - right)
+    assert np.sqrt(np.mean(np.square(before), axis=(0, 1)))[1] > 4
+    assert np.sqrt(np.mean(np.square(after), axis=(0, 1)))[1] < 0.4
+    assert (
+        np.min(after, axis=(0, 1))[0] > 0
+    )  # what the left camera has is further to the left in the right one
+
+
+def test_all_stages_see_the_rectified_pictures(recording: Path) -> None:
+    """All that is left in memory is that of the pictures which the tables of the recording make."""
+    with RecordingReader(recording) as reader:
+        sources = source_pixels(reader.rectification)
+        frames = list(reader.frames(1))
+    board, outcome = run(frames, tinyphoon.rectifying(sources))
+    for core, picture in (("A", frames[0].left), ("B", frames[0].right)):
+        check_core(board, core, rectified(picture, sources[core]), dict(outcome.frames[0].results))
+
+
+def test_run_rectifies_by_itself(recording: Path) -> None:
+    """A run of such a recording needs no option; the sub-row of the budget has cycles."""
+    for core in simulate(recording, frames=1).frames[0].cores:
+        (cclk,) = [each.elapsed_cclk for each in core.stages if each.stage == "Rectification"]
+        assert cclk > 320 * 240
