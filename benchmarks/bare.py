@@ -12,6 +12,7 @@ from typing import Any
 from bfsim.api import Firmware, Frame, FrameSize, Kernel, Row, Work
 from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import VDSP_O2, PreparedCall
+from bfsim.kernel.types import Number
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import PROCESSORS, symbols_of
 from bfsim.machine.memories import Memories
@@ -67,7 +68,7 @@ class BareCore:
         height, double_width = frames[0].left.shape
         size = FrameSize(double_width // 2, height)
         places = link(parse_ldf(THESIS_LDF), symbols_of(firmware, size))
-        memories = Memories(CM_BF561)
+        self._memories = memories = Memories(CM_BF561)
         buffers = firmware.buffers(size)
         self._rows = {
             each.name: memories.place(each, places.find(PROCESSORS[name], each.name))
@@ -78,6 +79,7 @@ class BareCore:
         self._frames = iter(frames)
         self._size = size
         self._calls: dict[tuple[object, ...], PreparedCall] = {}
+        self._overlays: dict[tuple[object, ...], tuple[Row, ...]] = {}
 
     def rows(self, name: str) -> tuple[Row, ...]:
         """Return the rows of a buffer."""
@@ -86,6 +88,17 @@ class BareCore:
     def array(self, name: str) -> Row:
         """Return the only row of a buffer."""
         return self._rows[name][0]
+
+    def has_buffer(self, name: str) -> bool:
+        """Return whether there is a buffer called `name`."""
+        return name in self._rows
+
+    def overlay(self, name: str, element: Number, columns: int) -> tuple[Row, ...]:
+        """Return the memory of a buffer as rows of another kind."""
+        kind = (name, element, columns)
+        if kind not in self._overlays:
+            self._overlays[kind] = self._memories.overlay(self._rows[name], element, columns)
+        return self._overlays[kind]
 
     def input_ring(self, image: Sequence[Row], ring: str) -> BareInput:
         """Return an input ring without DMA."""

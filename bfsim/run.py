@@ -15,6 +15,7 @@ from bfsim.errors import ConfigError, RecordingError
 from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
 from bfsim.linker import LinkerScript, link, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
+from bfsim.machine.ahead import compiled_ahead
 from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
 from bfsim.machine.capture import Feed
 from bfsim.machine.program import FrameSize, SourcePixels
@@ -55,7 +56,7 @@ def simulate(
     spec, compiler = board_named(board), profile_named(profile)
     loaded, script = load_firmware(firmware), _read_strategy(strategy)
     placement = read_placement(ldf, spec)
-    with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
+    with RecordingReader(recording or BUILT_IN_RECORDING) as reader, compiled_ahead() as wait_for_compiler:
         size = FrameSize(reader.width, reader.height)
         program = loaded.firmware.rectifying(source_pixels(reader.rectification))
         symbols = symbols_of(program, size, compiler)
@@ -83,6 +84,7 @@ def simulate(
             if progress:
                 progress(done, total)
 
+        wait_for_compiler()
         outcome = machine.run(iter(source), count)
     return _record(outcome, spec, loaded, placement, feed, fidelity, size, source, compiler, script)
 

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from pathlib import Path
 
 import pytest
@@ -29,3 +30,9 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "given_recording" in metafunc.fixturenames:
         given = metafunc.config.getoption("recording")
         metafunc.parametrize("given_recording", given, ids=[path.stem for path in given])
+
+
+@pytest.fixture(scope="session", autouse=True)
+def ctrl_c() -> None:
+    """Ctrl-C interrupts, also where the tests run in the background of a shell, which has it ignored."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)

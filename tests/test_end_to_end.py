@@ -170,9 +170,10 @@ def test_ctrl_c_ends_with_the_report_of_the_frames_done(tmp_path: Path) -> None:
     recording = tmp_path / "long.mcap"
     picture = np.full((240, 640), 128, np.uint8)
     with RecordingWriter(recording, width=320, height=240) as writer:
-        for number in range(400):
+        for number in range(600):
             writer.add(picture, picture, number * 10_000_000, number * 10_000_000)
     command = [sys.executable, "-m", "bfsim", "run", str(recording)]
+    subprocess.run([*command, "--frames", "1"], check=True, capture_output=True)  # all is compiled then
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         time.sleep(4)
         process.send_signal(signal.SIGINT)

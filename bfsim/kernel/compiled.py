@@ -35,7 +35,7 @@ def _folder() -> Path:
 
 
 @cache
-def _is_kept() -> bool:
+def _keeps() -> bool:
     """Have numba keep what it compiles in the cache of bfsim, if that can be written, and nowhere else."""
     try:
         _folder().mkdir(parents=True, exist_ok=True)
@@ -43,6 +43,11 @@ def _is_kept() -> bool:
         return False
     numba.config.CACHE_DIR = str(_folder())
     return os.access(_folder(), os.W_OK)
+
+
+def is_kept(name: str) -> bool:
+    """Return whether the cache has machine code of the entry `name`, "MODULE.FUNCTION"; also if there is no cache to have it."""
+    return not _keeps() or any(_folder().rglob(f"{name}-*.nbi"))
 
 
 def compiled(function: Function) -> Function:
@@ -53,13 +58,13 @@ def compiled(function: Function) -> Function:
 
 def entry(function: Function) -> Function:
     """Compile `function` and all that it calls at its first call from Python, or take it from the cache."""
-    made: Function = numba.njit(cache=_is_kept(), no_cfunc_wrapper=True, error_model="numpy")(function)
+    made: Function = numba.njit(cache=_keeps(), no_cfunc_wrapper=True, error_model="numpy")(function)
     return made
 
 
 def callback(signature: Any, function: Callable[..., None]) -> int:
     """Compile `function` for calls from machine code, or take it from the cache; return its host address."""
-    made = numba.cfunc(signature, cache=_is_kept())(function)
+    made = numba.cfunc(signature, cache=_keeps())(function)
     _kept.append(made)  # the code lives as long as this object
     return int(made.address)
 

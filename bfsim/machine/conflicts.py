@@ -29,6 +29,7 @@ class SubBanks:
         self._words = words
         self._moved = self._dma_words()
         self._counted: dict[int, NDArray[np.int64]] = {}
+        self._spread: dict[int, NDArray[np.int64]] = {}
 
     def _dma_words(self) -> NDArray[np.int64]:
         return np.array(self._words[w.SUBBANKS_AT : w.SUBBANKS_AT + w.MAX_SUBBANKS], np.int64)
@@ -52,15 +53,24 @@ class SubBanks:
             self._add(group, group.totals - before, accesses)
         if elapsed_cclk <= 0:
             return 0
-        return int(dma @ accesses / elapsed_cclk) * self._conflict_cclk
+        # added up in order: a product of vectors may round otherwise on another machine
+        return int(sum((dma * accesses).tolist()) / elapsed_cclk) * self._conflict_cclk
 
     def _add(self, group: CallGroup, events: NDArray[np.int64], accesses: NDArray[np.float64]) -> None:
         """Spread the accesses of a group's calls evenly over the sub-banks that its rows lie in."""
-        if not events.any():
-            return
-        banks = arrays_of_callees(group.kernel, tuple(map(tuple, group.subbanks)))
-        for counter, count in zip(group.code.counters, events.tolist(), strict=False):
-            for array, reads, writes in counter.accesses:
-                mine = banks[counter.routine, array]
-                for bank in mine:
-                    accesses[bank] += count * (reads + writes) / len(mine)
+        if id(group) not in self._spread:
+            self._spread[id(group)] = _spread(group)
+        counters, banks, each, parts = self._spread[id(group)]
+        np.add.at(accesses, banks, events[counters] * each / parts)
+
+
+def _spread(group: CallGroup) -> NDArray[np.int64]:
+    """Return what an event of each counter accesses, as four rows: counter, sub-bank, accesses, sub-banks to share them."""
+    banks = arrays_of_callees(group.kernel, tuple(map(tuple, group.subbanks)))
+    found = [
+        (number, bank, reads + writes, len(banks[counter.routine, array]))
+        for number, counter in enumerate(group.code.counters)
+        for array, reads, writes in counter.accesses
+        for bank in banks[counter.routine, array]
+    ]
+    return np.array(found, np.int64).reshape(-1, 4).T

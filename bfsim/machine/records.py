@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from typing import TypeVar
 
 from bfsim.kernel import Kernel, tree
@@ -12,6 +13,7 @@ from bfsim.machine.call_groups import CallGroup
 from bfsim.trace import KernelRecord, LineCost
 
 Label = TypeVar("Label")
+_Array = tuple[str, str]  # routine and parameter
 
 
 @dataclass(slots=True)
@@ -80,19 +82,28 @@ def _add(group: CallGroup, tallies: dict[tuple[str, str], _Tally]) -> None:
         tallies[group.stage, routine].executions[line] += events
 
 
-def arrays_of_callees(kernel: Kernel, labels: tuple[Label, ...]) -> dict[tuple[str, str], Label]:
+def arrays_of_callees(kernel: Kernel, labels: tuple[Label, ...]) -> dict[_Array, Label]:
     """Hand the labels of a kernel's arrays on to the kernels it calls: label by (routine, parameter).
 
     What a callee gets comes from its first call.
     """
     names = [kernel.function.parameters[each].name for each in kernel.array_positions]
     found = {(kernel.function.symbol, name): label for name, label in zip(names, labels, strict=True)}
+    for taker, giver in _handed_on(kernel):
+        found.setdefault(taker, found[giver])
+    return found
+
+
+@cache
+def _handed_on(kernel: Kernel) -> tuple[tuple[_Array, _Array], ...]:
+    """Return the arrays of the kernels that a kernel calls, each with the caller's that it is, callers first."""
+    pairs: list[tuple[_Array, _Array]] = []
     waiting = [kernel.function]
     while waiting:
         caller = waiting.pop()
         for call in tree.calls_in(caller.body):
             for parameter, argument in zip(call.callee.parameters, call.arguments, strict=True):
                 if isinstance(argument, str):
-                    found.setdefault((call.callee.symbol, parameter.name), found[caller.symbol, argument])
+                    pairs.append(((call.callee.symbol, parameter.name), (caller.symbol, argument)))
             waiting.append(call.callee)
-    return found
+    return tuple(dict.fromkeys(pairs))
