@@ -17,6 +17,9 @@ from firmware.scan_lines import line_ring, window
 from firmware.stages.colour_reduction import colour_row
 from firmware.stages.hysteresis import LABELS, EdgeGroups, hysteresis
 
+# Making room takes a pass over the store. It is worth it again when so many edges have come since.
+ROOM_WORTH_A_PASS = EDGE_CAPACITY // 8
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EdgeThresholds:
@@ -166,7 +169,8 @@ def edge_detection(core: Core, frame: Frame, thresholds: EdgeThresholds) -> Gene
     edges = core.rows("edge_ring")[0]
     gx, gy, atan = core.array("gx"), core.array("gy"), core.array("atan")
     groups = EdgeGroups.of(core, frame.width)
-    found = given = 0
+    found = given = lost = 0
+    crowded = EDGE_CAPACITY - frame.width  # from here on a line may have more edges than there is room for
     for y in range(height + reach + 2):
         if y < height:
             line = yield from camera.line()
@@ -187,10 +191,12 @@ def edge_detection(core: Core, frame: Frame, thresholds: EdgeThresholds) -> Gene
             near = window(magnitude, done, height)
             yield core.run(suppress_row, *near, direction[done], edges, thresholds.edge_threshold)
             found = yield core.run(store_edges_row, edges, direction[done], *groups.store, done, found)
+            lost, found = lost + max(0, found - EDGE_CAPACITY), min(found, EDGE_CAPACITY)
             given = yield from groups.add(done, given)
+            if found >= crowded:
+                found, given = yield from groups.make_room(done + 1, thresholds.strong_threshold, edges)
+                crowded = max(crowded, found + ROOM_WORTH_A_PASS)
     yield from colours.flush()
     kept = yield from hysteresis(groups, height, thresholds.strong_threshold)
-    core.publish(
-        edges=kept, edges_lost=max(0, found - EDGE_CAPACITY), edge_groups_shared=max(0, given - LABELS + 1)
-    )
+    core.publish(edges=kept, edges_lost=lost, edge_groups_shared=max(0, given - LABELS + 1))
     return kept

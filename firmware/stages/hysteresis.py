@@ -5,6 +5,9 @@ group. Afterwards a short pass over the edge store, not over the picture, remove
 no strong edge. It does not find its labels in memory, which would take half as much as the edge store does: a label
 depends only on the edges before it, so this pass gives every edge its label once more.
 
+Noise alone would fill the store of a picture that keeps half as many edges. So the same pass runs when the store is
+nearly full, too, on the groups that have ended by then [ours].
+
 `groups` is the equivalence table: the label that each label belongs to, never a greater one; a group goes by its
 least label. `strongest` is the greatest gradient of each group, under that label. Label 0 is no edge.
 """
@@ -111,6 +114,14 @@ def group_edges_row(
 
 
 @kernel
+def hold_groups(labels: u16[:], groups: u16[:], strongest: u8[:]) -> None:
+    """Make the groups of a row of labels strong, for the time being: edges may come that are."""
+    for x in range(len(labels)):
+        if labels[x] != 0:
+            strongest[group_of(groups, labels[x])] = 255
+
+
+@kernel
 def label_edges_row(
     edge_data: u32[:],
     edge_index: u32[:],
@@ -203,6 +214,32 @@ class EdgeGroups:
         result: int = yield self.core.run(group_edges_row, *self.store, y, *lines, *self.tables, given)
         return result
 
+    def keep(
+        self, y: int, given: int, kept: int, strong_threshold: int, edges: Row
+    ) -> Generator[Any, Any, tuple[int, int]]:
+        """Keep the edges of line `y` of strong groups, in the store and in `edges`; returns `given` and `kept` with it."""
+        above, here = yield from self.labels(y)
+        given = yield self.core.run(label_edges_row, *self.store, y, above, here, LABELS - 1, given)
+        decided = here, *self.tables, strong_threshold
+        kept = yield self.core.run(keep_edges_row, *decided, edges, *self.store, y, kept)
+        return given, kept
+
+    def make_room(
+        self, height: int, strong_threshold: int, spare: Row
+    ) -> Generator[Any, Any, tuple[int, int]]:
+        """Remove the groups that ended weak above line `height`; returns how many edges and labels are left.
+
+        Then nothing is different from a picture without them: the edges that stay get their labels anew.
+        """
+        yield self.core.run(hold_groups, self.lines[(height - 1) % 2], *self.tables)
+        given = kept = 0
+        for y in range(height):
+            given, kept = yield from self.keep(y, given, kept, strong_threshold, spare)
+        given = 0
+        for y in range(height):
+            given = yield from self.add(y, given)
+        return kept, given
+
 
 def hysteresis(groups: EdgeGroups, height: int, strong_threshold: int) -> Generator[Any, Any, int]:
     """Remove the stored edges without a strong one in their group; leaves `edge_image`, returns how many are kept.
@@ -210,15 +247,11 @@ def hysteresis(groups: EdgeGroups, height: int, strong_threshold: int) -> Genera
     The edge image is written from the store. Clearing what was removed in a picture written during the scan would take
     the same lines of DMA twice more, there and back, and leave edges in it that the store had no room for.
     """
-    core = groups.core
-    edges = core.output_ring("edge_ring", core.rows("edge_image"))
+    edges = groups.core.output_ring("edge_ring", groups.core.rows("edge_image"))
     given = kept = 0
     for y in range(height):
-        above, here = yield from groups.labels(y)
-        given = yield core.run(label_edges_row, *groups.store, y, above, here, LABELS - 1, given)
         row = yield from edges.row()
-        decided = here, *groups.tables, strong_threshold
-        kept = yield core.run(keep_edges_row, *decided, row, *groups.store, y, kept)
+        given, kept = yield from groups.keep(y, given, kept, strong_threshold, row)
         edges.send()
     yield from edges.flush()
     return kept

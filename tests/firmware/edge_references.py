@@ -30,11 +30,47 @@ class Hysteresis:
 
 
 def hysteresis(edges: Picture, strong: int, capacity: int, labels: int) -> Hysteresis:
-    """Store the first edges, fill each group from its first pixel on, and keep the groups with a strong edge.
+    """Store the first edges and keep the groups with a strong one."""
+    stored = np.where(np.cumsum(edges != 0).reshape(edges.shape) <= capacity, edges, 0)
+    return decided(stored, strong, labels, int((edges != 0).sum() - (stored != 0).sum()))
+
+
+def crowded_hysteresis(edges: Picture, strong: int, capacity: int, labels: int, worth: int) -> Hysteresis:
+    """Store row by row; when the next row might not fit, forget the weak groups that do not reach the latest row.
+
+    That is done again when `worth` edges have come since.
+    """
+    stored, lost, crowded = np.zeros_like(edges), 0, capacity - edges.shape[1]
+    for y, row in enumerate(edges):
+        places = np.flatnonzero(row)
+        room = capacity - np.count_nonzero(stored)
+        stored[y, places[:room]] = row[places[:room]]
+        lost += max(0, len(places) - room)
+        if np.count_nonzero(stored) >= crowded:
+            group, _ = grouped(stored[: y + 1], labels)
+            for each in range(1, group.max() + 1):
+                here = group == each
+                if stored[: y + 1][here].max() < strong and not here[y].any():
+                    stored[: y + 1][here] = 0
+            crowded = max(crowded, np.count_nonzero(stored) + worth)
+    return decided(stored, strong, labels, lost)
+
+
+def decided(stored: Picture, strong: int, labels: int, lost: int) -> Hysteresis:
+    """Keep the groups with a strong edge."""
+    group, sharing = grouped(stored, labels)
+    kept = np.zeros_like(stored)
+    for each in range(1, group.max() + 1):
+        if stored[group == each].max() >= strong:
+            kept[group == each] = stored[group == each]
+    return Hysteresis(kept, lost, sharing)
+
+
+def grouped(stored: Picture, labels: int) -> tuple[Picture, int]:
+    """Number the groups of edges, from 1 on, filling each from its first pixel on; return how many share a label, too.
 
     Every edge that touches none before it asks for a label; from the last label on, their groups are one.
     """
-    stored = np.where(np.cumsum(edges != 0).reshape(edges.shape) <= capacity, edges, 0)
     askers = [place for place in zip(*np.nonzero(stored), strict=True) if touches_nothing(stored, *place)]
     group, groups = np.zeros(stored.shape, int), 0
     sharing = askers[labels - 2 :]  # label 0 is no edge; the last one is the first to be shared
@@ -43,11 +79,7 @@ def hysteresis(edges: Picture, strong: int, capacity: int, labels: int) -> Hyste
     for place in askers:
         if not group[place]:
             flood(stored, group, [place], groups := groups + 1)
-    kept = np.zeros_like(stored)
-    for each in range(1, groups + 1):
-        if stored[group == each].max() >= strong:
-            kept[group == each] = stored[group == each]
-    return Hysteresis(kept, int((edges != 0).sum() - (stored != 0).sum()), max(0, len(sharing) - 1))
+    return group, max(0, len(sharing) - 1)
 
 
 def touches_nothing(picture: Picture, y: int, x: int) -> bool:

@@ -21,7 +21,7 @@ from firmware.line_store import LINE_WORDS
 from firmware.modes import INDOOR_FIELD
 from firmware.stages.blob_detection import LABELS as BLOB_LABELS
 from firmware.stages.blob_detection import RECYCLE_AT
-from firmware.stages.edge_detection import EdgeThresholds
+from firmware.stages.edge_detection import ROOM_WORTH_A_PASS, EdgeThresholds
 from firmware.stages.hysteresis import LABELS
 from firmware.stages.line_segments import SEGMENT_CAPACITY
 from tests.firmware import blob_references, edge_references, line_references, references
@@ -69,7 +69,9 @@ def check_edges(
     gx, gy = references.sobel(smooth)
     direction = references.angle(gx, gy)
     edges = references.suppress(references.magnitude(gx, gy), direction, thresholds.edge_threshold)
-    expected = edge_references.hysteresis(edges, thresholds.strong_threshold, EDGE_CAPACITY, LABELS)
+    expected = edge_references.crowded_hysteresis(
+        edges, thresholds.strong_threshold, EDGE_CAPACITY, LABELS, ROOM_WORTH_A_PASS
+    )
     data, index, counts = edge_references.hysteresis_store(expected.edges, direction)
     np.testing.assert_array_equal(buffer(board, core, "edge_image"), expected.edges)
     assert buffer(board, core, "edge_data")[0, : len(data)].tolist() == data
