@@ -121,28 +121,3 @@ class IrqStatus(IntFlag):
 
 
 IRQ_WRITE_1_TO_CLEAR = IrqStatus.DMA_DONE | IrqStatus.DMA_ERR
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TrafficControl:
-    """DMAx_TC_PER: for how long each bus keeps its direction, and how long an MDMA stream keeps its turn. 0 is off.
-
-    `dcb_sclk`: bus to L1; `deb_sclk`: bus to external memory; `dab_sclk`: bus to the peripherals.
-    `mdma_transfers`: transfers of one MDMA stream before the other one's turn.
-    Fields: Linux arch/blackfin/mach-bf548/include/mach/defBF54x_base.h; units as in the HRM [assumed: recalled].
-    """
-
-    dcb_sclk: int
-    deb_sclk: int
-    dab_sclk: int
-    mdma_transfers: int
-
-    @classmethod
-    def decode(cls, tc_per: int) -> TrafficControl:
-        """Take the 16 bits of the register apart."""
-        return cls(
-            dcb_sclk=tc_per & 0xF,
-            deb_sclk=tc_per >> 4 & 0xF,
-            dab_sclk=tc_per >> 8 & 0x7,
-            mdma_transfers=tc_per >> 11 & 0x1F,
-        )

@@ -9,6 +9,7 @@ import numpy as np
 import simpy
 from numpy.typing import NDArray
 
+from bfsim.chip.ppi_registers import check_ppi_clk
 from bfsim.chip.spec import BoardSpec, CameraSpec, SensorMode
 from bfsim.clocks import PeriodicEdges
 from bfsim.machine import bus_state as w
@@ -45,6 +46,7 @@ class Ppi:
             board.chip.dma.word_bytes
         )  # PPI_CONTROL with PACK_EN, and DMA32 where DMA has 32 bits
         self.oscillator = Oscillator(board.clocks, mode, camera)
+        check_ppi_clk(mode.ppi_clk_hz, board.clocks.sclk_hz)
         ppi_clk_ticks = board.clocks.tick_hz / self.oscillator.ppi_clk_hz
         self._word_ticks = ppi_clk_ticks * self._word_bytes
         self._line_ticks: Fraction = ppi_clk_ticks * mode.line_clocks

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.chip.dma_channels import BF561_CHANNELS, DMA1, DMA2, TC_PER_ADDRESSES, Direction, register_address
-from bfsim.chip.dma_registers import REGISTERS, Flow, TrafficControl, WdSize
+from bfsim.chip.dma_registers import REGISTERS, Flow, WdSize
 from bfsim.errors import BfsimError, MmrError
 from bfsim.machine.dma_config import DmaConfig
 
@@ -100,16 +100,6 @@ def test_programming_errors_are_value_errors_of_bfsim() -> None:
     """Callers may catch either parent."""
     assert issubclass(MmrError, BfsimError)
     assert issubclass(MmrError, ValueError)
-
-
-@pytest.mark.parametrize(
-    ("tc_per", "fields"),
-    [(0x0770, (0, 7, 7, 0)), (0x0111, (1, 1, 1, 0)), (0xFFFF, (15, 15, 7, 31)), (0x0800, (0, 0, 0, 1))],
-)
-def test_traffic_control(tc_per: int, fields: tuple[int, int, int, int]) -> None:
-    """The values of the EZ-KIT project and of Linux, all ones, and the lowest bit of the round robin."""
-    control = TrafficControl.decode(tc_per)
-    assert (control.dcb_sclk, control.deb_sclk, control.dab_sclk, control.mdma_transfers) == fields
 
 
 @pytest.mark.parametrize(
