@@ -26,6 +26,9 @@ class FrameSize:
     width_px: int
     height_px: int
 
+    def __str__(self) -> str:
+        return f"{self.width_px}x{self.height_px}"
+
 
 @dataclass(frozen=True, slots=True)
 class SourcePixels:
@@ -90,6 +93,8 @@ class Firmware:
     `mains`: the main loop of each core. `buffers`: size of the pictures → buffers. `camera`: the buffer of each core
     that the PPI fills, a whole number of frames. `rows`: the stages in the order of the budget. `rectification`: the
     source pixels of each core's camera → the buffers that they take beside the others, where a recording has tables.
+    `orders`: what the strategy unit may order by name ("mode", "models") → the payload of that message; raises a
+    FirmwareError that names the field and what it must be.
     """
 
     mains: Mapping[str, Main]
@@ -97,6 +102,7 @@ class Firmware:
     camera: str
     rows: tuple[BudgetRow, ...]
     rectification: Callable[[Mapping[str, SourcePixels]], Buffers] | None = None
+    orders: Mapping[str, Callable[[Any], bytes]] = field(default_factory=dict)
 
     def rectifying(self, sources: Mapping[str, SourcePixels]) -> Firmware:
         """Return this firmware with the buffers for a recording's tables, if it rectifies."""
