@@ -181,7 +181,10 @@ class CodeRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MessageRecord:
-    """One message over SPI: `direction` is out or in, seen from the board; the cycles are of core A's clock."""
+    """One message over SPI: `direction` is out or in, seen from the board; the cycles are of core A's clock.
+
+    The `type` of what came in and is no message is "damaged", its sequence number 0.
+    """
 
     direction: str
     type: str

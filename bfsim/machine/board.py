@@ -36,7 +36,7 @@ from bfsim.machine.program import Buffer, Firmware, FrameSize
 from bfsim.machine.records import kernel_records
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi import OUTSIDE_BYTES, Spi
-from bfsim.machine.strategy import ScriptedMessage, StrategyUnit
+from bfsim.machine.strategy import Script, StrategyUnit
 from bfsim.machine.synchronised import SharedObjects
 from bfsim.machine.traffic import traffic_records
 from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, MessageRecord, TrafficRecord
@@ -102,7 +102,7 @@ class Board:
     feed: Feed = Feed.DEMAND
     profile: CompilerProfile = VDSP_O2
     sanitize: bool = False
-    script: Sequence[ScriptedMessage] = ()
+    script: Script = ()
     fidelity: Fidelity = Fidelity.FAST
     cores: dict[str, Core] = field(init=False, default_factory=dict)
 
