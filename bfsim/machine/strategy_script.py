@@ -61,7 +61,7 @@ class _Words(_Entry):
 class _Bytes(_Entry):
     """Bytes on the wire, of which 16 bits go at a time."""
 
-    bytes: Annotated[list[Octet], Field(min_length=2, max_length=OUTSIDE_BYTES)]
+    bytes: Annotated[list[Octet], Field(max_length=OUTSIDE_BYTES)]
 
 
 class _Script(_Table):
@@ -98,9 +98,9 @@ def _entry(file: str, key: str, entry: dict[str, Any], orders: Orders) -> Script
 
 
 def _scripted_bytes(entry: _Bytes) -> ScriptedBytes:
-    if len(entry.bytes) % 2:
+    if not entry.bytes or len(entry.bytes) % 2:
         raise FirmwareError(
-            f"bytes must be an even number of them, since words have 16 bits, not {len(entry.bytes)}"
+            f"bytes must be words of 2 bytes each, at least one, not {len(entry.bytes)} bytes"
         )
     return ScriptedBytes(after_frames=entry.after_frames, octets=bytes(entry.bytes))
 

@@ -164,8 +164,8 @@ def test_orders_by_name_and_bytes_as_they_are(tmp_path: Path) -> None:
         ),
         ("after_frames = 1", "", "the key send.0.after_frames must be there"),
         ("[241, 0]", "[241, 256]", "send.1.bytes.1 must be less than or equal to 255, not 256"),
-        ("[241, 0]", "[241]", "send.1.bytes must be an even number of them, since words have 16 bits, not 1"),
-        ("[241, 0]", "[]", "send.1.bytes must"),
+        ("[241, 0]", "[241]", "send.1.bytes must be words of 2 bytes each, at least one, not 1 bytes"),
+        ("[241, 0]", "[]", "send.1.bytes must be words of 2 bytes each, at least one, not 0 bytes"),
     ],
 )
 def test_mistakes_in_orders(tmp_path: Path, old: str, new: str, message: str) -> None:
