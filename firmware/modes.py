@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from firmware.areas import AS_RECORDED, WHOLE_PICTURE, Area, Camera
 from firmware.models import MODELS, colour_groups
 from firmware.stages.blob_detection import BlobThresholds
 from firmware.stages.edge_detection import EdgeThresholds
@@ -12,11 +13,13 @@ from firmware.stages.line_detection import LineThresholds
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mode:
-    """The thresholds of every stage. They depend on lighting and cameras, never on one picture."""
+    """The thresholds of every stage, and what of the pictures is looked at. Thresholds depend on lighting and cameras, never on one picture."""
 
     edges: EdgeThresholds
     blobs: BlobThresholds
     lines: LineThresholds
+    camera: Camera = AS_RECORDED
+    area: Area = WHOLE_PICTURE
 
 
 INDOOR_FIELD = Mode(

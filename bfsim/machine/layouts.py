@@ -84,6 +84,8 @@ class Layouts:
         return tuple(self._part(row, first, count) for row in rows)
 
     def _part(self, row: Row, first: int, count: int) -> Row:
+        if count == len(row.array):
+            return row
         if (row, first, count) not in self._parts:
             skipped = first * row.array.itemsize
             self._parts[row, first, count] = Row(

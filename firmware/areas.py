@@ -1,0 +1,84 @@
+"""What of the cameras' pictures a mode looks at: their size, and an area of interest in them (T §5.2.6).
+
+All stages see the area only, as if it were the picture: its lines are cropped by the DMA, which begins further right
+and takes fewer bytes, and the buffers are those of a picture of that size. So are all coordinates that stages leave in
+memory. Whoever leads from there to the world shifts the principal point by the area's corner: `principal_point`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bfsim.api import CameraSettings, Core, Frame, FrameSize
+from firmware.fields import allowed
+from firmware.line_store import SUBPIXELS
+
+LARGEST_PX = 4094  # twelve bits
+LEAST_AREA_PX = 16  # each way: the stages' windows and borders take up to 6 [ours]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Area:
+    """An area of interest in pixels of the picture, from (x, y) on. Columns are even: pixels come in pairs of one colour.
+
+    `width` and `height` of 0: the whole picture.
+    """
+
+    x: int = allowed(0, LARGEST_PX, step=2, default=0)
+    y: int = allowed(0, LARGEST_PX, default=0)
+    width: int = allowed(0, LARGEST_PX, step=2, default=0)
+    height: int = allowed(0, LARGEST_PX, default=0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Camera:
+    """Settings of both cameras (T §5.1.2).
+
+    `width`, `height`: of their pictures, as recorded or a half or a quarter of that; 0: as recorded. The rest: see
+    `bfsim.api.CameraSettings`.
+    """
+
+    width: int = allowed(0, LARGEST_PX, step=2, default=0)
+    height: int = allowed(0, LARGEST_PX, default=0)
+    exposure_lines: int = allowed(0, 0xFFFF, default=0)
+    gain: int = allowed(0, 255, default=0)
+    red_gain: int = allowed(0, 255, default=0)
+    blue_gain: int = allowed(0, 255, default=0)
+
+
+WHOLE_PICTURE = Area()
+AS_RECORDED = Camera()
+
+
+def set_camera(core: Core, camera: Camera, full: FrameSize) -> None:
+    """Give this core's camera its settings; `full` is the size of the recorded pictures. The same ones again change nothing."""
+    settings = CameraSettings(
+        exposure_lines=camera.exposure_lines,
+        gain=camera.gain,
+        red_gain=camera.red_gain,
+        blue_gain=camera.blue_gain,
+    )
+    core.set_camera(settings)
+    core.set_picture_size(FrameSize(camera.width, camera.height) if camera.width else full)
+
+
+def area_in(frame: Frame, area: Area) -> Area:
+    """Return the area of a picture that is seen: all of it when `area` does not lie in it.
+
+    That is so for the pictures on their way when a mode changes their size.
+    """
+    if area.width and area.x + area.width <= frame.width and area.y + area.height <= frame.height:
+        return area
+    return Area(x=0, y=0, width=frame.width, height=frame.height)
+
+
+def cropped(core: Core, frame: Frame, area: Area) -> Frame:
+    """Return the area of a picture as a frame: the same memory, fewer bytes of fewer lines."""
+    lines = core.part(frame.rows[area.y : area.y + area.height], 2 * area.x, 2 * area.width)
+    return Frame(frame.index, lines, area.width, area.height)
+
+
+def principal_point(frame: Frame, area: Area) -> tuple[int, int]:
+    """Return the principal point, the middle of the whole picture, in the area's coordinates, in 1/16 px."""
+    half = SUBPIXELS // 2
+    return half * (frame.width - 1) - SUBPIXELS * area.x, half * (frame.height - 1) - SUBPIXELS * area.y
