@@ -7,6 +7,7 @@ from firmware.buffers import buffers, one_core_buffers
 from firmware.core_a import core_a
 from firmware.core_b import core_b
 from firmware.one_core import one_core
+from firmware.orders import BY_NAME
 from firmware.stages.rectification import rectification_buffers
 
 ROWS = (
@@ -23,6 +24,7 @@ tinyphoon = Firmware(
     camera="camera",
     rows=ROWS,
     rectification=rectification_buffers,
+    orders=BY_NAME,
 )
 
 one_eye = Firmware(
@@ -31,5 +33,6 @@ one_eye = Firmware(
     camera="camera",
     rows=ROWS,
     rectification=rectification_buffers,
+    orders=BY_NAME,
 )
 """The same stages for a board with one core and one camera, such as cm-bf533."""

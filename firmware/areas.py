@@ -50,8 +50,11 @@ WHOLE_PICTURE = Area()
 AS_RECORDED = Camera()
 
 
-def set_camera(core: Core, camera: Camera, full: FrameSize) -> None:
-    """Give this core's camera its settings; `full` is the size of the recorded pictures. The same ones again change nothing."""
+def see(core: Core, frame: Frame, camera: Camera, area: Area, full: FrameSize) -> Area:
+    """Give this core's camera its settings, and the stages the buffers of the area; returns the area that is seen.
+
+    `full`: size of the recorded pictures. The same settings again change nothing.
+    """
     settings = CameraSettings(
         exposure_lines=camera.exposure_lines,
         gain=camera.gain,
@@ -60,6 +63,9 @@ def set_camera(core: Core, camera: Camera, full: FrameSize) -> None:
     )
     core.set_camera(settings)
     core.set_picture_size(FrameSize(camera.width, camera.height) if camera.width else full)
+    seen = area_in(frame, area)
+    core.use_size(FrameSize(seen.width, seen.height))
+    return seen
 
 
 def area_in(frame: Frame, area: Area) -> Area:

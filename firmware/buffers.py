@@ -10,13 +10,14 @@ from collections.abc import Mapping, Sequence
 
 from bfsim.api import Buffer, FrameSize, i16, u8, u16, u32
 from firmware.edge_store import EDGE_CAPACITY
+from firmware.models import model_buffers
+from firmware.orders import order_buffers, shared_order_buffers
 from firmware.results import MESSAGE_WORDS
 from firmware.stages.blob_detection import blob_buffers
 from firmware.stages.hysteresis import hysteresis_buffers
 from firmware.stages.line_detection import line_buffers
 from firmware.tables import arctangent_table
 
-ORDERS_WORDS = 256  # room for a message of the strategy unit
 CAMERA_FRAMES = 3  # one that is worked on, one that waits, one that is filled
 
 
@@ -25,13 +26,14 @@ def buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     return {
         "A": _core_buffers(size, camera="sdram_bank0", images="sdram_bank2"),
         "B": _core_buffers(size, camera="sdram_bank1", images="sdram_bank3"),
-        "shared": (Buffer("right_edges", u32, 1, "l2_shared"),),
+        "shared": (Buffer("right_edges", u32, 1, "l2_shared"), *shared_order_buffers(size, "l2_shared")),
     }
 
 
 def one_core_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     """Return the buffers for pictures of `size` of a board with one core."""
-    return {"A": _core_buffers(size, camera="sdram_bank0", images="sdram_bank2")}
+    core = _core_buffers(size, camera="sdram_bank0", images="sdram_bank2")
+    return {"A": (*core, *shared_order_buffers(size, "data1"))}
 
 
 def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buffer]:
@@ -60,7 +62,8 @@ def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buff
         Buffer("edge_counts", u16, height, "L1_data_b"),
         *hysteresis_buffers(),
         Buffer("results", u16, MESSAGE_WORDS, "L1_data_b"),
-        Buffer("orders", u16, ORDERS_WORDS, "L1_data_b"),
         *blob_buffers(size),
         *line_buffers(size),
+        *order_buffers(),
+        *model_buffers(),
     )

@@ -6,6 +6,7 @@ from collections.abc import Generator
 from typing import Any
 
 from bfsim.api import Core, Frame
+from firmware.areas import Area
 from firmware.modes import Mode
 from firmware.stages.blob_detection import blob_detection
 from firmware.stages.edge_detection import edge_detection
@@ -14,11 +15,14 @@ from firmware.stages.open_closing import open_closing
 from firmware.stages.rectification import rectification
 
 
-def features(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, int]:
-    """Leave edges, colours, blobs and lines of a picture in the core's memories; returns how many edges are stored."""
+def features(core: Core, frame: Frame, area: Area, mode: Mode) -> Generator[Any, Any, int]:
+    """Leave edges, colours, blobs and lines of an area of a picture in the core's memories, in its coordinates.
+
+    Returns how many edges are stored.
+    """
     with core.stage("Edge detection"):
         with core.stage("Rectification"):
-            frame = yield from rectification(core, frame)
+            frame = yield from rectification(core, frame, area)
         found = yield from edge_detection(core, frame, mode.edges)
     with core.stage("Open & closing"):
         yield from open_closing(core, frame)

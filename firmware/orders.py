@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.api import Buffer, Core, FirmwareError, FrameSize, Row, i32, u16
-from firmware.areas import LEAST_AREA_PX
+from bfsim.api import Buffer, Core, FirmwareError, Frame, FrameSize, Row, i32, u16
+from firmware.areas import LEAST_AREA_PX, Area, see
 from firmware.fields import Word, from_words, named_words, to_words, words_of
 from firmware.models import (
     MODEL_CAPACITY,
@@ -61,8 +61,9 @@ STARTING = Orders(INDOOR_FIELD, MODELS)
 
 
 def shared_order_buffers(size: FrameSize, section: str) -> Sequence[Buffer]:
-    """Return the buffers of the orders in force, which both cores read, and of what may be ordered."""
+    """Return the buffers of the orders in force, which both cores read, of what may be ordered, and of what comes in."""
     return (
+        Buffer("orders", u16, MESSAGE_WORDS, section),
         Buffer("ordered_mode", i32, len(MODE_WORDS), section, values=np.array(to_words(INDOOR_FIELD))),
         Buffer("ordered_models", i32, MODEL_CAPACITY * MODEL_WORDS, section, values=model_words(MODELS)),
         _limits("mode_limits", MODE_WORDS, section),
@@ -72,8 +73,8 @@ def shared_order_buffers(size: FrameSize, section: str) -> Sequence[Buffer]:
 
 
 def order_buffers() -> Sequence[Buffer]:
-    """Return a core's own: the message that came in, and its copy of the mode. That of the models is in `models.py`."""
-    return Buffer("orders", u16, MESSAGE_WORDS, "data1"), Buffer("mode", i32, len(MODE_WORDS), "data1")
+    """Return a core's own copy of the mode. That of the models is in `models.py`."""
+    return (Buffer("mode", i32, len(MODE_WORDS), "data1"),)
 
 
 def _limits(name: str, words: Sequence[Word], section: str) -> Buffer:
@@ -95,12 +96,8 @@ def take_orders(core: Core) -> Generator[Any, Any, int]:
         refused += bool(refusal)
         if refusal:
             last = refusal
-            sizes = core.array("full_size").array
-            core.remark(
-                refusal_text(
-                    refusal, message.array, nbytes, MODE_WORDS, MODEL_FIELDS, FrameSize(*sizes.tolist())
-                )
-            )
+            words = MODE_WORDS, MODEL_FIELDS
+            core.remark(refusal_text(refusal, message.array, nbytes, *words, _full_size(core)))
     core.publish(orders_taken=taken, orders_refused=refused)
     return last
 
@@ -125,6 +122,15 @@ def _obey(core: Core, message: Row, nbytes: int) -> Generator[Any, Any, int]:
     if not refusal:
         yield core.run(store_order, message, core.array("ordered_mode" if is_mode else "ordered_models"))
     return refusal
+
+
+def see_by(core: Core, frame: Frame, mode: Mode) -> Area:
+    """Look at what of a picture the mode wants, and set the camera for the next ones; returns the area that is seen."""
+    return see(core, frame, mode.camera, mode.area, _full_size(core))
+
+
+def _full_size(core: Core) -> FrameSize:
+    return FrameSize(*core.array("full_size").array.tolist())
 
 
 def read_orders(core: Core) -> Generator[Any, Any, Orders]:

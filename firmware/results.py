@@ -10,7 +10,7 @@ from bfsim.api import i32, kernel, u16, u32
 
 SYNC = 0xB5F1
 RESULTS = 1
-PAYLOAD_WORDS = 4
+PAYLOAD_WORDS = 5
 MESSAGE_WORDS = 4 + PAYLOAD_WORDS + 1
 POLYNOMIAL = 0x1021  # CCITT
 
@@ -28,8 +28,8 @@ def crc16_byte(crc: i32, byte: i32) -> i32:
 
 
 @kernel
-def pack_results(message: u16[:], sequence: i32, left_edges: i32, right_edges: i32) -> None:
-    """Make the message of a frame: the edges found in both pictures, 32 bits each, low half first."""
+def pack_results(message: u16[:], sequence: i32, left_edges: i32, right_edges: i32, refusal: i32) -> None:
+    """Make the message of a frame: the edges found in both pictures, 32 bits each, low half first; and why an order is refused."""
     message[0] = SYNC
     message[1] = RESULTS
     message[2] = sequence
@@ -38,6 +38,7 @@ def pack_results(message: u16[:], sequence: i32, left_edges: i32, right_edges: i
     message[5] = left_edges >> 16
     message[6] = right_edges & 0xFFFF
     message[7] = right_edges >> 16
+    message[8] = refusal
     crc: i32 = 0xFFFF
     for word in range(1, 4 + PAYLOAD_WORDS):
         crc = crc16_byte(crc, message[word] & 255)

@@ -146,14 +146,14 @@ class Core(SynchronisedCore):
         """
         self._layouts.use(size)
 
-    def input_ring(self, image: Sequence[Row], ring: str) -> InputRing | CachedInput:
-        """Return a ring that fetches the lines of `image` into the rows of buffer `ring`, one line ahead.
+    def input_ring(self, image: Sequence[Row], ring: str | Sequence[Row]) -> InputRing | CachedInput:
+        """Return a ring that fetches the lines of `image` into rows, or those of the buffer `ring`, one line ahead.
 
         Where the LDF has the image cached, its own rows take the place of the ring's.
         """
         if self._is_cached(image):
             return CachedInput(image)
-        return self.window_ring(image, self.rows(ring))
+        return self.window_ring(image, self.rows(ring) if isinstance(ring, str) else ring)
 
     def window_ring(self, image: Sequence[Row], rows: Sequence[Row]) -> InputRing:
         """Return a ring that fetches the lines of `image` into `rows`, where kernels need them, even if it is cached."""
