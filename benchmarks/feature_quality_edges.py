@@ -34,6 +34,7 @@ from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF, source_pixels
 from bfsim.terminal import print_report, progress_bar
 from firmware import tinyphoon
 from firmware.modes import INDOOR_FIELD
+from firmware.areas import WHOLE_PICTURE, area_in
 from firmware.stages.edge_detection import EdgeThresholds, edge_detection
 from firmware.stages.rectification import rectification
 
@@ -82,7 +83,7 @@ def edges_only(thresholds: EdgeThresholds) -> Firmware:
     def main(core: Core) -> Generator[Any, Any, None]:
         while (frame := (yield from core.next_frame())) is not None:
             with core.stage("Edge detection"):
-                frame = yield from rectification(core, frame)
+                frame = yield from rectification(core, frame, area_in(frame, WHOLE_PICTURE))
                 yield from edge_detection(core, frame, thresholds)
 
     return replace(tinyphoon, mains={"A": main, "B": main})

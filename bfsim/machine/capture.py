@@ -177,23 +177,22 @@ class Capture:
             stamps = (pictures.left_ns, pictures.right_ns)[: len(self._ppis)]
             origin_ns = min(stamps) if origin_ns is None else origin_ns
             if self._feed is Feed.DEMAND:
-                yield from self._when_wanted()
-            self._change_sizes(frame)
-            if self._feed is Feed.DEMAND:
-                starts = [max(self._env.tick, self._sensors_ready_at)] * len(self._ppis)
+                starts = yield from self._when_wanted()
             elif self._feed is Feed.RECORDED:
                 starts = [self._clocks.ticks_of_ns(each - origin_ns) for each in stamps]
             else:
                 starts = [each.start_of(frame) for each in self._ppis.values()]
             yield self._env.after(max(0, min(starts) - self._env.tick))
+            self._change_sizes(frame)
             self._begin(pictures, dict(zip(self._ppis, starts, strict=True)))
         self._ended = True
         self._notify()
 
-    def _when_wanted(self) -> Generator[simpy.Event, Any, None]:
-        """Wait until the firmware has taken the picture before and a buffer is free."""
+    def _when_wanted(self) -> Generator[simpy.Event, Any, list[int]]:
+        """Wait until the firmware has taken the picture before, a buffer is free and the sensors are through."""
         while not self._is_picture_wanted():
             yield self._changed
+        return [max(self._env.tick, self._sensors_ready_at)] * len(self._ppis)
 
     def _is_picture_wanted(self) -> bool:
         states = {each.state for each in self._pairs}

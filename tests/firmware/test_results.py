@@ -17,10 +17,10 @@ EDGES = st.integers(0, 2**31 - 1)
 SEQUENCES = st.integers(0, 0xFFFF)
 
 
-def packed(sequence: int, left: int, right: int) -> bytes:
+def packed(sequence: int, left: int, right: int, refusal: int) -> bytes:
     """Return the message that the firmware makes."""
     message = np.full(MESSAGE_WORDS, 0xA5A5, np.uint16)
-    pack_results(message, sequence, left, right)
+    pack_results(message, sequence, left, right, refusal)
     return message.tobytes()
 
 
@@ -30,22 +30,22 @@ def test_the_numbers_of_the_protocol_are_the_same_on_both_sides() -> None:
     assert message_nbytes(2 * PAYLOAD_WORDS) == 2 * MESSAGE_WORDS
 
 
-@given(SEQUENCES, EDGES, EDGES)
-@example(0, 0, 0)
-@example(0xFFFF, 2**31 - 1, 2**31 - 1)
-@example(1, 0xFFFF, 0x10000)
-def test_the_message_is_what_the_encoder_makes(sequence: int, left: int, right: int) -> None:
-    """Frame, both numbers low half first, checksum."""
-    payload = struct.pack("<II", left, right)
-    assert packed(sequence, left, right) == encode(Message(MessageType.RESULTS, sequence, payload))
+@given(SEQUENCES, EDGES, EDGES, SEQUENCES)
+@example(0, 0, 0, 0)
+@example(0xFFFF, 2**31 - 1, 2**31 - 1, 0xFFFF)
+@example(1, 0xFFFF, 0x10000, 0x0107)
+def test_the_message_is_what_the_encoder_makes(sequence: int, left: int, right: int, refusal: int) -> None:
+    """Frame, both numbers low half first, why an order is refused, checksum."""
+    payload = struct.pack("<IIH", left, right, refusal)
+    assert packed(sequence, left, right, refusal) == encode(Message(MessageType.RESULTS, sequence, payload))
 
 
-@given(SEQUENCES, EDGES, EDGES)
-def test_the_message_can_be_read_back(sequence: int, left: int, right: int) -> None:
+@given(SEQUENCES, EDGES, EDGES, SEQUENCES)
+def test_the_message_can_be_read_back(sequence: int, left: int, right: int, refusal: int) -> None:
     """The strategy unit gets the numbers that went in."""
-    message = decode(packed(sequence, left, right))
+    message = decode(packed(sequence, left, right, refusal))
     assert (message.type, message.sequence) == (MessageType.RESULTS, sequence)
-    assert struct.unpack("<II", message.payload) == (left, right)
+    assert struct.unpack("<IIH", message.payload) == (left, right, refusal)
 
 
 @given(st.integers(0, 0xFFFF), st.integers(0, 255))
