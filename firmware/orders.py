@@ -29,6 +29,7 @@ from firmware.models import (
 from firmware.modes import INDOOR_FIELD, Mode
 from firmware.order_checks import (
     HEADER_BYTES,
+    LIMIT_WORDS,
     MODE,
     copy_words,
     frame_refusal,
@@ -80,7 +81,7 @@ def order_buffers() -> Sequence[Buffer]:
 def _limits(name: str, words: Sequence[Word], section: str) -> Buffer:
     names = [each.name for each in words]
     limits = [(each.lowest, each.highest, each.step, names.index(each.at_most)) for each in words]
-    return Buffer(name, i32, 4 * len(words), section, values=np.array(limits))
+    return Buffer(name, i32, LIMIT_WORDS * len(words), section, values=np.ravel(limits))
 
 
 def take_orders(core: Core) -> Generator[Any, Any, int]:
