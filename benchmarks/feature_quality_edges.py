@@ -33,8 +33,8 @@ from bfsim.report.tables import new_table, percent
 from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF, source_pixels
 from bfsim.terminal import print_report, progress_bar
 from firmware import tinyphoon
-from firmware.modes import INDOOR_FIELD
 from firmware.areas import WHOLE_PICTURE, area_in
+from firmware.modes import INDOOR_FIELD
 from firmware.stages.edge_detection import EdgeThresholds, edge_detection
 from firmware.stages.rectification import rectification
 
