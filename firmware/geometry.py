@@ -6,6 +6,8 @@ the middle of the picture.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from bfsim.api import Buffer, FirmwareError, FrameSize, Geometry, i32, kernel
@@ -15,11 +17,14 @@ GEOMETRY_FOCAL = 0  # focal length, 1/16 px
 GEOMETRY_BASELINE = 1  # distance of the optical centres, µm
 GEOMETRY_HEIGHT = 2  # above the floor, 1/16 mm
 GEOMETRY_TILT = 3  # how far the cameras look down, 1/65536 of a turn
-GEOMETRY_WORDS = 4
+GEOMETRY_SINE = 4  # of the tilt, 1/16384
+GEOMETRY_COSINE = 5
+GEOMETRY_WORDS = 6
 
 MICROMETRES = 1000
 HEIGHT_STEPS = 16
 TILT_STEPS = 65536
+SINE_BITS = 14
 
 DEEPEST = (1 << 31) - MICROMETRES
 """Focal length times baseline, in the units above, must stay below: it is what all depths are made of."""
@@ -45,6 +50,8 @@ def _buffer(focal_px: float, baseline_mm: float, height_mm: float, tilt_deg: flo
         round(MICROMETRES * baseline_mm),
         round(HEIGHT_STEPS * height_mm),
         round(TILT_STEPS * tilt_deg / 360),
+        round((1 << SINE_BITS) * math.sin(math.radians(tilt_deg))),
+        round((1 << SINE_BITS) * math.cos(math.radians(tilt_deg))),
     )
     if words[GEOMETRY_FOCAL] * words[GEOMETRY_BASELINE] >= DEEPEST:
         limit = DEEPEST / (SUBPIXELS * MICROMETRES)

@@ -143,15 +143,21 @@ def _sight(
 def object_detection(core: Core, thresholds: ObjectThresholds) -> Generator[Any, Any, None]:
     """Verify `left_seen` by `right_seen` and take both into the history, `objects`.
 
-    Publishes `verified`, how many objects both cameras see, and `objects_lost`, how many found no room in the history.
+    Publishes `verified`, how many objects both cameras see, and what `remember` does.
     """
-    geometry, objects = core.array("geometry"), core.array("objects")
     left, right = core.array("left_seen"), core.array("right_seen")
     lengths = SUBPIXELS * thresholds.row_range, SUBPIXELS * thresholds.disparity_max
     weight, refined = thresholds.camera_weight, int(thresholds.refined)
-    verified = yield core.run(verify_objects, geometry, left, right, *lengths, weight, refined)
+    verified = yield core.run(verify_objects, core.array("geometry"), left, right, *lengths, weight, refined)
+    core.publish(verified=verified)
+    yield from remember(core, (left, right), thresholds)
+
+
+def remember(core: Core, tables: Sequence[Row], thresholds: ObjectThresholds) -> Generator[Any, Any, None]:
+    """Take the objects of some tables into the history; publishes `objects_lost`, how many found no room there."""
+    objects = core.array("objects")
     yield core.run(age_objects, objects, thresholds.age_max)
     lost = 0
-    for seen in (left, right):
+    for seen in tables:
         lost += yield core.run(remember_objects, objects, seen, thresholds.apart_max)
-    core.publish(verified=verified, objects_lost=lost)
+    core.publish(objects_lost=lost)

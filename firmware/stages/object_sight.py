@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel, u32
-from firmware.blob_store import ACROSS, BLOB_WORDS, DOWN, PIXELS, SUM_X, SUM_Y
+from firmware.blob_store import ACROSS, BLOB_WORDS, DOWN
 from firmware.circle_store import CIRCLE_BLOB, CIRCLE_RADIUS, CIRCLE_WORDS, CIRCLE_X, CIRCLE_Y
 from firmware.geometry import GEOMETRY_COSINE, GEOMETRY_SINE, SINE_BITS, beside_mm
 from firmware.line_store import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
@@ -73,12 +73,6 @@ def outline_of(outlines: i16[:], count: i32, words: i32, blob_word: i32, blob: i
 
 
 @kernel
-def mean_place(total: u32, pixels: u32) -> i32:
-    """Return the mean of the coordinates of pixels from their sum, in 1/16 px, rounded."""
-    return i32((SUBPIXELS * total + (pixels >> 1)) // pixels)
-
-
-@kernel
 def bottom_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], column: i32) -> i32:
     """Return where a rectangle ends below at `column`, in 1/16 px: at its bottom line, or else at the end of its blob."""
     if rectangle != NO_OUTLINE:
@@ -112,8 +106,6 @@ def see_blob(blob_data: u32[:], blob: i32, seen: i16[:], place: i32) -> None:
 
 @kernel
 def see_ball(
-    blob_data: u32[:],
-    blob: i32,
     models: i32[:],
     model: i32,
     circles: i16[:],
@@ -125,27 +117,26 @@ def see_ball(
     width: i32,
     height: i32,
 ) -> None:
-    """Set where a ball is: by its circle's size if its shape passed the tests, else the way to its blob's centre of mass."""
+    """Set where a ball is: by its circle's size if it passed all tests, else the way to its circle's centre.
+
+    A circle whose centre was not found has that of its blob's mass.
+    """
     at = place * OBJECT_WORDS
-    source = blob * BLOB_WORDS
     depth: i32 = 0
-    if tests & SIZE_TEST:
+    if seen[at + OBJECT_OUTLINE] != NO_OUTLINE:
         circle = seen[at + OBJECT_OUTLINE] * CIRCLE_WORDS
-        size = 2 * circles[circle + CIRCLE_RADIUS]
         seen[at + OBJECT_IMAGE_X] = circles[circle + CIRCLE_X]
         seen[at + OBJECT_IMAGE_Y] = circles[circle + CIRCLE_Y]
-        seen[at + OBJECT_WIDTH] = size
-        seen[at + OBJECT_HEIGHT] = size
-        depth = depth_by_size(geometry, models[model + MODEL_WIDTH], size)
-        if depth != 0:
-            if refined:
-                depth = depth_of_sphere(depth, models[model + MODEL_WIDTH] >> 1)
-            seen[at + OBJECT_MEASURES] = BY_SIZE
-            seen[at + OBJECT_EXTENT] = size
-    else:
-        pixels = blob_data[source + PIXELS]
-        seen[at + OBJECT_IMAGE_X] = mean_place(blob_data[source + SUM_X], pixels)
-        seen[at + OBJECT_IMAGE_Y] = mean_place(blob_data[source + SUM_Y], pixels)
+        if tests & SIZE_TEST:
+            size = 2 * circles[circle + CIRCLE_RADIUS]
+            seen[at + OBJECT_WIDTH] = size
+            seen[at + OBJECT_HEIGHT] = size
+            depth = depth_by_size(geometry, models[model + MODEL_WIDTH], size)
+            if depth != 0:
+                if refined:
+                    depth = depth_of_sphere(depth, models[model + MODEL_WIDTH] >> 1)
+                seen[at + OBJECT_MEASURES] = BY_SIZE
+                seen[at + OBJECT_EXTENT] = size
     place_object(geometry, seen, place, depth, width, height)
 
 
@@ -282,20 +273,7 @@ def see_objects(
                 if models[model + MODEL_SHAPE] == BALL:
                     seen[at + OBJECT_OUTLINE] = circle
                     refined = limits[REFINED]
-                    see_ball(
-                        blob_data,
-                        blob,
-                        models,
-                        model,
-                        circles,
-                        tests,
-                        geometry,
-                        refined,
-                        seen,
-                        place,
-                        width,
-                        height,
-                    )
+                    see_ball(models, model, circles, tests, geometry, refined, seen, place, width, height)
                 else:
                     seen[at + OBJECT_OUTLINE] = rectangle
                     down = blob_data[blob * BLOB_WORDS + DOWN]
