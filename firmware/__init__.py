@@ -14,6 +14,8 @@ ROWS = (
     BudgetRow(stage="Open & closing", thesis_ms=26.0),
     BudgetRow(stage="Blob detection", thesis_ms=68.0),
     BudgetRow(stage="Line detection", thesis_ms=19.0),  # 3-D lines and edges included
+    BudgetRow(stage="Shape detection", thesis_ms=18.0),
+    BudgetRow(stage="Object detection", thesis_ms=1.0),
 )
 
 tinyphoon = Firmware(

@@ -11,10 +11,18 @@ from collections.abc import Mapping, Sequence
 from bfsim.api import Buffer, Buffers, Calibration, FrameSize, i16, u8, u16, u32
 from firmware.edge_store import EDGE_CAPACITY
 from firmware.geometry import geometry_buffer, thesis_geometry_buffer
+from firmware.models import model_buffers
 from firmware.results import MESSAGE_WORDS
 from firmware.stages.blob_detection import blob_buffers
+from firmware.stages.circle_detection import circle_buffers
 from firmware.stages.hysteresis import hysteresis_buffers
 from firmware.stages.line_detection import line_buffers
+from firmware.stages.object_detection import (
+    left_object_buffers,
+    object_buffers,
+    shared_object_buffers,
+)
+from firmware.stages.rectangle_detection import rectangle_buffers
 from firmware.stages.rectification import rectification_buffers
 from firmware.tables import arctangent_table
 
@@ -25,15 +33,15 @@ CAMERA_FRAMES = 3  # one that is worked on, one that waits, one that is filled
 def buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     """Return the buffers of each core for pictures of `size`."""
     return {
-        "A": _core_buffers(size, camera="sdram_bank0", images="sdram_bank2"),
+        "A": _left_buffers(size),
         "B": _core_buffers(size, camera="sdram_bank1", images="sdram_bank3"),
-        "shared": (Buffer("right_edges", u32, 1, "l2_shared"),),
+        "shared": shared_object_buffers(),
     }
 
 
 def one_core_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     """Return the buffers for pictures of `size` of a board with one core."""
-    return {"A": _core_buffers(size, camera="sdram_bank0", images="sdram_bank2")}
+    return {"A": _left_buffers(size)}
 
 
 def calibration_buffers(calibration: Calibration) -> Buffers:
@@ -41,6 +49,15 @@ def calibration_buffers(calibration: Calibration) -> Buffers:
     geometry = tuple(geometry_buffer(each) for each in calibration.geometries)
     tables = rectification_buffers(calibration.sources)
     return {core: (*tables.get(core, ()), *geometry) for core in ("A", "B")}
+
+
+def _left_buffers(size: FrameSize) -> Sequence[Buffer]:
+    return (
+        *_core_buffers(size, camera="sdram_bank0", images="sdram_bank2"),
+        *left_object_buffers(),
+        Buffer("results", u16, MESSAGE_WORDS, "data1"),
+        Buffer("orders", u16, ORDERS_WORDS, "data1"),
+    )
 
 
 def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buffer]:
@@ -69,8 +86,10 @@ def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buff
         Buffer("edge_index", u32, height, "L1_data_b"),
         Buffer("edge_counts", u16, height, "L1_data_b"),
         *hysteresis_buffers(),
-        Buffer("results", u16, MESSAGE_WORDS, "L1_data_b"),
-        Buffer("orders", u16, ORDERS_WORDS, "L1_data_b"),
         *blob_buffers(size),
         *line_buffers(size),
+        *circle_buffers(),
+        *rectangle_buffers(),
+        *object_buffers(),
+        *model_buffers(),
     )

@@ -8,17 +8,20 @@ from typing import Any
 from bfsim.api import Core
 from firmware.features import features
 from firmware.modes import INDOOR_FIELD
-from firmware.results import MESSAGE_WORDS, load_word, pack_results
+from firmware.report import report
+from firmware.stages.object_detection import left_sight, object_detection
 
 
 def core_a(core: Core) -> Generator[Any, Any, None]:
     """See every picture of the left camera. The cores end a frame together, to take the same next pair."""
+    mode = INDOOR_FIELD
     while (frame := (yield from core.next_frame())) is not None:
-        found = yield from features(core, frame, INDOOR_FIELD)
+        found = yield from features(core, frame, mode)
+        with core.stage("Object detection"):
+            yield from left_sight(core, frame, found.outlines, mode.objects)
         yield from core.post("core A is done")
         yield from core.wait("core B is done")
+        with core.stage("Object detection"):
+            yield from object_detection(core, mode.objects)
         yield from core.receive(core.array("orders"))  # modes and models: taken, not obeyed yet
-        others = yield core.run(load_word, core.array("right_edges"))
-        message = core.array("results")
-        yield core.run(pack_results, message, frame.index & 0x7FFF, found, others)
-        yield from core.send(message, 2 * MESSAGE_WORDS)
+        yield from report(core, frame)

@@ -8,13 +8,15 @@ from typing import Any
 from bfsim.api import Core
 from firmware.features import features
 from firmware.modes import INDOOR_FIELD
-from firmware.results import store_word
+from firmware.stages.object_detection import right_sight
 
 
 def core_b(core: Core) -> Generator[Any, Any, None]:
     """See every picture of the right camera. The cores end a frame together, to take the same next pair."""
+    mode = INDOOR_FIELD
     while (frame := (yield from core.next_frame())) is not None:
-        found = yield from features(core, frame, INDOOR_FIELD)
-        yield core.run(store_word, core.array("right_edges"), found)
+        found = yield from features(core, frame, mode)
+        with core.stage("Object detection"):
+            yield from right_sight(core, frame, found.outlines, mode.objects)
         yield from core.post("core B is done")
         yield from core.wait("core A is done")

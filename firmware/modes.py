@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from firmware.models import MODELS, colour_groups
+from firmware.models import MODELS, ObjectModel, colour_groups, rectangular_colours, spherical_colours
 from firmware.stages.blob_detection import BlobThresholds
+from firmware.stages.circle_detection import CircleThresholds
 from firmware.stages.edge_detection import EdgeThresholds
 from firmware.stages.line_detection import LineThresholds
+from firmware.stages.object_detection import ObjectThresholds
+from firmware.stages.rectangle_detection import RectangleThresholds
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -17,7 +20,40 @@ class Mode:
     edges: EdgeThresholds
     blobs: BlobThresholds
     lines: LineThresholds
+    circles: CircleThresholds
+    rectangles: RectangleThresholds
+    objects: ObjectThresholds
+    models: tuple[ObjectModel, ...]
 
+    @property
+    def ball_colours(self) -> int:
+        """The colours of spheres."""
+        return spherical_colours(self.models)
+
+    @property
+    def rectangle_colours(self) -> int:
+        """The colours of rectangles."""
+        return rectangular_colours(self.models)
+
+
+FITTED_CIRCLES = CircleThresholds(
+    border=4,
+    angle_range=24,
+    dark_balls=True,
+    patch_reach=32,
+    peak_reach=1,
+    min_edges=12,
+    centre_share=64,
+    min_peak=12,
+    radius_share=64,
+    fit_rounds=3,
+    fit_range=2,
+    edge_shift=32,
+)
+
+PLAIN_CIRCLES = replace(
+    FITTED_CIRCLES, peak_reach=0, fit_rounds=0, edge_shift=0, centre_share=16, radius_share=32
+)
 
 INDOOR_FIELD = Mode(
     edges=EdgeThresholds(
@@ -54,5 +90,40 @@ INDOOR_FIELD = Mode(
         muff_range=4,
         far_gap=24,
     ),
+    circles=FITTED_CIRCLES,
+    rectangles=RectangleThresholds(
+        # The opening rounds the corners of a blob and the edge lies where the colours change: within 2 px of each other;
+        # as much again for a line that leans.
+        border_px=4,
+        # Of two lines, one of them bright inside, that one, unless it is twice as far off as lines usually are.
+        dark_px=2,
+        # Half a side: the other half may be hidden, or cut into another line.
+        overlap=128,
+    ),
+    objects=ObjectThresholds(
+        # A blob alone tells a direction: a quarter. All tests of one camera: three quarters; the second one: the rest.
+        colour_weight=64,
+        dimension_weight=32,
+        area_weight=32,
+        centre_weight=32,
+        size_weight=32,
+        camera_weight=63,
+        # The mark of a robot is 50 mm high: 6 px at 3 m.
+        shortest_side=6,
+        # Shade at the foot of a ball and highlights on its top take up to an eighth of it.
+        ball_area=40,
+        # A goal's mouth at 45 degrees fills three quarters; two thirds of a whole rectangle otherwise.
+        rectangle_area=160,
+        # Rectified pictures agree in rows to a pixel; the centres of blobs that are hidden in part do not.
+        row_range=6,
+        # A ball of 6 cm that is nearer than 15 cm is not in the picture as a whole: 386 px x 30.47 mm / 150 mm.
+        disparity_max=78,
+        refined=True,
+        # A second at 5 frames a second.
+        age_max=5,
+        # A robot that turns by 90 degrees a second turns by 18 degrees in a frame.
+        apart_max=80,
+    ),
+    models=MODELS,
 )
 """A FIRA field lit from above in a dark room, as in the recording that comes with bfsim, in pictures of 320x240."""

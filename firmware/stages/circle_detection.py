@@ -10,7 +10,7 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from bfsim.api import Buffer, Core, Frame, FrameSize, Row, i16, i32, kernel, u16, u32
+from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel, u16, u32
 from firmware.blob_store import BLOB_WORDS, PIXELS, SUM_X, SUM_Y
 from firmware.circle_store import (
     CENTRE_PASSED,
