@@ -32,12 +32,16 @@ class ObjectThresholds:
     """What makes an object, and how accurate it is.
 
     `*_weight`: what passing a test adds to the accuracy; together at most 255. `shortest_side`: of a blob in pixels, for
-    the dimension test. `ball_area`: how far the share of its square that a ball fills may be from pi/4, of 256.
+    the dimension test. `size_range`: by what factor, of 16, its height may be off that of the model where it stands.
+    `ball_area`: how far the share of its square that a ball fills may be from pi/4, of 256.
     `rectangle_area`: the least share of its rectangle that another object fills, of 256.
 
     `row_range`: how many pixels the two images of an object may be apart in row. `disparity_max`: in column.
     `refined`: whether the disparity helps to measure, and a ball is taken for the sphere that it is; without it the
     distance is that of the thesis (T Eq. 4.1, the mean of both cameras).
+
+    `extent_error`, `disparity_error`: how wrong the extent of an object is likely to be, and its disparity, in 1/16 px; 1 or
+    more.
 
     `age_max`: for how many frames an object that is not seen stays in the history. `apart_max`: how far it may have moved
     in the picture since the last frame, of 256 for a focal length.
@@ -50,11 +54,14 @@ class ObjectThresholds:
     size_weight: int
     camera_weight: int
     shortest_side: int
+    size_range: int
     ball_area: int
     rectangle_area: int
     row_range: int
     disparity_max: int
     refined: bool
+    extent_error: int
+    disparity_error: int
     age_max: int
     apart_max: int
 
@@ -64,6 +71,9 @@ class ObjectThresholds:
                 f"the weights of the tests must be 0 or more, {LARGEST_ACCURACY} together at most, "
                 f"not {', '.join(map(str, self.weights))}"
             )
+        if min(self.extent_error, self.disparity_error) < 1:
+            errors = f"{self.extent_error} and {self.disparity_error}"
+            raise ValueError(f"extent_error and disparity_error must be 1 or more, not {errors}")
 
     @property
     def weights(self) -> tuple[int, ...]:
@@ -74,7 +84,8 @@ class ObjectThresholds:
     @property
     def limits(self) -> tuple[int, ...]:
         """What kernels read of them, in the order of `object_limits`."""
-        return *self.weights, self.shortest_side, self.ball_area, self.rectangle_area, int(self.refined)
+        areas = self.ball_area, self.rectangle_area
+        return *self.weights, self.shortest_side, self.size_range, *areas, int(self.refined)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -148,7 +159,10 @@ def object_detection(core: Core, thresholds: ObjectThresholds) -> Generator[Any,
     left, right = core.array("left_seen"), core.array("right_seen")
     lengths = SUBPIXELS * thresholds.row_range, SUBPIXELS * thresholds.disparity_max
     weight, refined = thresholds.camera_weight, int(thresholds.refined)
-    verified = yield core.run(verify_objects, core.array("geometry"), left, right, *lengths, weight, refined)
+    errors = thresholds.extent_error, thresholds.disparity_error
+    verified = yield core.run(
+        verify_objects, core.array("geometry"), left, right, *lengths, weight, refined, *errors
+    )
     core.publish(verified=verified)
     yield from remember(core, (left, right), thresholds)
 

@@ -183,6 +183,7 @@ def best_model(
     circle: i32,
     rectangles: i16[:],
     rectangle: i32,
+    geometry: i32[:],
     limits: i32[:],
     width: i32,
     height: i32,
@@ -199,7 +200,7 @@ def best_model(
             if models[model + MODEL_SHAPE] == BALL:
                 outline = circle
             tests = tests_passed(
-                blob_data, blob, models, model, circles, rectangles, outline, limits, width, height
+                blob_data, blob, models, model, circles, rectangles, outline, geometry, limits, width, height
             )
             if tests != 0 and accuracy_of(tests, limits) > accuracy:
                 accuracy = accuracy_of(tests, limits)
@@ -252,7 +253,7 @@ def see_objects(
         circle = outline_of(circles, circle_count, CIRCLE_WORDS, CIRCLE_BLOB, blob)
         rectangle = outline_of(rectangles, rectangle_count, RECTANGLE_WORDS, RECTANGLE_BLOB, blob)
         best = best_model(
-            blob_data, blob, models, circles, circle, rectangles, rectangle, limits, width, height
+            blob_data, blob, models, circles, circle, rectangles, rectangle, geometry, limits, width, height
         )
         if best != 0:
             tests = best & TESTS_MASK

@@ -9,7 +9,18 @@ from __future__ import annotations
 from bfsim.api import i16, i32, kernel, u32
 from firmware.blob_store import ACROSS, BLOB_WORDS, COLOURS, DOWN, PIXELS
 from firmware.circle_store import CENTRE_PASSED, CIRCLE_TESTS, CIRCLE_WORDS, RADIUS_PASSED
-from firmware.models import MODEL_ASPECT_MAX, MODEL_ASPECT_MIN, MODEL_COLOURS, MODEL_SHAPE, Shape
+from firmware.geometry import GEOMETRY_FOCAL
+from firmware.line_store import SUBPIXELS
+from firmware.models import (
+    ASPECT_UNITS,
+    MODEL_ASPECT_MAX,
+    MODEL_ASPECT_MIN,
+    MODEL_COLOURS,
+    MODEL_FLOOR,
+    MODEL_HEIGHT,
+    MODEL_SHAPE,
+    Shape,
+)
 from firmware.object_store import (
     AREA_TEST,
     CENTRE_TEST,
@@ -25,16 +36,20 @@ from firmware.rectangle_store import (
     RECTANGLE_RIGHT,
     RECTANGLE_WORDS,
 )
+from firmware.stages.object_places import HALF_PIXEL, depth_by_floor, principal
 
 BALL = int(Shape.BALL)  # kernels know integers
 
 # `object_limits`: the thresholds of the stage as kernels read them. The weights come in the order of the tests' bits.
 TESTS = 6
 SHORTEST_SIDE = 6  # px
-BALL_AREA = 7  # 1/256
-RECTANGLE_AREA = 8  # 1/256
-REFINED = 9
-LIMIT_WORDS = 10
+SIZE_RANGE = 7  # 1/16
+BALL_AREA = 8  # 1/256
+RECTANGLE_AREA = 9  # 1/256
+REFINED = 10
+LIMIT_WORDS = 11
+
+SIZE_UNITS = 16
 
 AREA_BITS = 8
 DISC_AREA = 201  # of its square: pi/4 (T §2.2.2)
@@ -56,30 +71,59 @@ def extent_of(span: u32) -> i32:
 
 
 @kernel
-def dimension_passes(
-    blob_data: u32[:],
-    blob: i32,
-    aspect_min: i32,
-    aspect_max: i32,
-    shortest_side: i32,
-    width: i32,
-    height: i32,
-) -> i32:
-    """Return 1 if a blob is neither small nor unformed for a model; else 0.
+def has_form(across: u32, down: u32, aspect_min: i32, aspect_max: i32, width: i32, height: i32) -> i32:
+    """Return 1 if a blob is neither too narrow for a model nor too flat; else 0.
 
     A blob that leaves the picture of `width` by `height` is wider, or higher, than it looks.
     """
-    across = blob_data[blob * BLOB_WORDS + ACROSS]
-    down = blob_data[blob * BLOB_WORDS + DOWN]
     wide = extent_of(across)
     high = extent_of(down)
-    if min(wide, high) < shortest_side:
+    if ASPECT_UNITS * wide < aspect_min * high and is_cut(across, width) == 0:
         return 0
-    if 16 * wide < aspect_min * high and is_cut(across, width) == 0:
-        return 0
-    if 16 * wide > aspect_max * high and is_cut(down, height) == 0:
+    if ASPECT_UNITS * wide > aspect_max * high and is_cut(down, height) == 0:
         return 0
     return 1
+
+
+@kernel
+def has_size(down: u32, geometry: i32[:], height_mm: i32, floor_mm: i32, size_range: i32, height: i32) -> i32:
+    """Return 1 if a blob is about as high as a model is where its lower border is over the floor; else 0.
+
+    That is to a factor of `size_range` sixteenths. Of a blob that leaves the picture too little is known: 1.
+    """
+    if is_cut(down, height) != 0:
+        return 1
+    row = SUBPIXELS * i32(down >> 16) + HALF_PIXEL - principal(height)
+    looks = extent_of(down) * depth_by_floor(geometry, row, floor_mm)
+    model = geometry[GEOMETRY_FOCAL] * height_mm // SUBPIXELS
+    if SIZE_UNITS * looks > size_range * model or SIZE_UNITS * model > size_range * looks:
+        return 0
+    return 1
+
+
+@kernel
+def dimension_passes(
+    blob_data: u32[:],
+    blob: i32,
+    models: i32[:],
+    model: i32,
+    geometry: i32[:],
+    limits: i32[:],
+    width: i32,
+    height: i32,
+) -> i32:
+    """Return 1 if a blob is neither small nor unformed for a model nor stands where it would have another size; else 0."""
+    across = blob_data[blob * BLOB_WORDS + ACROSS]
+    down = blob_data[blob * BLOB_WORDS + DOWN]
+    if min(extent_of(across), extent_of(down)) < limits[SHORTEST_SIDE]:
+        return 0
+    aspect_min = models[model + MODEL_ASPECT_MIN]
+    aspect_max = models[model + MODEL_ASPECT_MAX]
+    if has_form(across, down, aspect_min, aspect_max, width, height) == 0:
+        return 0
+    height_mm = models[model + MODEL_HEIGHT]
+    floor_mm = models[model + MODEL_FLOOR]
+    return has_size(down, geometry, height_mm, floor_mm, limits[SIZE_RANGE], height)
 
 
 @kernel
@@ -131,6 +175,7 @@ def tests_passed(
     circles: i16[:],
     rectangles: i16[:],
     outline: i32,
+    geometry: i32[:],
     limits: i32[:],
     width: i32,
     height: i32,
@@ -141,9 +186,7 @@ def tests_passed(
     """
     if blob_data[blob * BLOB_WORDS + COLOURS] & u32(models[model + MODEL_COLOURS]) == 0:
         return 0
-    aspect_min = models[model + MODEL_ASPECT_MIN]
-    aspect_max = models[model + MODEL_ASPECT_MAX]
-    if dimension_passes(blob_data, blob, aspect_min, aspect_max, limits[SHORTEST_SIDE], width, height) == 0:
+    if dimension_passes(blob_data, blob, models, model, geometry, limits, width, height) == 0:
         return COLOUR_TEST
     shape = models[model + MODEL_SHAPE]
     if area_passes(blob_data, blob, shape, limits[BALL_AREA], limits[RECTANGLE_AREA]) == 0:

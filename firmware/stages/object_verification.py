@@ -1,15 +1,14 @@
 """The second camera: an object that both see is more certain, and better placed (T §5.2.6).
 
-The thesis takes the mean of what the cameras measure. [ours] is `refined`: the disparity of the two images measures the
-depth once more, without the errors that both cameras make alike. Of two depths the one counts more that is measured by
-more pixels: an error of a pixel is then a smaller part of it, so each has the weight of its pixels squared.
+The thesis takes the mean of what the cameras measure. [ours] is `refined`: where both have found the shape, the disparity
+of its two images measures the depth once more, free of what both cameras get wrong alike. Of two depths the one counts
+more that a likely error falsifies less: each has the weight of its pixels by their error, squared.
 """
 
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel
 from firmware.geometry import GEOMETRY_BASELINE, MICROMETRES, depth_mm
-from firmware.line_store import SUBPIXELS
 from firmware.object_store import (
     BY_DISPARITY,
     NO_MODEL,
@@ -28,12 +27,13 @@ from firmware.object_store import (
     OBJECT_Z,
     SEEN_LEFT,
     SEEN_RIGHT,
+    SIZE_TEST,
     VERIFIED,
 )
 
 NOBODY = -1
 LARGEST_ACCURACY = 255
-MOST_PIXELS = 128  # squared, times a depth of 16 bits and the two weights of a sum, it stays in 32 bits
+SHARPEST = 128  # squared, times a depth of 16 bits and the two weights of a sum, it stays in 32 bits
 
 
 @kernel
@@ -94,34 +94,39 @@ def average_places(left: i16[:], one: i32, right: i16[:], other: i32) -> None:
             left[at + word] = left[at + word] + right[to + word] + 1 >> 1
         else:
             left[at + word] = right[to + word]
-    left[at + OBJECT_EXTENT] = max(left[at + OBJECT_EXTENT], right[to + OBJECT_EXTENT])
+    extents = i32(left[at + OBJECT_EXTENT]) + i32(right[to + OBJECT_EXTENT])
+    if left[at + OBJECT_MEASURES] != 0:
+        extents = extents + 1 >> 1
+    left[at + OBJECT_EXTENT] = extents
     left[at + OBJECT_MEASURES] = left[at + OBJECT_MEASURES] | right[to + OBJECT_MEASURES]
 
 
 @kernel
-def weight_of(extent: i32) -> i32:
-    """Return the weight of a depth that is measured by `extent` 1/16 px."""
-    pixels = min((extent + SUBPIXELS // 2) // SUBPIXELS, MOST_PIXELS)
-    return pixels * pixels
+def weight_of(extent: i32, error: i32) -> i32:
+    """Return the weight of a depth that is measured by an extent with an error, both in 1/16 px; at least 1."""
+    sharpness = max(min(extent // error, SHARPEST), 1)
+    return sharpness * sharpness
 
 
 @kernel
 def weighted(one: i32, weight: i32, other: i32, other_weight: i32) -> i32:
-    """Return the weighted mean of two depths, rounded; the weights are not both 0."""
+    """Return the weighted mean of two depths, rounded."""
     total = weight + other_weight
     return (one * weight + other * other_weight + (total >> 1)) // total
 
 
 @kernel
-def refine_place(geometry: i32[:], left: i16[:], one: i32, disparity: i32) -> None:
+def refine_place(
+    geometry: i32[:], left: i16[:], one: i32, disparity: i32, extent_error: i32, disparity_error: i32
+) -> None:
     """Move an object along the way to it, to where its disparity in 1/16 px and its own measure together have it."""
     at = one * OBJECT_WORDS
     depth = i32(left[at + OBJECT_Z])
     by_disparity = depth_mm(geometry, disparity)
     if by_disparity == 0 or left[at + OBJECT_MEASURES] == 0:
         return
-    own = max(weight_of(i32(left[at + OBJECT_EXTENT])), 1)
-    better = weighted(depth, own, by_disparity, weight_of(disparity))
+    own = weight_of(i32(left[at + OBJECT_EXTENT]), extent_error)
+    better = weighted(depth, own, by_disparity, weight_of(disparity, disparity_error))
     left[at + OBJECT_X] = (left[at + OBJECT_X] * better + (depth >> 1)) // depth
     left[at + OBJECT_Y] = (left[at + OBJECT_Y] * better + (depth >> 1)) // depth
     left[at + OBJECT_Z] = better
@@ -137,6 +142,8 @@ def verify_objects(
     disparity_max: i32,
     weight: i32,
     refined: i32,
+    extent_error: i32,
+    disparity_error: i32,
 ) -> i32:
     """Make one object of each pair that both cameras see, in `left`; returns how many pairs there are.
 
@@ -154,9 +161,10 @@ def verify_objects(
                 to = other * OBJECT_WORDS
                 pairs = pairs + 1
                 average_places(left, one, right, other)
-                if refined:
+                shape_in_both = left[at + OBJECT_TESTS] & right[to + OBJECT_TESTS] & SIZE_TEST
+                if refined != 0 and shape_in_both != 0:
                     disparity = left[at + OBJECT_IMAGE_X] - right[to + OBJECT_IMAGE_X]
-                    refine_place(geometry, left, one, disparity)
+                    refine_place(geometry, left, one, disparity, extent_error, disparity_error)
                 accuracy = max(left[at + OBJECT_ACCURACY], right[to + OBJECT_ACCURACY])
                 left[at + OBJECT_ACCURACY] = min(accuracy + weight, LARGEST_ACCURACY)
                 left[at + OBJECT_TESTS] = left[at + OBJECT_TESTS] | right[to + OBJECT_TESTS] | VERIFIED
