@@ -10,7 +10,7 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel, u16, u32
+from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel, u8, u16, u32
 from firmware.blob_store import BLOB_WORDS, PIXELS, SUM_X, SUM_Y
 from firmware.circle_store import (
     CENTRE_PASSED,
@@ -36,20 +36,12 @@ from firmware.stages.circle_edges import (
     REACH,
     next_blob,
     open_area,
+    rows_of,
     select_edges_row,
 )
-from firmware.stages.circle_radius import (
-    CENTRE_X,
-    CENTRE_Y,
-    FIT_WORDS,
-    RADIUS,
-    edges_round,
-    fill_histogram,
-    find_radius,
-    fit_circle,
-    mean_radius,
-    widen_circle,
-)
+from firmware.stages.circle_fit import CENTRE_X, CENTRE_Y, FIT_WORDS, RADIUS, fit_circle
+from firmware.stages.circle_outline import LUMA_LINES, REACH_LINES, clear_points, luma_row, refine_row
+from firmware.stages.circle_radius import edges_round, fill_histogram, find_radius, mean_radius
 from firmware.stages.circle_votes import clear_votes, draw_lines, find_peak, mean_offset, votes_round
 from firmware.tables import tangent_table
 
@@ -66,9 +58,8 @@ class CircleThresholds:
     the centre is looked for to each side of the centre of mass, 0..32, and not further than half the blob.
     `peak_reach`: how many cells round a peak belong to it; 0 is the thesis, whole pixels.
     `min_edges`, `centre_share`: of the centre test T_c (T Eq. 5.6). `min_peak`, `radius_share`: of the radius test
-    T_r (T Eq. 5.7). `fit_rounds`: how often centre and radius are fitted to the edges within `fit_range`; 0 is the
-    thesis. `edge_shift`: by how much the radius is widened, in 1/64 px by its length: half the variance of all smoothing
-    before the edges, in 1/64 px^2; 0 is the thesis.
+    T_r (T Eq. 5.7). `fit_rounds`: how often centre and radius are fitted to the outline; 0 is the thesis.
+    `fit_range`: how far from the circle that is looked for.
     """
 
     border: int
@@ -82,7 +73,6 @@ class CircleThresholds:
     radius_share: int
     fit_rounds: int
     fit_range: int
-    edge_shift: int
 
     def __post_init__(self) -> None:
         if not self.peak_reach <= self.patch_reach <= LARGEST_REACH:
@@ -236,8 +226,7 @@ def _select_edges(
     """Select the edges of a blob's outline; returns how many there are. Its lines come through the opening's ring."""
     area, atan = core.array("circle_area"), core.array("atan")
     limits = thresholds.border, thresholds.patch_reach, frame.width, frame.height
-    rows = yield core.run(open_area, core.array("blob_data"), blob, area, *limits)
-    top, bottom = rows & 0xFFFF, rows >> 16
+    top, bottom = ends((yield core.run(open_area, core.array("blob_data"), blob, area, *limits)))
     first = max(top - 1, 0)
     image = core.rows("opened_image")[first : min(bottom + 2, frame.height)]
     lines = core.input_ring(image, "colour_ring")
@@ -269,7 +258,31 @@ def _measure(
         yield core.run(fill_histogram, selected, count, fit, histogram)
         judged = histogram, count, reach, thresholds.min_peak, thresholds.radius_share
         if (yield core.run(test_radius, *judged, *result)):
-            yield core.run(fit_circle, selected, count, fit, thresholds.fit_range, thresholds.fit_rounds)
-        if thresholds.edge_shift:
-            yield core.run(widen_circle, fit, thresholds.edge_shift)
+            if thresholds.fit_rounds:
+                yield from _refine(core, frame, selected, count, thresholds)
         yield core.run(close_circle, *result)
+
+
+def _refine(
+    core: Core, frame: Frame, selected: Row, count: int, thresholds: CircleThresholds
+) -> Generator[Any, Any, None]:
+    """Fit centre and radius to the outline in the camera's lines, which come through the ring of the edge detection."""
+    area, fit = core.array("circle_area"), core.array("circle_fit")
+    luma = core.overlay("colour_ring", u8, LUMA_LINES * frame.width)[0]
+    top, bottom = ends((yield core.run(rows_of, area)))
+    first, height = max(top - REACH_LINES, 0), frame.height
+    lines = core.input_ring(frame.rows[first : min(bottom + 1 + REACH_LINES, height)], "camera_ring")
+    yield core.run(clear_points, fit)
+    for ahead in range(first, bottom + 1 + REACH_LINES):
+        if ahead < height:
+            line = yield from lines.line()
+            yield core.run(luma_row, line, luma, ahead, area)
+        y = ahead - REACH_LINES
+        if top <= y:
+            yield core.run(refine_row, selected, count, y, luma, height, fit, thresholds.fit_range)
+    yield core.run(fit_circle, selected, fit, thresholds.fit_range, thresholds.fit_rounds)
+
+
+def ends(rows: int) -> tuple[int, int]:
+    """Return the two shorts of a word."""
+    return rows & 0xFFFF, rows >> 16

@@ -55,6 +55,12 @@ def next_blob(blob_data: u32[:], blob: i32, blobs: i32, colours: u32) -> i32:
 
 
 @kernel
+def rows_of(area: i32[:]) -> i32:
+    """Return the first row and the last, as a pair of shorts."""
+    return area[TOP] | area[BOTTOM] << 16
+
+
+@kernel
 def open_area(
     blob_data: u32[:], blob: i32, area: i32[:], border: i32, patch_reach: i32, width: i32, height: i32
 ) -> i32:
@@ -72,7 +78,7 @@ def open_area(
     area[MASS_X] = i32(blob_data[blob * BLOB_WORDS + CENTRE] & 0xFFFF)
     area[MASS_Y] = i32(blob_data[blob * BLOB_WORDS + CENTRE] >> 16)
     area[REACH] = min(max(right - left, bottom - top) + 1 >> 1, patch_reach)
-    return area[TOP] | area[BOTTOM] << 16
+    return rows_of(area)
 
 
 @kernel

@@ -3,14 +3,13 @@ stages before, and its task played by hand."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.api import FrameSize
 from firmware.blob_store import BLOB_WORDS
 from firmware.circle_store import CIRCLE_WORDS
 from firmware.modes import INDOOR_FIELD
@@ -20,7 +19,7 @@ from firmware.tables import arctangent_table
 from tests.firmware import references
 from tests.firmware.blob_references import segments
 from tests.firmware.edge_references import hysteresis, hysteresis_store
-from tests.firmware.line_rig import GARBAGE, BareCore, FrameStandIn
+from tests.firmware.line_rig import GARBAGE, BareCore
 
 YELLOW = hues(21, 23)
 """The colours of the ball."""
@@ -76,16 +75,26 @@ class RingStandIn:
     depth: int
     taken: int = 0
 
-    def line(self) -> Iterator[Any]:
+    def line(self) -> Generator[Any, Any, NDArray[Any]]:
         """Take the next line."""
         assert self.taken < len(self.image)
         self.taken += 1
-        return iter(())
+        return self.image[self.taken - 1]
+        yield
 
     def __getitem__(self, number: int) -> NDArray[Any]:
         """The row of a line."""
         assert self.taken - self.depth < number < self.taken
         return self.image[number]
+
+
+@dataclass(frozen=True, slots=True)
+class CircleFrame:
+    """What the stage wants to know of a frame."""
+
+    width: int
+    height: int
+    rows: Sequence[NDArray[np.uint8]]
 
 
 class CircleCore(BareCore):
@@ -109,6 +118,7 @@ class Seen:
     edge_data: NDArray[Any]
     edge_index: NDArray[Any]
     edge_counts: NDArray[Any]
+    uyvy: NDArray[np.uint8]
     opened: NDArray[Any]
     blobs: list[list[int]]
 
@@ -129,6 +139,7 @@ def seen(
         np.array(data or [0], np.uint32),
         np.array(index, np.uint32),
         np.array(counts, np.uint16),
+        uyvy,
         opened,
         [each.words for each in segments(opened, groups) if len(each.pixels) >= min_pixels],
     )
@@ -167,6 +178,7 @@ def circles_of(
             "opened_image": list(picture.opened),
             "blob_data": [blob_data.reshape(-1)],
             "atan": [arctangent_table()],
+            "camera_ring": [np.zeros(2 * width, np.uint8)] * 2,
             "colour_ring": [np.zeros(width, np.uint32)] * 4,
             "eroded_ring": [np.full(width, GARBAGE, np.uint32) for _ in range(room_rows)],
             "magnitude_ring": [np.full(width, GARBAGE, np.uint8) for _ in range(3)],
@@ -176,7 +188,7 @@ def circles_of(
     for each in circle_buffers():
         values = np.full(each.columns, GARBAGE, each.element.dtype) if each.values is None else each.values
         core.arrays[each.name] = [np.array(values, each.element.dtype)]
-    task = circle_detection(core, FrameStandIn(width, height), len(picture.blobs), colours, thresholds)
+    task = circle_detection(core, CircleFrame(width, height, list(picture.uyvy)), len(picture.blobs), colours, thresholds)
     value = None
     try:
         while True:
@@ -184,9 +196,3 @@ def circles_of(
     except StopIteration as end:
         count = end.value
     return Circles(core.array("circles")[: count * CIRCLE_WORDS].reshape(count, CIRCLE_WORDS), core.published)
-
-
-def size_of(picture: Seen) -> FrameSize:
-    """The size of a picture."""
-    height, width = picture.opened.shape
-    return FrameSize(width, height)
