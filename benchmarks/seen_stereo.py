@@ -21,6 +21,7 @@ from firmware.line3d_store import LINE3D_WORDS, LINE3D_X0, LINE3D_Z1
 from firmware.modes import Mode
 from firmware.stages.edge_detection import edge_detection
 from firmware.stages.line_detection import line_detection
+from firmware.stages.line_refinement import RefinementThresholds, line_refinement
 from firmware.stages.rectification import rectification
 from firmware.stages.stereo_lines import StereoLineThresholds, stereo_line_buffers, stereo_lines
 
@@ -36,7 +37,11 @@ class SeenStereo:
 
 
 def see_stereo(
-    frames: Sequence[StereoFrame], calibration: Calibration, mode: Mode, stereo: StereoLineThresholds
+    frames: Sequence[StereoFrame],
+    calibration: Calibration,
+    mode: Mode,
+    refinement: RefinementThresholds,
+    stereo: StereoLineThresholds,
 ) -> list[SeenStereo]:
     """Return what the firmware finds in each of `frames`."""
     height, width2 = frames[0].left.shape
@@ -49,6 +54,7 @@ def see_stereo(
             yield from edge_detection(core, frame, mode.edges)
         with core.stage("Line detection"):
             count: int = yield from line_detection(core, frame, mode.lines)
+            yield from line_refinement(core, frame, count, refinement)
         return count
 
     def core_a(core: Core) -> Generator[Any, Any, None]:
