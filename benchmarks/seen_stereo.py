@@ -9,21 +9,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.api import BudgetRow, Buffer, Calibration, Core, Firmware, Frame, FrameSize
+from bfsim.api import BudgetRow, Calibration, Core, Firmware, Frame, FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, symbols_of
 from bfsim.recording import StereoFrame
 from bfsim.run import THESIS_LDF
 from firmware.buffers import buffers, calibration_buffers
-from firmware.exchange import exchange_buffers, share_lines
+from firmware.exchange import share_lines
 from firmware.line3d_store import LINE3D_WORDS, LINE3D_X0, LINE3D_Z1
 from firmware.modes import Mode
 from firmware.stages.edge_detection import edge_detection
 from firmware.stages.line_detection import line_detection
-from firmware.stages.line_refinement import RefinementThresholds, line_refinement
+from firmware.stages.line_refinement import line_refinement
 from firmware.stages.rectification import rectification
-from firmware.stages.stereo_lines import StereoLineThresholds, stereo_line_buffers, stereo_lines
+from firmware.stages.stereo_lines import stereo_lines
 
 STAGES = ("Edge detection", "Line detection", "3-D lines")
 
@@ -40,8 +40,6 @@ def see_stereo(
     frames: Sequence[StereoFrame],
     calibration: Calibration,
     mode: Mode,
-    refinement: RefinementThresholds,
-    stereo: StereoLineThresholds,
 ) -> list[SeenStereo]:
     """Return what the firmware finds in each of `frames`."""
     height, width2 = frames[0].left.shape
@@ -54,7 +52,7 @@ def see_stereo(
             yield from edge_detection(core, frame, mode.edges)
         with core.stage("Line detection"):
             count: int = yield from line_detection(core, frame, mode.lines)
-            yield from line_refinement(core, frame, count, refinement)
+            yield from line_refinement(core, frame, count, mode.refinement)
         return count
 
     def core_a(core: Core) -> Generator[Any, Any, None]:
@@ -62,7 +60,7 @@ def see_stereo(
             count = yield from features(core, frame)
             yield from core.wait("core B is done")
             with core.stage("3-D lines"):
-                number = yield from stereo_lines(core, frame, count, stereo)
+                number = yield from stereo_lines(core, frame, count, mode.stereo_lines)
             records = core.array("lines_3d").array[: number * LINE3D_WORDS].reshape(number, LINE3D_WORDS)
             found.append(records[:, LINE3D_X0 : LINE3D_Z1 + 1].reshape(number, 2, 3).astype(float))
             yield from core.post("core A is done")
@@ -76,7 +74,7 @@ def see_stereo(
 
     firmware = Firmware(
         mains={"A": core_a, "B": core_b},
-        buffers=_buffers,
+        buffers=buffers,
         camera="camera",
         rows=tuple(BudgetRow(stage=name, thesis_ms=None) for name in STAGES),
         calibration=calibration_buffers,
@@ -85,8 +83,3 @@ def see_stereo(
     outcome = Board(CM_BF561, firmware, size, link_map).run(iter(frames))
     costs = [{each.stage: each.elapsed_cclk for each in frame.cores[0].stages} for frame in outcome.frames]
     return [SeenStereo(*each) for each in zip(found, costs, strict=True)]
-
-
-def _buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
-    plain = buffers(size)
-    return {**plain, "A": (*plain["A"], *stereo_line_buffers()), "shared": exchange_buffers(size)}

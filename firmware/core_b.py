@@ -6,15 +6,16 @@ from collections.abc import Generator
 from typing import Any
 
 from bfsim.api import Core
+from firmware.exchange import share_edges, share_lines
 from firmware.features import features
 from firmware.modes import INDOOR_FIELD
-from firmware.results import store_word
 
 
 def core_b(core: Core) -> Generator[Any, Any, None]:
     """See every picture of the right camera. The cores end a frame together, to take the same next pair."""
     while (frame := (yield from core.next_frame())) is not None:
         found = yield from features(core, frame, INDOOR_FIELD)
-        yield core.run(store_word, core.array("right_edges"), found)
+        yield from share_lines(core, found.lines)
+        yield from share_edges(core, found.edges)
         yield from core.post("core B is done")
         yield from core.wait("core A is done")

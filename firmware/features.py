@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator
+from dataclasses import dataclass
 from typing import Any
 
 from bfsim.api import Core, Frame
@@ -10,20 +11,30 @@ from firmware.modes import Mode
 from firmware.stages.blob_detection import blob_detection
 from firmware.stages.edge_detection import edge_detection
 from firmware.stages.line_detection import line_detection
+from firmware.stages.line_refinement import line_refinement
 from firmware.stages.open_closing import open_closing
 from firmware.stages.rectification import rectification
 
 
-def features(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, int]:
-    """Leave edges, colours, blobs and lines of a picture in the core's memories; returns how many edges are stored."""
+@dataclass(frozen=True, slots=True)
+class Features:
+    """How many features of each kind a picture has in the core's memories."""
+
+    edges: int
+    lines: int
+
+
+def features(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, Features]:
+    """Leave edges, colours, blobs and lines of a picture in the core's memories."""
     with core.stage("Edge detection"):
         with core.stage("Rectification"):
             frame = yield from rectification(core, frame)
-        found = yield from edge_detection(core, frame, mode.edges)
+        edges = yield from edge_detection(core, frame, mode.edges)
     with core.stage("Open & closing"):
         yield from open_closing(core, frame)
     with core.stage("Blob detection"):
         yield from blob_detection(core, frame, mode.blobs)
     with core.stage("Line detection"):
-        yield from line_detection(core, frame, mode.lines)
-    return found
+        lines = yield from line_detection(core, frame, mode.lines)
+        yield from line_refinement(core, frame, lines, mode.refinement)
+    return Features(edges, lines)

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from firmware.line_store import SUBPIXELS
 from firmware.stages.blob_detection import BlobThresholds, hues
 from firmware.stages.edge_detection import EdgeThresholds
 from firmware.stages.line_detection import LineThresholds
+from firmware.stages.line_refinement import RefinementThresholds
+from firmware.stages.stereo_edges import StereoEdgeThresholds
+from firmware.stages.stereo_lines import Correspondence, StereoLineThresholds
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -16,6 +20,9 @@ class Mode:
     edges: EdgeThresholds
     blobs: BlobThresholds
     lines: LineThresholds
+    refinement: RefinementThresholds
+    stereo_lines: StereoLineThresholds
+    stereo_edges: StereoEdgeThresholds
 
 
 INDOOR_FIELD = Mode(
@@ -54,6 +61,32 @@ INDOOR_FIELD = Mode(
         # Twice this and lines of cluttered pictures are connected that have nothing to do with each other.
         muff_range=4,
         far_gap=24,
+    ),
+    refinement=RefinementThresholds(
+        # An edge is as wide as the lens and the pixels blur it: three pixels to both sides are enough, and few enough
+        # to keep other edges out.
+        reach=3,
+        # Six times the noise, and half of the least step that makes an edge.
+        min_step=6,
+    ),
+    stereo_lines=StereoLineThresholds(
+        correspondence=Correspondence.MUTUAL,
+        # 11 degrees. A line whose ends are 100 and 200 mm deep is turned by less from one picture to the other.
+        angle_range=8,
+        # The tangent of 22.5 degrees: the rows of flatter lines say little about columns.
+        min_rise=106,
+        # From the far end of the field, 5 m, to what both cameras just see, 9 cm.
+        min_disparity=2 * SUBPIXELS,
+        max_disparity=128 * SUBPIXELS,
+        # A line that is cut in one picture may lack half.
+        min_common=128,
+    ),
+    stereo_edges=StereoEdgeThresholds(
+        # As for lines; noise turns single edges more.
+        direction_range=8,
+        # 10 cm to 1.5 m: what is in the way soon. More pixels find more edges by chance.
+        min_disparity=8,
+        max_disparity=116,
     ),
 )
 """A FIRA field lit from above in a dark room, as in the recording that comes with bfsim, in pictures of 320x240."""

@@ -17,5 +17,5 @@ def one_core(core: Core) -> Generator[Any, Any, None]:
         found = yield from features(core, frame, INDOOR_FIELD)
         yield from core.receive(core.array("orders"))  # modes and models: taken, not obeyed yet
         message = core.array("results")
-        yield core.run(pack_results, message, frame.index & 0x7FFF, found, 0)
+        yield core.run(pack_results, message, frame.index & 0x7FFF, found.edges, 0)
         yield from core.send(message, 2 * MESSAGE_WORDS)

@@ -86,15 +86,18 @@ def stereo_edges_row(
                 disparity = x - i32(row[other] >> 16)
                 if EDGE3D_WORDS * found >= len(edges_3d):
                     found = found + 1
-                elif store_point(
-                    geometry,
-                    SUBPIXELS * x,
-                    SUBPIXELS * y,
-                    SUBPIXELS * disparity,
-                    width,
-                    height,
-                    edges_3d,
-                    EDGE3D_WORDS * found + EDGE3D_X,
+                elif (
+                    store_point(
+                        geometry,
+                        SUBPIXELS * x,
+                        SUBPIXELS * y,
+                        SUBPIXELS * disparity,
+                        width,
+                        height,
+                        edges_3d,
+                        EDGE3D_WORDS * found + EDGE3D_X,
+                    )
+                    != 0
                 ):
                     edges_3d[EDGE3D_WORDS * found + EDGE3D_LEFT] = edge
                     found = found + 1
