@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 
 from bfsim.api import Buffer, Buffers, Calibration, FrameSize, i16, u8, u16, u32
 from firmware.edge_store import EDGE_CAPACITY
+from firmware.exchange import exchange_buffers
 from firmware.geometry import geometry_buffer, thesis_geometry_buffer
 from firmware.models import model_buffers
 from firmware.results import MESSAGE_WORDS
@@ -24,6 +25,8 @@ from firmware.stages.object_detection import (
 )
 from firmware.stages.rectangle_detection import rectangle_buffers
 from firmware.stages.rectification import rectification_buffers
+from firmware.stages.stereo_edges import stereo_edge_buffers
+from firmware.stages.stereo_lines import stereo_line_buffers
 from firmware.tables import arctangent_table
 
 ORDERS_WORDS = 256  # room for a message of the strategy unit
@@ -33,9 +36,9 @@ CAMERA_FRAMES = 3  # one that is worked on, one that waits, one that is filled
 def buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     """Return the buffers of each core for pictures of `size`."""
     return {
-        "A": _left_buffers(size),
+        "A": (*_left_buffers(size), *stereo_line_buffers(), *stereo_edge_buffers()),
         "B": _core_buffers(size, camera="sdram_bank1", images="sdram_bank3"),
-        "shared": shared_object_buffers(),
+        "shared": (*exchange_buffers(size), *shared_object_buffers()),
     }
 
 

@@ -6,6 +6,7 @@ from collections.abc import Generator
 from typing import Any
 
 from bfsim.api import Core
+from firmware.exchange import share_edges, share_lines
 from firmware.features import features
 from firmware.modes import INDOOR_FIELD
 from firmware.stages.object_detection import right_sight
@@ -18,5 +19,7 @@ def core_b(core: Core) -> Generator[Any, Any, None]:
         found = yield from features(core, frame, mode)
         with core.stage("Object detection"):
             yield from right_sight(core, frame, found.outlines, mode.objects)
+        yield from share_lines(core, found.lines)
+        yield from share_edges(core, found.edges)
         yield from core.post("core B is done")
         yield from core.wait("core A is done")

@@ -12,6 +12,7 @@ from firmware.stages.blob_detection import blob_detection
 from firmware.stages.circle_detection import circle_detection
 from firmware.stages.edge_detection import edge_detection
 from firmware.stages.line_detection import line_detection
+from firmware.stages.line_refinement import line_refinement
 from firmware.stages.object_detection import Outlines
 from firmware.stages.open_closing import open_closing
 from firmware.stages.rectangle_detection import rectangle_detection
@@ -19,30 +20,31 @@ from firmware.stages.rectification import rectification
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Found:
-    """How many records a picture has in each store."""
+class Features:
+    """How many features of each kind a picture has in the core's memories."""
 
     edges: int
     lines: int
     outlines: Outlines
 
 
-def features(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, Found]:
-    """Leave edges, colours, blobs, lines and outlines of a picture in the core's memories; returns how many."""
+def features(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, Features]:
+    """Leave edges, colours, blobs, lines and outlines of a picture in the core's memories."""
     with core.stage("Edge detection"):
         with core.stage("Rectification"):
             frame = yield from rectification(core, frame)
-        found = yield from edge_detection(core, frame, mode.edges)
+        edges = yield from edge_detection(core, frame, mode.edges)
     with core.stage("Open & closing"):
         yield from open_closing(core, frame)
     with core.stage("Blob detection"):
         blobs = yield from blob_detection(core, frame, mode.blobs)
     with core.stage("Line detection"):
         lines = yield from line_detection(core, frame, mode.lines)
+        yield from line_refinement(core, frame, lines, mode.refinement)
     with core.stage("Shape detection"):
         circles = yield from circle_detection(core, frame, blobs, mode.ball_colours, mode.circles)
         rectangles = yield from rectangle_detection(
             core, blobs, lines, mode.rectangle_colours, mode.rectangles
         )
     outlines = Outlines(blobs=blobs, circles=circles, rectangles=rectangles)
-    return Found(edges=found, lines=lines, outlines=outlines)
+    return Features(edges=edges, lines=lines, outlines=outlines)

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from bfsim.api import Buffer, FirmwareError, FrameSize, Geometry, i32, kernel
+from bfsim.api import Buffer, FirmwareError, FrameSize, Geometry, i16, i32, kernel
 from firmware.line_store import SUBPIXELS
 
 GEOMETRY_FOCAL = 0  # focal length, 1/16 px
@@ -83,3 +83,22 @@ def beside_mm(geometry: i32[:], depth: i32, off_axis: i32) -> i32:
     """
     focal = geometry[GEOMETRY_FOCAL]
     return (2 * depth * off_axis + focal) // (2 * focal)
+
+
+@kernel
+def store_point(
+    geometry: i32[:], x: i32, y: i32, disparity: i32, width: i32, height: i32, words: i16[:], at: i32
+) -> i32:
+    """Store X, Y and Z of a point of the left picture of width x height pixels at word `at`; returns 1.
+
+    `x`, `y` and `disparity` are in 1/16 px. Of a point that is nowhere or too far away nothing is stored: 0.
+    """
+    depth = depth_mm(geometry, disparity)
+    across = beside_mm(geometry, depth, x - SUBPIXELS * (width - 1) // 2)
+    down = beside_mm(geometry, depth, y - SUBPIXELS * (height - 1) // 2)
+    if depth == 0 or abs(across) > FARTHEST_MM or abs(down) > FARTHEST_MM:
+        return 0
+    words[at] = across
+    words[at + 1] = down
+    words[at + 2] = depth
+    return 1

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from firmware.line_store import SUBPIXELS
 from firmware.models import MODELS, ObjectModel, colour_groups, rectangular_colours, spherical_colours
 from firmware.stages.blob_detection import BlobThresholds
 from firmware.stages.circle_detection import CircleThresholds
 from firmware.stages.edge_detection import EdgeThresholds
 from firmware.stages.line_detection import LineThresholds
+from firmware.stages.line_refinement import RefinementThresholds
 from firmware.stages.object_detection import ObjectThresholds
 from firmware.stages.rectangle_detection import RectangleThresholds
+from firmware.stages.stereo_edges import StereoEdgeThresholds
+from firmware.stages.stereo_lines import Correspondence, StereoLineThresholds
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,6 +28,9 @@ class Mode:
     rectangles: RectangleThresholds
     objects: ObjectThresholds
     models: tuple[ObjectModel, ...]
+    refinement: RefinementThresholds
+    stereo_lines: StereoLineThresholds
+    stereo_edges: StereoEdgeThresholds
 
     @property
     def ball_colours(self) -> int:
@@ -37,23 +44,37 @@ class Mode:
 
 
 FITTED_CIRCLES = CircleThresholds(
+    # The smoothing before edges and colours, 1 px each, and what the opening takes off the outline.
     border=4,
+    # 34 degrees. The centre of mass of half a disc lies 0.42 of the radius off the centre: seen from the outline up to 25.
     angle_range=24,
-    dark_balls=True,
+    # The floor is dark, the ball is lit. What gradients of both ways add are mirror images and shadows.
+    dark_balls=False,
+    # A ball of 6 cm that is hidden by half and 200 mm away has its centre so far off its centre of mass.
     patch_reach=32,
     peak_reach=1,
+    # A ball with the smallest blob, 36 pixels, has an outline of 20.
     min_edges=12,
+    # A quarter: half of a ball with a seam has that, clutter at the most half as much.
     centre_share=64,
     min_peak=12,
-    radius_share=64,
-    fit_rounds=3,
-    fit_range=2,
-    edge_shift=32,
+    # Balls in a crowd still have 0.38.
+    radius_share=96,
+    fit_rounds=4,
+    # The first circle is off by 2 px where the ball is dark at the bottom.
+    fit_range=3,
 )
+"""As fine as the picture allows [ours]."""
 
 PLAIN_CIRCLES = replace(
-    FITTED_CIRCLES, peak_reach=0, fit_rounds=0, edge_shift=0, centre_share=16, radius_share=32
+    FITTED_CIRCLES,
+    peak_reach=0,
+    # Single cells and bins hold a third of what three do.
+    centre_share=21,
+    radius_share=32,
+    fit_rounds=0,
 )
+"""The behaviour of the thesis: whole pixels, from peaks of single cells (T §5.2.4)."""
 
 INDOOR_FIELD = Mode(
     edges=EdgeThresholds(
@@ -132,5 +153,31 @@ INDOOR_FIELD = Mode(
         apart_max=80,
     ),
     models=MODELS,
+    refinement=RefinementThresholds(
+        # An edge is as wide as the lens and the pixels blur it: three pixels to both sides are enough, and few enough
+        # to keep other edges out.
+        reach=3,
+        # Six times the noise, and half of the least step that makes an edge.
+        min_step=6,
+    ),
+    stereo_lines=StereoLineThresholds(
+        correspondence=Correspondence.MUTUAL,
+        # 11 degrees. A line whose ends are 100 and 200 mm deep is turned by less from one picture to the other.
+        angle_range=8,
+        # The tangent of 22.5 degrees: the rows of flatter lines say little about columns.
+        min_rise=106,
+        # From the far end of the field, 5 m, to what both cameras just see, 9 cm.
+        min_disparity=2 * SUBPIXELS,
+        max_disparity=128 * SUBPIXELS,
+        # A line that is cut in one picture may lack half.
+        min_common=128,
+    ),
+    stereo_edges=StereoEdgeThresholds(
+        # As for lines; noise turns single edges more.
+        direction_range=8,
+        # 10 cm to 1.5 m: what is in the way soon. More pixels find more edges by chance.
+        min_disparity=8,
+        max_disparity=116,
+    ),
 )
 """A FIRA field lit from above in a dark room, as in the recording that comes with bfsim, in pictures of 320x240."""
