@@ -143,10 +143,6 @@ INDOOR_FIELD = Mode(
         # A ball of 6 cm that is nearer than 15 cm is not in the picture as a whole: 386 px x 30.47 mm / 150 mm.
         disparity_max=78,
         refined=True,
-        # The foot of a ball lies in its own shade and a robot's mark mirrors in its body: a pixel. Both cameras see that
-        # alike, and the centres of fitted shapes are a quarter of a pixel apart from where they should be.
-        extent_error=16,
-        disparity_error=4,
         # A second at 5 frames a second.
         age_max=5,
         # A robot that turns by 90 degrees a second turns by 18 degrees in a frame.

@@ -40,9 +40,6 @@ class ObjectThresholds:
     `refined`: whether the disparity helps to measure, and a ball is taken for the sphere that it is; without it the
     distance is that of the thesis (T Eq. 4.1, the mean of both cameras).
 
-    `extent_error`, `disparity_error`: how wrong the extent of an object is likely to be, and its disparity, in 1/16 px; 1 or
-    more.
-
     `age_max`: for how many frames an object that is not seen stays in the history. `apart_max`: how far it may have moved
     in the picture since the last frame, of 256 for a focal length.
     """
@@ -60,8 +57,6 @@ class ObjectThresholds:
     row_range: int
     disparity_max: int
     refined: bool
-    extent_error: int
-    disparity_error: int
     age_max: int
     apart_max: int
 
@@ -71,9 +66,6 @@ class ObjectThresholds:
                 f"the weights of the tests must be 0 or more, {LARGEST_ACCURACY} together at most, "
                 f"not {', '.join(map(str, self.weights))}"
             )
-        if min(self.extent_error, self.disparity_error) < 1:
-            errors = f"{self.extent_error} and {self.disparity_error}"
-            raise ValueError(f"extent_error and disparity_error must be 1 or more, not {errors}")
 
     @property
     def weights(self) -> tuple[int, ...]:
@@ -159,10 +151,7 @@ def object_detection(core: Core, thresholds: ObjectThresholds) -> Generator[Any,
     left, right = core.array("left_seen"), core.array("right_seen")
     lengths = SUBPIXELS * thresholds.row_range, SUBPIXELS * thresholds.disparity_max
     weight, refined = thresholds.camera_weight, int(thresholds.refined)
-    errors = thresholds.extent_error, thresholds.disparity_error
-    verified = yield core.run(
-        verify_objects, core.array("geometry"), left, right, *lengths, weight, refined, *errors
-    )
+    verified = yield core.run(verify_objects, core.array("geometry"), left, right, *lengths, weight, refined)
     core.publish(verified=verified)
     yield from remember(core, (left, right), thresholds)
 

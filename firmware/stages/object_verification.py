@@ -1,14 +1,15 @@
 """The second camera: an object that both see is more certain, and better placed (T §5.2.6).
 
 The thesis takes the mean of what the cameras measure. [ours] is `refined`: where both have found the shape, the disparity
-of its two images measures the depth once more, free of what both cameras get wrong alike. Of two depths the one counts
-more that a likely error falsifies less: each has the weight of its pixels by their error, squared.
+of its two images measures the depth once more. Of two depths the one counts more that is measured by more pixels: an error
+of a pixel is then a smaller part of it, so each has the weight of its pixels squared.
 """
 
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel
 from firmware.geometry import GEOMETRY_BASELINE, MICROMETRES, depth_mm
+from firmware.line_store import SUBPIXELS
 from firmware.object_store import (
     BY_DISPARITY,
     NO_MODEL,
@@ -30,10 +31,11 @@ from firmware.object_store import (
     SIZE_TEST,
     VERIFIED,
 )
+from firmware.stages.object_places import HALF_PIXEL
 
 NOBODY = -1
 LARGEST_ACCURACY = 255
-SHARPEST = 128  # squared, times a depth of 16 bits and the two weights of a sum, it stays in 32 bits
+MOST_PIXELS = 128  # squared, times a depth of 16 bits and the two weights of a sum, it stays in 32 bits
 
 
 @kernel
@@ -102,10 +104,10 @@ def average_places(left: i16[:], one: i32, right: i16[:], other: i32) -> None:
 
 
 @kernel
-def weight_of(extent: i32, error: i32) -> i32:
-    """Return the weight of a depth that is measured by an extent with an error, both in 1/16 px; at least 1."""
-    sharpness = max(min(extent // error, SHARPEST), 1)
-    return sharpness * sharpness
+def weight_of(extent: i32) -> i32:
+    """Return the weight of a depth that is measured by `extent` 1/16 px; at least 1."""
+    pixels = max(min((extent + HALF_PIXEL) // SUBPIXELS, MOST_PIXELS), 1)
+    return pixels * pixels
 
 
 @kernel
@@ -116,17 +118,15 @@ def weighted(one: i32, weight: i32, other: i32, other_weight: i32) -> i32:
 
 
 @kernel
-def refine_place(
-    geometry: i32[:], left: i16[:], one: i32, disparity: i32, extent_error: i32, disparity_error: i32
-) -> None:
+def refine_place(geometry: i32[:], left: i16[:], one: i32, disparity: i32) -> None:
     """Move an object along the way to it, to where its disparity in 1/16 px and its own measure together have it."""
     at = one * OBJECT_WORDS
     depth = i32(left[at + OBJECT_Z])
     by_disparity = depth_mm(geometry, disparity)
     if by_disparity == 0 or left[at + OBJECT_MEASURES] == 0:
         return
-    own = weight_of(i32(left[at + OBJECT_EXTENT]), extent_error)
-    better = weighted(depth, own, by_disparity, weight_of(disparity, disparity_error))
+    own = weight_of(i32(left[at + OBJECT_EXTENT]))
+    better = weighted(depth, own, by_disparity, weight_of(disparity))
     left[at + OBJECT_X] = (left[at + OBJECT_X] * better + (depth >> 1)) // depth
     left[at + OBJECT_Y] = (left[at + OBJECT_Y] * better + (depth >> 1)) // depth
     left[at + OBJECT_Z] = better
@@ -142,8 +142,6 @@ def verify_objects(
     disparity_max: i32,
     weight: i32,
     refined: i32,
-    extent_error: i32,
-    disparity_error: i32,
 ) -> i32:
     """Make one object of each pair that both cameras see, in `left`; returns how many pairs there are.
 
@@ -164,7 +162,7 @@ def verify_objects(
                 shape_in_both = left[at + OBJECT_TESTS] & right[to + OBJECT_TESTS] & SIZE_TEST
                 if refined != 0 and shape_in_both != 0:
                     disparity = left[at + OBJECT_IMAGE_X] - right[to + OBJECT_IMAGE_X]
-                    refine_place(geometry, left, one, disparity, extent_error, disparity_error)
+                    refine_place(geometry, left, one, disparity)
                 accuracy = max(left[at + OBJECT_ACCURACY], right[to + OBJECT_ACCURACY])
                 left[at + OBJECT_ACCURACY] = min(accuracy + weight, LARGEST_ACCURACY)
                 left[at + OBJECT_TESTS] = left[at + OBJECT_TESTS] | right[to + OBJECT_TESTS] | VERIFIED
