@@ -2,7 +2,7 @@
 
 All stages see the area only, as if it were the picture: its lines are cropped by the DMA, which begins further right
 and takes fewer bytes, and the buffers are those of a picture of that size. So are all coordinates that stages leave in
-memory. Whoever leads from there to the world shifts the principal point by the area's corner: `principal_point`.
+memory. The geometry has where the principal point is in them, and the report of a frame the corner of the area.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from bfsim.api import CameraSettings, Core, Frame, FrameSize
 from firmware.fields import allowed
 from firmware.line_store import SUBPIXELS
 
+HALF_PIXEL = SUBPIXELS // 2
 LARGEST_PX = 4094  # twelve bits
 LEAST_AREA_PX = 16  # each way: the stages' windows and borders take up to 6 [ours]
 
@@ -84,7 +85,12 @@ def cropped(core: Core, frame: Frame, area: Area) -> Frame:
     return Frame(frame.index, lines, area.width, area.height)
 
 
-def principal_point(frame: Frame, area: Area) -> tuple[int, int]:
-    """Return the principal point, the middle of the whole picture, in the area's coordinates, in 1/16 px."""
-    half = SUBPIXELS // 2
-    return half * (frame.width - 1) - SUBPIXELS * area.x, half * (frame.height - 1) - SUBPIXELS * area.y
+def principal_shift(frame: Frame, area: Area, halvings: int) -> tuple[int, int]:
+    """Return how far the principal point is from the middle of the area, in x and y, in 1/16 px.
+
+    It is the middle of the recorded picture; `frame` is one that was halved so often. A sensor that skips pixels sends
+    the first of each two or four, which lies left of their middle.
+    """
+    first = HALF_PIXEL - (HALF_PIXEL >> halvings)
+    across = HALF_PIXEL * (frame.width - area.width - 2 * area.x) + first
+    return across, HALF_PIXEL * (frame.height - area.height - 2 * area.y) + first

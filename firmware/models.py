@@ -134,6 +134,11 @@ def spherical_colours(models: Iterable[ObjectModel]) -> int:
     return reduce(or_, (each.colours for each in models if each.shape == Shape.BALL), 0)
 
 
+def rectangular_colours(models: Iterable[ObjectModel]) -> int:
+    """Return the colours of the models that are rectangles, for the rectangle detection."""
+    return reduce(or_, (each.colours for each in models if each.shape != Shape.BALL), 0)
+
+
 def model_words(models: Sequence[ObjectModel]) -> NDArray[np.int32]:
     """Return the contents of `models` for these models. Raises FirmwareError as `check_models`."""
     check_models(models)

@@ -8,15 +8,16 @@ its words, and a table of models all its models; how many words those are is the
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.api import Buffer, Core, FirmwareError, Frame, FrameSize, Row, i32, u16
-from firmware.areas import LEAST_AREA_PX, Area, see
+from firmware.areas import LEAST_AREA_PX, Area, principal_shift, see
 from firmware.fields import Word, from_words, named_words, to_words, words_of
+from firmware.geometry import look_at
 from firmware.models import (
     MODEL_CAPACITY,
     MODEL_NUMBER,
@@ -48,17 +49,6 @@ MODE_WORDS = words_of(Mode)
 MODEL_FIELDS = words_of(ObjectModel)
 _NAMES = [each.name for each in MODE_WORDS]
 CAMERA, AREA = _NAMES.index("camera.width"), _NAMES.index("area.x")
-
-
-@dataclass(frozen=True, slots=True)
-class Orders:
-    """What the cores obey in a frame."""
-
-    mode: Mode
-    models: tuple[ObjectModel, ...]
-
-
-STARTING = Orders(INDOOR_FIELD, MODELS)
 
 
 def shared_order_buffers(size: FrameSize, section: str) -> Sequence[Buffer]:
@@ -125,29 +115,33 @@ def _obey(core: Core, message: Row, nbytes: int) -> Generator[Any, Any, int]:
     return refusal
 
 
-def see_by(core: Core, frame: Frame, mode: Mode) -> Area:
+def see_by(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, Area]:
     """Look at what of a picture the mode wants, and set the camera for the next ones; returns the area that is seen."""
-    return see(core, frame, mode.camera, mode.area, _full_size(core))
+    full = _full_size(core)
+    area = see(core, frame, mode.camera, mode.area, full)
+    halvings = (full.width_px // frame.width).bit_length() - 1
+    yield core.run(look_at, core.array("geometry"), *principal_shift(frame, area, halvings), halvings)
+    return area
 
 
 def _full_size(core: Core) -> FrameSize:
     return FrameSize(*core.array("full_size").array.tolist())
 
 
-def read_orders(core: Core) -> Generator[Any, Any, Orders]:
+def read_mode(core: Core) -> Generator[Any, Any, Mode]:
     """Copy the orders in force into the core's own memory, for this frame, and return them."""
     own = core.array("mode"), core.array("models")
     for name, copy in zip(("ordered_mode", "ordered_models"), own, strict=True):
         yield core.run(copy_words, core.array(name), copy)
-    return orders_in(*(each.array for each in own))
+    return mode_in(*(each.array for each in own))
 
 
-def orders_in(mode: NDArray[np.int32], models: NDArray[np.int32]) -> Orders:
-    """Return the orders that are in memory."""
-    records = [each for each in models.reshape(-1, MODEL_WORDS) if each[MODEL_NUMBER]]
-    known = tuple(_model(each) for each in records)
+def mode_in(mode: NDArray[np.int32], models: NDArray[np.int32]) -> Mode:
+    """Return the mode and the models that are in memory."""
+    known = tuple(_model(each) for each in models.reshape(-1, MODEL_WORDS) if each[MODEL_NUMBER])
     ordered = from_words(INDOOR_FIELD, mode.tolist())
-    return Orders(replace(ordered, blobs=replace(ordered.blobs, colour_groups=colour_groups(known))), known)
+    blobs = replace(ordered.blobs, colour_groups=colour_groups(known))
+    return replace(ordered, blobs=blobs, models=known)
 
 
 def _model(words: NDArray[np.int32]) -> ObjectModel:
