@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bfsim.api import Firmware, FrameSize
+from bfsim.api import Calibration, Firmware, FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.chip.sensors import LEFT_CAMERA, RIGHT_CAMERA
 from bfsim.linker import link, parse_ldf
@@ -20,7 +20,7 @@ from bfsim.machine.strategy import ScriptedMessage
 from bfsim.recording import StereoFrame
 from bfsim.run import PLACEMENTS, THESIS_LDF
 from firmware import tinyphoon
-from firmware.areas import Area, area_in, principal_point
+from firmware.areas import Area, area_in, principal_shift
 from firmware.orders import mode_payload
 from tests.firmware.lenses import rectified
 from tests.firmware.pictures import Bytes
@@ -90,7 +90,9 @@ def test_an_area_of_a_rectified_picture(area: tuple[int, int, int, int]) -> None
     """The same as the area of the picture that is rectified whole."""
     frames = random_frames(64, 48, count=2)
     sources = tables(64, 48)
-    board, outcome = run(frames, {"area": list(area)}, firmware=tinyphoon.rectifying(sources))
+    board, outcome = run(
+        frames, {"area": list(area)}, firmware=tinyphoon.calibrated(Calibration(sources=sources))
+    )
     left, right = (
         part(rectified(uyvy, sources[core]), area)
         for core, uyvy in (("A", frames[-1].left), ("B", frames[-1].right))
@@ -113,13 +115,34 @@ def test_a_smaller_area_takes_less_time() -> None:
         assert 0.2 < area[stage] / whole[stage] < 0.3
 
 
+def principal_point(width: int, area: Area, halvings: int) -> float:
+    """Where in the area the principal point is, in pixels, of which the recorded picture has `width` in a row."""
+    frame: Any = type("Frame", (), {"width": width >> halvings, "height": 48 >> halvings})
+    shift, _ = principal_shift(frame, area, halvings)
+    return (area.width - 1) / 2 + shift / 16
+
+
 def test_the_principal_point_moves_with_the_area() -> None:
-    """It stays at the same pixel of the picture; in 1/16 px."""
-    (frame,) = random_frames(64, 48, count=1)
-    seen: Any = type("Seen", (), {"width": frame.left.shape[1] // 2, "height": frame.left.shape[0]})
-    assert principal_point(seen, Area(width=64, height=48)) == (8 * 63, 8 * 47)
-    assert principal_point(seen, Area(x=10, y=20, width=16, height=16)) == (8 * 63 - 160, 8 * 47 - 320)
-    assert area_in(seen, Area(x=10, y=40, width=16, height=16)) == Area(width=64, height=48)
+    """It stays at the same place of the picture, between two pixels."""
+    assert principal_point(64, Area(width=64, height=48), 0) == 31.5
+    assert principal_point(64, Area(x=10, y=20, width=16, height=16), 0) == 21.5
+    assert principal_point(64, Area(x=40, y=20, width=24, height=16), 0) == -8.5
+
+
+@pytest.mark.parametrize("halvings", [1, 2])
+def test_the_principal_point_of_smaller_pictures(halvings: int) -> None:
+    """Pixel k of these is pixel 2 k, or 4 k, of the recorded one."""
+    area = Area(x=2, y=0, width=8, height=8)
+    assert (principal_point(64, area, halvings) + area.x) * 2**halvings == 31.5
+
+
+def test_the_area_is_the_whole_picture_while_it_does_not_lie_in_it() -> None:
+    """As long as pictures of the size before are on their way."""
+    frame: Any = type("Frame", (), {"width": 64, "height": 48})
+    whole = Area(width=64, height=48)
+    assert area_in(frame, Area(x=10, y=40, width=16, height=16)) == whole
+    assert area_in(frame, Area()) == whole
+    assert area_in(frame, whole) == whole
 
 
 # ---- smaller pictures

@@ -38,12 +38,13 @@ from firmware.orders import (
     MESSAGE_WORDS,
     MODE_WORDS,
     MODEL_FIELDS,
+    mode_in,
     mode_payload,
     models_payload,
-    orders_in,
     payload,
     shared_order_buffers,
 )
+from firmware.results import decode_results
 from tests.firmware.test_stages import buffer, random_frames
 
 FULL = FrameSize(320, 240)
@@ -113,7 +114,7 @@ def test_a_mode_there_and_back(mode: Mode) -> None:
     assert refusal_of_mode(to_words(mode)) == 0
     stored = np.zeros(len(MODE_WORDS), np.int32)
     store_order(message, stored)
-    assert orders_in(stored, model_words(MODELS)).mode == mode
+    assert mode_in(stored, model_words(MODELS)) == mode
 
 
 def test_what_is_not_named_is_as_at_the_start() -> None:
@@ -291,9 +292,9 @@ def test_models_there_and_back() -> None:
         assert refusal_of_models(words) == 0
         stored = np.full(8 * 8, 77, np.int32)
         store_order(framed(MessageType.MODELS, [word for each in words for word in each]), stored)
-        orders = orders_in(np.array(GOOD), stored)
-        assert orders.models == models
-        assert orders.mode.blobs.colour_groups == tuple(sorted({each.colours for each in models}))
+        mode = mode_in(np.array(GOOD), stored)
+        assert mode.models == models
+        assert mode.blobs.colour_groups == tuple(sorted({each.colours for each in models}))
 
 
 @pytest.mark.parametrize(
@@ -442,7 +443,7 @@ def test_a_bad_order_is_counted_and_told_and_the_last_good_mode_stays() -> None:
     for one, other in zip(outcome.frames, alone.frames, strict=True):
         for name in ("edges_A", "edges_B", "lines_A", "blobs_B"):
             assert one.results[name] == other.results[name]
-    told = [each.message.payload[8] for each in board._spi._strategy.received]
+    told = [decode_results(each.message.payload).refusal for each in board._spi._strategy.received]
     assert told == [0, checks.CUT_SHORT, 0, 0], "the reason of the last one"
 
 
