@@ -33,7 +33,6 @@ from bfsim.report.tables import new_table, percent
 from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF, calibration_of
 from bfsim.terminal import print_report, progress_bar
 from firmware import tinyphoon
-from firmware.areas import WHOLE_PICTURE, area_in
 from firmware.modes import INDOOR_FIELD
 from firmware.stages.edge_detection import EdgeThresholds, edge_detection
 from firmware.stages.rectification import rectification
@@ -83,7 +82,7 @@ def edges_only(thresholds: EdgeThresholds) -> Firmware:
     def main(core: Core) -> Generator[Any, Any, None]:
         while (frame := (yield from core.next_frame())) is not None:
             with core.stage("Edge detection"):
-                frame = yield from rectification(core, frame, area_in(frame, WHOLE_PICTURE))
+                frame = yield from rectification(core, frame)
                 yield from edge_detection(core, frame, thresholds)
 
     return replace(tinyphoon, mains={"A": main, "B": main})

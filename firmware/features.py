@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bfsim.api import Core, Frame
-from firmware.areas import Area
+from firmware.areas import WHOLE_PICTURE, Area
 from firmware.modes import Mode
 from firmware.stages.blob_detection import blob_detection
 from firmware.stages.circle_detection import circle_detection
@@ -30,7 +30,9 @@ class Features:
     outlines: Outlines
 
 
-def features(core: Core, frame: Frame, area: Area, mode: Mode) -> Generator[Any, Any, Features]:
+def features(
+    core: Core, frame: Frame, mode: Mode, area: Area = WHOLE_PICTURE
+) -> Generator[Any, Any, Features]:
     """Leave edges, colours, blobs, lines and outlines of an area in the core's memories, in its coordinates."""
     with core.stage("Edge detection"):
         with core.stage("Rectification"):

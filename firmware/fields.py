@@ -25,7 +25,8 @@ Numbers = TypeVar("Numbers")
 class Word:
     """A word: its name, such as edges.gauss_px, and what it may be.
 
-    From `lowest` to `highest` in steps of `step`, a power of two, and not above the word called `at_most`.
+    From `lowest` to `highest` in steps of `step`, a power of two, and not above the word called `at_most`. Words with a
+    `total` make that together at most.
     """
 
     name: str
@@ -33,6 +34,7 @@ class Word:
     highest: int = HIGHEST
     step: int = 1
     at_most: str
+    total: int = 0
 
     @property
     def demand(self) -> str:
@@ -42,10 +44,19 @@ class Word:
 
 
 def allowed(
-    lowest: int, highest: int, *, step: int = 1, at_most: str | None = None, default: int | None = None
+    lowest: int,
+    highest: int,
+    *,
+    step: int = 1,
+    at_most: str | None = None,
+    total: int = 0,
+    default: int | None = None,
 ) -> Any:
-    """Declare a field with the numbers that it may be. `at_most`: the field beside it that it must not exceed."""
-    limits = {"lowest": lowest, "highest": highest, "step": step, "at_most": at_most}
+    """Declare a field with the numbers that it may be.
+
+    `at_most`: the field beside it that it must not exceed. `total`: what all fields with one may be together.
+    """
+    limits = {"lowest": lowest, "highest": highest, "step": step, "at_most": at_most, "total": total}
     return field(metadata=limits) if default is None else field(default=default, metadata=limits)
 
 

@@ -17,7 +17,7 @@ def one_core(core: Core) -> Generator[Any, Any, None]:
     while (frame := (yield from core.next_frame())) is not None:
         mode = yield from read_mode(core)
         area = yield from see_by(core, frame, mode)
-        found = yield from features(core, frame, area, mode)
+        found = yield from features(core, frame, mode, area)
         with core.stage("Object detection"):
             yield from left_sight(core, found.frame, found.outlines, mode.objects)
             yield from remember(core, [core.array("left_seen")], mode.objects)

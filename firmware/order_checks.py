@@ -32,6 +32,7 @@ BALL_SIZE = 11
 SAME_NUMBER = 12
 SHARED_COLOURS = 13
 SAME_MODEL = 14
+TOTAL = 15
 WHICH_BIT = 8
 
 # What a word may be: a struct of these for each word of a record.
@@ -39,7 +40,8 @@ LIMIT_LOWEST = 0
 LIMIT_HIGHEST = 1
 LIMIT_STEP = 2  # a power of two
 LIMIT_AT_MOST = 3  # the word of the same record that this one must not exceed; itself for none
-LIMIT_WORDS = 4
+LIMIT_TOTAL = 4  # what the words with one may be together; 0 for none
+LIMIT_WORDS = 5
 
 BALL = 1  # firmware.models.Shape.BALL
 
@@ -94,6 +96,7 @@ def words_refusal(message: u16[:], limits: i32[:], most: i32) -> i32:
         return LENGTH
     for record in range(records):
         first = record * words
+        total = 0
         for word in range(words):
             value = order_word(message, first + word)
             at = word * LIMIT_WORDS
@@ -106,6 +109,10 @@ def words_refusal(message: u16[:], limits: i32[:], most: i32) -> i32:
                 return RANGE | first + word << WHICH_BIT
             if value > order_word(message, first + limits[at + LIMIT_AT_MOST]):
                 return ABOVE | first + word << WHICH_BIT
+            if limits[at + LIMIT_TOTAL] != 0:
+                total = total + value
+                if total > limits[at + LIMIT_TOTAL]:
+                    return TOTAL | first + word << WHICH_BIT
     return 0
 
 

@@ -28,6 +28,7 @@ from firmware.order_checks import (
     SHARED_COLOURS,
     SIZE,
     TOO_LONG,
+    TOTAL,
     TYPE,
     WHICH_BIT,
 )
@@ -87,6 +88,9 @@ def _order_text(
         return (
             f"{word.name} must be at most {word.at_most}, which is {values[other]}, not {values[which]}{at}"
         )
+    if reason == TOTAL:
+        added = [each.name for each in words if each.total]
+        return f"{', '.join(added)} must be at most {words[which].total} together"
     if reason in (SIZE, AREA):
         camera, area = values[names.index("camera.width") :][:2], values[names.index("area.x") :][:4]
         size = FrameSize(*camera) if camera[0] else full

@@ -70,7 +70,7 @@ def order_buffers() -> Sequence[Buffer]:
 
 def _limits(name: str, words: Sequence[Word], section: str) -> Buffer:
     names = [each.name for each in words]
-    limits = [(each.lowest, each.highest, each.step, names.index(each.at_most)) for each in words]
+    limits = [(each.lowest, each.highest, each.step, names.index(each.at_most), each.total) for each in words]
     return Buffer(name, i32, LIMIT_WORDS * len(words), section, values=np.ravel(limits))
 
 

@@ -6,13 +6,15 @@ from collections.abc import Generator
 from typing import Any
 
 from bfsim.api import Core, Frame
-from firmware.areas import Area
+from firmware.areas import WHOLE_PICTURE, Area
 from firmware.results import close_message, pack_goal_lines, pack_objects
 
 SEQUENCE_MASK = 0x7FFF
 
 
-def report(core: Core, frame: Frame, area: Area, refusal: int) -> Generator[Any, Any, None]:
+def report(
+    core: Core, frame: Frame, area: Area = WHOLE_PICTURE, refusal: int = 0
+) -> Generator[Any, Any, None]:
     """Send the object history and the lines of the goals in the left picture to the strategy unit.
 
     `refusal`: why an order was refused, or 0.

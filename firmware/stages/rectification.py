@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.api import Buffer, Buffers, Core, FirmwareError, Frame, SourcePixels, i32, kernel, u8, u16
-from firmware.areas import Area, cropped
+from firmware.areas import WHOLE_PICTURE, Area, area_in, cropped
 
 BLACK_PAIR = (128, 0, 128, 0)  # U Y V Y
 PLACES = 1 << 16  # an entry has 16 bits
@@ -85,11 +85,12 @@ def _core_buffers(core: str, sources: SourcePixels) -> Sequence[Buffer]:
     )
 
 
-def rectification(core: Core, frame: Frame, area: Area) -> Generator[Any, Any, Frame]:
+def rectification(core: Core, frame: Frame, area: Area = WHOLE_PICTURE) -> Generator[Any, Any, Frame]:
     """Rectify an area of a picture in one pass of DMA lines; leaves `rectified_image` in SDRAM and returns it as a frame.
 
     A picture of a recording without tables is taken as rectified: its area is returned.
     """
+    area = area_in(frame, area)
     if not core.has_buffer("camera_window"):
         return cropped(core, frame, area)
     window, reached = core.array("camera_window"), core.array("lines_reached")

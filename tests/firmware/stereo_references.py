@@ -109,25 +109,52 @@ def line_3d(rig: Rig, line: Words, other: Words) -> tuple[Point, Point] | None:
     return (ends[0], ends[1]) if ends[0] and ends[1] else None
 
 
+Edge = tuple[int, int, int]
+"""x, direction, gradient."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EdgeLimits:
+    """As in the mode of the firmware."""
+
+    is_mutual: bool
+    level_range: int
+    direction_range: int
+    min_disparity: int
+    max_disparity: int
+
+    def best(self, edge: Edge, others: Sequence[Edge], side: int) -> Edge | None:
+        """The edge that corresponds: the nearest, or the most similar one and then the nearest."""
+        x, direction, gradient = edge
+        fitting = []
+        for other in others:
+            disparity, off = side * (x - other[0]), turn(other[1], direction)
+            if (
+                self.min_disparity <= disparity <= self.max_disparity
+                and off <= self.direction_range
+                and not self.is_level(other)
+            ):
+                unlike = 2 * off + abs(other[2] - gradient) if self.is_mutual else 0
+                fitting.append((unlike, disparity, other))
+        return min(fitting)[2] if fitting else None
+
+    def is_level(self, edge: Edge) -> bool:
+        """Whether a gradient is too near to up or down."""
+        return min(turn(edge[1], 64), turn(edge[1], 192)) < self.level_range
+
+
 def edges_3d(
-    rig: Rig,
-    left: Sequence[Sequence[tuple[int, int]]],
-    right: Sequence[Sequence[tuple[int, int]]],
-    direction_range: int,
-    disparities: tuple[int, int],
+    rig: Rig, left: Sequence[Sequence[Edge]], right: Sequence[Sequence[Edge]], limits: EdgeLimits
 ) -> list[tuple[int, ...]]:
-    """3-D edges of rows of (x, direction), from the bottom row on: X, Y, Z and the number of the left edge."""
+    """3-D edges from the bottom row on: X, Y, Z and the number of the left edge in the store."""
     found = []
     for y in reversed(range(len(left))):
         first = sum(len(row) for row in left[:y])
-        for number, (x, direction) in enumerate(left[y]):
-            fitting = [
-                x - other
-                for other, other_direction in right[y]
-                if disparities[0] <= x - other <= disparities[1]
-                and turn(other_direction, direction) <= direction_range
-            ]
-            point = rig.point(16 * x, 16 * y, 16 * min(fitting)) if fitting else None
+        for number, edge in enumerate(left[y]):
+            other = None if limits.is_level(edge) else limits.best(edge, right[y], 1)
+            if other is None or (limits.is_mutual and limits.best(other, left[y], -1) != edge):
+                continue
+            point = rig.point(16 * edge[0], 16 * y, 16 * (edge[0] - other[0]))
             if point:
                 found.append((*point, first + number))
     return found
