@@ -188,7 +188,9 @@ def circles_of(
     for each in circle_buffers():
         values = np.full(each.columns, GARBAGE, each.element.dtype) if each.values is None else each.values
         core.arrays[each.name] = [np.array(values, each.element.dtype)]
-    task = circle_detection(core, CircleFrame(width, height, list(picture.uyvy)), len(picture.blobs), colours, thresholds)
+    task = circle_detection(
+        core, CircleFrame(width, height, list(picture.uyvy)), len(picture.blobs), colours, thresholds
+    )
     value = None
     try:
         while True:
