@@ -261,3 +261,114 @@ def sight(
             if seen[weakest]["accuracy"] < accuracy:
                 seen[weakest] = found
     return seen, count
+
+
+# Verification
+
+
+def disparity_depth(geometry: Sequence[int], disparity: int) -> int:
+    """The depth in mm of a disparity in 1/16 px, 0 for none."""
+    if disparity <= 0:
+        return 0
+    depth = (geometry[FOCAL] * geometry[BASELINE] // disparity + 500) // 1000
+    return depth if depth <= FARTHEST else 0
+
+
+def unlikeness(one: Record, other: Record, row_range: int, disparity_max: int) -> int | None:
+    """How unlike two objects are; None if they cannot be the same."""
+    rows = abs(one["image_y"] - other["image_y"])
+    disparity = one["image_x"] - other["image_x"]
+    if one["model"] != other["model"] or rows > row_range or not -row_range <= disparity <= disparity_max:
+        return None
+    return rows + abs(one["width"] - other["width"])
+
+
+def verified(
+    left: Sequence[Record],
+    right: Sequence[Record],
+    geometry: Sequence[int],
+    row_range: int,
+    disparity_max: int,
+    weight: int,
+    refined: bool,
+) -> tuple[list[Record], list[Record]]:
+    """The objects of the left camera, made better by the right one's; and what the right one has beside, free ones too."""
+    baseline = (geometry[BASELINE] + 500) // 1000
+    others = [each | ({"x": each["x"] + baseline} if each["measures"] else {}) for each in right]
+    result = []
+    for one in left:
+        likes = [
+            (unlike, number)
+            for number, other in enumerate(others)
+            if one["model"] and (unlike := unlikeness(one, other, row_range, disparity_max)) is not None
+        ]
+        if not likes:
+            result.append(one)
+            continue
+        other = others[min(likes)[1]]
+        result.append(_pair(one, other, geometry, weight, refined))
+        others[min(likes)[1]] = other | {"model": 0}
+    return result, others
+
+
+def _pair(one: Record, other: Record, geometry: Sequence[int], weight: int, refined: bool) -> Record:
+    both = dict(one)
+    if one["measures"] and other["measures"]:
+        both |= {name: (one[name] + other[name] + 1) // 2 for name in ("x", "y", "z", "extent")}
+    elif other["measures"]:
+        both |= {name: other[name] for name in ("x", "y", "z", "extent")}
+    both["measures"] = one["measures"] | other["measures"]
+    disparity = one["image_x"] - other["image_x"]
+    depth = disparity_depth(geometry, disparity)
+    agree = 0 < depth and both["z"] <= 2 * depth and depth <= 2 * both["z"]
+    if refined and one["tests"] & other["tests"] & 16 and agree and both["measures"]:
+        weights = [max(min((each + 8) // 16, 128), 1) ** 2 for each in (both["extent"], disparity)]
+        better = rounded(Fraction(both["z"] * weights[0] + depth * weights[1], sum(weights)))
+        for name in ("x", "y"):
+            both[name] = (both[name] * better + both["z"] // 2) // both["z"]
+        both["z"] = better
+        both["measures"] |= 4
+    both["accuracy"] = min(max(one["accuracy"], other["accuracy"]) + weight, 255)
+    both["tests"] = one["tests"] | other["tests"] | 32
+    both["cameras"] = 3
+    return both
+
+
+# History
+
+
+def remembered(
+    history: Sequence[Record], seen: Sequence[Record], age_max: int, apart_max: int
+) -> tuple[list[Record], int]:
+    """The history after a frame with the objects seen, free records too, and how many found no room."""
+    records = [
+        each | {"age": each["age"] + 1, "model": each["model"] if each["age"] < age_max else 0}
+        if each["model"]
+        else each
+        for each in history
+    ]
+    lost = 0
+    for one in seen:
+        if not one["model"]:
+            continue
+        old = [number for number, each in enumerate(records) if each["model"] and each["age"] > 0]
+        near = [
+            (gap(one, records[number]), number) for number in old if records[number]["model"] == one["model"]
+        ]
+        free = [number for number, each in enumerate(records) if not each["model"]]
+        oldest = [(-records[number]["age"], number) for number in old]
+        if near and min(near)[0] <= apart_max:
+            records[min(near)[1]] = one
+        elif free:
+            records[free[0]] = one
+        elif oldest:
+            records[min(oldest)[1]] = one
+        else:
+            lost += 1
+    return records, lost
+
+
+def gap(one: Record, other: Record) -> int:
+    """How far apart two objects are seen, in 1/256 of the focal length."""
+    tangents = [[256 * each[name] // max(each["z"], 1) for name in ("x", "y")] for each in (one, other)]
+    return sum(abs(a - b) for a, b in zip(*tangents, strict=True))
