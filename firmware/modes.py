@@ -169,6 +169,9 @@ INDOOR_FIELD = Mode(
         min_common=128,
     ),
     stereo_edges=StereoEdgeThresholds(
+        correspondence=Correspondence.MUTUAL,
+        # 22.5 degrees, as for lines.
+        level_range=16,
         # As for lines; noise turns single edges more.
         direction_range=8,
         # 10 cm to 1.5 m: what is in the way soon. More pixels find more edges by chance.

@@ -1,7 +1,9 @@
 """3-D edges: edges of the left picture that an edge of the right one corresponds to, for obstacles of any kind (T §5.2.8).
 
-The corresponding edge lies in the same row; of those with nearly the same gradient direction and a disparity within
-limits the nearest is taken, the one with the least disparity.
+The corresponding edge lies in the same row, has nearly the same gradient direction and a disparity within limits. The plain
+way of the thesis takes the nearest, which is the one with the least disparity. The better way, ours, takes the one whose
+gradient is most alike, and only if each is the best of the other. Edges whose gradient looks up or down belong to lines
+along the row, all of whose edges are alike: with `level_range` they are left out, as T §5.2.7 leaves out such lines.
 """
 
 from __future__ import annotations
@@ -14,17 +16,23 @@ from bfsim.api import Buffer, Core, Frame, i16, i32, kernel, u16, u32
 from firmware.geometry import store_point
 from firmware.line3d_store import EDGE3D_CAPACITY, EDGE3D_LEFT, EDGE3D_WORDS, EDGE3D_X
 from firmware.line_store import SUBPIXELS
-from firmware.stages.line_segments import turn_between
+from firmware.stages.line_segments import NONE, turn_between
+from firmware.stages.stereo_lines import Correspondence
+
+DISPARITY_BITS = 12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StereoEdgeThresholds:
     """What makes two edges correspond.
 
-    `direction_range`: how far their gradient directions may differ, in 1/256 of a turn. `min_disparity`,
+    `correspondence`: how the edge is chosen. `level_range`: how near to straight up or down a gradient is left out, in
+    1/256 of a turn; 0 for none. `direction_range`: how far their gradient directions may differ, in 1/256 of a turn. `min_disparity`,
     `max_disparity`: in pixels, 1 and more.
     """
 
+    correspondence: Correspondence
+    level_range: int
     direction_range: int
     min_disparity: int
     max_disparity: int
@@ -52,14 +60,58 @@ def take_row(right_edges: u32[:], right_rows: u32[:], y: i32, row: u32[:]) -> i3
 
 
 @kernel
+def is_level(edge: u32, level_range: i32) -> i32:
+    """Return 1 for an edge whose gradient looks up or down, to less than `level_range`; else 0."""
+    from_up = abs(turn_between(i32(edge >> 8 & 255) << 1 & 255, 128))
+    return 1 if from_up < level_range << 1 else 0
+
+
+@kernel
+def matching_edge(
+    edge: u32,
+    others: u32[:],
+    first: i32,
+    count: i32,
+    side: i32,
+    by_likeness: i32,
+    level_range: i32,
+    direction_range: i32,
+    min_disparity: i32,
+    max_disparity: i32,
+) -> i32:
+    """Return the place of the edge in `others`, `count` from place `first` on, that corresponds to an edge, or NONE.
+
+    `side` is 1 for an edge of the left picture and others of the right one, -1 for the reverse. With `by_likeness` 0 it
+    is the nearest, with 1 the one with the most similar gradient and of these the nearest.
+    """
+    x = i32(edge >> 16)
+    best = NONE
+    least: i32 = 1 << 30
+    for place in range(first, first + count):
+        other = others[place]
+        disparity = side * (x - i32(other >> 16))
+        if min_disparity <= disparity <= max_disparity:
+            turn = abs(turn_between(i32(other >> 8 & 255), i32(edge >> 8 & 255)))
+            if turn <= direction_range and is_level(other, level_range) == 0:
+                unlike = 2 * turn + abs(i32(other & 255) - i32(edge & 255))
+                off = (by_likeness * unlike << DISPARITY_BITS) + disparity
+                if off < least:
+                    best = place
+                    least = off
+    return best
+
+
+@kernel
 def stereo_edges_row(
     edge_data: u32[:],
     edge_index: u32[:],
     edge_counts: u16[:],
     y: i32,
     row: u32[:],
-    count: i32,
+    row_count: i32,
     geometry: i32[:],
+    is_mutual: i32,
+    level_range: i32,
     direction_range: i32,
     min_disparity: i32,
     max_disparity: i32,
@@ -68,41 +120,48 @@ def stereo_edges_row(
     edges_3d: i16[:],
     found: i32,
 ) -> i32:
-    """Store the 3-D edges of row `y`, where the right picture has the `count` edges in `row`.
+    """Store the 3-D edges of row `y`, where the right picture has the `row_count` edges in `row`.
 
     `found` is how many the rows before gave; returns it with this row. Those beyond the length of `edges_3d` are counted,
     not stored.
     """
-    nearest = 0  # how many right edges are not too near for the left edge, which moves to the right
     first = i32(edge_index[y])
-    for edge in range(first, first + edge_counts[y]):
-        x = i32(edge_data[edge] >> 16)
-        direction = i32(edge_data[edge] >> 8 & 255)
-        while nearest < count and i32(row[nearest] >> 16) <= x - min_disparity:
-            nearest = nearest + 1
-        other = nearest - 1
-        while other >= 0 and i32(row[other] >> 16) >= x - max_disparity:
-            if abs(turn_between(i32(row[other] >> 8 & 255), direction)) <= direction_range:
-                disparity = x - i32(row[other] >> 16)
-                if EDGE3D_WORDS * found >= len(edges_3d):
-                    found = found + 1
-                elif (
-                    store_point(
-                        geometry,
-                        SUBPIXELS * x,
-                        SUBPIXELS * y,
-                        SUBPIXELS * disparity,
-                        width,
-                        height,
-                        edges_3d,
-                        EDGE3D_WORDS * found + EDGE3D_X,
-                    )
-                    != 0
-                ):
-                    edges_3d[EDGE3D_WORDS * found + EDGE3D_LEFT] = edge
-                    found = found + 1
-                break
-            other = other - 1
+    count = i32(edge_counts[y])
+    for edge in range(first, first + count):
+        other = NONE
+        if is_level(edge_data[edge], level_range) == 0:
+            other = matching_edge(
+                edge_data[edge], row, 0, row_count, 1,
+                is_mutual, level_range, direction_range, min_disparity, max_disparity,
+            )  # fmt: skip
+        if other != NONE and is_mutual != 0:
+            back = matching_edge(
+                row[other], edge_data, first, count, -1,
+                is_mutual, level_range, direction_range, min_disparity, max_disparity,
+            )  # fmt: skip
+            if back != edge:
+                other = NONE
+        if other != NONE:
+            x = i32(edge_data[edge] >> 16)
+            disparity = SUBPIXELS * (x - i32(row[other] >> 16))
+            base = EDGE3D_WORDS * found
+            if base >= len(edges_3d):
+                found = found + 1
+            elif (
+                store_point(
+                    geometry,
+                    SUBPIXELS * x,
+                    SUBPIXELS * y,
+                    disparity,
+                    width,
+                    height,
+                    edges_3d,
+                    base + EDGE3D_X,
+                )
+                != 0
+            ):
+                edges_3d[base + EDGE3D_LEFT] = edge
+                found = found + 1
     return found
 
 
@@ -116,7 +175,13 @@ def stereo_edges(core: Core, frame: Frame, thresholds: StereoEdgeThresholds) -> 
     right = core.array("right_edge_data"), core.array("right_edge_rows")
     row = core.overlay("segments", u32, frame.width)[0]
     edges_3d = core.array("edges_3d")
-    limits = thresholds.direction_range, thresholds.min_disparity, thresholds.max_disparity
+    limits = (
+        int(thresholds.correspondence),
+        thresholds.level_range,
+        thresholds.direction_range,
+        thresholds.min_disparity,
+        thresholds.max_disparity,
+    )
     size = frame.width, frame.height
     found = 0
     for y in range(frame.height - 1, -1, -1):
