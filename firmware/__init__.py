@@ -15,6 +15,7 @@ ROWS = (
     BudgetRow(stage="Open & closing", thesis_ms=26.0),
     BudgetRow(stage="Blob detection", thesis_ms=68.0),
     BudgetRow(stage="Line detection", thesis_ms=19.0),  # 3-D lines and edges included
+    BudgetRow(stage="Shape detection", thesis_ms=18.0),
 )
 
 tinyphoon = Firmware(

@@ -12,6 +12,7 @@ from bfsim.api import Buffer, FrameSize, i16, u8, u16, u32
 from firmware.edge_store import EDGE_CAPACITY
 from firmware.results import MESSAGE_WORDS
 from firmware.stages.blob_detection import blob_buffers
+from firmware.stages.circle_detection import circle_buffers
 from firmware.stages.hysteresis import hysteresis_buffers
 from firmware.stages.line_detection import line_buffers
 from firmware.tables import arctangent_table
@@ -63,4 +64,5 @@ def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buff
         Buffer("orders", u16, ORDERS_WORDS, "L1_data_b"),
         *blob_buffers(size),
         *line_buffers(size),
+        *circle_buffers(),
     )

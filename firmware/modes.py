@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from firmware.stages.blob_detection import BlobThresholds, hues
+from firmware.stages.circle_detection import CircleThresholds
 from firmware.stages.edge_detection import EdgeThresholds
 from firmware.stages.line_detection import LineThresholds
 
@@ -16,7 +17,43 @@ class Mode:
     edges: EdgeThresholds
     blobs: BlobThresholds
     lines: LineThresholds
+    circles: CircleThresholds
+    ball_colours: int
+    """The colours of spherical models, as bits of the 32-colour image."""
 
+
+FITTED_CIRCLES = CircleThresholds(
+    # The smoothing before edges and colours, 1 px each, and what the opening takes off the outline.
+    border=4,
+    # 34 degrees. The centre of mass of half a disc lies 0.42 of the radius off the centre: seen from the outline up to 25.
+    angle_range=24,
+    # The floor is dark and the ball is lit: gradients that point away from it are those of mirror images and goals.
+    dark_balls=False,
+    # So far off its centre of mass is the centre of a ball of 6 cm that is hidden by half, 150 mm away.
+    patch_reach=32,
+    peak_reach=1,
+    # Half the outline of the smallest blob's 36 pixels.
+    min_edges=12,
+    # A quarter. Balls of the rendered scenes that came out right have 73 and more.
+    centre_share=64,
+    min_peak=12,
+    # Of the rendered balls that came out right all but one of 58 have 106 and more.
+    radius_share=96,
+    fit_rounds=4,
+    # The circle from the peaks is off by up to 2 px where the ball is dark at the bottom, and its edges lie as far in.
+    fit_range=3,
+)
+"""As fine as the picture allows [ours]."""
+
+PLAIN_CIRCLES = replace(
+    FITTED_CIRCLES,
+    peak_reach=0,
+    # Single cells and bins have about a third of what three have.
+    centre_share=21,
+    radius_share=32,
+    fit_rounds=0,
+)
+"""The behaviour of the thesis: whole pixels, from peaks of single cells (T §5.2.4)."""
 
 INDOOR_FIELD = Mode(
     edges=EdgeThresholds(
@@ -55,5 +92,7 @@ INDOOR_FIELD = Mode(
         muff_range=4,
         far_gap=24,
     ),
+    circles=FITTED_CIRCLES,
+    ball_colours=hues(21, 23),  # yellow, the second of the groups above
 )
 """A FIRA field lit from above in a dark room, as in the recording that comes with bfsim, in pictures of 320x240."""
