@@ -29,8 +29,8 @@ from firmware.results import SeenObject
 SHAPES = {"ball": Shape.BALL, "goal": Shape.GOAL, "robot": Shape.MARKER}
 SHAPE_OF = {each.number: each.shape for each in MODELS}
 
-ONE_WAY_DEG = 6.0
-"""Objects this near to the way to a thing are taken for it: half of a goal lies farther off its middle."""
+SLACK_DEG = 1.0
+"""Objects no farther from the way to a thing than its own half width, and this, are taken for it."""
 
 Vector = NDArray[np.float64]
 
@@ -64,6 +64,17 @@ def angle_deg(one: Vector, other: Vector) -> float:
     return float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
 
 
+def half_width_deg(thing: Mapping[str, Any], place: Vector) -> float:
+    """Return how wide half a thing looks from where the camera is."""
+    if thing["kind"] == "ball":
+        half_mm = thing["radius_mm"]
+    elif thing["kind"] == "goal":
+        half_mm = np.ptp(np.array(thing["mouth_mm"]), axis=0).max() / 2
+    else:
+        half_mm = thing["side_mm"] / 2
+    return float(np.degrees(np.arctan2(half_mm, np.linalg.norm(place))))
+
+
 def things(truth: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
     """Yield the things of a scene that there are models for."""
     for name, thing in truth.items():
@@ -82,10 +93,11 @@ def compare(seen: Sequence[Seen]) -> tuple[dict[str, Tally], int]:
             place = place_of(thing, each.truth["cameras"]["left"])
             tally = tallies.setdefault(name, Tally())
             tally.frames += 1
+            reach_deg = half_width_deg(thing, place) + SLACK_DEG
             near = [
                 index for index, found in enumerate(now)
                 if SHAPE_OF[found.model] == SHAPES[thing["kind"]]
-                and angle_deg(np.array(found.towards, float), place) <= ONE_WAY_DEG
+                and angle_deg(np.array(found.towards, float), place) <= reach_deg
             ]  # fmt: skip
             if near:
                 best = max(near, key=lambda index: now[index].accuracy)

@@ -62,7 +62,7 @@ def see(frames: Iterable[StereoFrame], mode: Mode) -> list[Seen]:
                 for name, value in record.results.items()
                 if name.endswith(ending)
             }
-            times = {each.stage: each.elapsed_cclk / cclk_per_ms for each in core.stages}
+            times = {each.stage: float(each.elapsed_cclk / cclk_per_ms) for each in core.stages}
             seen.append(Seen(shot, SIDES[core.core], words[: results["circles"]], results, times))
     return seen
 

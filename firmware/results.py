@@ -263,8 +263,8 @@ def _object(words: Sequence[int], left: int, top: int) -> SeenObject:
 
 def _line(words: Sequence[int], left: int, top: int) -> GoalLine:
     x0, y0, x1, y1 = (each / SUBPIXELS for each in words[1:])
-    return GoalLine(
-        model=words[0] & 0xFF,
-        side=Side(words[0] >> 8 & 0xFF),
-        ends_px=(left + x0, top + y0, left + x1, top + y1),
-    )
+    side = words[0] >> 8 & 0xFF
+    if side not in set(Side):
+        raise FirmwareError(f"the side of a line must be 0, 1 or 3, not {side}")
+    ends = left + x0, top + y0, left + x1, top + y1
+    return GoalLine(model=words[0] & 0xFF, side=Side(side), ends_px=ends)

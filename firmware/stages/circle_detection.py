@@ -123,7 +123,7 @@ def open_circle(blob_data: u32[:], blob: i32, edges: i32, circles: i16[:], numbe
 
 
 @kernel
-def test_centre(
+def judge_centre(
     votes: u16[:],
     area: i32[:],
     edges: i32,
@@ -155,7 +155,7 @@ def test_centre(
 
 
 @kernel
-def test_radius(
+def judge_radius(
     histogram: u16[:],
     edges: i32,
     peak_reach: i32,
@@ -172,6 +172,7 @@ def test_radius(
     at = number * CIRCLE_WORDS
     radius = find_radius(histogram, peak_reach)
     size = edges_round(histogram, radius, peak_reach)
+    fit[RADIUS] = 0
     if size == 0:
         return 0
     fit[RADIUS] = mean_radius(histogram, radius, peak_reach)
@@ -256,12 +257,12 @@ def _measure(
     yield core.run(clear_votes, votes, area)
     yield core.run(draw_lines, selected, count, votes, area, core.array("tangents"))
     result = fit, circles, number
-    if (yield core.run(test_centre, votes, area, count, reach, thresholds.centre_share, *result)):
+    if (yield core.run(judge_centre, votes, area, count, reach, thresholds.centre_share, *result)):
         yield core.run(fill_histogram, selected, count, fit, histogram)
         judged = histogram, count, reach, thresholds.min_peak, thresholds.radius_share
-        if (yield core.run(test_radius, *judged, *result)):
-            if thresholds.fit_rounds:
-                yield from _refine(core, frame, selected, count, thresholds)
+        passed = yield core.run(judge_radius, *judged, *result)
+        if passed and thresholds.fit_rounds:
+            yield from _refine(core, frame, selected, count, thresholds)
         yield core.run(close_circle, *result)
 
 

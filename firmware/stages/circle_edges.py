@@ -133,13 +133,12 @@ def select_edges_row(
     for position in range(first, first + edge_counts[y]):
         edge = edge_data[position]
         x = i32(edge >> 16)
-        if area[LEFT] <= x <= area[RIGHT]:
-            if is_overlaid(above, here, below, x, colours) == 0:
-                direction = edge >> 8 & 255
-                dx = area[MASS_X] - x
-                dy = area[MASS_Y] - y
-                if looks_at(i32(direction), dx, dy, angle_range, dark_too, atan) != 0:
-                    if found < len(selected):
-                        selected[found] = direction | u32(y << 8) | u32(x << 20)
-                    found = found + 1
+        if area[LEFT] <= x <= area[RIGHT] and is_overlaid(above, here, below, x, colours) == 0:
+            direction = edge >> 8 & 255
+            dx = area[MASS_X] - x
+            dy = area[MASS_Y] - y
+            if looks_at(i32(direction), dx, dy, angle_range, dark_too, atan) != 0:
+                if found < len(selected):
+                    selected[found] = direction | u32(y << 8) | u32(x << 20)
+                found = found + 1
     return found

@@ -72,8 +72,11 @@ def sum_up(points: u32[:], count: i32, fit: i32[:], fit_range: i32) -> None:
 
 
 @kernel
-def move_circle(fit: i32[:]) -> None:
-    """Move centre and radius to where the sums have them. Without points they stay."""
+def move_circle(fit: i32[:], fit_range: i32) -> None:
+    """Move centre and radius to where the sums have them, the centre by `fit_range` at most along each axis.
+
+    Without points both stay.
+    """
     weight = fit[WEIGHT]
     if weight == 0:
         return
@@ -89,6 +92,8 @@ def move_circle(fit: i32[:]) -> None:
     if size >= SHORTEST_ARC:
         along_x = (xe * yy - ye * xy + (size >> 1)) // size
         along_y = (ye * xx - xe * xy + (size >> 1)) // size
+        along_x = min(max(along_x, -fit_range), fit_range)
+        along_y = min(max(along_y, -fit_range), fit_range)
         fit[CENTRE_X] = fit[CENTRE_X] + along_x
         fit[CENTRE_Y] = fit[CENTRE_Y] + along_y
     towards = fit[SUM_NX] * along_x + fit[SUM_NY] * along_y >> NORMAL_BITS
@@ -104,5 +109,5 @@ def fit_circle(points: u32[:], fit: i32[:], fit_range: i32, rounds: i32) -> None
     near = FINE * fit_range
     for _ in range(rounds):
         sum_up(points, fit[REFINED], fit, near)
-        move_circle(fit)
+        move_circle(fit, near)
         near = max(near >> 1, FINE)

@@ -61,11 +61,15 @@ def depth_by_size(geometry: i32[:], size_mm: i32, extent: i32) -> i32:
 
 @kernel
 def depth_of_sphere(depth: i32, radius_mm: i32) -> i32:
-    """Return the depth in mm of a sphere on the axis that T Eq. 4.1 takes for a disc at `depth`, rounded.
+    """Return the depth in mm of a sphere on the axis that T Eq. 4.1 takes for a disc at `depth`, rounded, FARTHEST_MM at most.
 
     Its outline is not its equator but where the rays touch it: f r / sqrt(Z^2 - r^2) from the middle and not f r / Z.
     """
-    return i32(isqrt32(u32(4 * (depth * depth + radius_mm * radius_mm))) + 1 >> 1)
+    square = u32(depth * depth + radius_mm * radius_mm)
+    root = isqrt32(square)
+    if square - root * root > root:
+        root = root + 1
+    return min(i32(root), FARTHEST_MM)
 
 
 @kernel

@@ -96,10 +96,10 @@ def average_places(left: i16[:], one: i32, right: i16[:], other: i32) -> None:
             left[at + word] = left[at + word] + right[to + word] + 1 >> 1
         else:
             left[at + word] = right[to + word]
-    extents = i32(left[at + OBJECT_EXTENT]) + i32(right[to + OBJECT_EXTENT])
+    extent = i32(right[to + OBJECT_EXTENT])
     if left[at + OBJECT_MEASURES] != 0:
-        extents = extents + 1 >> 1
-    left[at + OBJECT_EXTENT] = extents
+        extent = left[at + OBJECT_EXTENT] + extent + 1 >> 1
+    left[at + OBJECT_EXTENT] = extent
     left[at + OBJECT_MEASURES] = left[at + OBJECT_MEASURES] | right[to + OBJECT_MEASURES]
 
 
@@ -119,11 +119,16 @@ def weighted(one: i32, weight: i32, other: i32, other_weight: i32) -> i32:
 
 @kernel
 def refine_place(geometry: i32[:], left: i16[:], one: i32, disparity: i32) -> None:
-    """Move an object along the way to it, to where its disparity in 1/16 px and its own measure together have it."""
+    """Move an object along the way to it, to where its disparity in 1/16 px and its own measure together have it.
+
+    Not if one of them says twice what the other does: then something else is wrong.
+    """
     at = one * OBJECT_WORDS
     depth = i32(left[at + OBJECT_Z])
     by_disparity = depth_mm(geometry, disparity)
-    if by_disparity == 0 or left[at + OBJECT_MEASURES] == 0:
+    if left[at + OBJECT_MEASURES] == 0 or by_disparity == 0:
+        return
+    if depth > 2 * by_disparity or by_disparity > 2 * depth:
         return
     own = weight_of(i32(left[at + OBJECT_EXTENT]))
     better = weighted(depth, own, by_disparity, weight_of(disparity))

@@ -18,8 +18,11 @@ from firmware.stages.circle_detection import CircleThresholds, circle_buffers, c
 from firmware.tables import arctangent_table
 from tests.firmware import references
 from tests.firmware.blob_references import segments
+from tests.firmware.circle_references import Blob, Edge
+from tests.firmware.circle_references import circle as reference_circle
 from tests.firmware.edge_references import hysteresis, hysteresis_store
 from tests.firmware.line_rig import GARBAGE, BareCore
+from tests.firmware.references import luma
 
 YELLOW = hues(21, 23)
 """The colours of the ball."""
@@ -115,12 +118,29 @@ class CircleCore(BareCore):
 class Seen:
     """What the stages before make of a picture."""
 
-    edge_data: NDArray[Any]
-    edge_index: NDArray[Any]
-    edge_counts: NDArray[Any]
+    edge_data: NDArray[np.uint32]
+    edge_index: NDArray[np.uint32]
+    edge_counts: NDArray[np.uint16]
     uyvy: NDArray[np.uint8]
-    opened: NDArray[Any]
+    opened: NDArray[np.uint32]
     blobs: list[list[int]]
+
+    @property
+    def edges(self) -> list[Edge]:
+        """x, y and direction of all edges, in their order."""
+        rows = np.repeat(np.arange(len(self.edge_counts)), self.edge_counts)
+        return [
+            (word >> 16, y, word >> 8 & 255)
+            for word, y in zip(self.edge_data.tolist(), rows.tolist(), strict=False)
+        ]
+
+    def expected(self, colours: int, limits: CircleThresholds) -> list[list[int]]:
+        """The words of all circles, by the reference."""
+        return [
+            reference_circle(number, blob, self.edges, self.opened, luma(self.uyvy), colours, limits)
+            for number, blob in enumerate(map(Blob.of, self.blobs))
+            if blob.colours & colours
+        ]
 
 
 def seen(
@@ -163,9 +183,7 @@ class Circles:
         return self.words[:, 7].tolist()
 
 
-def circles_of(
-    picture: Seen, thresholds: CircleThresholds, colours: int = YELLOW, room_rows: int = 3
-) -> Circles:
+def circles_of(picture: Seen, thresholds: CircleThresholds, colours: int = YELLOW) -> Circles:
     """Run the stage on what is seen of a picture."""
     height, width = picture.opened.shape
     blob_data = np.zeros((LABELS, BLOB_WORDS), np.uint32)
@@ -180,7 +198,7 @@ def circles_of(
             "atan": [arctangent_table()],
             "camera_ring": [np.zeros(2 * width, np.uint8)] * 2,
             "colour_ring": [np.zeros(width, np.uint32)] * 4,
-            "eroded_ring": [np.full(width, GARBAGE, np.uint32) for _ in range(room_rows)],
+            "eroded_ring": [np.full(width, GARBAGE, np.uint32) for _ in range(3)],
             "magnitude_ring": [np.full(width, GARBAGE, np.uint8) for _ in range(3)],
             "segments": [np.full(13 * 192, GARBAGE, np.int32)],
         }
