@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import llvmlite.binding as llvm
@@ -18,9 +18,9 @@ from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.ahead import compiled_ahead
 from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
 from bfsim.machine.capture import Feed
-from bfsim.machine.program import FrameSize, SourcePixels
-from bfsim.machine.strategy import ScriptedMessage
-from bfsim.recording import RecordingReader, RectificationTables, StereoFrame
+from bfsim.machine.program import Calibration, FrameSize, SourcePixels
+from bfsim.machine.strategy import Script
+from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.trace import Identity, RunRecord
 
 # Both stand beside the installed package: in a checkout and in site-packages alike.
@@ -54,11 +54,12 @@ def simulate(
     if frames is not None and frames < 1:
         raise ConfigError(f"frames must be at least 1, not {frames}")
     spec, compiler = board_named(board), profile_named(profile)
-    loaded, script = load_firmware(firmware), _read_strategy(strategy)
+    loaded = load_firmware(firmware)
+    script = _read_strategy(strategy, loaded)
     placement = read_placement(ldf, spec)
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader, compiled_ahead() as wait_for_compiler:
         size = FrameSize(reader.width, reader.height)
-        program = loaded.firmware.rectifying(source_pixels(reader.rectification))
+        program = loaded.firmware.calibrated(calibration_of(reader))
         symbols = symbols_of(program, size, compiler)
         link_map = link(placement, symbols, spec.chip.regions, chip=spec.chip.name)
         machine = Board(
@@ -96,19 +97,22 @@ def read_placement(ldf: Path | None, spec: BoardSpec) -> LinkerScript:
     )
 
 
-def _read_strategy(path: Path | None) -> Sequence[ScriptedMessage]:
+def _read_strategy(path: Path | None, loaded: LoadedFirmware) -> Script:
     if path is None:
         return ()
     from bfsim.machine.strategy_script import read_script  # pydantic takes its time
 
-    return read_script(path)
+    return read_script(path, loaded.firmware.orders)
 
 
-def source_pixels(tables: RectificationTables | None) -> dict[str, SourcePixels]:
-    """Return the tables of a recording by the cores that take the cameras; none of a rectified recording."""
-    if tables is None:
-        return {}
-    return {core: SourcePixels(*table) for core, table in (("A", tables.left), ("B", tables.right))}
+def calibration_of(reader: RecordingReader) -> Calibration:
+    """Return what a recording knows of its cameras: tables by the cores that take them, and the geometry."""
+    tables, geometry = reader.rectification, reader.geometry
+    pictures = (("A", tables.left), ("B", tables.right)) if tables else ()
+    return Calibration(
+        sources={core: SourcePixels(*table) for core, table in pictures},
+        geometries=(geometry,) if geometry else (),
+    )
 
 
 class _DigestedFrames:
@@ -143,7 +147,7 @@ def _record(
     size: FrameSize,
     source: _DigestedFrames,
     compiler: CompilerProfile,
-    script: Sequence[ScriptedMessage],
+    script: Script,
 ) -> RunRecord:
     identity = Identity(
         recording=source.name,

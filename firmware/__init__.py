@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from bfsim.api import BudgetRow, Firmware
-from firmware.buffers import buffers, one_core_buffers
+from firmware.buffers import buffers, calibration_buffers, one_core_buffers
 from firmware.core_a import core_a
 from firmware.core_b import core_b
 from firmware.one_core import one_core
-from firmware.stages.rectification import rectification_buffers
+from firmware.orders import BY_NAME
 
 ROWS = (
     BudgetRow(stage="Edge detection", thesis_ms=87.0),  # T Table 6.4, average
@@ -15,6 +15,8 @@ ROWS = (
     BudgetRow(stage="Open & closing", thesis_ms=26.0),
     BudgetRow(stage="Blob detection", thesis_ms=68.0),
     BudgetRow(stage="Line detection", thesis_ms=19.0),  # 3-D lines and edges included
+    BudgetRow(stage="Shape detection", thesis_ms=18.0),
+    BudgetRow(stage="Object detection", thesis_ms=1.0),
 )
 
 tinyphoon = Firmware(
@@ -22,7 +24,8 @@ tinyphoon = Firmware(
     buffers=buffers,
     camera="camera",
     rows=ROWS,
-    rectification=rectification_buffers,
+    calibration=calibration_buffers,
+    orders=BY_NAME,
 )
 
 one_eye = Firmware(
@@ -30,6 +33,7 @@ one_eye = Firmware(
     buffers=one_core_buffers,
     camera="camera",
     rows=ROWS,
-    rectification=rectification_buffers,
+    calibration=calibration_buffers,
+    orders=BY_NAME,
 )
 """The same stages for a board with one core and one camera, such as cm-bf533."""

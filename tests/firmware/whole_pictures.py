@@ -24,7 +24,13 @@ from firmware.stages.blob_detection import RECYCLE_AT
 from firmware.stages.edge_detection import ROOM_WORTH_A_PASS, EdgeThresholds
 from firmware.stages.hysteresis import LABELS
 from firmware.stages.line_segments import SEGMENT_CAPACITY
-from tests.firmware import blob_references, edge_references, line_references, references
+from tests.firmware import (
+    blob_references,
+    edge_references,
+    line_references,
+    references,
+    refinement_references,
+)
 from tests.firmware.pictures import Bytes, random_uyvy
 
 
@@ -82,8 +88,8 @@ def check_edges(
     assert results[f"edge_groups_shared_{core}"] == expected.sharing
 
 
-def check_lines(board: Board, core: str, results: dict[str, int]) -> None:
-    """Compare the lines that core `core` found with those of the edges that it left."""
+def check_lines(board: Board, core: str, uyvy: Bytes, results: dict[str, int]) -> None:
+    """Compare the lines that core `core` found with those of the edges that it left, refined by the picture `uyvy`."""
     data, index, counts = (
         buffer(board, core, f"edge_{name}")[0].tolist() for name in ("data", "index", "counts")
     )
@@ -96,8 +102,11 @@ def check_lines(board: Board, core: str, results: dict[str, int]) -> None:
     lines, lost = line_references.lines(rows, size, SEGMENT_CAPACITY, wanted, references.angle_of)
     assert results[f"lines_{core}"] == len(lines)
     assert results[f"line_edges_lost_{core}"] == lost
+    limits = INDOOR_FIELD.refinement.reach, INDOOR_FIELD.refinement.min_step
+    refined, moved = refinement_references.refined(lines, references.luma(uyvy), *limits)
+    assert results[f"lines_refined_{core}"] == moved
     stored = buffer(board, core, "lines")[0, : len(lines) * LINE_WORDS]
-    assert stored.reshape(-1, LINE_WORDS).tolist() == lines
+    assert stored.reshape(-1, LINE_WORDS).tolist() == refined
 
 
 def check_blobs(board: Board, core: str, opened: references.Picture, results: dict[str, int]) -> None:
@@ -127,7 +136,7 @@ def check_core(board: Board, core: str, uyvy: Bytes, results: dict[str, int]) ->
     np.testing.assert_array_equal(buffer(board, core, "colour_image"), colours)
     np.testing.assert_array_equal(buffer(board, core, "opened_image"), opened)
     check_blobs(board, core, opened.astype(np.uint32), results)
-    check_lines(board, core, results)
+    check_lines(board, core, uyvy, results)
 
 
 def check_last_frame(frames: Sequence[StereoFrame]) -> Outcome:
