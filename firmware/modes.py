@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from firmware.stages.blob_detection import BlobThresholds, hues
+from firmware.models import MODELS, colour_groups
+from firmware.stages.blob_detection import BlobThresholds
 from firmware.stages.edge_detection import EdgeThresholds
 from firmware.stages.line_detection import LineThresholds
 
@@ -34,9 +35,7 @@ INDOOR_FIELD = Mode(
         eps_white=125,
     ),
     blobs=BlobThresholds(
-        # The hues of the recording's blue goal, yellow ball and red mark, each with the hue on either side: noise
-        # and shade move a colour by one.
-        colour_groups=(hues(9, 11), hues(21, 23), hues(25, 27)),
+        colour_groups=colour_groups(MODELS),
         # A mark of 5 cm that is 3 m away still has 6 x 6 pixels; what is smaller is a reflection or noise.
         min_pixels=36,
         # Half a picture of 320x240 in one colour is no object but a camera that has not settled (T Figure 6.8).
