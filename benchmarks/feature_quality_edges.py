@@ -30,7 +30,7 @@ from bfsim.machine.board import Board, symbols_of
 from bfsim.machine.program import FrameSize
 from bfsim.recording import RecordingReader
 from bfsim.report.tables import new_table, percent
-from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF, source_pixels
+from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF, calibration_of
 from bfsim.terminal import print_report, progress_bar
 from firmware import tinyphoon
 from firmware.modes import INDOOR_FIELD
@@ -93,7 +93,7 @@ def compare(path: Path, limit: int, thresholds: EdgeThresholds) -> dict[str, Agr
     found = {"left": Agreement(), "right": Agreement()}
     with RecordingReader(path) as reader, progress_bar(f"Simulating {path.name}") as progress:
         size, total = FrameSize(reader.width, reader.height), min(limit, reader.frame_count)
-        firmware = edges_only(thresholds).rectifying(source_pixels(reader.rectification, size))
+        firmware = edges_only(thresholds).calibrated(calibration_of(reader))
         places = link(parse_ldf(THESIS_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
         for done, frame in enumerate(reader.frames(total)):
             board = Board(CM_BF561, firmware, size, places)

@@ -10,13 +10,13 @@ from bfsim.machine.dma_config import DmaConfig
 from bfsim.machine.dma_descriptors import write_descriptor
 from bfsim.machine.memories import Row
 from bfsim.machine.memory_dma import MemoryDma
-from bfsim.machine.program import Buffer, Buffers, Firmware, FrameSize, SourcePixels
+from bfsim.machine.program import Buffer, Buffers, Calibration, Firmware, FrameSize, Geometry, SourcePixels
 from bfsim.machine.ring import InputRing, OutputRing
 from bfsim.machine.settling import CameraSettings
 from bfsim.trace import BudgetRow
 
 __all__ = [
-    "BudgetRow", "Buffer", "Buffers", "CameraSettings", "Core", "DmaConfig", "Firmware", "FirmwareError", "Flow", "Frame",
-    "FrameSize", "InputRing", "Kernel", "MemoryDma", "OutputRing", "Row", "SourcePixels", "WdSize", "Work", "f32", "i8",
-    "i16", "i32", "kernel", "sqrt", "u8", "u16", "u32", "write_descriptor",
+    "BudgetRow", "Buffer", "Buffers", "Calibration", "CameraSettings", "Core", "DmaConfig", "Firmware", "FirmwareError", "Flow", "Frame",
+    "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "OutputRing", "Row", "SourcePixels", "WdSize", "Work",
+    "f32", "i8", "i16", "i32", "kernel", "sqrt", "u8", "u16", "u32", "write_descriptor",
 ]  # fmt: skip

@@ -17,9 +17,9 @@ from bfsim.linker import LinkerScript, link, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
 from bfsim.machine.capture import Feed
-from bfsim.machine.program import FrameSize, SourcePixels
+from bfsim.machine.program import Calibration, FrameSize, SourcePixels
 from bfsim.machine.strategy import ScriptedMessage
-from bfsim.recording import RecordingReader, RectificationTables, StereoFrame
+from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.trace import Identity, RunRecord
 
 # Both stand beside the installed package: in a checkout and in site-packages alike.
@@ -57,7 +57,7 @@ def simulate(
     placement = read_placement(ldf, spec)
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
         size = FrameSize(reader.width, reader.height)
-        program = loaded.firmware.rectifying(source_pixels(reader.rectification))
+        program = loaded.firmware.calibrated(calibration_of(reader))
         symbols = symbols_of(program, size, compiler)
         link_map = link(placement, symbols, spec.chip.regions, chip=spec.chip.name)
         machine = Board(
@@ -102,11 +102,14 @@ def _read_strategy(path: Path | None) -> Sequence[ScriptedMessage]:
     return read_script(path)
 
 
-def source_pixels(tables: RectificationTables | None) -> dict[str, SourcePixels]:
-    """Return the tables of a recording by the cores that take the cameras; none of a rectified recording."""
-    if tables is None:
-        return {}
-    return {core: SourcePixels(*table) for core, table in (("A", tables.left), ("B", tables.right))}
+def calibration_of(reader: RecordingReader) -> Calibration:
+    """Return what a recording knows of its cameras: tables by the cores that take them, and the geometry."""
+    tables, geometry = reader.rectification, reader.geometry
+    pictures = (("A", tables.left), ("B", tables.right)) if tables else ()
+    return Calibration(
+        sources={core: SourcePixels(*table) for core, table in pictures},
+        geometries=(geometry,) if geometry else (),
+    )
 
 
 class _DigestedFrames:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from bfsim.api import BudgetRow, Firmware
-from firmware.buffers import buffers, one_core_buffers
+from firmware.buffers import buffers, calibration_buffers, one_core_buffers
 from firmware.core_a import core_a
 from firmware.core_b import core_b
 from firmware.one_core import one_core
-from firmware.stages.rectification import rectification_buffers
 
 ROWS = (
     BudgetRow(stage="Edge detection", thesis_ms=87.0),  # T Table 6.4, average
@@ -22,7 +21,7 @@ tinyphoon = Firmware(
     buffers=buffers,
     camera="camera",
     rows=ROWS,
-    rectification=rectification_buffers,
+    calibration=calibration_buffers,
 )
 
 one_eye = Firmware(
@@ -30,6 +29,6 @@ one_eye = Firmware(
     buffers=one_core_buffers,
     camera="camera",
     rows=ROWS,
-    rectification=rectification_buffers,
+    calibration=calibration_buffers,
 )
 """The same stages for a board with one core and one camera, such as cm-bf533."""

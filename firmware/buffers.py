@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from bfsim.api import Buffer, FrameSize, i16, u8, u16, u32
+from bfsim.api import Buffer, Buffers, Calibration, FrameSize, i16, u8, u16, u32
 from firmware.edge_store import EDGE_CAPACITY
+from firmware.geometry import geometry_buffer, thesis_geometry_buffer
 from firmware.results import MESSAGE_WORDS
 from firmware.stages.blob_detection import blob_buffers
 from firmware.stages.hysteresis import hysteresis_buffers
 from firmware.stages.line_detection import line_buffers
+from firmware.stages.rectification import rectification_buffers
 from firmware.tables import arctangent_table
 
 ORDERS_WORDS = 256  # room for a message of the strategy unit
@@ -32,6 +34,13 @@ def buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
 def one_core_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     """Return the buffers for pictures of `size` of a board with one core."""
     return {"A": _core_buffers(size, camera="sdram_bank0", images="sdram_bank2")}
+
+
+def calibration_buffers(calibration: Calibration) -> Buffers:
+    """Return the buffers that depend on the cameras of a recording: tables where it has them, and the geometry."""
+    geometry = tuple(geometry_buffer(each) for each in calibration.geometries)
+    tables = rectification_buffers(calibration.sources)
+    return {core: (*tables.get(core, ()), *geometry) for core in ("A", "B")}
 
 
 def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buffer]:
@@ -54,6 +63,7 @@ def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buff
         Buffer("direction_ring", u8, width, "L1_data_b", rows=2),
         Buffer("gx", i16, width, "L1_data_b"),
         Buffer("gy", i16, width, "L1_data_b"),
+        thesis_geometry_buffer(size),
         Buffer("atan", u8, 257, "L1_data_b", values=arctangent_table()),
         Buffer("edge_data", u32, EDGE_CAPACITY, "L1_data_b"),
         Buffer("edge_index", u32, height, "L1_data_b"),

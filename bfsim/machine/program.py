@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,38 @@ class SourcePixels:
 
     rows: NDArray[np.int32]
     columns: NDArray[np.int32]
+
+
+class Geometry(Protocol):
+    """Where the two cameras are: what a `bfsim.recording.StereoGeometry` says."""
+
+    @property
+    def focal_px(self) -> float:
+        """Focal length after rectification, in pixels of the recorded pictures."""
+
+    @property
+    def baseline_mm(self) -> float:
+        """Distance between the optical centres."""
+
+    @property
+    def height_mm(self) -> float:
+        """Height above the floor."""
+
+    @property
+    def tilt_deg(self) -> float:
+        """How far the cameras look down."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Calibration:
+    """What a recording knows of its cameras.
+
+    `sources`: the source pixels of each core's camera, none where it is rectified. `geometries`: the geometry, none
+    where the recording does not say.
+    """
+
+    sources: Mapping[str, SourcePixels] = field(default_factory=dict)
+    geometries: tuple[Geometry, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,23 +120,26 @@ class Firmware:
     """A program for the whole chip.
 
     `mains`: the main loop of each core. `buffers`: size of the pictures → buffers. `camera`: the buffer of each core
-    that the PPI fills, a whole number of frames. `rows`: the stages in the order of the budget. `rectification`: the
-    source pixels of each core's camera → the buffers that they take beside the others, where a recording has tables.
+    that the PPI fills, a whole number of frames. `rows`: the stages in the order of the budget. `calibration`: what a
+    recording knows of its cameras → the buffers that it takes, beside the others or in place of those of the same name.
     """
 
     mains: Mapping[str, Main]
     buffers: Callable[[FrameSize], Buffers]
     camera: str
     rows: tuple[BudgetRow, ...]
-    rectification: Callable[[Mapping[str, SourcePixels]], Buffers] | None = None
+    calibration: Callable[[Calibration], Buffers] | None = None
 
-    def rectifying(self, sources: Mapping[str, SourcePixels]) -> Firmware:
-        """Return this firmware with the buffers for a recording's tables, if it rectifies."""
-        if self.rectification is None or not sources:
+    def calibrated(self, calibration: Calibration) -> Firmware:
+        """Return this firmware for the cameras of a recording."""
+        if self.calibration is None:
             return self
-        plain, more = self.buffers, self.rectification(sources)
+        plain, more = self.buffers, self.calibration(calibration)
 
         def buffers(size: FrameSize) -> Buffers:
-            return {owner: (*each, *more.get(owner, ())) for owner, each in plain(size).items()}
+            return {
+                owner: tuple({one.name: one for one in (*each, *more.get(owner, ()))}.values())
+                for owner, each in plain(size).items()
+            }
 
         return replace(self, buffers=buffers)

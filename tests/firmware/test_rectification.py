@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from bfsim.api import FirmwareError, SourcePixels
+from bfsim.api import Calibration, FirmwareError, SourcePixels
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
 from firmware import tinyphoon
@@ -99,7 +99,7 @@ def test_stages_see_the_rectified_picture(width: int, height: int) -> None:
     """On the board both cores rectify by their own tables, and all that follows is of the rectified pictures."""
     frames = random_frames(width, height, count=2)
     sources = tables(width, height)
-    board, outcome = run(frames, tinyphoon.rectifying(sources))
+    board, outcome = run(frames, tinyphoon.calibrated(Calibration(sources=sources)))
     results = dict(outcome.frames[-1].results)
     for core, uyvy in (("A", frames[-1].left), ("B", frames[-1].right)):
         expected = rectified(uyvy, sources[core])
@@ -111,7 +111,7 @@ def test_stages_see_the_rectified_picture(width: int, height: int) -> None:
 def test_rectification_needs_few_cycles(width: int, height: int) -> None:
     """It has a row of its own, and its window never lies in SDRAM: where L1 is full, the LDF has it spill to L2."""
     frames = random_frames(width, height, count=1)
-    board, outcome = run(frames, tinyphoon.rectifying(tables(width, height)))
+    board, outcome = run(frames, tinyphoon.calibrated(Calibration(sources=tables(width, height))))
     assert board.cores["A"].array("camera_window").memory in {"COREA_L1_DATA_A", "COREA_L1_DATA_B", "L2"}
     costs = {each.stage: each.elapsed_cclk for each in outcome.frames[0].cores[0].stages}
     assert width * height < costs["Rectification"] < 0.1 * costs["Edge detection"]

@@ -1,0 +1,78 @@
+"""Where the cameras are, as the kernels read it: the buffer `geometry` of each core, a struct of 32-bit words.
+
+It comes with the recording. The pictures are rectified, the cameras equal and parallel, and the principal point is
+the middle of the picture.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bfsim.api import Buffer, FirmwareError, FrameSize, Geometry, i32, kernel
+from firmware.line_store import SUBPIXELS
+
+GEOMETRY_FOCAL = 0  # focal length, 1/16 px
+GEOMETRY_BASELINE = 1  # distance of the optical centres, µm
+GEOMETRY_HEIGHT = 2  # above the floor, 1/16 mm
+GEOMETRY_TILT = 3  # how far the cameras look down, 1/65536 of a turn
+GEOMETRY_WORDS = 4
+
+MICROMETRES = 1000
+HEIGHT_STEPS = 16
+TILT_STEPS = 65536
+
+DEEPEST = (1 << 31) - MICROMETRES
+"""Focal length times baseline, in the units above, must stay below: it is what all depths are made of."""
+
+FARTHEST_MM = 32767
+"""A point that is farther away does not go into a 16-bit word."""
+
+
+def geometry_buffer(geometry: Geometry) -> Buffer:
+    """Return the geometry of a recording as a buffer."""
+    return _buffer(geometry.focal_px, geometry.baseline_mm, geometry.height_mm, geometry.tilt_deg)
+
+
+def thesis_geometry_buffer(size: FrameSize) -> Buffer:
+    """Return the geometry of the thesis's robot (T §6.2, §6.4), for recordings that do not say theirs."""
+    focal_px = 386.0 * size.width_px / 320  # measured in pictures of 320x240
+    return _buffer(focal_px, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
+
+
+def _buffer(focal_px: float, baseline_mm: float, height_mm: float, tilt_deg: float) -> Buffer:
+    words = (
+        round(SUBPIXELS * focal_px),
+        round(MICROMETRES * baseline_mm),
+        round(HEIGHT_STEPS * height_mm),
+        round(TILT_STEPS * tilt_deg / 360),
+    )
+    if words[GEOMETRY_FOCAL] * words[GEOMETRY_BASELINE] >= DEEPEST:
+        limit = DEEPEST / (SUBPIXELS * MICROMETRES)
+        raise FirmwareError(
+            f"focal length times baseline of the cameras must be below {limit:.0f} px mm, "
+            f"not {focal_px:g} px times {baseline_mm:g} mm"
+        )
+    return Buffer("geometry", i32, GEOMETRY_WORDS, "data1", values=np.array(words))
+
+
+@kernel
+def depth_mm(geometry: i32[:], disparity: i32) -> i32:
+    """Return how far away a point is along the axis of the cameras, Z of T Eq. 3.16, in mm, rounded.
+
+    `disparity` is in 1/16 px. Without a positive one the point is nowhere, and beyond FARTHEST_MM too far: 0.
+    """
+    if disparity <= 0:
+        return 0
+    reach = geometry[GEOMETRY_FOCAL] * geometry[GEOMETRY_BASELINE]
+    depth = (reach // disparity + MICROMETRES // 2) // MICROMETRES
+    return depth if depth <= FARTHEST_MM else 0
+
+
+@kernel
+def beside_mm(geometry: i32[:], depth: i32, off_axis: i32) -> i32:
+    """Return how far beside the axis a point is, X or Y of T Eq. 3.17, in mm, rounded.
+
+    `depth` is its Z in mm, `off_axis` how far from the principal point the picture shows it, in 1/16 px.
+    """
+    focal = geometry[GEOMETRY_FOCAL]
+    return (2 * depth * off_axis + focal) // (2 * focal)

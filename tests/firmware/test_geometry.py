@@ -1,0 +1,78 @@
+"""The geometry of the cameras on its way from a recording to the kernels, and depth by T Eq. 3.16 and 3.17."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import floor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bfsim.api import Calibration, FirmwareError, FrameSize
+from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
+from bfsim.run import calibration_of
+from firmware import one_eye, tinyphoon
+from firmware.geometry import FARTHEST_MM, beside_mm, depth_mm, geometry_buffer
+from tests.firmware.test_stages import buffer, random_frames, run
+
+THESIS = [386 * 16, 30470, 120 * 16, 1820]
+"""T §6.2, §6.4, in the units of the buffer; 10 degrees are 1820.4 steps."""
+
+
+def words(focal: int, baseline: int) -> np.ndarray:
+    """A geometry buffer, in its own units."""
+    return np.array([focal, baseline, 0, 0], np.int32)
+
+
+@pytest.mark.parametrize("firmware", [tinyphoon, one_eye])
+def test_a_recording_brings_its_geometry(tmp_path: Path, firmware) -> None:
+    """From the file into the one buffer of that name of each core."""
+    geometry = StereoGeometry(focal_px=311.25, baseline_mm=30.001, height_mm=60.5, tilt_deg=-22.5)
+    (frame,) = random_frames(16, 8, count=1)
+    with RecordingWriter(tmp_path / "a.mcap", width=16, height=8, geometry=geometry) as writer:
+        writer.add(frame.left, frame.right, left_ns=1, right_ns=2)
+    with RecordingReader(tmp_path / "a.mcap") as reader:
+        program = firmware.calibrated(calibration_of(reader))
+    for core in firmware.mains:
+        (found,) = (each for each in program.buffers(FrameSize(16, 8))[core] if each.name == "geometry")
+        assert list(found.values) == [4980, 30001, 968, -4096]
+
+
+@pytest.mark.parametrize("calibration", [None, Calibration()])
+def test_without_geometry_it_is_that_of_the_thesis(calibration: Calibration | None) -> None:
+    """Also in the memory of a board, where kernels find it."""
+    program = tinyphoon.calibrated(calibration) if calibration else tinyphoon
+    board, _ = run(random_frames(320, 16, count=1), program)
+    assert [buffer(board, core, "geometry")[0].tolist() for core in "AB"] == [THESIS, THESIS]
+
+
+def test_larger_pictures_of_the_same_camera_have_more_pixels_to_its_focal_length() -> None:
+    """The thesis measured it at 320x240."""
+    for each in tinyphoon.buffers(FrameSize(640, 480))["A"]:
+        if each.name == "geometry":
+            assert list(each.values) == [2 * THESIS[0], *THESIS[1:]]
+
+
+def test_cameras_that_32_bits_cannot_compute_with_are_refused() -> None:
+    """Focal length times baseline is the largest number of all."""
+    geometry_buffer(StereoGeometry(1000.0, 134.0, 0, 0))
+    with pytest.raises(FirmwareError, match="must be below 134218 px mm, not 1000 px times 135 mm"):
+        geometry_buffer(StereoGeometry(1000.0, 135.0, 0, 0))
+
+
+@given(st.integers(1, 1 << 15), st.integers(1, 65535), st.integers(-100, 1 << 15))
+def test_depth_is_equation_3_16(focal: int, baseline: int, disparity: int) -> None:
+    """Z = f T / d, rounded; 0 for what is nowhere or does not fit into 16 bits."""
+    expected = floor(Fraction(focal * baseline, 1000 * disparity) + Fraction(1, 2)) if disparity > 0 else 0
+    assert depth_mm(words(focal, baseline), disparity) == (expected if expected <= FARTHEST_MM else 0)
+
+
+@given(st.integers(16, 1 << 15), st.integers(1, FARTHEST_MM), st.integers(-(1 << 14), 1 << 14))
+def test_beside_is_equation_3_17(focal: int, depth: int, off_axis: int) -> None:
+    """X = Z x / f, rounded, over the whole of a picture of 2048 pixels."""
+    assert beside_mm(words(focal, 1), depth, off_axis) == floor(
+        Fraction(depth * off_axis, focal) + Fraction(1, 2)
+    )
