@@ -7,6 +7,7 @@ from firmware.buffers import buffers, calibration_buffers, one_core_buffers
 from firmware.core_a import core_a
 from firmware.core_b import core_b
 from firmware.one_core import one_core
+from firmware.view import view
 
 ROWS = (
     BudgetRow(stage="Edge detection", thesis_ms=87.0),  # T Table 6.4, average
@@ -22,6 +23,7 @@ tinyphoon = Firmware(
     camera="camera",
     rows=ROWS,
     calibration=calibration_buffers,
+    view=view,
 )
 
 one_eye = Firmware(
@@ -30,5 +32,6 @@ one_eye = Firmware(
     camera="camera",
     rows=ROWS,
     calibration=calibration_buffers,
+    view=view,
 )
 """The same stages for a board with one core and one camera, such as cm-bf533."""

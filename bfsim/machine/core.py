@@ -26,11 +26,13 @@ from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.memory_dma import Dma, MemoryDma
 from bfsim.machine.program import Main
+from bfsim.machine.readout import Readout
 from bfsim.machine.ring import InputRing, OutputRing
 from bfsim.machine.settling import CameraSettings
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi import SPI_WRITES, Spi
 from bfsim.machine.synchronised import SharedObjects, SynchronisedCore
+from bfsim.seen import Seen
 from bfsim.trace import REST, CoreFrame, StallReason
 
 NOT_FIRMWARE = (str(Path(__file__).parent.parent) + os.sep, contextlib.__file__)
@@ -63,6 +65,7 @@ class FinishedFrame:
     full_at_cclk: int
     cycles: CoreFrame
     results: Mapping[str, int]
+    seen: Seen | None
 
 
 class Core(SynchronisedCore):
@@ -87,14 +90,19 @@ class Core(SynchronisedCore):
         shared: SharedObjects,
         stages: tuple[str, ...],
         on_finished: Callable[[], None],
+        view: Callable[[Readout], Seen] | None,
     ) -> None:
-        """`streams`: the MDMA streams of its input and of its output rings. `on_finished`: called at a frame's end."""
+        """`streams`: the MDMA streams of its input and of its output rings. `on_finished`: called at a frame's end.
+
+        `view`: reads out what was seen, if anyone wants to know.
+        """
         super().__init__(env, name, board, bus, stages)
         self.finished: list[FinishedFrame] = []
         """Frames that are done, until the board takes them."""
         self._entered_at_cclk = 0
         self._stages = stages
         self._on_finished = on_finished
+        self._view = view
         self._memories = memories
         self._buffers = buffers
         self._overlays: dict[tuple[str, Number, int], tuple[Row, ...]] = {}
@@ -365,7 +373,11 @@ class Core(SynchronisedCore):
         self._account = self._accounts.now
         self.finished.append(
             FinishedFrame(
-                index=self._frame.index, full_at_cclk=self._full_at_cclk, cycles=cycles, results=self._results
+                index=self._frame.index,
+                full_at_cclk=self._full_at_cclk,
+                cycles=cycles,
+                results=self._results,
+                seen=self._view(Readout(self, self._frame, self._results)) if self._view else None,
             )
         )
         self._frame, self._results = None, {}

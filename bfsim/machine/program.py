@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError
 from bfsim.kernel.types import FloatType, Number
+from bfsim.seen import Seen
 from bfsim.trace import BudgetRow
 
 if TYPE_CHECKING:
     from bfsim.machine.core import Core
+    from bfsim.machine.readout import Readout
 
 Main = Callable[["Core"], Generator[Any, Any, None]]
 
@@ -122,6 +124,7 @@ class Firmware:
     `mains`: the main loop of each core. `buffers`: size of the pictures → buffers. `camera`: the buffer of each core
     that the PPI fills, a whole number of frames. `rows`: the stages in the order of the budget. `calibration`: what a
     recording knows of its cameras → the buffers that it takes, beside the others or in place of those of the same name.
+    `view`: what a core has in memory at the end of a frame → what it saw, for people and files; it is not simulated.
     """
 
     mains: Mapping[str, Main]
@@ -129,6 +132,7 @@ class Firmware:
     camera: str
     rows: tuple[BudgetRow, ...]
     calibration: Callable[[Calibration], Buffers] | None = None
+    view: Callable[[Readout], Seen] | None = None
 
     def calibrated(self, calibration: Calibration) -> Firmware:
         """Return this firmware for the cameras of a recording."""
