@@ -31,13 +31,14 @@ class SeenEdges:
     """The edges of a picture, one element of each array per edge.
 
     `x_px`, `y_px`: the pixel. `gradients`: how strong, in the firmware's units. `directions`: of the gradient, as the
-    firmware has it, 256 to a full turn from the x axis towards the y axis.
+    firmware has it, 256 to a full turn from the x axis towards the y axis. `lost`: how many more there would have been with room for them.
     """
 
     x_px: NDArray[np.int32]
     y_px: NDArray[np.int32]
     gradients: NDArray[np.int32]
     directions: NDArray[np.int32]
+    lost: int = 0
 
     def __len__(self) -> int:
         return len(self.x_px)
@@ -170,12 +171,12 @@ class Seen:
     @property
     def width_px(self) -> int:
         """Width of the picture."""
-        return self.picture.shape[1] // 2
+        return int(self.picture.shape[1]) // 2
 
     @property
     def height_px(self) -> int:
         """Height of the picture."""
-        return self.picture.shape[0]
+        return int(self.picture.shape[0])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -67,6 +67,7 @@ def _edges(readout: Readout) -> SeenEdges:
         y_px=np.repeat(np.arange(len(counts), dtype=np.int32), counts),
         gradients=(words & 0xFF).astype(np.int32),
         directions=(words >> 8 & 0xFF).astype(np.int32),
+        lost=readout.published("edges_lost"),
     )
 
 
