@@ -19,7 +19,8 @@ Box = tuple[float, float, float, float]
 def overlay_of(frame: SeenFrame) -> Image.Image:
     """Return the sheet of a frame, RGB: the same size for frames of pictures of one size."""
     panels = [_panel(frame, each) for each in frame.cameras]
-    width = sum(image.width for image, _ in panels) + style.MARGIN * (len(panels) + 1)
+    inside = sum(image.width for image, _ in panels) + style.MARGIN * (len(panels) - 1)
+    width = 2 * style.MARGIN + max(inside, legend().width)
     height = style.HEAD + max(image.height for image, _ in panels) + style.FOOT
     sheet = Image.new("RGB", (width, height), style.PAPER)
     pen = ImageDraw.Draw(sheet)
@@ -41,11 +42,11 @@ def _panel(frame: SeenFrame, seen: Seen) -> tuple[Image.Image, list[Label]]:
 
 
 def _write_head(pen: ImageDraw.ImageDraw, frame: SeenFrame, seen: Seen, left: int, width: int) -> None:
-    seconds = frame.times_ns[seen.camera] / 1e9
-    middle = style.HEAD // 2
-    pen.text((left, middle), f"{seen.camera} camera", style.WORDS, style.font(style.FONT), anchor="lm")
-    title = f"frame {frame.index}   {seconds:.3f} s"
-    pen.text((left + width / 2, middle), title, style.FAINT, style.font(style.FONT), anchor="mm")
+    font, middle = style.font(style.FONT), style.HEAD // 2
+    title = f"{seen.camera} camera"
+    pen.text((left, middle), title, style.WORDS, font, anchor="lm")
+    when = f"frame {frame.index}   {frame.times_ns[seen.camera] / 1e9:.3f} s"
+    pen.text((left + font.getlength(title) + style.MARGIN, middle), when, style.FAINT, font, anchor="lm")
     lost = f" and {seen.edges.lost} lost" if seen.edges.lost else ""
     counts = (
         _counted(len(seen.edges), "edge") + lost,
@@ -54,7 +55,7 @@ def _write_head(pen: ImageDraw.ImageDraw, frame: SeenFrame, seen: Seen, left: in
         _counted(sum(each.passed for each in seen.circles), "circle"),
     )
     text = "   ".join(counts)
-    pen.text((left + width, middle), text, style.FAINT, style.font(style.FONT), anchor="rm")
+    pen.text((left + width, middle), text, style.FAINT, font, anchor="rm")
 
 
 def _counted(count: int, name: str) -> str:
