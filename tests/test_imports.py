@@ -39,7 +39,9 @@ MAY_IMPORT = {
     "cli_boards": {"chip", "report", "terminal"},
     "cli_ldf": {"mapping", "report", "terminal"},
     "cli_record": {"recording", "terminal"},
-    "cli": {"errors", "trace", "report", "run", "explain", "cli_boards", "cli_ldf", "cli_record", "terminal"},
+    "cli_seen": {"errors", "recording", "report", "run", "seen"},
+    "cli": {"errors", "seen", "trace", "report", "run", "explain", "terminal"}
+    | {"cli_boards", "cli_ldf", "cli_record", "cli_seen"},
     "__main__": {"cli"},
 }
 READ_VERSION = {"recording", "run", "cli"}  # these also read `bfsim.__version__`

@@ -9,7 +9,7 @@ from PIL import Image, ImageDraw
 
 from bfsim.report import overlay_style as style
 from bfsim.report.overlay_panel import Pen
-from bfsim.seen import SeenBlob, SeenCircle, SeenLine, SeenObject, Solid
+from bfsim.seen import SeenBlob, SeenCircle, SeenLine, SeenObject, Solid, colours
 
 GLYPH = 26  # width of a mark
 GAP = 28
@@ -72,11 +72,11 @@ def _write_scale(pen: ImageDraw.ImageDraw, x: float, middle: int, title: str) ->
     font = style.font(style.FONT)
     pen.text((x, middle), title, style.FAINT, font, anchor="lm")
     x += font.getlength(title) + GAP / 2
-    near, far = f"{style.NEAR_MM:.0f}", f"{style.FAR_MM:.0f}"
+    near, far = f"{colours.NEAR_MM:.0f}", f"{colours.FAR_MM:.0f}"
     pen.text((x, middle), near, style.FAINT, font, anchor="lm")
     x += font.getlength(near) + 8
     for step in range(BAR):
-        depth_mm = style.NEAR_MM + (style.FAR_MM - style.NEAR_MM) * step / (BAR - 1)
+        depth_mm = colours.NEAR_MM + (colours.FAR_MM - colours.NEAR_MM) * step / (BAR - 1)
         ends = (x + step, middle - BAR_HEIGHT / 2), (x + step, middle + BAR_HEIGHT / 2)
-        pen.line(ends, style.depth_colour(depth_mm))
+        pen.line(ends, colours.depth_colour(depth_mm))
     pen.text((x + BAR + 8, middle), far, style.FAINT, font, anchor="lm")

@@ -20,6 +20,7 @@ from bfsim.seen import (
     SeenLine,
     SeenLine3D,
     SeenObject,
+    colours,
 )
 
 FULL_GRADIENT = 96  # edges as strong as this are drawn at their brightest
@@ -79,7 +80,7 @@ def panel_of(
     for each in objects:
         pen.object(each)
         x, y = each.image_px
-        labels.append(Label(x, y - each.image_size_px[1] / 2, _words_of(each), each.colour, is_boxed=True))
+        labels.append(Label(x, y - each.image_size_px[1] / 2, each.caption, each.colour, is_boxed=True))
     placed = [replace(each, x=(each.x + 0.5) * scale, y=(each.y + 0.5) * scale) for each in labels]
     return image.reduce(style.SMOOTH), placed
 
@@ -90,11 +91,11 @@ def _with_edges(seen: Seen, edges_3d: tuple[SeenEdges3D, ...], scale: int) -> ND
     large = rgb_of(seen.picture).resize(size, Image.Resampling.BICUBIC).point(style.dark_levels())
     paint = np.zeros((seen.height_px, seen.width_px, 4), np.float32)
     edges = seen.edges
-    paint[edges.y_px, edges.x_px, :3] = style.EDGE
+    paint[edges.y_px, edges.x_px, :3] = colours.EDGE
     paint[edges.y_px, edges.x_px, 3] = np.clip(edges.gradients / FULL_GRADIENT, FAINTEST, 1)
     for each in edges_3d:
         places = edges.y_px[each.left_edges], edges.x_px[each.left_edges]
-        paint[(*places, slice(3))] = [style.depth_colour(depth) for depth in each.places_mm[:, 2]]
+        paint[(*places, slice(3))] = [colours.depth_colour(depth) for depth in each.places_mm[:, 2]]
         paint[(*places, 3)] = 1
     side = max(1, round(EDGE_SIDE * scale))
     square = np.zeros((scale, scale, 1), np.float32)
@@ -118,7 +119,7 @@ class Pen:
         """Draw a small square in the middle of some pixels, each two pixels wide: for the legend."""
         for x, y in map(self._at, edges):
             reach = style.SMOOTH
-            self._draw.rectangle((x - reach, y - reach, x + reach, y + reach), style.EDGE)
+            self._draw.rectangle((x - reach, y - reach, x + reach, y + reach), colours.EDGE)
 
     def blob(self, blob: SeenBlob) -> None:
         """Draw its rectangle, round its pixels, and a cross in its centre."""
@@ -131,7 +132,7 @@ class Pen:
 
     def line(self, line: SeenLine, place: SeenLine3D | None) -> None:
         """Draw a line with a dot at its start; by its depth if its place in space is known."""
-        colour = style.depth_colour((place.start_mm[2] + place.end_mm[2]) / 2) if place else style.LINE
+        colour = colours.depth_colour((place.start_mm[2] + place.end_mm[2]) / 2) if place else colours.LINE
         start, end = self._at(line.start_px), self._at(line.end_px)
         self._draw.line((start, end), colour, self._stroke)
         self._draw.circle(start, style.DOT * style.SMOOTH, fill=colour, outline=style.PAPER, width=2)
@@ -140,12 +141,12 @@ class Pen:
         """Draw a circle and its centre, or dashes where one failed."""
         centre, radius = self._at(circle.centre_px), circle.radius_px * self._scale
         if circle.passed:
-            self._draw.circle(centre, radius, outline=style.CIRCLE, width=self._stroke)
-            self._draw.circle(centre, style.DOT * style.SMOOTH, fill=style.CIRCLE)
+            self._draw.circle(centre, radius, outline=colours.CIRCLE, width=self._stroke)
+            self._draw.circle(centre, style.DOT * style.SMOOTH, fill=colours.CIRCLE)
             return
         box = (centre[0] - radius, centre[1] - radius, centre[0] + radius, centre[1] + radius)
         for degrees in range(0, 360, 2 * DASH_DEG):
-            self._draw.arc(box, degrees, degrees + DASH_DEG, style.FAILED, self._stroke)
+            self._draw.arc(box, degrees, degrees + DASH_DEG, colours.FAILED, self._stroke)
 
     def object(self, each: SeenObject) -> None:
         """Mark the corners of where an object is."""
@@ -164,13 +165,7 @@ class Pen:
         return x, y
 
 
-def _words_of(each: SeenObject) -> str:
-    how_far = "direction only" if each.is_direction else f"{each.distance_mm:.0f} mm"
-    age = f", {each.age_frames} frames ago" if each.age_frames else ""
-    return f"{each.name}  {how_far}  {100 * each.accuracy:.0f} %{age}"
-
-
 def _depth_label(line: SeenLine, place: SeenLine3D) -> Label:
     depth_mm = (place.start_mm[2] + place.end_mm[2]) / 2
     x, y = ((line.start_px[axis] + line.end_px[axis]) / 2 for axis in (0, 1))
-    return Label(x, y, f"{depth_mm:.0f}", style.depth_colour(depth_mm), is_boxed=False)
+    return Label(x, y, f"{depth_mm:.0f}", colours.depth_colour(depth_mm), is_boxed=False)

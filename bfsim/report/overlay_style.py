@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import colorsys
 from functools import cache
 
 from PIL import ImageFont
@@ -12,10 +11,6 @@ from bfsim.seen import Colour
 PAPER: Colour = (11, 14, 20)
 WORDS: Colour = (222, 228, 238)
 FAINT: Colour = (128, 140, 158)
-EDGE: Colour = (64, 205, 215)
-LINE: Colour = (255, 92, 205)
-CIRCLE: Colour = (150, 255, 90)
-FAILED: Colour = (170, 110, 110)
 
 BRIGHTNESS, GAMMA = 0.6, 0.75
 """Of the picture under the marks: darker than it was, but not where it was dark already."""
@@ -34,18 +29,6 @@ FOOT = 44
 FONT = 18
 LABEL_FONT = 17
 DEPTH_FONT = 15
-
-NEAR_MM, FAR_MM = 200.0, 1600.0
-"""Of the scale of depths: the table of T Table 6.2 begins and a field ends about there."""
-
-_NEAR_HUE, _FAR_HUE = 0.02, 0.62  # red to blue
-
-
-def depth_colour(depth_mm: float) -> Colour:
-    """Return the colour of a depth: red for near, blue for far."""
-    part = min(max((depth_mm - NEAR_MM) / (FAR_MM - NEAR_MM), 0.0), 1.0)
-    red, green, blue = colorsys.hls_to_rgb(_NEAR_HUE + part * (_FAR_HUE - _NEAR_HUE), 0.66, 1.0)
-    return round(255 * red), round(255 * green), round(255 * blue)
 
 
 @cache

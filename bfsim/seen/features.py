@@ -117,6 +117,13 @@ class SeenObject:
         """How far its middle is from the left camera; without meaning for a direction."""
         return float(np.linalg.norm(self.place_mm))
 
+    @property
+    def caption(self) -> str:
+        """What is written beside it: name, distance, accuracy, and when it was seen if that was before this frame."""
+        how_far = "direction only" if self.is_direction else f"{self.distance_mm:.0f} mm"
+        age = f"  {self.age_frames} frames ago" if self.age_frames else ""
+        return f"{self.name}  {how_far}  {100 * self.accuracy:.0f} %{age}"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenLine3D:
