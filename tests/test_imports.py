@@ -30,7 +30,7 @@ MAY_IMPORT = {
         "trace",
         "chip",
         "linker",
-    },  # the last two hold data: memories, and a link
+    },  # the last two hold data: memories, a link
     "loading": {"errors", "kernel", "machine"},
     "explain": {"errors", "kernel", "loading", "trace"},
     "run": {"errors", "seen", "trace", "chip", "kernel", "linker", "machine", "recording", "loading"},

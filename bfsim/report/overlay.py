@@ -18,7 +18,8 @@ Box = tuple[float, float, float, float]
 
 def overlay_of(frame: SeenFrame) -> Image.Image:
     """Return the sheet of a frame, RGB: the same size for frames of pictures of one size."""
-    panels = [_panel(frame, each) for each in frame.cameras]
+    wanted_px = style.PANEL_WIDTH if len(frame.cameras) > 1 else legend().width
+    panels = [_panel(frame, each, wanted_px) for each in frame.cameras]
     inside = sum(image.width for image, _ in panels) + style.MARGIN * (len(panels) - 1)
     width = 2 * style.MARGIN + max(inside, legend().width)
     height = style.HEAD + max(image.height for image, _ in panels) + style.FOOT
@@ -34,11 +35,12 @@ def overlay_of(frame: SeenFrame) -> Image.Image:
     return sheet
 
 
-def _panel(frame: SeenFrame, seen: Seen) -> tuple[Image.Image, list[Label]]:
+def _panel(frame: SeenFrame, seen: Seen, wanted_px: int) -> tuple[Image.Image, list[Label]]:
+    scale = max(1, round(wanted_px / seen.width_px))
     objects = tuple(each for each in frame.objects if each.camera == seen.camera)
     if seen.camera != "left":
-        return panel_of(seen, objects, (), ())
-    return panel_of(seen, objects, frame.lines_3d, tuple(frame.edges_3d()))
+        return panel_of(seen, objects, (), (), scale)
+    return panel_of(seen, objects, frame.lines_3d, tuple(frame.edges_3d()), scale)
 
 
 def _write_head(pen: ImageDraw.ImageDraw, frame: SeenFrame, seen: Seen, left: int, width: int) -> None:

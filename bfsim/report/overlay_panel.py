@@ -40,11 +40,6 @@ class Label:
     is_boxed: bool
 
 
-def magnification(width_px: int) -> int:
-    """Return how many times larger a picture is drawn."""
-    return max(1, round(style.PANEL_WIDTH / width_px))
-
-
 def rgb_of(uyvy: NDArray[np.uint8]) -> Image.Image:
     """Return a UYVY picture, full range BT.601, as Pillow's image."""
     height, width = uyvy.shape[0], uyvy.shape[1] // 2
@@ -58,12 +53,12 @@ def panel_of(
     objects: tuple[SeenObject, ...],
     lines_3d: tuple[SeenLine3D, ...],
     edges_3d: tuple[SeenEdges3D, ...],
+    scale: int,
 ) -> tuple[Image.Image, list[Label]]:
-    """Return the picture of a camera with its marks, magnified, and the words to be put on it.
+    """Return the picture of a camera with its marks, `scale` times larger, and the words to be put on it.
 
     `objects` are those that this camera shows; `lines_3d` and `edges_3d` those of the left picture, for the left one.
     """
-    scale = magnification(seen.width_px)
     under = Image.fromarray(_with_edges(seen, edges_3d, scale))
     image = under.resize((under.width * style.SMOOTH, under.height * style.SMOOTH), Image.Resampling.NEAREST)
     pen = Pen(image, scale * style.SMOOTH)
