@@ -12,7 +12,7 @@ from bfsim import __version__
 from bfsim.cli_boards import boards
 from bfsim.cli_ldf import ldf
 from bfsim.cli_record import record
-from bfsim.cli_seen import Watchers, takes_views, watching
+from bfsim.cli_seen import Watchers, require_view, takes_views, watching
 from bfsim.errors import BfsimError, ConfigError
 from bfsim.terminal import print_report, progress_bar
 
@@ -161,8 +161,9 @@ def run(
     def keep(frame: SeenFrame) -> None:
         seen[frame.index] = seen_json(frame, with_features=features)
 
-    inputs = {"recording": what["recording"], "firmware": what["firmware"]}
-    with watching(show=show, overlay=overlay, mcap=mcap, **inputs) as watchers:
+    if features or show or overlay or mcap:
+        require_view(what["firmware"])
+    with watching(show=show, overlay=overlay, mcap=mcap, recording=what["recording"]) as watchers:
         if json_path:
             watchers.append(keep)
         done = _simulate(watchers=watchers, **what)

@@ -46,19 +46,22 @@ def takes_views(command: Command) -> Command:
     return command
 
 
+def require_view(firmware: str) -> None:
+    """Raise ConfigError if the firmware cannot tell what it sees."""
+    from bfsim.run import has_view
+
+    if not has_view(firmware):
+        raise ConfigError(f"{firmware} must have a view to tell what it sees, but has none")
+
+
 @contextmanager
 def watching(
-    *, show: bool, overlay: Path | None, mcap: Path | None, recording: Path | None, firmware: str
+    *, show: bool, overlay: Path | None, mcap: Path | None, recording: Path | None
 ) -> Iterator[Watchers]:
     """Yield what is to be called with each frame that is seen; its files are there on a clean exit, or not at all.
 
-    Raises ConfigError if the firmware cannot tell what it sees, or for a place that cannot be written.
+    Raises a BfsimError for a place that cannot be written.
     """
-    if show or overlay or mcap:
-        from bfsim.run import has_view
-
-        if not has_view(firmware):
-            raise ConfigError(f"{firmware} must have a view to tell what it sees, but has none")
     with ExitStack() as stack:
         watchers: Watchers = []
         if mcap:
