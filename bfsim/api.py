@@ -11,12 +11,28 @@ from bfsim.machine.dma_descriptors import write_descriptor
 from bfsim.machine.memories import Row
 from bfsim.machine.memory_dma import MemoryDma
 from bfsim.machine.program import Buffer, Buffers, Calibration, Firmware, FrameSize, Geometry, SourcePixels
+from bfsim.machine.readout import Readout
 from bfsim.machine.ring import InputRing, OutputRing
 from bfsim.machine.settling import CameraSettings
+from bfsim.seen import (
+    Colour,
+    Seen,
+    SeenBlob,
+    SeenCircle,
+    SeenEdges,
+    SeenEdges3D,
+    SeenLine,
+    SeenLine3D,
+    SeenObject,
+    SeenRectangle,
+    Solid,
+    no_edges_3d,
+)
 from bfsim.trace import BudgetRow
 
 __all__ = [
-    "BudgetRow", "Buffer", "Buffers", "Calibration", "CameraSettings", "Core", "DmaConfig", "Firmware", "FirmwareError", "Flow", "Frame",
-    "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "OutputRing", "Row", "SourcePixels", "WdSize", "Work",
-    "f32", "i8", "i16", "i32", "kernel", "sqrt", "u8", "u16", "u32", "write_descriptor",
+    "BudgetRow", "Buffer", "Buffers", "Calibration", "CameraSettings", "Colour", "Core", "DmaConfig", "Firmware", "FirmwareError", "Flow", "Frame",
+    "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "OutputRing", "Readout", "Row", "Seen", "SeenBlob",
+    "SeenCircle", "SeenEdges", "SeenEdges3D", "SeenLine", "SeenLine3D", "SeenObject", "SeenRectangle", "Solid", "SourcePixels",
+    "WdSize", "Work", "f32", "i8", "i16", "i32", "kernel", "no_edges_3d", "sqrt", "u8", "u16", "u32", "write_descriptor",
 ]  # fmt: skip

@@ -12,10 +12,12 @@ from bfsim import __version__
 from bfsim.cli_boards import boards
 from bfsim.cli_ldf import ldf
 from bfsim.cli_record import record
+from bfsim.cli_seen import Watchers, require_view, takes_views, watching
 from bfsim.errors import BfsimError, ConfigError
 from bfsim.terminal import print_report, progress_bar
 
 if TYPE_CHECKING:
+    from bfsim.seen import SeenFrame
     from bfsim.trace import RunRecord
 
 LIMIT_BROKEN, MISTAKE, INTERRUPTED = 1, 2, 130
@@ -125,7 +127,15 @@ def _takes_a_run(command: Command) -> Command:
     type=click.Path(path_type=Path, allow_dash=True),
     help="Write all records and the budget as JSON, too; - writes it to standard output instead of the tables.",
 )
-def run(json_path: Path | None, **what: Any) -> None:
+@click.option(
+    "--features",
+    is_flag=True,
+    help="Add edges, blobs, lines and shapes of each picture to the JSON, beside objects, 3-D lines and 3-D edges.",
+)
+@takes_views
+def run(
+    json_path: Path | None, features: bool, show: bool, overlay: Path | None, mcap: Path | None, **what: Any
+) -> None:
     """Run RECORDING through the firmware and print the frame timing budget.
 
     RECORDING is an MCAP file (see `bfsim record`); without it, the built-in soccer scene runs.
@@ -135,20 +145,34 @@ def run(json_path: Path | None, **what: Any) -> None:
       bfsim run
       bfsim run drive.mcap --frames 20 --ldf ldf/thesis.ldf
       bfsim run drive.mcap --feed recorded --json drive.json
+      bfsim run drive.mcap --overlay drive-seen --mcap drive-seen.mcap
     """
     from bfsim.report.as_json import json_text
     from bfsim.report.save import require_place, write_text
+    from bfsim.report.seen_json import seen_json
     from bfsim.report.tables import run_report
 
     if json_path and json_path != STDOUT:
         require_place(json_path)
-    done = _simulate(**what)
+    if features and not json_path:
+        raise ConfigError("--features must come with --json FILE, which it adds to")
+    seen: dict[int, dict[str, Any]] = {}
+
+    def keep(frame: SeenFrame) -> None:
+        seen[frame.index] = seen_json(frame, with_features=features)
+
+    if features or show or overlay or mcap:
+        require_view(what["firmware"])
+    with watching(show=show, overlay=overlay, mcap=mcap, recording=what["recording"]) as watchers:
+        if json_path:
+            watchers.append(keep)
+        done = _simulate(watchers=watchers, **what)
     if json_path == STDOUT:
-        click.echo(json_text(done), nl=False)
+        click.echo(json_text(done, seen), nl=False)
     else:
         print_report(run_report(done))
         if json_path:
-            write_text(json_path, json_text(done))
+            write_text(json_path, json_text(done, seen))
     _exit_if_interrupted(done)
 
 
@@ -252,12 +276,19 @@ def check(path: Path, update: bool, **what: Any) -> None:
         raise SystemExit(LIMIT_BROKEN)
 
 
-def _simulate(*, feed: str, fidelity: str, **what: Any) -> RunRecord:
-    """Run the simulation behind a progress bar and return at least one frame."""
+def _simulate(*, feed: str, fidelity: str, watchers: Watchers | None = None, **what: Any) -> RunRecord:
+    """Run the simulation behind a progress bar and return at least one frame; `watchers` get what is seen."""
     from bfsim.run import Feed, Fidelity, simulate
 
+    def tell(frame: SeenFrame) -> None:
+        for each in watchers or ():
+            each(frame)
+
     with progress_bar("Simulating frames") as progress:
-        done = simulate(feed=Feed(feed), fidelity=Fidelity(fidelity), progress=progress, **what)
+        on_seen = tell if watchers else None
+        done = simulate(
+            feed=Feed(feed), fidelity=Fidelity(fidelity), progress=progress, on_seen=on_seen, **what
+        )
     if not done.frames:
         if done.interrupted:
             raise KeyboardInterrupt

@@ -20,7 +20,8 @@ from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
 from bfsim.machine.capture import Feed
 from bfsim.machine.program import Calibration, FrameSize, SourcePixels
 from bfsim.machine.strategy import Script
-from bfsim.recording import RecordingReader, StereoFrame
+from bfsim.recording import RecordingReader, StereoFrame, StereoGeometry
+from bfsim.seen import Seen, SeenFrame
 from bfsim.trace import Identity, RunRecord
 
 # Both stand beside the installed package: in a checkout and in site-packages alike.
@@ -43,12 +44,14 @@ def simulate(
     profile: str = VDSP_O2.name,
     strategy: Path | None = None,
     progress: Callable[[int, int], None] | None = None,
+    on_seen: Callable[[SeenFrame], None] | None = None,
 ) -> RunRecord:
     """Run `firmware` ("PACKAGE:NAME") on a recording and return the records.
 
     Without `recording` and `ldf` the built-in ones are taken; `frames` stops early. `progress` is called with
     (frames done, frames in all); `profile` names the compiler whose code is costed; `strategy` is a script of what
-    the strategy unit sends. Ctrl-C ends the run with the frames done. Raises a BfsimError for anything
+    the strategy unit sends; `on_seen` is called with what was seen in each frame, if the firmware has a view, which
+    changes nothing in the records. Ctrl-C ends the run with the frames done. Raises a BfsimError for anything
     that is wrong with what was given.
     """
     if frames is not None and frames < 1:
@@ -85,9 +88,24 @@ def simulate(
             if progress:
                 progress(done, total)
 
+        def show(index: int, cameras: tuple[Seen, ...]) -> None:
+            if on_seen:
+                on_seen(SeenFrame(index=index, times_ns=source.take_times_ns(index), cameras=cameras))
+
         wait_for_compiler()
-        outcome = machine.run(iter(source), count)
+        outcome = machine.run(iter(source), count, show if on_seen else None)
     return _record(outcome, spec, loaded, placement, feed, fidelity, size, source, compiler, script)
+
+
+def has_view(firmware: str) -> bool:
+    """Whether `firmware` ("PACKAGE:NAME") can tell what it sees. Raises FirmwareError as `simulate`."""
+    return load_firmware(firmware).firmware.view is not None
+
+
+def geometry_of(recording: Path | None) -> StereoGeometry | None:
+    """Return where the cameras of a recording, or of the built-in one, are, if it says. Raises RecordingError."""
+    with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
+        return reader.geometry
 
 
 def read_placement(ldf: Path | None, spec: BoardSpec) -> LinkerScript:
@@ -123,13 +141,19 @@ class _DigestedFrames:
         self._reader = reader
         self._total = total
         self._digest = hashlib.sha256()
+        self._times_ns: dict[int, dict[str, int]] = {}
 
     def __iter__(self) -> Iterator[StereoFrame]:
         for frame in self._reader.frames(self._total):
             self._digest.update(f"{frame.left.shape} {frame.left_ns} {frame.right_ns}\n".encode())
             self._digest.update(frame.left.tobytes())
             self._digest.update(frame.right.tobytes())
+            self._times_ns[frame.index] = {"left": frame.left_ns, "right": frame.right_ns}
             yield frame
+
+    def take_times_ns(self, index: int) -> dict[str, int]:
+        """Return when the pictures of a frame were taken, by camera."""
+        return self._times_ns.pop(index)
 
     @property
     def digest(self) -> str:

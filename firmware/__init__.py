@@ -8,6 +8,7 @@ from firmware.core_a import core_a
 from firmware.core_b import core_b
 from firmware.one_core import one_core
 from firmware.orders import BY_NAME
+from firmware.view import view
 
 ROWS = (
     BudgetRow(stage="Edge detection", thesis_ms=87.0),  # T Table 6.4, average
@@ -26,6 +27,7 @@ tinyphoon = Firmware(
     rows=ROWS,
     calibration=calibration_buffers,
     orders=BY_NAME,
+    view=view,
 )
 
 one_eye = Firmware(
@@ -35,5 +37,6 @@ one_eye = Firmware(
     rows=ROWS,
     calibration=calibration_buffers,
     orders=BY_NAME,
+    view=view,
 )
 """The same stages for a board with one core and one camera, such as cm-bf533."""

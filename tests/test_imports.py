@@ -16,22 +16,32 @@ MAY_IMPORT = {
     "errors": set(),
     "clocks": {"errors"},
     "trace": {"errors"},
+    "seen": set(),
     "chip": {"errors", "clocks"},
     "kernel": {"errors"},
     "linker": {"errors", "chip"},
-    "machine": {"errors", "clocks", "trace", "chip", "kernel", "linker"},
-    "api": {"chip", "errors", "kernel", "machine", "trace"},
-    "recording": {"errors"},
-    "report": {"errors", "clocks", "trace", "chip", "linker"},  # the last two hold data: memories, and a link
+    "machine": {"errors", "clocks", "seen", "trace", "chip", "kernel", "linker"},
+    "api": {"chip", "errors", "kernel", "machine", "seen", "trace"},
+    "recording": {"errors", "seen"},
+    "report": {
+        "errors",
+        "clocks",
+        "seen",
+        "trace",
+        "chip",
+        "linker",
+    },  # the last two hold data: memories, a link
     "loading": {"errors", "kernel", "machine"},
     "explain": {"errors", "kernel", "loading", "trace"},
-    "run": {"errors", "trace", "chip", "kernel", "linker", "machine", "recording", "loading"},
+    "run": {"errors", "seen", "trace", "chip", "kernel", "linker", "machine", "recording", "loading"},
     "mapping": {"chip", "kernel", "linker", "loading", "machine", "report", "run"},
     "terminal": set(),
     "cli_boards": {"chip", "report", "terminal"},
     "cli_ldf": {"mapping", "report", "terminal"},
     "cli_record": {"recording", "terminal"},
-    "cli": {"errors", "trace", "report", "run", "explain", "cli_boards", "cli_ldf", "cli_record", "terminal"},
+    "cli_seen": {"errors", "recording", "report", "run", "seen"},
+    "cli": {"errors", "seen", "trace", "report", "run", "explain", "terminal"}
+    | {"cli_boards", "cli_ldf", "cli_record", "cli_seen"},
     "__main__": {"cli"},
 }
 READ_VERSION = {"recording", "run", "cli"}  # these also read `bfsim.__version__`

@@ -39,6 +39,7 @@ from bfsim.machine.spi import OUTSIDE_BYTES, Spi
 from bfsim.machine.strategy import Script, StrategyUnit
 from bfsim.machine.synchronised import SharedObjects
 from bfsim.machine.traffic import traffic_records
+from bfsim.seen import Seen
 from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, MessageRecord, TrafficRecord
 
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
@@ -55,6 +56,8 @@ class Fidelity(StrEnum):
     FAST = "fast"
     DETAILED = "detailed"
 
+
+OnSeen = Callable[[int, tuple[Seen, ...]], None]
 
 BUSES = {Fidelity.FAST: Bus, Fidelity.DETAILED: DetailedBus}
 
@@ -115,6 +118,8 @@ class Board:
         self._bus = BUSES[self.fidelity](self._env, self.spec, self._memories)
         self._calls: dict[str, CallBook] = {}
         self._frames: list[FrameRecord] = []
+        self._seen: list[tuple[int, tuple[Seen, ...]]] = []
+        self._on_seen: OnSeen | None = None
         self._caches = {core: caches_of(self.link_map, PROCESSORS[core]) for core in self.spec.chip.cores}
         for core, caches in self._caches.items():
             check_caches(self.link_map, core, caches, self.spec.chip.regions)
@@ -164,9 +169,16 @@ class Board:
         return self._memories.place(buffer, self.link_map.find(processor, buffer.name))
 
     def run(
-        self, pictures: Iterator[StereoPictures], on_frame: Callable[[FrameRecord], None] | None = None
+        self,
+        pictures: Iterator[StereoPictures],
+        on_frame: Callable[[FrameRecord], None] | None = None,
+        on_seen: OnSeen | None = None,
     ) -> Outcome:
-        """Play `pictures` until they end or the user interrupts. Raises DeadlockError when the cores block each other."""
+        """Play `pictures` until they end or the user interrupts. Raises DeadlockError when the cores block each other.
+
+        `on_seen` is called with the index of each frame and what its cores saw, if the firmware has a view.
+        """
+        self._on_seen = on_seen
         capture = self._capture(pictures)
         for index, name in enumerate(self.spec.chip.cores):
             self.cores[name] = self._core(index, name, capture, lambda: self._finish_frame(on_frame))
@@ -186,6 +198,10 @@ class Board:
         with suppress(simpy.core.EmptySchedule):
             while not event.processed:
                 self._env.step()
+                if (
+                    self._seen and self._on_seen
+                ):  # here, outside of the firmware: what fails is no fault of it
+                    self._on_seen(*self._seen.pop())
 
     def _check_end(self) -> None:
         """Raise an error unless both main loops have ended, with the same frames."""
@@ -266,6 +282,7 @@ class Board:
             shared=self._shared,
             stages=tuple(each.stage for each in self.firmware.rows),
             on_finished=on_finished,
+            view=self.firmware.view if self._on_seen else None,
         )
 
     def _finish_frame(self, on_frame: Callable[[FrameRecord], None] | None) -> None:
@@ -282,6 +299,8 @@ class Board:
             remarks=tuple(text for each in parts for text in each.remarks),
         )
         self._frames.append(record)
+        if seen := tuple(each.seen for each in parts if each.seen):
+            self._seen.append((record.index, seen))
         if on_frame:
             on_frame(record)
 

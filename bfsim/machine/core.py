@@ -27,11 +27,13 @@ from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.machine.memory_dma import Dma, MemoryDma
 from bfsim.machine.program import FrameSize, Main
+from bfsim.machine.readout import Readout
 from bfsim.machine.ring import InputRing, OutputRing
 from bfsim.machine.settling import CameraSettings
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi import SPI_WRITES, Spi
 from bfsim.machine.synchronised import SharedObjects, SynchronisedCore
+from bfsim.seen import Seen
 from bfsim.trace import REST, CoreFrame, StallReason
 
 NOT_FIRMWARE = (str(Path(__file__).parent.parent) + os.sep, contextlib.__file__)
@@ -65,6 +67,7 @@ class FinishedFrame:
     cycles: CoreFrame
     results: Mapping[str, int]
     remarks: tuple[str, ...]
+    seen: Seen | None
 
 
 class Core(SynchronisedCore):
@@ -88,8 +91,12 @@ class Core(SynchronisedCore):
         shared: SharedObjects,
         stages: tuple[str, ...],
         on_finished: Callable[[], None],
+        view: Callable[[Readout], Seen] | None,
     ) -> None:
-        """`streams`: the MDMA streams of its input and of its output rings. `on_finished`: called at a frame's end."""
+        """`streams`: the MDMA streams of its input and of its output rings. `on_finished`: called at a frame's end.
+
+        `view`: reads out what was seen, if anyone wants to know.
+        """
         super().__init__(env, name, board, bus, stages)
         self.finished: list[FinishedFrame] = []
         """Frames that are done, until the board takes them."""
@@ -97,6 +104,7 @@ class Core(SynchronisedCore):
         self._stages = stages
         self._on_finished = on_finished
         self._layouts = layouts
+        self._view = view
         self._calls = calls
         self._number = number
         self._follower = follower
@@ -385,6 +393,7 @@ class Core(SynchronisedCore):
                 cycles=cycles,
                 results=self._results,
                 remarks=tuple(self._remarks),
+                seen=self._view(Readout(self, self._frame, self._results)) if self._view else None,
             )
         )
         self._frame, self._results, self._remarks = None, {}, []

@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError
 from bfsim.kernel.types import FloatType, Number
+from bfsim.seen import Seen
 from bfsim.trace import BudgetRow
 
 if TYPE_CHECKING:
     from bfsim.machine.core import Core
+    from bfsim.machine.readout import Readout
 
 Main = Callable[["Core"], Generator[Any, Any, None]]
 
@@ -127,6 +129,7 @@ class Firmware:
     recording knows of its cameras → the buffers that it takes, beside the others or in place of those of the same name.
     `orders`: what the strategy unit may order by name ("mode", "models") → the payload of that message; raises a
     FirmwareError that names the field and what it must be.
+    `view`: what a core has in memory at the end of a frame → what it saw, for people and files; it is not simulated.
     """
 
     mains: Mapping[str, Main]
@@ -135,6 +138,7 @@ class Firmware:
     rows: tuple[BudgetRow, ...]
     calibration: Callable[[Calibration], Buffers] | None = None
     orders: Mapping[str, Callable[[Any], bytes]] = field(default_factory=dict)
+    view: Callable[[Readout], Seen] | None = None
 
     def calibrated(self, calibration: Calibration) -> Firmware:
         """Return this firmware for the cameras of a recording."""

@@ -13,6 +13,7 @@ from bfsim.recording.frames import (
 from bfsim.recording.importer import ImportSummary, import_recording, load_rectification
 from bfsim.recording.info import CameraTiming, RecordingInfo, describe_recording
 from bfsim.recording.reader import RecordingReader
+from bfsim.recording.seen_writer import SeenWriter
 from bfsim.recording.sources import SOURCE_FORMATS, SourceFormat
 from bfsim.recording.writer import RecordingWriter
 
@@ -26,6 +27,7 @@ __all__ = [
     "RecordingReader",
     "RecordingWriter",
     "RectificationTables",
+    "SeenWriter",
     "SourceFormat",
     "StereoFrame",
     "StereoGeometry",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Mapping
+from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
@@ -21,6 +21,7 @@ from bfsim import __version__
 from bfsim.errors import RecordingError
 from bfsim.recording import layout
 from bfsim.recording.frames import DisparityImage, RectificationTables, StereoGeometry, UyvyImage
+from bfsim.recording.growing_file import growing_file, writing
 
 _FRAME_IDS = {layout.LEFT_TOPIC: "left", layout.RIGHT_TOPIC: "right", layout.DISPARITY_TOPIC: "left"}
 
@@ -60,21 +61,17 @@ class RecordingWriter:
             raise RecordingError(f"{path}: image height must be above 0, not {height}")
         if rectification is not None:
             rectification.check(width, height)
-        self._temporary = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
 
     def __enter__(self) -> Self:
-        with self._writing():
-            self._stream: IO[bytes] = self._temporary.open("xb")
-        try:
-            with self._writing():
-                self._start()
-        except BaseException:
-            self._discard()
-            raise
+        with ExitStack() as stack:
+            stream = stack.enter_context(growing_file(self.path))
+            with writing(self.path):
+                self._start(stream)
+            self._file = stack.pop_all()
         return self
 
-    def _start(self) -> None:
-        self._mcap = Writer(self._stream, chunk_size=layout.CHUNK_BYTES)
+    def _start(self, stream: IO[bytes]) -> None:
+        self._mcap = Writer(stream, chunk_size=layout.CHUNK_BYTES)
         self._mcap.start(profile="", library=layout.LIBRARY_PREFIX + __version__)
         self._mcap.add_metadata(layout.DESCRIPTION_RECORD, layout.seal({"description": self._description}))
         if self._geometry is not None:
@@ -168,7 +165,7 @@ class RecordingWriter:
         self._add_message(topic, time_ns, message.SerializeToString(deterministic=True))
 
     def _add_message(self, topic: str, time_ns: int, data: bytes) -> None:
-        with self._writing():
+        with writing(self.path):
             self._mcap.add_message(self._channels[topic], time_ns, data, time_ns, sequence=self.frame_count)
 
     def _encode_truth(self, truth: Mapping[str, Any]) -> bytes:
@@ -182,28 +179,14 @@ class RecordingWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        try:
-            if kind is None:
-                self._finish()
-        finally:
-            self._discard()
+        if kind is not None:
+            self._file.__exit__(kind, error, trace)
+            return
+        with self._file:
+            self._finish()
 
     def _finish(self) -> None:
         if self.frame_count == 0:
             raise RecordingError(f"{self.path}: a recording must have at least one stereo frame, not 0")
-        with self._writing():
+        with writing(self.path):
             self._mcap.finish()  # type: ignore[no-untyped-call]  # mcap left this one unannotated
-            self._stream.close()
-            self._temporary.replace(self.path)
-
-    def _discard(self) -> None:
-        with suppress(OSError):  # a full disk refuses what is still buffered; the file goes away all the same
-            self._stream.close()
-        self._temporary.unlink(missing_ok=True)
-
-    @contextmanager
-    def _writing(self) -> Iterator[None]:
-        try:
-            yield
-        except OSError as error:
-            raise RecordingError(f"{self.path}: recording must be writable: {error.strerror}") from None

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Mapping
 from typing import Any
 
 from pydantic_core import to_jsonable_python
@@ -15,17 +17,27 @@ SCHEMA = "bfsim.run/1"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
 
 
-def as_json(run: RunRecord) -> dict[str, Any]:
+Seen = Mapping[int, Mapping[str, Any]]
+"""What was seen in each frame (`seen_json`), by the frame's index."""
+
+_NUMBERS = re.compile(r"\[\n\s+(-?[\d.e+-]+(?:,\n\s+-?[\d.e+-]+)*)\n\s+\]")
+
+
+def as_json(run: RunRecord, seen: Seen | None = None) -> dict[str, Any]:
     """Return the records of a run of at least one frame as they are, and beside them the budget and the digests.
 
-    Keys are the field names of `bfsim.trace` and `bfsim.report.budget`, so each carries its unit.
+    Each frame of `seen` has it beside its records. Keys are the field names of `bfsim.trace` and `bfsim.report.budget`, so each carries its unit.
     """
     plain: dict[str, Any] = to_jsonable_python(run, fallback=dict)
     budget = to_jsonable_python(budget_of(run), fallback=dict)
     digests = {"identity": identity_digest(run.identity), "cycles": cycle_digest(run.frames)}
+    for frame in plain["frames"]:
+        if seen and frame["index"] in seen:
+            frame["seen"] = seen[frame["index"]]
     return {"schema": SCHEMA, "digests": digests, "budget": budget, **plain}
 
 
-def json_text(run: RunRecord) -> str:
-    """Return `as_json` as indented text that ends in a line feed."""
-    return json.dumps(as_json(run), indent=2, ensure_ascii=False) + "\n"
+def json_text(run: RunRecord, seen: Seen | None = None) -> str:
+    """Return `as_json` as indented text that ends in a line feed, with lists of numbers in one line."""
+    text = json.dumps(as_json(run, seen), indent=2, ensure_ascii=False)
+    return _NUMBERS.sub(lambda found: f"[{', '.join(found[1].split())}]".replace(",,", ","), text) + "\n"

@@ -1,0 +1,104 @@
+"""Options of `bfsim run` for what the firmware saw: pictures for people, files for machines."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from bfsim.errors import ConfigError
+
+if TYPE_CHECKING:
+    from bfsim.recording import SeenWriter
+    from bfsim.seen import SeenFrame
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+Watchers = list["Callable[[SeenFrame], None]"]
+
+_PARAMETERS = (
+    click.option("--show", is_flag=True, help="Draw what was seen over the pictures, and open that."),
+    click.option(
+        "--overlay",
+        metavar="DIR|FILE",
+        type=click.Path(path_type=Path),
+        help="Draw what was seen: a PNG per frame in DIR, or all in FILE, a .gif, .webp, .apng or (for long runs) .mp4.",
+    ),
+    click.option(
+        "--mcap",
+        metavar="FILE",
+        type=click.Path(path_type=Path),
+        help="Write pictures, features, objects, 3-D lines and 3-D edges as an MCAP file that Foxglove draws.",
+    ),
+)
+
+
+def takes_views(command: Command) -> Command:
+    """Give a command the options of `watching`."""
+    for parameter in reversed(_PARAMETERS):
+        command = parameter(command)
+    return command
+
+
+def require_view(firmware: str) -> None:
+    """Raise ConfigError if the firmware cannot tell what it sees."""
+    from bfsim.run import has_view
+
+    if not has_view(firmware):
+        raise ConfigError(f"{firmware} must have a view to tell what it sees, but has none")
+
+
+@contextmanager
+def watching(
+    *, show: bool, overlay: Path | None, mcap: Path | None, recording: Path | None
+) -> Iterator[Watchers]:
+    """Yield what is to be called with each frame that is seen; its files are there on a clean exit, or not at all.
+
+    Raises a BfsimError for a place that cannot be written.
+    """
+    with ExitStack() as stack:
+        watchers: Watchers = []
+        if mcap:
+            watchers.append(stack.enter_context(_seen_writer(mcap, recording)).add)
+        if show and not overlay:
+            overlay = stack.enter_context(_lasting_folder()) / "overlay.gif"
+        if overlay:
+            from bfsim.report.overlay_files import OverlayWriter
+
+            watchers.append(stack.enter_context(OverlayWriter(overlay)).add)
+        yield watchers
+    if show and overlay:
+        _show(overlay)
+
+
+def _seen_writer(path: Path, recording: Path | None) -> SeenWriter:
+    from bfsim.recording import SeenWriter
+    from bfsim.report.save import require_place
+    from bfsim.run import geometry_of
+
+    require_place(path)
+    return SeenWriter(path, geometry_of(recording))
+
+
+@contextmanager
+def _lasting_folder() -> Iterator[Path]:
+    """Yield a new folder among the temporary ones that stays, unless something goes wrong."""
+    folder = Path(tempfile.mkdtemp(prefix="bfsim-"))
+    try:
+        yield folder
+    except BaseException:
+        shutil.rmtree(folder)
+        raise
+
+
+def _show(path: Path) -> None:
+    """Say where a picture is and, if there is a display, open it with the program that the system has for it."""
+    click.echo(f"bfsim: what was seen is drawn in {path}", err=True)
+    if sys.platform == "darwin" or {"DISPLAY", "WAYLAND_DISPLAY"} & set(os.environ):
+        click.launch(str(path))

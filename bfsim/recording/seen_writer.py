@@ -1,0 +1,105 @@
+"""Writes what was seen to an MCAP file that Foxglove draws: pictures with marks, and objects, lines and edges in space.
+
+All messages are of Foxglove's own schemas and carry the time at which their picture was taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Any, Self
+
+from mcap.writer import Writer
+from mcap_protobuf.schema import register_schema
+
+from bfsim import __version__
+from bfsim.errors import RecordingError
+from bfsim.recording import layout
+from bfsim.recording.frames import StereoGeometry
+from bfsim.recording.growing_file import growing_file, writing
+from bfsim.recording.seen_pictures import features_message, image_message
+from bfsim.recording.seen_space import (
+    calibration_message,
+    edges_message,
+    lines_message,
+    objects_message,
+    transforms_message,
+)
+from bfsim.seen import SeenFrame
+
+IMAGE_TOPIC = "/camera/{}/image_rect"
+CALIBRATION_TOPIC = "/camera/{}/calibration"
+FEATURES_TOPIC = "/camera/{}/features"
+TRANSFORMS_TOPIC = "/transforms"
+OBJECTS_TOPIC = "/seen/objects"
+LINES_TOPIC = "/seen/lines_3d"
+EDGES_TOPIC = "/seen/edges_3d"
+
+
+class SeenWriter:
+    """Context manager that writes one file; it appears on a clean exit of the `with` block, or not at all.
+
+    `geometry`: where the cameras are; where nobody knows, the file has no transforms and no calibrations. Raises
+    RecordingError where the file cannot be written.
+    """
+
+    def __init__(self, path: Path, geometry: StereoGeometry | None) -> None:
+        self.path = path
+        self._geometry = geometry
+        self._channels: dict[str, int] = {}
+        if not path.name or path.is_dir():
+            raise RecordingError(f"{path}: --mcap must be a file, not a folder")
+
+    def __enter__(self) -> Self:
+        with ExitStack() as stack:
+            stream: IO[bytes] = stack.enter_context(growing_file(self.path))
+            with writing(self.path):
+                self._mcap = Writer(stream, chunk_size=layout.CHUNK_BYTES)
+                self._mcap.start(profile="", library=layout.LIBRARY_PREFIX + __version__)
+            self._file = stack.pop_all()
+        return self
+
+    def add(self, frame: SeenFrame) -> None:
+        """Append what was seen in a frame, in the order of time."""
+        messages = sorted(self._messages(frame), key=lambda each: each[1])
+        for topic, time_ns, message in messages:
+            data = message.SerializeToString(deterministic=True)
+            with writing(self.path):
+                channel = self._channel(topic, message)
+                self._mcap.add_message(channel, time_ns, data, time_ns, sequence=frame.index)
+
+    def _messages(self, frame: SeenFrame) -> Iterator[tuple[str, int, Any]]:
+        """Yield topic, time and message of all there is to say of a frame."""
+        time_ns, geometry = frame.time_ns, self._geometry
+        if geometry:
+            yield TRANSFORMS_TOPIC, time_ns, transforms_message(geometry, time_ns)
+        for seen in frame.cameras:
+            camera, taken_ns = seen.camera, frame.times_ns[seen.camera]
+            yield IMAGE_TOPIC.format(camera), taken_ns, image_message(seen, taken_ns)
+            yield FEATURES_TOPIC.format(camera), taken_ns, features_message(seen, frame.objects, taken_ns)
+            if geometry:
+                size_px = seen.width_px, seen.height_px
+                calibration = calibration_message(geometry, camera, size_px, taken_ns)
+                yield CALIBRATION_TOPIC.format(camera), taken_ns, calibration
+        tilt_deg = geometry.tilt_deg if geometry else 0.0
+        yield OBJECTS_TOPIC, time_ns, objects_message(frame.objects, tilt_deg, time_ns)
+        yield LINES_TOPIC, time_ns, lines_message(frame.lines_3d, time_ns)
+        yield EDGES_TOPIC, time_ns, edges_message(frame.edges_3d(), time_ns)
+
+    def _channel(self, topic: str, message: Any) -> int:
+        """Return the channel of a topic, which its first message opens."""
+        if topic not in self._channels:
+            schema = register_schema(self._mcap, type(message))
+            self._channels[topic] = self._mcap.register_channel(topic, "protobuf", schema)
+        return self._channels[topic]
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if kind is not None:
+            self._file.__exit__(kind, error, trace)
+            return
+        with self._file, writing(self.path):
+            self._mcap.finish()  # type: ignore[no-untyped-call]  # mcap left this one unannotated

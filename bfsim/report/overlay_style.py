@@ -1,0 +1,43 @@
+"""How overlays look: colours and sizes, for a dark field. All of them are ours."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from PIL import ImageFont
+
+from bfsim.seen import Colour
+
+PAPER: Colour = (11, 14, 20)
+WORDS: Colour = (222, 228, 238)
+FAINT: Colour = (128, 140, 158)
+
+BRIGHTNESS, GAMMA = 0.6, 0.75
+"""Of the picture under the marks: darker than it was, but not where it was dark already."""
+
+PANEL_WIDTH = 960
+"""About as wide is a picture drawn: small ones are magnified by a whole number."""
+
+SMOOTH = 2
+"""Marks are drawn so many times larger and then reduced: Pillow's pen has no soft edge."""
+
+STROKE = 2
+DOT = 3.5  # radius of the mark at the start of a line
+MARGIN = 20
+HEAD = 46
+FOOT = 44
+FONT = 18
+LABEL_FONT = 17
+DEPTH_FONT = 15
+
+
+@cache
+def dark_levels() -> list[int]:
+    """Return for each level of red, then of green, then of blue the one to draw."""
+    return 3 * [round(255 * BRIGHTNESS * (level / 255) ** GAMMA) for level in range(256)]
+
+
+@cache
+def font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
+    """Return the font of all words, so many pixels high."""
+    return ImageFont.load_default(size)

@@ -1,0 +1,183 @@
+"""The view: it shows what the stages left in memory, and the firmware does not notice."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bfsim.api import Readout
+from bfsim.recording import RecordingReader
+from bfsim.report.digest import cycle_digest
+from bfsim.run import BUILT_IN_RECORDING, simulate
+from bfsim.seen import SeenFrame, Solid
+from firmware import models, object_store
+from firmware.circle_store import CENTRE_PASSED, RADIUS_PASSED
+from firmware.stages.blob_detection import hues
+from firmware.stages.colour_reduction import BLACK, WHITE
+from firmware.view import view
+from firmware.view_colours import colour_of
+
+FRAMES = 2
+
+
+@pytest.fixture(scope="module", name="run")
+def _run() -> tuple[list[SeenFrame], Any]:
+    """What was seen in the built-in recording, and the records of that run."""
+    seen: list[SeenFrame] = []
+    return seen, simulate(frames=FRAMES, on_seen=seen.append)
+
+
+def test_looking_changes_no_cycle(run: tuple[list[SeenFrame], Any]) -> None:
+    """The same cycles with and without."""
+    assert cycle_digest(run[1].frames) == cycle_digest(simulate(frames=FRAMES).frames)
+
+
+def test_nobody_reads_memories_unless_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It costs no time then."""
+    monkeypatch.setattr(Readout, "__init__", None)
+    simulate(frames=1)
+
+
+def test_every_frame_is_seen_by_both_cameras(run: tuple[list[SeenFrame], Any]) -> None:
+    """In order, with the recorded times and the pictures that were taken."""
+    with RecordingReader(BUILT_IN_RECORDING) as reader:
+        recorded = list(reader.frames(FRAMES))
+    assert [each.index for each in run[0]] == [each.index for each in recorded]
+    for frame, pair in zip(run[0], recorded, strict=True):
+        assert frame.times_ns == {"left": pair.left_ns, "right": pair.right_ns}
+        left, right = frame.cameras
+        assert (left.camera, right.camera) == ("left", "right")
+        assert (left.picture == pair.left).all()
+        assert (right.picture == pair.right).all()
+
+
+def test_as_much_is_seen_as_was_published(run: tuple[list[SeenFrame], Any]) -> None:
+    """Edges, blobs and lines of each core in each frame."""
+    for frame, record in zip(run[0], run[1].frames, strict=True):
+        for seen, core in zip(frame.cameras, "AB", strict=True):
+            for name in ("edges", "blobs", "lines"):
+                assert len(getattr(seen, name)) == record.results[f"{name}_{core}"] > 0
+
+
+def test_edges_are_where_the_picture_has_them(run: tuple[list[SeenFrame], Any]) -> None:
+    """At each one its grey differs across the gradient's direction, which tells that x and y are not mixed up."""
+    seen = run[0][0].cameras[0]
+    grey = seen.picture[:, 1::2].astype(int)
+    angles = 2 * np.pi * seen.edges.directions / 256
+    inside = (seen.edges.x_px > 1) & (seen.edges.x_px < 318) & (seen.edges.y_px > 1) & (seen.edges.y_px < 238)
+    step_x, step_y = np.rint(np.cos(angles)).astype(int), np.rint(np.sin(angles)).astype(int)
+    ahead = grey[(seen.edges.y_px + step_y)[inside], (seen.edges.x_px + step_x)[inside]]
+    behind = grey[(seen.edges.y_px - step_y)[inside], (seen.edges.x_px - step_x)[inside]]
+    assert (ahead > behind).mean() > 0.95
+    assert seen.edges.gradients.min() > 0
+
+
+def test_the_ball_is_a_yellow_blob(run: tuple[list[SeenFrame], Any]) -> None:
+    """Its rectangle holds its centre and no more pixels than fit; it is drawn in its colour."""
+    blobs = [each for each in run[0][0].cameras[0].blobs if each.colours == models.YELLOW]
+    ball = max(blobs, key=lambda each: each.pixels)
+    red, green, blue = ball.colour
+    assert red > 200 < green + 50
+    assert blue < 100
+    assert ball.left_px < ball.centre_px[0] < ball.right_px
+    assert ball.top_px < ball.centre_px[1] < ball.bottom_px
+    width, height = ball.right_px - ball.left_px + 1, ball.bottom_px - ball.top_px + 1
+    assert 0.6 * width * height < ball.pixels < 0.9 * width * height  # a disc has pi / 4
+
+
+def test_lines_are_in_the_picture(run: tuple[list[SeenFrame], Any]) -> None:
+    """In pixels, not in sixteenths."""
+    for line in run[0][0].cameras[0].lines:
+        for x, y in (line.start_px, line.end_px):
+            assert -1 < x < 320
+            assert -1 < y < 240
+        assert 0 < line.probability <= 1
+
+
+def readout(results: dict[str, int], **buffers: Any) -> Readout:
+    """What core A would have in memory."""
+    empty = {
+        "edge_data": np.zeros(8, np.uint32),
+        "edge_counts": np.zeros(4, np.uint16),
+        "blob_data": np.zeros(8, np.uint32),
+        "lines": np.zeros(9, np.int16),
+    }
+    rows = {name: (SimpleNamespace(array=np.asarray(each)),) for name, each in {**empty, **buffers}.items()}
+    core: Any = SimpleNamespace(name="A", rows=rows.__getitem__, has_buffer=rows.__contains__)
+    frame: Any = SimpleNamespace(rows=[SimpleNamespace(array=np.zeros(8, np.uint8))] * 4)
+    return Readout(core, frame, {f"{name}_A": count for name, count in results.items()})
+
+
+def test_stages_that_are_not_there_saw_nothing() -> None:
+    """A board with one core has no depth."""
+    seen = view(readout({}))
+    assert (seen.width_px, seen.height_px) == (4, 4)
+    assert not len(seen.edges)
+    assert not len(seen.edges_3d)
+    assert (seen.blobs, seen.lines, seen.circles, seen.rectangles, seen.objects, seen.lines_3d) == ((),) * 6
+
+
+def test_circles_are_those_of_the_store() -> None:
+    """In pixels, failed ones too, and none beyond the last."""
+    words = (
+        [160, 320, 88, 0, 40, 255, 128, CENTRE_PASSED | RADIUS_PASSED] + [0] * 7 + [CENTRE_PASSED] + [7] * 8
+    )
+    one, two = view(readout({"circles": 2}, circles=np.array(words, np.int16))).circles
+    assert (one.centre_px, one.radius_px, one.edges, one.passed) == ((10, 20), 5.5, 40, True)
+    assert (two.passed, two.tests) == (False, ("centre",))
+
+
+def test_rectangles_name_the_sides_that_have_a_line() -> None:
+    """Left, right, top, bottom, blob."""
+    words = np.array([3, -1, 0, 2, 5], np.int16)
+    (found,) = view(readout({"rectangles": 1}, rectangles=words)).rectangles
+    assert (found.blob, found.sides) == (5, {"left": 3, "top": 0, "bottom": 2})
+
+
+def test_what_is_in_space_is_in_millimetres() -> None:
+    """Ends of lines and places of edges, with where they are in the left picture."""
+    lines = np.array([1, 2, 300, -4, 5, 600, 7, 8], np.int16)
+    edges = np.array([[10, -20, 900, 1], [1, 2, 32767, 4095], [0, 0, 0, 0]], np.int16).ravel()
+    seen = view(readout({"lines_3d": 1, "edges_3d": 2}, lines_3d=lines, edges_3d=edges))
+    (line,) = seen.lines_3d
+    assert (line.start_mm, line.end_mm, line.left_line, line.right_line) == ((1, 2, 300), (-4, 5, 600), 7, 8)
+    assert seen.edges_3d.places_mm.tolist() == [[10, -20, 900], [1, 2, 32767]]
+    assert seen.edges_3d.left_edges.tolist() == [1, 4095]
+
+
+def test_objects_are_those_of_the_history() -> None:
+    """With name, size and colour of their models; free records are none."""
+    words = np.zeros((3, object_store.OBJECT_WORDS), np.int16)
+    for number, record in ((1, words[0]), (2, words[2])):
+        record[object_store.OBJECT_MODEL] = number
+        record[object_store.OBJECT_ACCURACY] = 51
+        record[object_store.OBJECT_TESTS] = 0b100001
+        record[object_store.OBJECT_X : object_store.OBJECT_X + 3] = 10, -20, 500
+        record[object_store.OBJECT_IMAGE_X : object_store.OBJECT_IMAGE_X + 4] = 1600, 800, 320, 160
+        record[object_store.OBJECT_CAMERAS] = (
+            object_store.SEEN_LEFT if number == 1 else object_store.SEEN_RIGHT
+        )
+    words[0, object_store.OBJECT_MEASURES] = object_store.BY_FLOOR
+    words[2, object_store.OBJECT_AGE] = 4
+    buffers = {"objects": words.ravel(), "models": models.model_words(models.MODELS)}
+    ball, goal = view(readout({}, **buffers)).objects
+    assert (ball.name, ball.solid, ball.width_mm, ball.accuracy) == ("ball", Solid.SPHERE, 60, 0.2)
+    assert (ball.place_mm, ball.is_direction, ball.camera) == ((10, -20, 500), False, "left")
+    assert (ball.image_px, ball.image_size_px, ball.age_frames) == ((100, 50), (20, 10), 0)
+    assert ball.tests == ("colour", "second camera")
+    assert (goal.name, goal.solid, goal.is_direction) == ("blue goal", Solid.BOX, True)
+    assert (goal.camera, goal.age_frames) == ("right", 4)
+
+
+def test_colours_are_drawn_as_they_are() -> None:
+    """Each group of hues by its mean, round the circle; black, white and mixtures of them in grey."""
+    strongest = {group: np.argmax(colour_of(group)) for group in (models.RED, models.BLUE)}
+    assert strongest == {models.RED: 0, models.BLUE: 2}
+    assert colour_of(hues(0, 27)) != colour_of(0)
+    assert colour_of(WHITE) == (255, 255, 255)
+    assert len({colour_of(BLACK), colour_of(WHITE), colour_of(BLACK | WHITE)}) == 3
+    for hue in range(28):
+        assert max(colour_of(hues(hue, hue))) == 255

@@ -1,0 +1,53 @@
+"""What was seen in the JSON of a run."""
+
+from __future__ import annotations
+
+import json
+
+from bfsim.report.as_json import json_text
+from bfsim.report.seen_json import seen_json
+from tests import seen_frames as made
+from tests.report.records import edge_run
+
+
+def test_objects_and_what_is_in_space_are_always_there() -> None:
+    """With the time stamps of the pictures; nothing of the pictures themselves."""
+    plain = seen_json(made.frame(), with_features=False)
+    assert plain == json.loads(json.dumps(plain))
+    assert plain["times_ns"] == {"left": 500_000_000, "right": 502_000_000}
+    assert [each["name"] for each in plain["objects"]] == ["ball", "blue goal", "robot marker"]
+    assert plain["objects"][0]["place_mm"] == [30.0, 40.0, 1200.0]
+    assert plain["objects"][0]["solid"] == "sphere"
+    assert plain["lines_3d"] == [
+        {"start_mm": [0, 0, 300], "end_mm": [100, 50, 500], "left_line": 1, "right_line": 0}
+    ]
+    assert plain["edges_3d_mm"] == [[10, 20, 300], [-10, 5, 1500]]
+    assert "cameras" not in plain
+
+
+def test_features_of_the_pictures_come_when_asked_for() -> None:
+    """By camera: edges as arrays, the others as records."""
+    cameras = seen_json(made.frame(), with_features=True)["cameras"]
+    left, right = cameras["left"], cameras["right"]
+    assert left["edges"] == {
+        "x_px": [5, 6, 7],
+        "y_px": [50, 50, 51],
+        "gradients": [255, 40, 96],
+        "directions": [0, 64, 128],
+        "lost": 0,
+    }
+    assert left["blobs"][0]["centre_px"] == [39.5, 29.5]
+    assert left["lines"][1]["end_px"] == [40.0, 5.0]
+    assert left["circles"][0]["tests"] == ["centre", "radius"]
+    assert (right["width_px"], right["height_px"], right["lines"]) == (80, 60, [])
+
+
+def test_each_frame_has_its_own() -> None:
+    """By its number in the recording; without anything seen nothing is added."""
+    run = edge_run(100, 200)
+    text = json_text(run, {1: seen_json(made.frame(1), with_features=False)})
+    frames = json.loads(text)["frames"]
+    assert "seen" not in frames[0]
+    assert frames[1]["seen"]["edges_3d_mm"][1] == [-10, 5, 1500]
+    assert "[-10, 5, 1500]" in text  # a line each, not a line a number
+    assert json.loads(json_text(run)) == json.loads(json_text(run, {}))

@@ -1,0 +1,114 @@
+"""`bfsim run` shows what was seen: pictures, an MCAP file, JSON; from the terminal's side."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+import pytest
+from click.testing import CliRunner, Result
+from mcap.reader import make_reader
+from PIL import Image
+
+from bfsim.cli import main
+
+BLIND = """
+from dataclasses import replace
+from firmware import tinyphoon
+
+blind = replace(tinyphoon, view=None)
+dazed = replace(tinyphoon, view=lambda readout: readout.values("no such buffer"))
+"""
+
+
+def run(*arguments: object) -> Result:
+    """Run the first frame of the built-in recording."""
+    command = ["run", "--frames", "1", *map(str, arguments)]
+    return CliRunner().invoke(main, command, catch_exceptions=False, prog_name="bfsim")
+
+
+def refused(*arguments: object) -> str:
+    """Run what is a mistake: exit code 2 and one paragraph."""
+    result = run(*arguments)
+    assert result.exit_code == 2, result.output
+    assert result.stderr.startswith("bfsim: error: ")
+    return result.stderr
+
+
+def test_all_at_once(tmp_path: Path) -> None:
+    """The tables as ever, and beside them a folder of pictures, an MCAP file and the JSON with what was seen."""
+    folder, mcap, report = tmp_path / "seen", tmp_path / "seen.mcap", tmp_path / "run.json"
+    result = run("--overlay", folder, "--mcap", mcap, "--json", report)
+    assert result.exit_code == 0, result.output
+    assert "frames/s" in result.stdout
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["run.json", "seen", "seen.mcap"]
+    with Image.open(folder / "frame-0000.png") as image:
+        assert image.width > 2 * 960
+    with mcap.open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+    assert summary
+    assert {"foxglove.SceneUpdate", "foxglove.PointCloud"} < {each.name for each in summary.schemas.values()}
+    seen = json.loads(report.read_text())["frames"][0]["seen"]
+    assert {"times_ns", "objects", "lines_3d", "edges_3d_mm"} == set(seen)
+
+
+def test_features_in_the_json() -> None:
+    """Edges, blobs and lines of both pictures; as many as the firmware says."""
+    frame = json.loads(run("--features", "--json", "-").stdout)["frames"][0]
+    for camera, core in (("left", "A"), ("right", "B")):
+        features = frame["seen"]["cameras"][camera]
+        assert len(features["edges"]["x_px"]) == frame["results"][f"edges_{core}"]
+        assert len(features["blobs"]) == frame["results"][f"blobs_{core}"]
+    assert "--features must come with --json" in refused("--features")
+
+
+def test_show_opens_the_picture_where_there_is_a_display(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without one it says where it is; standard output is the report's."""
+    opened: list[str] = []
+    monkeypatch.setattr(click, "launch", opened.append)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setattr("sys.platform", "linux")
+    result = run("--show", "--json", "-")
+    json.loads(result.stdout)
+    (path,) = tmp_path.glob("bfsim-*/overlay.gif")
+    assert str(path) in result.stderr
+    assert not opened
+    monkeypatch.setenv("DISPLAY", ":0")
+    run("--show", "--overlay", tmp_path / "mine.webp")
+    assert opened == [str(tmp_path / "mine.webp")]
+
+
+def test_mistakes_are_told_before_the_run(tmp_path: Path) -> None:
+    """A folder with other things in it, a place that is not there, a format that nobody writes."""
+    (tmp_path / "thesis.tex").write_text("")
+    assert "holds thesis.tex" in refused("--overlay", tmp_path)
+    assert "*.gif" in refused("--overlay", tmp_path / "seen.bmp")
+    assert "must exist" in refused("--mcap", tmp_path / "missing" / "seen.mcap")
+    assert [each.name for each in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+def test_firmware_without_a_view_has_nothing_to_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is refused where pictures are wanted; a plain JSON has no `seen` then."""
+    (tmp_path / "short_sighted.py").write_text(BLIND)
+    monkeypatch.syspath_prepend(tmp_path)
+    blind = "--firmware", "short_sighted:blind"
+    for option in ("--show", "--overlay", "--mcap", "--features"):
+        more = [tmp_path / "seen"] if option in ("--overlay", "--mcap") else []
+        message = refused(*blind, option, *more, "--json", tmp_path / "run.json")
+        assert "short_sighted:blind must have a view" in message
+    assert "seen" not in json.loads(run(*blind, "--json", "-").stdout)["frames"][0]
+
+
+def test_a_view_that_fails_is_told_with_its_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And nothing is left of what was to be written."""
+    (tmp_path / "dazed_firmware.py").write_text(BLIND)
+    monkeypatch.syspath_prepend(tmp_path)
+    message = refused("--firmware", "dazed_firmware:dazed", "--overlay", tmp_path / "seen")
+    assert "no such buffer" in message
+    assert "dazed_firmware.py:6" in message
+    assert not (tmp_path / "seen").exists()
