@@ -7,6 +7,7 @@ from firmware.buffers import buffers, calibration_buffers, one_core_buffers
 from firmware.core_a import core_a
 from firmware.core_b import core_b
 from firmware.one_core import one_core
+from firmware.orders import BY_NAME
 from firmware.view import view
 
 ROWS = (
@@ -15,6 +16,8 @@ ROWS = (
     BudgetRow(stage="Open & closing", thesis_ms=26.0),
     BudgetRow(stage="Blob detection", thesis_ms=68.0),
     BudgetRow(stage="Line detection", thesis_ms=19.0),  # 3-D lines and edges included
+    BudgetRow(stage="Shape detection", thesis_ms=18.0),
+    BudgetRow(stage="Object detection", thesis_ms=1.0),
 )
 
 tinyphoon = Firmware(
@@ -24,6 +27,7 @@ tinyphoon = Firmware(
     rows=ROWS,
     calibration=calibration_buffers,
     view=view,
+    orders=BY_NAME,
 )
 
 one_eye = Firmware(
@@ -33,5 +37,6 @@ one_eye = Firmware(
     rows=ROWS,
     calibration=calibration_buffers,
     view=view,
+    orders=BY_NAME,
 )
 """The same stages for a board with one core and one camera, such as cm-bf533."""

@@ -10,30 +10,45 @@ from collections.abc import Mapping, Sequence
 
 from bfsim.api import Buffer, Buffers, Calibration, FrameSize, i16, u8, u16, u32
 from firmware.edge_store import EDGE_CAPACITY
+from firmware.exchange import exchange_buffers
 from firmware.geometry import geometry_buffer, thesis_geometry_buffer
+from firmware.models import model_buffers
+from firmware.orders import order_buffers, shared_order_buffers
 from firmware.results import MESSAGE_WORDS
 from firmware.stages.blob_detection import blob_buffers
+from firmware.stages.circle_detection import circle_buffers
 from firmware.stages.hysteresis import hysteresis_buffers
 from firmware.stages.line_detection import line_buffers
+from firmware.stages.object_detection import (
+    left_object_buffers,
+    object_buffers,
+    shared_object_buffers,
+)
+from firmware.stages.rectangle_detection import rectangle_buffers
 from firmware.stages.rectification import rectification_buffers
+from firmware.stages.stereo_edges import stereo_edge_buffers
+from firmware.stages.stereo_lines import stereo_line_buffers
 from firmware.tables import arctangent_table
 
-ORDERS_WORDS = 256  # room for a message of the strategy unit
 CAMERA_FRAMES = 3  # one that is worked on, one that waits, one that is filled
 
 
 def buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     """Return the buffers of each core for pictures of `size`."""
     return {
-        "A": _core_buffers(size, camera="sdram_bank0", images="sdram_bank2"),
+        "A": (*_left_buffers(size), *stereo_line_buffers(), *stereo_edge_buffers()),
         "B": _core_buffers(size, camera="sdram_bank1", images="sdram_bank3"),
-        "shared": (Buffer("right_edges", u32, 1, "l2_shared"),),
+        "shared": (
+            *exchange_buffers(size),
+            *shared_object_buffers(),
+            *shared_order_buffers(size, "l2_shared"),
+        ),
     }
 
 
 def one_core_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     """Return the buffers for pictures of `size` of a board with one core."""
-    return {"A": _core_buffers(size, camera="sdram_bank0", images="sdram_bank2")}
+    return {"A": (*_left_buffers(size), *shared_order_buffers(size, "data1"))}
 
 
 def calibration_buffers(calibration: Calibration) -> Buffers:
@@ -41,6 +56,14 @@ def calibration_buffers(calibration: Calibration) -> Buffers:
     geometry = tuple(geometry_buffer(each) for each in calibration.geometries)
     tables = rectification_buffers(calibration.sources)
     return {core: (*tables.get(core, ()), *geometry) for core in ("A", "B")}
+
+
+def _left_buffers(size: FrameSize) -> Sequence[Buffer]:
+    return (
+        *_core_buffers(size, camera="sdram_bank0", images="sdram_bank2"),
+        *left_object_buffers(),
+        Buffer("results", u16, MESSAGE_WORDS, "data1"),
+    )
 
 
 def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buffer]:
@@ -69,8 +92,11 @@ def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buff
         Buffer("edge_index", u32, height, "L1_data_b"),
         Buffer("edge_counts", u16, height, "L1_data_b"),
         *hysteresis_buffers(),
-        Buffer("results", u16, MESSAGE_WORDS, "L1_data_b"),
-        Buffer("orders", u16, ORDERS_WORDS, "L1_data_b"),
         *blob_buffers(size),
         *line_buffers(size),
+        *circle_buffers(),
+        *rectangle_buffers(),
+        *object_buffers(),
+        *order_buffers(),
+        *model_buffers(),
     )

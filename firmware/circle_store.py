@@ -1,7 +1,8 @@
 """The circles of a picture, for the stages that follow: a table of t_Circle, one for each blob of a spherical model.
 
-A t_Circle is a struct of 16-bit words, in the order of the blobs. Blobs whose circle fails a test have one too;
-the words that a failed centre test leaves without meaning are 0. Words beyond the last circle are undefined.
+A t_Circle is a struct of 16-bit words, in the order of the blobs. Blobs whose circle fails a test have one too: without
+a centre it has the blob's centre of mass, and radius and its share are 0; after a failed radius test the radius is that of
+the peak all the same. Words beyond the last circle are undefined.
 """
 
 from __future__ import annotations

@@ -7,18 +7,30 @@ from typing import Any
 
 from bfsim.api import Core
 from firmware.features import features
-from firmware.modes import INDOOR_FIELD
-from firmware.results import MESSAGE_WORDS, load_word, pack_results
+from firmware.orders import read_mode, see_by, take_orders
+from firmware.report import report
+from firmware.stages.object_detection import left_sight, object_detection
+from firmware.stages.stereo_edges import stereo_edges
+from firmware.stages.stereo_lines import stereo_lines
 
 
 def core_a(core: Core) -> Generator[Any, Any, None]:
-    """See every picture of the left camera. The cores end a frame together, to take the same next pair."""
+    """See every picture of the left camera, and depth where core B's right one shows the same.
+
+    Core B writes its results again only when core A is done with them: the cores take the same next pair.
+    """
     while (frame := (yield from core.next_frame())) is not None:
-        found = yield from features(core, frame, INDOOR_FIELD)
-        yield from core.post("core A is done")
+        mode = yield from read_mode(core)
+        area = yield from see_by(core, frame, mode)
+        found = yield from features(core, frame, mode, area)
+        with core.stage("Object detection"):
+            yield from left_sight(core, found.frame, found.outlines, mode.objects)
         yield from core.wait("core B is done")
-        yield from core.receive(core.array("orders"))  # modes and models: taken, not obeyed yet
-        others = yield core.run(load_word, core.array("right_edges"))
-        message = core.array("results")
-        yield core.run(pack_results, message, frame.index & 0x7FFF, found, others)
-        yield from core.send(message, 2 * MESSAGE_WORDS)
+        with core.stage("Line detection"):
+            yield from stereo_lines(core, found.frame, found.lines, mode.stereo_lines)
+            yield from stereo_edges(core, found.frame, mode.stereo_edges)
+        with core.stage("Object detection"):
+            yield from object_detection(core, mode.objects)
+        refused = yield from take_orders(core)  # for the next frame; core B reads them when core A is done
+        yield from core.post("core A is done")
+        yield from report(core, frame, area, refused)

@@ -3,27 +3,52 @@
 from __future__ import annotations
 
 from collections.abc import Generator
+from dataclasses import dataclass
 from typing import Any
 
 from bfsim.api import Core, Frame
+from firmware.areas import WHOLE_PICTURE, Area
 from firmware.modes import Mode
 from firmware.stages.blob_detection import blob_detection
+from firmware.stages.circle_detection import circle_detection
 from firmware.stages.edge_detection import edge_detection
 from firmware.stages.line_detection import line_detection
+from firmware.stages.line_refinement import line_refinement
+from firmware.stages.object_detection import Outlines
 from firmware.stages.open_closing import open_closing
+from firmware.stages.rectangle_detection import rectangle_detection
 from firmware.stages.rectification import rectification
 
 
-def features(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, int]:
-    """Leave edges, colours, blobs and lines of a picture in the core's memories; returns how many edges are stored."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Features:
+    """How many features of each kind an area of a picture has in the core's memories. `frame`: the area as a picture."""
+
+    frame: Frame
+    edges: int
+    lines: int
+    outlines: Outlines
+
+
+def features(
+    core: Core, frame: Frame, mode: Mode, area: Area = WHOLE_PICTURE
+) -> Generator[Any, Any, Features]:
+    """Leave edges, colours, blobs, lines and outlines of an area in the core's memories, in its coordinates."""
     with core.stage("Edge detection"):
         with core.stage("Rectification"):
-            frame = yield from rectification(core, frame)
-        found = yield from edge_detection(core, frame, mode.edges)
+            frame = yield from rectification(core, frame, area)
+        edges = yield from edge_detection(core, frame, mode.edges)
     with core.stage("Open & closing"):
         yield from open_closing(core, frame)
     with core.stage("Blob detection"):
-        yield from blob_detection(core, frame, mode.blobs)
+        blobs = yield from blob_detection(core, frame, mode.blobs)
     with core.stage("Line detection"):
-        yield from line_detection(core, frame, mode.lines)
-    return found
+        lines = yield from line_detection(core, frame, mode.lines)
+        yield from line_refinement(core, frame, lines, mode.refinement)
+    with core.stage("Shape detection"):
+        circles = yield from circle_detection(core, frame, blobs, mode.ball_colours, mode.circles)
+        rectangles = yield from rectangle_detection(
+            core, blobs, lines, mode.rectangle_colours, mode.rectangles
+        )
+    outlines = Outlines(blobs=blobs, circles=circles, rectangles=rectangles)
+    return Features(frame=frame, edges=edges, lines=lines, outlines=outlines)

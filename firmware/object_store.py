@@ -13,7 +13,7 @@ from bfsim.api import i16, i32, kernel
 
 OBJECT_MODEL = 0  # number of its model
 OBJECT_ACCURACY = 1  # 0..255
-OBJECT_TESTS = 2  # those passed: *_PASSED
+OBJECT_TESTS = 2  # those passed: *_TEST, VERIFIED
 OBJECT_CAMERAS = 3  # that see it: SEEN_LEFT, SEEN_RIGHT
 OBJECT_MEASURES = 4  # of the distance: BY_*, or 0 if only the direction is known
 OBJECT_X = 5  # place in mm; if only the direction is known a vector that way, DIRECTION_Z long in z
@@ -24,16 +24,20 @@ OBJECT_IMAGE_Y = 9
 OBJECT_WIDTH = 10  # there, 1/16 px
 OBJECT_HEIGHT = 11
 OBJECT_EXTENT = 12  # what its distance is measured by in the picture, 1/16 px
-OBJECT_AGE = 13  # frames since it was seen, 0: in this one
-OBJECT_WORDS = 14
+OBJECT_OUTLINE = (
+    13  # number of its record in `circles` or `rectangles` of the camera that sees it, or NO_OUTLINE
+)
+OBJECT_AGE = 14  # frames since it was seen, 0: in this one
+OBJECT_WORDS = 15
 
 NO_MODEL = 0
+NO_OUTLINE = -1
 
-COLOUR_PASSED = 1 << 0  # in the order of the tests (T Figure 5.7)
-DIMENSION_PASSED = 1 << 1
-AREA_PASSED = 1 << 2
-CENTRE_PASSED = 1 << 3  # T_c of a circle; the bottom line of a rectangle
-SIZE_PASSED = 1 << 4  # T_r of a circle; the lines left and right of a rectangle
+COLOUR_TEST = 1 << 0  # in the order of the tests (T Figure 5.7)
+DIMENSION_TEST = 1 << 1
+AREA_TEST = 1 << 2
+CENTRE_TEST = 1 << 3  # T_c of a circle; the bottom line of a rectangle
+SIZE_TEST = 1 << 4  # T_r of a circle; the lines left and right of a rectangle
 VERIFIED = 1 << 5  # by the second camera
 
 SEEN_LEFT = 1 << 0

@@ -49,8 +49,8 @@ def spread(products: i32, sum_a: i32, sum_b: i32, edges: i32) -> i32:
 
 @kernel
 def slope(along: i32, across: i32) -> i32:
-    """Return across / along as a fraction of 1 << SLOPE_BITS, for |across| <= along; 0 for a single point."""
-    while along >= WIDEST:
+    """Return across / along as a fraction of 1 << SLOPE_BITS; 0 for a single point."""
+    while along >= WIDEST or abs(across) >= WIDEST:
         along = along >> 1
         across = across >> 1
     if along == 0:
@@ -83,6 +83,25 @@ def border_position(x: i32, y: i32, dx: i32, dy: i32, right: i32, bottom: i32) -
         side = x + to_level * dx // abs(dy)
         position = 2 * right + bottom - side if dy > 0 else side
     return position // SUBPIXELS
+
+
+@kernel
+def store_ends(
+    lines: i16[:], line: i32, x0: i32, y0: i32, x1: i32, y1: i32, atan: u8[:], width: i32, height: i32
+) -> None:
+    """Store start and end of line number `line`, and what follows from them: its angle and its Muff parameters."""
+    base = line * LINE_WORDS
+    dx = x1 - x0
+    dy = y1 - y0
+    right = SUBPIXELS * (width - 1)
+    bottom = SUBPIXELS * (height - 1)
+    lines[base + LINE_X0] = x0
+    lines[base + LINE_Y0] = y0
+    lines[base + LINE_X1] = x1
+    lines[base + LINE_Y1] = y1
+    lines[base + LINE_ANGLE] = angle8(dx, dy, atan)
+    lines[base + LINE_BEHIND] = border_position(x0, y0, -dx, -dy, right, bottom)
+    lines[base + LINE_AHEAD] = border_position(x1, y1, dx, dy, right, bottom)
 
 
 @kernel
@@ -124,20 +143,9 @@ def fit_line(
         start_x = start_y * rise >> SLOPE_BITS
         end_y = end_y + reach
         end_x = end_y * rise >> SLOPE_BITS
-    dx = end_x - start_x
-    dy = end_y - start_y
-    pixels = (max(abs(dx), abs(dy)) + HALF_PIXEL) // SUBPIXELS
-    base = line * LINE_WORDS
-    lines[base + LINE_X0] = middle_x + start_x
-    lines[base + LINE_Y0] = middle_y + start_y
-    lines[base + LINE_X1] = middle_x + end_x
-    lines[base + LINE_Y1] = middle_y + end_y
-    lines[base + LINE_ANGLE] = angle8(dx, dy, atan)
-    lines[base + LINE_EDGES] = edges
-    lines[base + LINE_PROBABILITY] = min((edges << 8) // pixels, 255)
-    right = SUBPIXELS * (width - 1)
-    bottom = SUBPIXELS * (height - 1)
-    lines[base + LINE_BEHIND] = border_position(
-        middle_x + start_x, middle_y + start_y, -dx, -dy, right, bottom
-    )
-    lines[base + LINE_AHEAD] = border_position(middle_x + end_x, middle_y + end_y, dx, dy, right, bottom)
+    pixels = (max(abs(end_x - start_x), abs(end_y - start_y)) + HALF_PIXEL) // SUBPIXELS
+    store_ends(
+        lines, line, middle_x + start_x, middle_y + start_y, middle_x + end_x, middle_y + end_y, atan, width, height
+    )  # fmt: skip
+    lines[line * LINE_WORDS + LINE_EDGES] = edges
+    lines[line * LINE_WORDS + LINE_PROBABILITY] = min((edges << 8) // pixels, 255)

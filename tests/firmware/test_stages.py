@@ -22,7 +22,7 @@ from firmware.edge_store import EDGE_CAPACITY
 from firmware.modes import INDOOR_FIELD
 from firmware.stages.edge_detection import EdgeThresholds, edge_detection
 from firmware.stages.hysteresis import LABELS
-from tests.firmware import edge_references, references
+from tests.firmware import edge_references, references, refinement_references
 from tests.firmware.line_rig import find_lines
 from tests.firmware.pictures import Bytes, random_uyvy
 
@@ -79,8 +79,8 @@ def check_edges(
     assert results[f"edge_groups_shared_{core}"] == expected.sharing
 
 
-def check_lines(board: Board, core: str, results: dict[str, int]) -> None:
-    """Compare the lines that core `core` found with those of the edges that it left."""
+def check_lines(board: Board, core: str, uyvy: Bytes, results: dict[str, int]) -> None:
+    """Compare the lines that core `core` found with those of the edges that it left, refined by the picture `uyvy`."""
     data, index, counts = (
         buffer(board, core, f"edge_{name}")[0].tolist() for name in ("data", "index", "counts")
     )
@@ -91,7 +91,11 @@ def check_lines(board: Board, core: str, results: dict[str, int]) -> None:
     lines = find_lines(rows, buffer(board, core, "edge_image").shape[1])
     assert results[f"lines_{core}"] == len(lines.lines)
     assert results[f"line_edges_lost_{core}"] == lines.lost
-    np.testing.assert_array_equal(buffer(board, core, "lines")[0, : lines.lines.size], lines.lines.ravel())
+    limits = INDOOR_FIELD.refinement.reach, INDOOR_FIELD.refinement.min_step
+    refined, moved = refinement_references.refined(lines.lines.tolist(), references.luma(uyvy), *limits)
+    assert results[f"lines_refined_{core}"] == moved
+    found = buffer(board, core, "lines")[0, : lines.lines.size].reshape(lines.lines.shape)
+    assert found.tolist() == refined
 
 
 def check_core(board: Board, core: str, uyvy: Bytes, results: dict[str, int]) -> None:
@@ -101,7 +105,7 @@ def check_core(board: Board, core: str, uyvy: Bytes, results: dict[str, int]) ->
     opened = references.dilate(references.erode(colours))
     np.testing.assert_array_equal(buffer(board, core, "colour_image"), colours)
     np.testing.assert_array_equal(buffer(board, core, "opened_image"), opened)
-    check_lines(board, core, results)
+    check_lines(board, core, uyvy, results)
 
 
 def check_last_frame(frames: Sequence[StereoFrame]) -> Outcome:

@@ -1,0 +1,90 @@
+"""The objects that the firmware sees in a recording: its stages on a simulated board, and what each leaves in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.api import Core, Firmware, FrameSize
+from bfsim.chip.boards import CM_BF561
+from bfsim.linker import link, parse_ldf
+from bfsim.machine.board import Board, symbols_of
+from bfsim.machine.spi_protocol import decode, message_nbytes
+from bfsim.recording import RecordingReader
+from bfsim.run import THESIS_LDF, calibration_of
+from firmware import ROWS
+from firmware.buffers import buffers, calibration_buffers
+from firmware.features import features
+from firmware.models import model_words
+from firmware.modes import INDOOR_FIELD, Mode
+from firmware.object_store import NO_MODEL, OBJECT_MODEL, OBJECT_WORDS
+from firmware.report import report
+from firmware.results import Results, decode_results
+from firmware.stages.object_detection import left_sight, object_detection, right_sight
+
+Records = NDArray[np.int16]
+"""Rows of t_Object."""
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """One frame: the objects that each camera sees by itself, the message that left, and what is true."""
+
+    left: Records
+    right: Records
+    results: Results
+    truth: Mapping[str, Any]
+
+
+def see(path: Path, mode: Mode = INDOOR_FIELD, frames: int | None = None) -> list[Seen]:
+    """Return what the firmware sees in the frames of a recording, the first `frames` of them."""
+    alone: dict[str, list[Records]] = {"A": [], "B": []}
+    payloads: list[bytes] = []
+
+    def keep(core: Core, name: str) -> None:
+        records = core.array(name).array.reshape(-1, OBJECT_WORDS)
+        alone[core.name].append(records[records[:, OBJECT_MODEL] != NO_MODEL].copy())
+
+    def left_main(core: Core) -> Generator[Any, Any, None]:
+        core.array("models").array[:] = model_words(mode.models)
+        while (frame := (yield from core.next_frame())) is not None:
+            found = yield from features(core, frame, mode)
+            yield from left_sight(core, frame, found.outlines, mode.objects)
+            keep(core, "left_seen")
+            yield from core.post("core A is done")
+            yield from core.wait("core B is done")
+            yield from object_detection(core, mode.objects)
+            yield from report(core, frame)
+            message = core.array("results").array
+            payloads.append(decode(message.tobytes()[: message_nbytes(int(message[3]))]).payload)
+
+    def right_main(core: Core) -> Generator[Any, Any, None]:
+        core.array("models").array[:] = model_words(mode.models)
+        while (frame := (yield from core.next_frame())) is not None:
+            found = yield from features(core, frame, mode)
+            yield from right_sight(core, frame, found.outlines, mode.objects)
+            keep(core, "right_seen")
+            yield from core.post("core B is done")
+            yield from core.wait("core A is done")
+
+    plain = Firmware(
+        mains={"A": left_main, "B": right_main},
+        buffers=buffers,
+        camera="camera",
+        rows=ROWS,
+        calibration=calibration_buffers,
+    )
+    with RecordingReader(path) as reader:
+        size = FrameSize(reader.width, reader.height)
+        firmware = plain.calibrated(calibration_of(reader))
+        link_map = link(parse_ldf(THESIS_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
+        pictures = list(reader.frames(min(frames or reader.frame_count, reader.frame_count)))
+        Board(CM_BF561, firmware, size, link_map).run(iter(pictures))
+    results = [decode_results(each) for each in payloads]
+    truths = [each.truth or {} for each in pictures]
+    return [Seen(*each) for each in zip(alone["A"], alone["B"], results, truths, strict=True)]

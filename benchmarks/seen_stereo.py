@@ -1,0 +1,85 @@
+"""The 3-D lines that the firmware sees in stereo frames: its edge, line and stereo stages on a simulated board."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.api import BudgetRow, Calibration, Core, Firmware, Frame, FrameSize
+from bfsim.chip.boards import CM_BF561
+from bfsim.linker import link, parse_ldf
+from bfsim.machine.board import Board, symbols_of
+from bfsim.recording import StereoFrame
+from bfsim.run import THESIS_LDF
+from firmware.buffers import buffers, calibration_buffers
+from firmware.exchange import share_lines
+from firmware.line3d_store import LINE3D_WORDS, LINE3D_X0, LINE3D_Z1
+from firmware.modes import Mode
+from firmware.stages.edge_detection import edge_detection
+from firmware.stages.line_detection import line_detection
+from firmware.stages.line_refinement import line_refinement
+from firmware.stages.rectification import rectification
+from firmware.stages.stereo_lines import stereo_lines
+
+STAGES = ("Edge detection", "Line detection", "3-D lines")
+
+
+@dataclass(frozen=True, slots=True)
+class SeenStereo:
+    """The 3-D lines of a frame, start and end in mm (count, 2, 3), and the cycles of core A's stages."""
+
+    lines_mm: NDArray[np.float64]
+    stages_cclk: Mapping[str, int]
+
+
+def see_stereo(
+    frames: Sequence[StereoFrame],
+    calibration: Calibration,
+    mode: Mode,
+) -> list[SeenStereo]:
+    """Return what the firmware finds in each of `frames`."""
+    height, width2 = frames[0].left.shape
+    size = FrameSize(width2 // 2, height)
+    found: list[NDArray[np.float64]] = []
+
+    def features(core: Core, frame: Frame) -> Generator[Any, Any, int]:
+        with core.stage("Edge detection"):
+            frame = yield from rectification(core, frame)
+            yield from edge_detection(core, frame, mode.edges)
+        with core.stage("Line detection"):
+            count: int = yield from line_detection(core, frame, mode.lines)
+            yield from line_refinement(core, frame, count, mode.refinement)
+        return count
+
+    def core_a(core: Core) -> Generator[Any, Any, None]:
+        while (frame := (yield from core.next_frame())) is not None:
+            count = yield from features(core, frame)
+            yield from core.wait("core B is done")
+            with core.stage("3-D lines"):
+                number = yield from stereo_lines(core, frame, count, mode.stereo_lines)
+            records = core.array("lines_3d").array[: number * LINE3D_WORDS].reshape(number, LINE3D_WORDS)
+            found.append(records[:, LINE3D_X0 : LINE3D_Z1 + 1].reshape(number, 2, 3).astype(float))
+            yield from core.post("core A is done")
+
+    def core_b(core: Core) -> Generator[Any, Any, None]:
+        while (frame := (yield from core.next_frame())) is not None:
+            count = yield from features(core, frame)
+            yield from share_lines(core, count)
+            yield from core.post("core B is done")
+            yield from core.wait("core A is done")
+
+    firmware = Firmware(
+        mains={"A": core_a, "B": core_b},
+        buffers=buffers,
+        camera="camera",
+        rows=tuple(BudgetRow(stage=name, thesis_ms=None) for name in STAGES),
+        calibration=calibration_buffers,
+    ).calibrated(calibration)
+    link_map = link(parse_ldf(THESIS_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
+    outcome = Board(CM_BF561, firmware, size, link_map).run(iter(frames))
+    costs = [{each.stage: each.elapsed_cclk for each in frame.cores[0].stages} for frame in outcome.frames]
+    return [SeenStereo(*each) for each in zip(found, costs, strict=True)]

@@ -1,0 +1,96 @@
+"""The object history: what was seen in the last frames, each object once (T §5.2.6).
+
+An object seen now takes the place of the one of its model that was seen nearest to it before; both are compared by their
+bearing, which is known of all. What is not seen any more stays with its age until it is too old.
+"""
+
+from __future__ import annotations
+
+from bfsim.api import i16, i32, kernel
+from firmware.object_store import (
+    NO_MODEL,
+    OBJECT_AGE,
+    OBJECT_MODEL,
+    OBJECT_WORDS,
+    OBJECT_X,
+    OBJECT_Y,
+    OBJECT_Z,
+    copy_object,
+)
+
+BEARING_BITS = 8
+NOWHERE = -1
+
+
+@kernel
+def bearing(aside: i32, depth: i32) -> i32:
+    """Return the tangent of the angle to a place from the axis of the camera, in 1/256."""
+    return (aside << BEARING_BITS) // max(depth, 1)
+
+
+@kernel
+def apart(one: i16[:], number: i32, other: i16[:], to: i32) -> i32:
+    """Return how far apart two objects are seen, in 1/256 of the focal length, across and down together."""
+    at = number * OBJECT_WORDS
+    there = to * OBJECT_WORDS
+    across = bearing(i32(one[at + OBJECT_X]), i32(one[at + OBJECT_Z]))
+    down = bearing(i32(one[at + OBJECT_Y]), i32(one[at + OBJECT_Z]))
+    across = across - bearing(i32(other[there + OBJECT_X]), i32(other[there + OBJECT_Z]))
+    down = down - bearing(i32(other[there + OBJECT_Y]), i32(other[there + OBJECT_Z]))
+    return abs(across) + abs(down)
+
+
+@kernel
+def age_objects(objects: i16[:], age_max: i32) -> None:
+    """Begin a frame: all objects are a frame older, and those older than `age_max` are forgotten."""
+    for at in range(0, len(objects), OBJECT_WORDS):
+        if objects[at + OBJECT_MODEL] != NO_MODEL:
+            objects[at + OBJECT_AGE] = objects[at + OBJECT_AGE] + 1
+            if objects[at + OBJECT_AGE] > age_max:
+                objects[at + OBJECT_MODEL] = NO_MODEL
+
+
+@kernel
+def record_for(objects: i16[:], seen: i16[:], number: i32, apart_max: i32) -> i32:
+    """Return the record of an object that is seen: where it was before, or a free one, or that of the oldest one.
+
+    NOWHERE if all records are of this frame.
+    """
+    before: i32 = NOWHERE
+    free: i32 = NOWHERE
+    oldest: i32 = NOWHERE
+    nearest = apart_max + 1
+    age: i32 = 0
+    for record in range(len(objects) // OBJECT_WORDS):
+        at = record * OBJECT_WORDS
+        if objects[at + OBJECT_MODEL] == NO_MODEL:
+            if free == NOWHERE:
+                free = record
+        elif objects[at + OBJECT_AGE] > 0:
+            if objects[at + OBJECT_AGE] > age:
+                age = i32(objects[at + OBJECT_AGE])
+                oldest = record
+            if objects[at + OBJECT_MODEL] == seen[number * OBJECT_WORDS + OBJECT_MODEL]:
+                gap = apart(seen, number, objects, record)
+                if gap < nearest:
+                    nearest = gap
+                    before = record
+    if before != NOWHERE:
+        return before
+    if free != NOWHERE:
+        return free
+    return oldest
+
+
+@kernel
+def remember_objects(objects: i16[:], seen: i16[:], apart_max: i32) -> i32:
+    """Take the objects that are seen into the history; returns how many found no record."""
+    lost: i32 = 0
+    for number in range(len(seen) // OBJECT_WORDS):
+        if seen[number * OBJECT_WORDS + OBJECT_MODEL] != NO_MODEL:
+            record = record_for(objects, seen, number, apart_max)
+            if record == NOWHERE:
+                lost = lost + 1
+            else:
+                copy_object(seen, number, objects, record)
+    return lost

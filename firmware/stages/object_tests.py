@@ -1,0 +1,207 @@
+"""The tests that a blob goes through to become an object of a model (T §5.2.6, Figure 5.7).
+
+They come in order: colour, dimension, area, centre of the shape, size of the shape. The first one that fails is the last
+one that is tried. Each one passed adds its weight to the accuracy.
+"""
+
+from __future__ import annotations
+
+from bfsim.api import i16, i32, kernel, u32
+from firmware.blob_store import ACROSS, BLOB_WORDS, COLOURS, DOWN, PIXELS
+from firmware.circle_store import CENTRE_PASSED, CIRCLE_TESTS, CIRCLE_WORDS, RADIUS_PASSED
+from firmware.geometry import GEOMETRY_FOCAL, GEOMETRY_SHIFT_Y
+from firmware.line_store import SUBPIXELS
+from firmware.models import (
+    ASPECT_UNITS,
+    MODEL_ASPECT_MAX,
+    MODEL_ASPECT_MIN,
+    MODEL_COLOURS,
+    MODEL_FLOOR,
+    MODEL_HEIGHT,
+    MODEL_SHAPE,
+    Shape,
+)
+from firmware.object_store import (
+    AREA_TEST,
+    CENTRE_TEST,
+    COLOUR_TEST,
+    DIMENSION_TEST,
+    NO_OUTLINE,
+    SIZE_TEST,
+)
+from firmware.rectangle_store import (
+    NO_LINE,
+    RECTANGLE_BOTTOM,
+    RECTANGLE_LEFT,
+    RECTANGLE_RIGHT,
+    RECTANGLE_WORDS,
+)
+from firmware.stages.object_places import HALF_PIXEL, depth_by_floor, principal
+
+BALL = int(Shape.BALL)  # kernels know integers
+
+# `object_limits`: the thresholds of the stage as kernels read them. The weights come in the order of the tests' bits.
+TESTS = 6
+SHORTEST_SIDE = 6  # px
+SIZE_RANGE = 7  # 1/16
+BALL_AREA = 8  # 1/256
+RECTANGLE_AREA = 9  # 1/256
+REFINED = 10
+LIMIT_WORDS = 11
+
+SIZE_UNITS = 16
+
+AREA_BITS = 8
+DISC_AREA = 201  # of its square: pi/4 (T §2.2.2)
+BORDER_PX = 1  # the opening leaves no colour in the outermost pixels
+
+
+@kernel
+def is_cut(span: u32, pixels: i32) -> i32:
+    """Return 1 if a blob that reaches from end to end of `span` leaves a picture of `pixels`; else 0."""
+    if i32(span & 0xFFFF) <= BORDER_PX or i32(span >> 16) >= pixels - 1 - BORDER_PX:
+        return 1
+    return 0
+
+
+@kernel
+def extent_of(span: u32) -> i32:
+    """Return how many pixels a span has."""
+    return i32(span >> 16) - i32(span & 0xFFFF) + 1
+
+
+@kernel
+def has_form(across: u32, down: u32, aspect_min: i32, aspect_max: i32, width: i32, height: i32) -> i32:
+    """Return 1 if a blob is neither too narrow for a model nor too flat; else 0.
+
+    A blob that leaves the picture of `width` by `height` is wider, or higher, than it looks.
+    """
+    wide = extent_of(across)
+    high = extent_of(down)
+    if ASPECT_UNITS * wide < aspect_min * high and is_cut(across, width) == 0:
+        return 0
+    if ASPECT_UNITS * wide > aspect_max * high and is_cut(down, height) == 0:
+        return 0
+    return 1
+
+
+@kernel
+def has_size(down: u32, geometry: i32[:], height_mm: i32, floor_mm: i32, size_range: i32, height: i32) -> i32:
+    """Return 1 if a blob is about as high as a model is where its lower border is over the floor; else 0.
+
+    That is to a factor of `size_range` sixteenths. Of a blob that leaves the picture too little is known: 1.
+    """
+    if is_cut(down, height) != 0:
+        return 1
+    row = SUBPIXELS * i32(down >> 16) + HALF_PIXEL - principal(height) - geometry[GEOMETRY_SHIFT_Y]
+    looks = extent_of(down) * depth_by_floor(geometry, row, floor_mm)
+    model = geometry[GEOMETRY_FOCAL] * height_mm // SUBPIXELS
+    if SIZE_UNITS * looks > size_range * model or SIZE_UNITS * model > size_range * looks:
+        return 0
+    return 1
+
+
+@kernel
+def dimension_passes(
+    blob_data: u32[:],
+    blob: i32,
+    models: i32[:],
+    model: i32,
+    geometry: i32[:],
+    limits: i32[:],
+    width: i32,
+    height: i32,
+) -> i32:
+    """Return 1 if a blob is neither small nor unformed for a model nor stands where it would have another size; else 0."""
+    across = blob_data[blob * BLOB_WORDS + ACROSS]
+    down = blob_data[blob * BLOB_WORDS + DOWN]
+    if min(extent_of(across), extent_of(down)) < limits[SHORTEST_SIDE]:
+        return 0
+    aspect_min = models[model + MODEL_ASPECT_MIN]
+    aspect_max = models[model + MODEL_ASPECT_MAX]
+    if has_form(across, down, aspect_min, aspect_max, width, height) == 0:
+        return 0
+    height_mm = models[model + MODEL_HEIGHT]
+    floor_mm = models[model + MODEL_FLOOR]
+    return has_size(down, geometry, height_mm, floor_mm, limits[SIZE_RANGE], height)
+
+
+@kernel
+def area_passes(blob_data: u32[:], blob: i32, shape: i32, ball_area: i32, rectangle_area: i32) -> i32:
+    """Return 1 if a blob fills its rectangle as its model does; else 0.
+
+    A disc must come as near to pi/4 as `ball_area`; a rectangle must fill `rectangle_area` of it.
+    """
+    at = blob * BLOB_WORDS
+    box = extent_of(blob_data[at + ACROSS]) * extent_of(blob_data[at + DOWN])
+    share = (i32(blob_data[at + PIXELS]) << AREA_BITS) // box
+    if shape == BALL:
+        return 1 if abs(share - DISC_AREA) <= ball_area else 0
+    return 1 if share >= rectangle_area else 0
+
+
+@kernel
+def circle_tests(circles: i16[:], circle: i32) -> i32:
+    """Return which tests of its shape a ball passes."""
+    if circle == NO_OUTLINE:
+        return 0
+    passed = circles[circle * CIRCLE_WORDS + CIRCLE_TESTS]
+    if passed & CENTRE_PASSED == 0:
+        return 0
+    if passed & RADIUS_PASSED == 0:
+        return CENTRE_TEST
+    return CENTRE_TEST | SIZE_TEST
+
+
+@kernel
+def rectangle_tests(rectangles: i16[:], rectangle: i32) -> i32:
+    """Return which tests of its shape a rectangle passes: its bottom line, and the lines to its left and right."""
+    if rectangle == NO_OUTLINE:
+        return 0
+    at = rectangle * RECTANGLE_WORDS
+    if rectangles[at + RECTANGLE_BOTTOM] == NO_LINE:
+        return 0
+    if rectangles[at + RECTANGLE_LEFT] == NO_LINE or rectangles[at + RECTANGLE_RIGHT] == NO_LINE:
+        return CENTRE_TEST
+    return CENTRE_TEST | SIZE_TEST
+
+
+@kernel
+def tests_passed(
+    blob_data: u32[:],
+    blob: i32,
+    models: i32[:],
+    model: i32,
+    circles: i16[:],
+    rectangles: i16[:],
+    outline: i32,
+    geometry: i32[:],
+    limits: i32[:],
+    width: i32,
+    height: i32,
+) -> i32:
+    """Return the tests that a blob passes for the model whose words begin at `model`; 0 if not even its colour fits.
+
+    `outline` is the number of its circle or its rectangle, by the shape of the model.
+    """
+    if blob_data[blob * BLOB_WORDS + COLOURS] & u32(models[model + MODEL_COLOURS]) == 0:
+        return 0
+    if dimension_passes(blob_data, blob, models, model, geometry, limits, width, height) == 0:
+        return COLOUR_TEST
+    shape = models[model + MODEL_SHAPE]
+    if area_passes(blob_data, blob, shape, limits[BALL_AREA], limits[RECTANGLE_AREA]) == 0:
+        return COLOUR_TEST | DIMENSION_TEST
+    passed = COLOUR_TEST | DIMENSION_TEST | AREA_TEST
+    if shape == BALL:
+        return passed | circle_tests(circles, outline)
+    return passed | rectangle_tests(rectangles, outline)
+
+
+@kernel
+def accuracy_of(tests: i32, limits: i32[:]) -> i32:
+    """Return the accuracy of an object, the weights of the tests it passed."""
+    accuracy: i32 = 0
+    for test in range(TESTS):
+        if tests >> test & 1:
+            accuracy = accuracy + limits[test]
+    return accuracy

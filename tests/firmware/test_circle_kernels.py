@@ -1,0 +1,223 @@
+"""The kernels of the circle detection against plain references, and their extremes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from firmware.stages.circle_detection import share_of, sixteenths
+from firmware.stages.circle_edges import AREA_WORDS, looks_at, next_blob, open_area, select_edges_row
+from firmware.stages.circle_fit import FIT_WORDS, REFINED, fit_circle
+from firmware.stages.circle_outline import LUMA_LINES, clear_points, luma_row, refine_row
+from firmware.stages.circle_radius import edges_round, fill_histogram, find_radius, mean_radius
+from firmware.stages.circle_votes import (
+    clear_votes,
+    draw_lines,
+    find_peak,
+    gradient_slope,
+    mean_offset,
+    votes_round,
+)
+from firmware.tables import arctangent_table, tangent_table
+from tests.firmware import circle_references as expected
+from tests.firmware.circle_references import Edge
+from tests.firmware.pictures import random_uyvy
+
+ATAN, TANGENTS = arctangent_table(), tangent_table()
+SIZE = 64
+
+edges_in_picture = st.lists(
+    st.tuples(st.integers(1, SIZE - 2), st.integers(0, SIZE - 1), st.integers(0, 255)), max_size=60
+).map(lambda edges: sorted(edges, key=lambda edge: edge[1]))
+places = st.integers(0, SIZE - 1)
+
+
+def words(edges: Sequence[Edge]) -> np.ndarray:
+    """Edges as the selection has them; one that must not be read behind them."""
+    return np.array([d | y << 8 | x << 20 for x, y, d in edges] + [0xFFFFFFFF], np.uint32)
+
+
+def area_of(box: tuple[int, int, int, int], mass: tuple[int, int], reach: int) -> np.ndarray:
+    """The words of an area."""
+    return np.array([*box, *mass, reach], np.int32)
+
+
+@settings(deadline=None)
+@given(st.integers(0, 255), st.integers(-SIZE, SIZE), st.integers(-SIZE, SIZE), st.integers(0, 64))
+def test_a_gradient_looks_at_a_place_within_the_range(direction: int, dx: int, dy: int, limit: int) -> None:
+    """All quadrants and the wrap of angles; the other way round only where dark balls count."""
+    to_place = int(expected.references.angle(np.array([dx]), np.array([dy]))[0])
+    off = expected.turn(direction, to_place)
+    assert looks_at(direction, dx, dy, limit, 0, ATAN) == (off <= limit)
+    assert looks_at(direction, dx, dy, limit, 1, ATAN) == (off <= limit or off >= 128 - limit)
+
+
+@settings(max_examples=40, deadline=None)
+@given(edges_in_picture, st.integers(0, 2**32 - 1), places, places, st.booleans(), st.integers(0, 60))
+def test_selected_edges(edges: list[Edge], seed: int, x: int, y: int, dark_too: bool, room: int) -> None:
+    """Every row of a picture of chance: the first ones are stored, all are counted."""
+    opened = np.random.default_rng(seed).choice(
+        np.array([2, 4, 6, 8], np.uint32), (SIZE, SIZE), p=[0.45, 0.5, 0, 0.05]
+    )
+    box = 3, 57, 0, SIZE - 1
+    counts = np.bincount([edge[1] for edge in edges], minlength=SIZE)
+    store = (
+        np.array([9 | d << 8 | at << 16 for at, _, d in edges] or [0], np.uint32),
+        np.cumsum([0, *counts])[:-1].astype(np.uint32),
+        counts.astype(np.uint16),
+    )
+    selected, found = np.zeros(room, np.uint32), 0
+    for row in range(SIZE):
+        near = [opened[min(max(each, 0), SIZE - 1)] for each in (row - 1, row, row + 1)]
+        filters = area_of(box, (x, y), 9), 40, int(dark_too), ATAN
+        found = select_edges_row(*store, row, *near, 6, *filters, selected, found)
+    wanted = expected.selected(edges, opened, 6, box, (x, y), 40, dark_too)
+    assert found == len(wanted)
+    assert selected[:found].tolist() == words(wanted)[:-1][:room].tolist()
+
+
+def test_slopes_of_all_directions() -> None:
+    """The table unfolded by octants."""
+    assert [gradient_slope(each, TANGENTS) for each in range(256)] == [
+        expected.slope(each) for each in range(256)
+    ]
+
+
+@settings(max_examples=60, deadline=None)
+@given(edges_in_picture, places, places, st.integers(0, 32), st.integers(0, 2))
+def test_votes_and_their_peak(edges: list[Edge], x: int, y: int, reach: int, around: int) -> None:
+    """Patches of all sizes, edges inside and outside, the patch beyond the picture."""
+    around = min(around, reach)
+    votes = np.full(65 * 65, 77, np.uint16)
+    area = area_of((0, 0, 0, 0), (x, y), reach)
+    clear_votes(votes, area)
+    draw_lines(words(edges), len(edges), votes, area, TANGENTS)
+    patch = expected.votes(edges, (x, y), reach)
+    side = 2 * reach + 1
+    assert votes[: side * side].tolist() == patch.ravel().tolist()
+    row, column, size = expected.peak(patch, around)
+    place = find_peak(votes, reach, around)
+    if size == 0:
+        assert votes_round(votes, side, place, around) == 0
+        return
+    assert (place, votes_round(votes, side, place, around)) == (row * side + column, size)
+    square = patch[row - around : row + around + 1, column - around : column + around + 1]
+    assert mean_offset(votes, place, 1, side, around) == expected.mean_offset(square.sum(axis=0).tolist())
+    assert mean_offset(votes, place, side, 1, around) == expected.mean_offset(square.sum(axis=1).tolist())
+
+
+@settings(deadline=None)
+@given(edges_in_picture, st.integers(-500, 4600), st.integers(-500, 4600), st.integers(0, 2))
+def test_radius_histogram_and_its_peak(edges: list[Edge], x: int, y: int, around: int) -> None:
+    """Centres in 1/64 px, also outside the picture; edges beyond the last bin are left out."""
+    histogram, fit = np.full(40, 77, np.uint16), np.zeros(FIT_WORDS, np.int32)
+    fit[:2] = x, y
+    fill_histogram(words(edges), len(edges), fit, histogram)
+    counts = expected.histogram(edges, (x, y), 40)
+    assert histogram.tolist() == counts
+    radius, size, mean = expected.radius_peak(counts, around)
+    assert find_radius(histogram, around) == radius
+    assert edges_round(histogram, radius, around) == size
+    if size:
+        assert mean_radius(histogram, radius, around) == mean
+
+
+@settings(max_examples=40, deadline=None)
+@given(edges_in_picture, st.integers(0, 99), places, places, st.integers(0, 40))
+def test_points_on_the_outline(edges: list[Edge], seed: int, x: int, y: int, radius: int) -> None:
+    """Edges at the border of the picture too; what lies further than 3 px from the circle becomes no point."""
+    uyvy = random_uyvy(SIZE, SIZE, seed)
+    fit = np.zeros(FIT_WORDS, np.int32)
+    fit[:3] = 64 * x + 7, 64 * y - 9, 64 * radius
+    clear_points(fit)
+    selected, luma = words(edges), np.full(LUMA_LINES * SIZE, 77, np.uint8)
+    for ahead in range(SIZE + 4):
+        if ahead < SIZE:
+            luma_row(uyvy[ahead], luma, ahead, area_of((0, SIZE - 1, 0, SIZE - 1), (x, y), 9))
+        if ahead >= 4:
+            refine_row(selected, len(edges), ahead - 4, luma, SIZE, fit, 3)
+    away = [expected.distance((64 * each[0], 64 * each[1]), (64 * x + 7, 64 * y - 9)) for each in edges]
+    close = [edge for edge, each in zip(edges, away, strict=True) if abs(each - 64 * radius) <= 192]
+    wanted = [expected.point_of(edge, expected.references.luma(uyvy)) for edge in close]
+    assert [(word & 0xFFFF, word >> 16) for word in selected[: fit[REFINED]].tolist()] == wanted
+
+
+points_near = st.lists(st.tuples(st.floats(0, 6.28), st.integers(-250, 250)), min_size=0, max_size=80)
+
+
+@settings(deadline=None)
+@given(points_near, st.integers(1, 100), st.integers(0, 4))
+def test_rounds_of_the_fit(around: list[tuple[float, int]], radius: int, rounds: int) -> None:
+    """Scattered points, arcs, a single point and none."""
+    points = [
+        (int(8000 + (64 * radius + off) * np.cos(angle)), int(7900 + (64 * radius + off) * np.sin(angle)))
+        for angle, off in around
+    ]
+    fit = np.zeros(FIT_WORDS, np.int32)
+    fit[:3] = 8010, 7890, 64 * radius
+    fit[REFINED] = len(points)
+    fit_circle(np.array([x | y << 16 for x, y in points] or [0], np.uint32), fit, 3, rounds)
+    circle, limit = (8010, 7890, 64 * radius), 192
+    for _ in range(rounds):
+        circle = expected.refined(circle, points, limit)
+        limit = max(limit // 2, 64)
+    assert tuple(fit[:3].tolist()) == circle
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(300, 340), st.floats(200, 240), st.floats(5, 200), st.floats(0, 6.28), st.floats(2.0, 6.28))
+def test_the_fit_goes_to_the_circle(x: float, y: float, radius: float, start: float, arc: float) -> None:
+    """From 1.5 px off, exact points on more than a third of the circle lead to centre and radius; most words of a sum."""
+    angles = start + arc * np.arange(1900) / 1900
+    points = np.rint(64 * np.array([x + radius * np.cos(angles), y + radius * np.sin(angles)])).astype(int)
+    fit = np.zeros(FIT_WORDS, np.int32)
+    fit[:3] = 64 * (x + 1), 64 * (y - 1), 64 * (radius - 0.5)
+    fit[REFINED] = points.shape[1]
+    fit_circle((points[0] | points[1] << 16).astype(np.uint32), fit, 3, 12)
+    assert np.abs(fit[:3] / 64 - (x, y, radius)).max() < 0.15
+
+
+def test_sums_of_the_largest_picture_stay_in_32_bits() -> None:
+    """All edges that a picture 640 wide has room for, 3 px outside a circle as far as it can be."""
+    count = 1920
+    points = np.full(count, 40_900 | 30_600 << 16, np.uint32)
+    fit = np.zeros(FIT_WORDS, np.int32)
+    fit[REFINED] = count
+    fit[2] = expected.distance((40_900, 30_600), (0, 0)) - 192
+    circle = expected.refined((0, 0, int(fit[2])), [(40_900, 30_600)] * count, 192)
+    fit_circle(points, fit, 3, 1)
+    assert tuple(fit[:3].tolist()) == circle
+
+
+@pytest.mark.parametrize(("part", "whole", "share"), [(0, 5, 0), (1, 2, 128), (5, 5, 255), (9, 3, 255)])
+def test_shares(part: int, whole: int, share: int) -> None:
+    """In 1/256, and 255 for all."""
+    assert share_of(part, whole) == share
+
+
+@settings(deadline=None)
+@given(st.integers(1, 307_200), st.floats(0, 639))
+def test_mean_of_a_blob_in_sixteenths(pixels: int, mean: float) -> None:
+    """The sum of a picture of 640 x 480 is near to 32 bits already."""
+    total = int(pixels * mean)
+    assert sixteenths(total, pixels) == (32 * total + pixels) // (2 * pixels)
+
+
+def test_areas_end_at_the_picture() -> None:
+    """A blob in the corner, and the second of three with the colours asked for."""
+    blobs = np.zeros((4, 8), np.uint32)
+    blobs[:, 0] = 1, 6, 8, 4
+    blobs[1, 4:6] = 2 | 40 << 16, 1 | 29 << 16
+    blobs[1, 7] = 20 | 15 << 16
+    records = blobs.ravel()
+    assert [next_blob(records, each, 4, 4) for each in range(5)] == [1, 1, 3, 3, -1]
+    assert next_blob(records, 2, 3, 4) == -1
+    area = np.zeros(AREA_WORDS, np.int32)
+    assert open_area(records, 1, area, 4, 32, 43, 31) == 0 | 30 << 16
+    assert area.tolist() == [0, 42, 0, 30, 20, 15, 19]
+    open_area(records, 1, area, 4, 7, 43, 31)
+    assert area[-1] == 7

@@ -1,0 +1,88 @@
+"""The object history: who is who from frame to frame, and who is forgotten."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from firmware.object_store import NO_MODEL
+from firmware.stages.object_history import age_objects, remember_objects
+from tests.firmware import object_references as references
+from tests.firmware.object_rig import THRESHOLDS, as_dicts, object_words
+
+HERE = {"model": 1, "x": 100, "y": 0, "z": 1000, "accuracy": 200}
+ROOM = 3
+
+
+def remember(history, *frames) -> list[dict[str, int]]:
+    """The history after frames with these objects, which must be that of the reference."""
+    table = object_words(*history, room=ROOM)
+    for seen in frames:
+        now = object_words(*seen)
+        before = as_dicts(table)
+        age_objects(table, THRESHOLDS.age_max)
+        lost = remember_objects(table, now, THRESHOLDS.apart_max)
+        wanted = references.remembered(before, as_dicts(now), THRESHOLDS.age_max, THRESHOLDS.apart_max)
+        assert (as_dicts(table), lost) == wanted
+    return [each for each in as_dicts(table) if each["model"] != NO_MODEL]
+
+
+def test_seen_again_it_is_the_same() -> None:
+    """It has moved a little; the new record takes the old one's place."""
+    moved = HERE | {"x": 140, "accuracy": 96}
+    (found,) = remember([], [HERE], [moved])
+    assert (found["x"], found["accuracy"], found["age"]) == (140, 96, 0)
+
+
+@pytest.mark.parametrize(("x", "count"), [(410, 1), (420, 2)])
+def test_too_far_apart_it_is_another(x: int, count: int) -> None:
+    """80/256 of the focal length are 0.3125: 312 mm at 1000 mm."""
+    assert len(remember([], [HERE], [HERE | {"x": x}])) == count
+
+
+def test_another_model_is_another() -> None:
+    """Even in the same place."""
+    assert [each["age"] for each in remember([], [HERE], [HERE | {"model": 2}])] == [1, 0]
+
+
+def test_a_direction_is_compared_with_a_place() -> None:
+    """By the way they are seen, whatever their distance."""
+    assert len(remember([], [HERE], [HERE | {"x": 410, "z": 4096}])) == 1
+
+
+def test_unseen_it_ages_and_is_forgotten() -> None:
+    """It stays for as many frames as the threshold says."""
+    for frames in range(THRESHOLDS.age_max + 1):
+        (found,) = remember([HERE], *[[]] * frames)
+        assert found["age"] == frames
+    assert not remember([HERE], *[[]] * (THRESHOLDS.age_max + 1))
+
+
+def test_two_at_one_place_stay_two() -> None:
+    """A record is taken once a frame."""
+    assert len(remember([], [HERE, HERE], [HERE, HERE])) == 2
+
+
+def test_the_oldest_makes_way() -> None:
+    """When there is no free record; and what is of this frame never does."""
+    crowd = [HERE | {"x": x} for x in (-2000, 0, 2000)]
+    found = remember([], [crowd[0]], [crowd[1]], [crowd[2]], [HERE | {"model": 2}])
+    assert sorted(each["age"] for each in found) == [0, 1, 2]
+    assert len(remember([], [*crowd, HERE | {"model": 2}])) == ROOM
+
+
+objects = st.fixed_dictionaries(
+    {
+        "model": st.integers(0, 2),
+        "x": st.integers(-32768, 32767),
+        "y": st.integers(-32768, 32767),
+        "z": st.integers(0, 4000),
+    }
+)
+
+
+@given(st.lists(st.lists(objects, max_size=4), max_size=8))
+def test_as_the_reference(frames) -> None:
+    """Bit for bit, frame after frame."""
+    remember([], *frames)

@@ -1,0 +1,270 @@
+"""What a camera sees of objects by itself: each test with a record that passes and one that fails, and the reference."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bfsim.recording import StereoGeometry
+from firmware.models import BLUE, MODELS, RED, YELLOW
+from firmware.object_store import (
+    AREA_TEST,
+    BY_FLOOR,
+    BY_SIZE,
+    CENTRE_TEST,
+    COLOUR_TEST,
+    DIMENSION_TEST,
+    OBJECT_WORDS,
+    SEEN_LEFT,
+    SIZE_TEST,
+)
+from firmware.stages.object_detection import ObjectThresholds
+from firmware.stages.object_sight import place_for, see_objects
+from tests.firmware import object_references as references
+from tests.firmware.object_rig import (
+    HEIGHT,
+    THESIS,
+    THRESHOLDS,
+    WIDTH,
+    as_dicts,
+    blob_words,
+    circle_words,
+    geometry_words,
+    models_of,
+    object_words,
+    rectangle_words,
+)
+from tests.firmware.test_rectangles import line_words
+
+BALL, BLUE_GOAL, YELLOW_GOAL, MARKER = MODELS
+OFTEN = COLOUR_TEST | DIMENSION_TEST | AREA_TEST
+
+# A ball 450 mm away: 52 px, on the floor. Its circle, with both tests passed.
+ROUND = {"colours": YELLOW, "pixels": 2123, "left": 134, "right": 185, "top": 103, "bottom": 154}
+CIRCLE = {"x": 2552, "y": 2056, "radius": 412, "blob": 0, "tests": 3}
+# A goal from the front, its bottom line one px below the blob.
+MOUTH = {"colours": BLUE, "pixels": 9000, "left": 60, "right": 260, "top": 60, "bottom": 106}
+BORDERS = {"left": 1, "right": 2, "top": -1, "bottom": 0, "blob": 0}
+LINES = [(952, 1720, 4168, 1720), (952, 952, 952, 1700), (4168, 1700, 4168, 952)]
+
+
+def see(
+    boxes: list[dict[str, int]],
+    circles: list[dict[str, int]] = [],  # noqa: B006
+    rectangles: list[dict[str, int]] = [],  # noqa: B006
+    *,
+    lines: Any = LINES,
+    models: Any = MODELS,
+    thresholds: ObjectThresholds = THRESHOLDS,
+    geometry: StereoGeometry = THESIS,
+    room: int = 16,
+    size: tuple[int, int] = (WIDTH, HEIGHT),
+) -> list[dict[str, int]]:
+    """What the kernel sees, which must be what the reference sees."""
+    words = geometry_words(geometry)
+    table = np.full(room * OBJECT_WORDS, 77, np.int16)
+    rounds = [(c["x"], c["y"], c["radius"], c["blob"], 0, 0, 0, c["tests"]) for c in circles]
+    borders = [[r[name] for name in ("left", "right", "top", "bottom", "blob")] for r in rectangles]
+    found = see_objects(
+        *(blob_words(*boxes), len(boxes), models_of(*models)),
+        *(circle_words(*rounds), len(rounds), rectangle_words(*borders), len(borders), line_words(lines)),
+        *(words, np.array(thresholds.limits, np.int32), table, SEEN_LEFT, *size),
+    )
+    scene = boxes, models, circles, rectangles, lines, words.tolist(), thresholds, SEEN_LEFT, size, room
+    wanted, count = references.sight(*scene)
+    seen = as_dicts(table)
+    assert found == count
+    assert seen[: len(wanted)] == wanted
+    assert not any(each["model"] for each in seen[len(wanted) :])
+    return wanted
+
+
+def test_a_ball_that_passes_all_tests() -> None:
+    """Its circle places it: 386 px x 60 mm / 51.5 px, and the sphere is a millimetre deeper."""
+    (ball,) = see([ROUND], [CIRCLE])
+    assert ball["tests"] == OFTEN | CENTRE_TEST | SIZE_TEST
+    assert ball["accuracy"] == sum(THRESHOLDS.weights[:5])
+    assert (ball["measures"], ball["x"], ball["z"], ball["extent"]) == (BY_SIZE, 0, 451, 824)
+    (plain,) = see([ROUND], [CIRCLE], thresholds=replace(THRESHOLDS, refined=False))
+    assert plain["z"] == 450
+
+
+def test_a_goal_that_passes_all_tests() -> None:
+    """Its bottom line places it on the floor, its centre half its height above that."""
+    (goal,) = see([MOUTH], rectangles=[BORDERS])
+    assert goal["tests"] == OFTEN | CENTRE_TEST | SIZE_TEST
+    below = (107.5 - 119.5) * np.cos(np.radians(10)) + 386 * np.sin(np.radians(10))
+    assert goal["measures"] == BY_FLOOR
+    assert goal["z"] == pytest.approx(120 * 386 / below - 50 * np.sin(np.radians(10)), abs=1.5)
+    (without,) = see([MOUTH])
+    assert without["tests"] == OFTEN
+    assert without["z"] == pytest.approx(goal["z"], rel=0.03)  # the blob ends a pixel higher
+
+
+@pytest.mark.parametrize(
+    ("box", "circle", "passed"),
+    [
+        (ROUND | {"colours": RED}, CIRCLE, None),
+        (ROUND | {"right": 207}, CIRCLE, COLOUR_TEST),  # too flat
+        (ROUND | {"right": 169}, CIRCLE, COLOUR_TEST),  # too narrow
+        (ROUND | {"left": 157, "right": 161, "top": 126, "bottom": 130}, CIRCLE, COLOUR_TEST),  # too small
+        (ROUND | {"top": 13, "bottom": 64}, CIRCLE, COLOUR_TEST),  # in the sky
+        (ROUND | {"top": 178, "bottom": 229}, CIRCLE, COLOUR_TEST),  # near, where it would be larger
+        (ROUND | {"pixels": 1500}, CIRCLE, COLOUR_TEST | DIMENSION_TEST),  # a ring, or half hidden aslant
+        (ROUND | {"pixels": 2704}, CIRCLE, COLOUR_TEST | DIMENSION_TEST),  # a square
+        (ROUND, CIRCLE | {"tests": 0}, OFTEN),
+        (ROUND, CIRCLE | {"tests": 1}, OFTEN | CENTRE_TEST),
+        (ROUND, CIRCLE | {"blob": 1}, OFTEN),  # of another blob
+    ],
+)
+def test_a_ball_that_fails(box: dict[str, int], circle: dict[str, int], passed: int | None) -> None:
+    """At each test: it is seen with the accuracy of those before, and only with its direction."""
+    found = see([box], [circle], models=(BALL,))
+    assert [each["tests"] for each in found] == ([] if passed is None else [passed])
+    for each in found:
+        assert each["measures"] == 0
+        assert each["z"] == 4096
+        assert each["accuracy"] < sum(THRESHOLDS.weights[:5])
+
+
+@pytest.mark.parametrize(
+    ("box", "borders", "passed"),
+    [
+        (MOUTH | {"colours": RED}, BORDERS, None),
+        (MOUTH | {"right": 90}, BORDERS, COLOUR_TEST),  # a post alone
+        (MOUTH | {"top": 100}, BORDERS, COLOUR_TEST),  # a stripe
+        (MOUTH | {"top": 20, "bottom": 50}, BORDERS, COLOUR_TEST),  # above the horizon
+        (MOUTH | {"pixels": 4000}, BORDERS, COLOUR_TEST | DIMENSION_TEST),
+        (MOUTH, BORDERS | {"bottom": -1}, OFTEN),
+        (MOUTH, BORDERS | {"left": -1}, OFTEN | CENTRE_TEST),
+        (MOUTH, BORDERS | {"right": -1}, OFTEN | CENTRE_TEST),
+    ],
+)
+def test_a_goal_that_fails(box: dict[str, int], borders: dict[str, int], passed: int | None) -> None:
+    """Likewise; one that has its dimension stands on the floor all the same."""
+    found = see([box], rectangles=[borders], models=(BLUE_GOAL,))
+    assert [each["tests"] for each in found] == ([] if passed is None else [passed])
+    for each in found:
+        assert (each["measures"] == BY_FLOOR) == bool(each["tests"] & DIMENSION_TEST)
+
+
+@pytest.mark.parametrize(
+    ("box", "passed"),
+    [
+        (MOUTH | {"left": 1, "right": 31}, True),  # half a goal at the picture's left border may go on
+        (MOUTH | {"left": 2, "right": 32}, False),
+        (MOUTH | {"left": 288, "right": 318}, True),
+        (MOUTH | {"left": 287, "right": 317}, False),
+        (
+            MOUTH | {"left": 1, "right": 318, "top": 1, "bottom": 30},
+            True,
+        ),  # so may one at the top, however high it is
+        (MOUTH | {"left": 30, "right": 300, "top": 200, "bottom": 238}, True),
+    ],
+)
+def test_what_leaves_the_picture_may_be_larger(box: dict[str, int], passed: bool) -> None:
+    """The dimension test takes what it sees as the least."""
+    (found,) = see([box], models=(BLUE_GOAL,))
+    assert bool(found["tests"] & DIMENSION_TEST) == passed
+
+
+def test_a_bottom_out_of_the_picture_tells_no_distance() -> None:
+    """The floor below is not seen."""
+    (found,) = see([MOUTH | {"top": 190, "bottom": 238}], models=(BLUE_GOAL,))
+    assert found["tests"] & DIMENSION_TEST
+    assert found["measures"] == 0
+
+
+def test_a_mark_hangs_over_the_floor() -> None:
+    """Its lower border is at 70 mm: 50 mm below the camera."""
+    box = {"colours": RED, "pixels": 5000, "left": 110, "right": 209, "top": 50, "bottom": 116}
+    (found,) = see([box], models=MODELS)
+    assert found["model"] == MARKER.number
+    below = (116.5 - 119.5) * np.cos(np.radians(10)) + 386 * np.sin(np.radians(10))
+    assert found["z"] == pytest.approx(50 * 386 / below - 25 * np.sin(np.radians(10)), abs=1.5)
+
+
+def test_the_model_that_fits_best() -> None:
+    """Yellow may be the ball or a goal; the tests tell, and of equal ones the first model is taken."""
+    assert [each["model"] for each in see([ROUND], [CIRCLE])] == [BALL.number]
+    assert [each["model"] for each in see([MOUTH | {"colours": YELLOW}])] == [YELLOW_GOAL.number]
+    sliver = ROUND | {"right": 140}
+    assert [each["model"] for each in see([sliver])] == [BALL.number]
+    assert [each["model"] for each in see([sliver], models=MODELS[::-1])] == [YELLOW_GOAL.number]
+
+
+def test_accurate_ones_stay_when_there_is_no_room() -> None:
+    """The least accurate one makes way, and what finds no room is counted."""
+    sliver = ROUND | {"right": 140}
+    found = see([sliver, sliver, ROUND, ROUND, sliver], [CIRCLE | {"blob": 2}], room=2)
+    assert [each["accuracy"] for each in found] == [sum(THRESHOLDS.weights[:5]), sum(THRESHOLDS.weights[:3])]
+
+
+def test_place_for_one_more() -> None:
+    """A free record, else the first of the least accurate ones, else none."""
+    table = object_words({"accuracy": 5}, {"accuracy": 3}, {"accuracy": 3})
+    assert [place_for(table, 2, 9), place_for(table, 3, 9), place_for(table, 3, 3)] == [2, 1, 3]
+
+
+@st.composite
+def boxes(draw: st.DrawFn) -> dict[str, int]:
+    """Any blob of a picture; balls and goals among them."""
+    if draw(st.booleans()):
+        nudge = {name: draw(st.integers(-6, 6)) for name in ("left", "right", "top", "bottom")}
+        box = {**draw(st.sampled_from([ROUND, MOUTH]))}
+        return {name: value + nudge.get(name, 0) for name, value in box.items()}
+    left, right = sorted(draw(st.tuples(*[st.integers(1, WIDTH - 2)] * 2)))
+    top, bottom = sorted(draw(st.tuples(*[st.integers(1, HEIGHT - 2)] * 2)))
+    most = (right - left + 1) * (bottom - top + 1)
+    pixels = draw(st.integers(1, most) | st.just(max(most * 201 // 256, 1)))
+    colours = draw(st.sampled_from([BLUE, YELLOW, RED, 2]))
+    return {"colours": colours, "pixels": pixels, "left": left, "right": right, "top": top, "bottom": bottom}
+
+
+circles = st.fixed_dictionaries(
+    {
+        "x": st.integers(0, 16 * WIDTH),
+        "y": st.integers(0, 16 * HEIGHT),
+        "radius": st.integers(0, 4000),
+        "blob": st.integers(0, 4),
+        "tests": st.sampled_from([0, 1, 3, 3]),
+    }
+)
+borders = st.fixed_dictionaries(
+    dict.fromkeys(("left", "right", "top", "bottom"), st.integers(-1, 0)) | {"blob": st.integers(0, 4)}
+)
+level_lines = st.tuples(
+    st.integers(0, 2000), st.integers(0, 3800), st.integers(2500, 5000), st.integers(0, 3800)
+)
+
+
+@given(
+    st.lists(boxes(), max_size=6),
+    st.lists(circles, max_size=4),
+    st.lists(borders, max_size=4),
+    level_lines,
+    st.booleans(),
+    st.sampled_from([THESIS, StereoGeometry(311, 30, 60, 0), StereoGeometry(772, 60, 300, 45)]),
+)
+def test_as_the_reference(boxes, circles, rectangles, line, refined, geometry) -> None:
+    """Bit for bit, with any records."""
+    thresholds = replace(THRESHOLDS, refined=refined)
+    see(boxes, circles, rectangles, lines=[line], thresholds=thresholds, geometry=geometry, room=4)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"colour_weight": 66}, "255 together at most, not 66, 32, 32, 48, 48, 31"),
+        ({"size_weight": -1}, "must be 0 or more"),
+    ],
+)
+def test_weights_that_no_byte_holds_are_refused(change: dict[str, int], message: str) -> None:
+    """The accuracy is a byte."""
+    with pytest.raises(ValueError, match=message):
+        replace(THRESHOLDS, **change)

@@ -1,0 +1,135 @@
+"""The border lines of rectangles: against the reference, and in records that have them or not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from firmware.line_store import LINE_WORDS
+from firmware.models import BLUE, YELLOW
+from firmware.modes import INDOOR_FIELD
+from firmware.rectangle_store import NO_LINE, RECTANGLE_CAPACITY, RECTANGLE_WORDS
+from firmware.stages.rectangle_detection import find_rectangles, rectangle_buffers, rectangle_detection
+from tests.firmware import object_references as references
+from tests.firmware.line_rig import BareCore
+from tests.firmware.object_rig import blob_words
+
+LIMITS = INDOOR_FIELD.rectangles
+BOX = {"colours": BLUE, "pixels": 2400, "left": 100, "right": 180, "top": 60, "bottom": 100}
+
+# Round the box, the bright side inside: down its left, to the right below it, up its right, to the left above it.
+LEFT, BOTTOM = (1592, 960, 1592, 1600), (1600, 1608, 2880, 1608)
+RIGHT, TOP = (2888, 1600, 2888, 960), (2880, 952, 1600, 952)
+
+
+def line_words(lines: Sequence[Sequence[int]]) -> np.ndarray:
+    """The buffer `lines`."""
+    table = np.zeros((max(len(lines), 1), LINE_WORDS), np.int16)
+    for row, ends in zip(table, lines, strict=False):
+        row[:4] = ends
+    return table.ravel()
+
+
+def find(lines: Sequence[Sequence[int]], *boxes: dict[str, int], colours: int = BLUE) -> list[list[int]]:
+    """What the stage leaves: left, right, top, bottom, blob of each rectangle."""
+    core = BareCore({"rectangles": [np.full(RECTANGLE_CAPACITY * RECTANGLE_WORDS, 77, np.int16)]})
+    core.arrays |= {"blob_data": [blob_words(*boxes)], "lines": [line_words(lines)]}
+    task = rectangle_detection(core, len(boxes), len(lines), colours, LIMITS)
+    value = None
+    try:
+        while True:
+            value = task.send(value)
+    except StopIteration as end:
+        count = end.value
+    assert core.published["rectangles"] == count
+    lost = core.published["rectangles_lost"]
+    assert lost == sum(each["colours"] & colours != 0 for each in boxes) - count
+    return core.array("rectangles").reshape(-1, RECTANGLE_WORDS)[:count].tolist()
+
+
+def test_all_four() -> None:
+    """In any order, each line for its own side."""
+    assert find([TOP, LEFT, BOTTOM, RIGHT], BOX) == [[1, 3, 0, 2, 0]]
+    assert find([], BOX) == [[NO_LINE] * 4 + [0]]
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        (BOTTOM, True),
+        ((1600, 1608 + 64, 2880, 1608 + 64), True),  # 4 px off
+        ((1600, 1608 + 65, 2880, 1608 + 65), False),  # and a little more
+        ((2880, 1608 + 32, 1600, 1608 + 32), True),  # bright outside: counts as 2 px farther
+        ((2880, 1608 + 33, 1600, 1608 + 33), False),
+        ((1600, 1608, 2248, 1608), True),  # half of the side
+        ((1600, 1608, 2247, 1608), False),  # not quite
+        ((0, 1608, 5000, 1608), True),  # goes on to both sides (T Figure 6.9)
+        (
+            (1600, 1208, 2880, 1608),
+            True,
+        ),  # its low end is the border: a goal at a sharp angle (T Figure 6.14)
+        ((1600, 300, 2880, 1608), False),  # nearer to upright
+        ((3000, 1608, 4000, 1608), False),  # beside the blob
+    ],
+)
+def test_a_bottom_line(line: tuple[int, ...], found: bool) -> None:
+    """What passes, and what just fails."""
+    assert find([line], BOX)[0][3] == (0 if found else NO_LINE)
+
+
+def test_the_nearest_one() -> None:
+    """Of several the nearest, of equal ones the first; a line that is bright inside is nearer."""
+    assert find([(1600, 1640, 2880, 1640), BOTTOM, BOTTOM], BOX)[0][3] == 1
+    assert find([(2880, 1608, 1600, 1608), (1600, 1631, 2880, 1631)], BOX)[0][3] == 1
+
+
+def test_only_blobs_of_rectangles() -> None:
+    """Others have no record."""
+    other = BOX | {"colours": YELLOW}
+    assert [each[4] for each in find([], other, BOX, other, BOX)] == [1, 3]
+
+
+def test_more_than_there_is_room() -> None:
+    """They are counted, and memory behind the table stays."""
+    assert len(find([], *[BOX] * (RECTANGLE_CAPACITY + 3))) == RECTANGLE_CAPACITY
+
+
+coordinates = st.integers(-8, 320 * 16)
+lines = st.tuples(*[coordinates] * 4).map(lambda ends: ends)
+
+
+@st.composite
+def near_lines(draw: st.DrawFn) -> tuple[int, int, int, int]:
+    """A line near a side of the box, longer or shorter, a little off, either way."""
+    x0, y0, x1, y1 = draw(st.sampled_from([LEFT, RIGHT, TOP, BOTTOM]))
+    off = [draw(st.integers(-120, 120)) for _ in range(4)]
+    ends = x0 + off[0], y0 + off[1], x1 + off[2], y1 + off[3]
+    return ends if draw(st.booleans()) else (*ends[2:], *ends[:2])
+
+
+@given(st.lists(lines | near_lines(), max_size=8))
+def test_as_the_reference(some: list[tuple[int, int, int, int]]) -> None:
+    """Bit for bit, with any lines."""
+    wanted = references.rectangle(some, BOX, 16 * LIMITS.border_px, LIMITS.overlap, 16 * LIMITS.dark_px)
+    assert find(some, BOX) == [[*wanted, 0]]
+
+
+@pytest.mark.parametrize("ends", [(32767, -32768, -32768, 32767), (-32768, -32768, 32767, -32768)])
+def test_lines_as_long_as_a_word_can_say(ends: tuple[int, ...]) -> None:
+    """Nothing overflows in pictures up to 640 x 480."""
+    within = tuple(max(-8, min(each, 10240)) for each in ends)
+    box = BOX | {"right": 639, "bottom": 479}
+    wanted = references.rectangle([within], box, 64, 128, 32)
+    table = np.zeros(RECTANGLE_WORDS, np.int16)
+    assert find_rectangles(blob_words(box), 1, BLUE, line_words([within]), 1, table, 64, 128, 32) == 1
+    assert table.tolist() == [*wanted, 0]
+
+
+def test_buffers_hold_what_the_store_says() -> None:
+    """The table is where its capacity says it is."""
+    (table,) = rectangle_buffers()
+    assert table.columns == RECTANGLE_CAPACITY * RECTANGLE_WORDS

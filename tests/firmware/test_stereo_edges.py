@@ -1,0 +1,236 @@
+"""3-D edges and the way of core B's results to core A: bit for bit against the reference, on the board too."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bfsim.recording import RecordingReader
+from bfsim.run import BUILT_IN_RECORDING
+from firmware.exchange import copy_words, pack_edge_rows
+from firmware.geometry import GEOMETRY_WORDS
+from firmware.line3d_store import EDGE3D_CAPACITY, EDGE3D_WORDS
+from firmware.line_store import LINE_WORDS
+from firmware.modes import INDOOR_FIELD
+from firmware.stages.stereo_edges import StereoEdgeThresholds, is_level, stereo_edges_row, take_row
+from firmware.stages.stereo_lines import Correspondence
+from tests.firmware.stereo_references import Edge, EdgeLimits, Rig, edges_3d
+from tests.firmware.test_stages import buffer, random_frames, run, stereo
+
+GARBAGE = 77
+Row = Sequence[Edge]
+ROBOT = Rig(focal=386 * 16, baseline=30470, width=320, height=240)
+
+
+def store(rows: Sequence[Row]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """An edge store with rows of edges."""
+    data = [gradient | direction << 8 | x << 16 for row in rows for x, direction, gradient in row]
+    counts = [len(row) for row in rows]
+    index = np.cumsum([0, *counts])[:-1]
+    return np.array([*data, GARBAGE], np.uint32), index.astype(np.uint32), np.array(counts, np.uint16)
+
+
+def found(
+    left: Sequence[Row], right: Sequence[Row], mode: StereoEdgeThresholds, rig: Rig = ROBOT, room: int = 500
+) -> tuple[list[tuple[int, ...]], int]:
+    """What the kernels make of two edge stores, and how many there would be."""
+    data, index, counts = store(right)
+    shared = np.full_like(data, GARBAGE)
+    copy_words(data, shared, len(data) - 1)
+    rows = np.full(len(right), GARBAGE, np.uint32)
+    pack_edge_rows(index, counts, rows)
+    table = np.full(room * EDGE3D_WORDS, GARBAGE, np.int16)
+    row = np.full(rig.width, GARBAGE, np.uint32)
+    geometry = np.array([rig.focal, rig.baseline, *[0] * (GEOMETRY_WORDS - 2)], np.int32)
+    limits = (
+        int(mode.correspondence),
+        mode.level_range,
+        mode.direction_range,
+        mode.min_disparity,
+        mode.max_disparity,
+    )
+    number = 0
+    for y in reversed(range(len(left))):
+        count = take_row(shared, rows, y, row)
+        number = stereo_edges_row(
+            *store(left), y, row, count, geometry, *limits, rig.width, rig.height, table, number
+        )
+    return [tuple(each) for each in table.reshape(-1, EDGE3D_WORDS)[: min(number, room)].tolist()], number
+
+
+def limits_of(mode: StereoEdgeThresholds) -> EdgeLimits:
+    """The limits of the reference."""
+    return EdgeLimits(
+        is_mutual=mode.correspondence is Correspondence.MUTUAL,
+        level_range=mode.level_range,
+        direction_range=mode.direction_range,
+        min_disparity=mode.min_disparity,
+        max_disparity=mode.max_disparity,
+    )
+
+
+edges = st.dictionaries(
+    st.integers(1, 318), st.tuples(st.integers(0, 255), st.integers(1, 255)), max_size=12
+).map(lambda row: [(x, *rest) for x, rest in sorted(row.items())])
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(st.tuples(edges, edges), min_size=1, max_size=4), st.data())
+def test_any_edges(pairs: list[tuple[Row, Row]], data: st.DataObject) -> None:
+    """Any rows, limits and cameras."""
+    low = data.draw(st.integers(1, 40))
+    mode = StereoEdgeThresholds(
+        correspondence=data.draw(st.sampled_from(Correspondence)),
+        level_range=data.draw(st.integers(0, 66)),
+        direction_range=data.draw(st.integers(0, 128)),
+        min_disparity=low,
+        max_disparity=low + data.draw(st.integers(0, 200)),
+    )
+    rig = replace(ROBOT, focal=data.draw(st.integers(300, 20000)), baseline=data.draw(st.integers(1, 100000)))
+    left, right = (list(rows) for rows in zip(*pairs, strict=True))
+    wanted = edges_3d(rig, left, right, limits_of(mode))
+    assert found(left, right, mode, rig) == (wanted, len(wanted))
+
+
+NEAR = StereoEdgeThresholds(
+    correspondence=Correspondence.NEAREST,
+    level_range=0,
+    direction_range=8,
+    min_disparity=8,
+    max_disparity=100,
+)
+LIKE = replace(NEAR, correspondence=Correspondence.MUTUAL, level_range=16)
+BOTH = pytest.mark.parametrize("mode", [NEAR, LIKE])
+
+
+@BOTH
+def test_edge_in_closed_form(mode: StereoEdgeThresholds) -> None:
+    """20 pixels are 588 mm; the point lies where T Eq. 3.17 says, and the edge is the second of the store."""
+    left = [[(30, 0, 9)], [(200, 5, 9)], []]
+    right = [[], [(180, 0, 20)], []]
+    assert found(left, right, mode) == ([(62, -181, 588, 1)], 1)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        [(180, 9, 9)],  # the gradient looks another way
+        [(180, 256 - 9, 9)],
+        [(193, 0, 9)],  # too far away
+        [(99, 0, 9)],  # too near
+        [(220, 0, 9)],  # behind infinity
+    ],
+)
+@BOTH
+def test_pairs_that_must_not_match(mode: StereoEdgeThresholds, other: Row) -> None:
+    """In the same row, and yet not the same edge."""
+    assert found([[(200, 0, 9)]], [other], mode) == ([], 0)
+    assert found([[(200, 0, 9)], []], [[], [(180, 0, 9)]], mode) == ([], 0)
+
+
+def test_the_nearest_or_the_most_similar_is_taken() -> None:
+    """Of several that fit, the thesis takes the one with the least disparity, ours the one whose gradient is alike."""
+    left = [[(200, 250, 80)]]
+    right = [[(150, 252, 81), (170, 252, 40), (180, 100, 80), (199, 250, 80)]]
+    ((nearest,), _), ((likest,), _) = found(left, right, NEAR), found(left, right, LIKE)
+    assert (nearest[2], likest[2]) == (392, 235)
+
+
+def test_an_edge_belongs_to_one_edge_only() -> None:
+    """Two left edges, one right edge: it belongs to the one that is more like it."""
+    left, right = [[(190, 0, 60), (200, 0, 90)]], [[(170, 0, 85)]]
+    assert [each[3] for each in found(left, right, LIKE)[0]] == [1]
+    assert [each[3] for each in found(left, right, NEAR)[0]] == [0, 1]
+
+
+def test_level_edges_are_left_out() -> None:
+    """A line along the row has a partner everywhere; ours takes none of them."""
+    row = [[(x, 64, 80) for x in range(150, 210)]]
+    assert found(row, row, LIKE) == ([], 0)
+    assert found(row, row, NEAR)[1] > 50
+    assert [is_level(direction << 8, 16) for direction in (48, 49, 79, 80, 176, 177, 207, 208)] == [
+        0,
+        1,
+        1,
+        0,
+    ] * 2
+
+
+def test_a_full_table_keeps_the_bottom_of_the_picture() -> None:
+    """What finds no room is counted."""
+    rows = [[(200, 0, 9)] for _ in range(5)]
+    others = [[(180, 0, 9)] for _ in range(5)]
+    kept, number = found(rows, others, NEAR, room=3)
+    assert ([each[3] for each in kept], number) == ([4, 3, 2], 5)
+
+
+@pytest.mark.parametrize("limits", [(0, 10), (11, 10)])
+def test_disparities_that_contradict_each_other_are_refused(limits: tuple[int, int]) -> None:
+    """No disparity has no depth."""
+    with pytest.raises(ValueError, match="disparities must be 1 or more and rise"):
+        replace(NEAR, min_disparity=limits[0], max_disparity=limits[1])
+
+
+def rows_of(board, core: str) -> list[Row]:
+    """The edge store that a core left."""
+    data, index, counts = (
+        buffer(board, core, f"edge_{name}")[0].tolist() for name in ("data", "index", "counts")
+    )
+    return [
+        [(word >> 16, word >> 8 & 255, word & 255) for word in data[first : first + count]]
+        for first, count in zip(index, counts, strict=True)
+    ]
+
+
+def check_board(frames, width: int, height: int) -> dict[str, int]:
+    """Run frames and compare what core A made of the last one, and what it got from core B."""
+    board, outcome = run(frames)
+    results = dict(outcome.frames[-1].results)
+    lines, stored = results["lines_B"], results["edges_B"]
+    for name, words in (("lines", LINE_WORDS * lines), ("edge_data", stored)):
+        shared, own = buffer(board, "A", f"right_{name}"), buffer(board, "B", name)
+        np.testing.assert_array_equal(shared[0, :words], own[0, :words])
+    assert (buffer(board, "A", "right_line_count")[0, 0], buffer(board, "A", "right_edges")[0, 0]) == (
+        lines,
+        stored,
+    )
+    mode = INDOOR_FIELD.stereo_edges
+    focal = round(16 * 386 * width / 320)
+    wanted = edges_3d(
+        replace(ROBOT, focal=focal, width=width, height=height),
+        rows_of(board, "A"),
+        rows_of(board, "B"),
+        limits_of(mode),
+    )
+    kept = buffer(board, "A", "edges_3d").reshape(-1, EDGE3D_WORDS)[: results["edges_3d_A"]].tolist()
+    assert [tuple(each) for each in kept] == wanted[:EDGE3D_CAPACITY]
+    assert results["edges_3d_lost_A"] == max(0, len(wanted) - EDGE3D_CAPACITY)
+    return results
+
+
+def test_rendered_edges() -> None:
+    """The second frame of the built-in recording."""
+    with RecordingReader(BUILT_IN_RECORDING) as reader:
+        results = check_board(list(reader.frames(2)), reader.width, reader.height)
+    assert results["edges_3d_A"] > 100
+
+
+@pytest.mark.parametrize(("width", "height"), [(4, 3), (62, 7), (160, 121)])
+def test_random_pictures(width: int, height: int) -> None:
+    """Also of odd heights, after another frame."""
+    check_board(random_frames(width, height, count=2), width, height)
+
+
+def test_more_3d_edges_than_room_are_counted() -> None:
+    """Stripes: the same in both pictures, so that each has a corresponding one at another stripe."""
+    x = np.arange(320)
+    uyvy = np.full((240, 640), 128, np.uint8)
+    uyvy[:, 1::2] = np.where(x // 10 % 2, 255, 0)
+    uyvy[150:, 1::2] = 0  # the edge store holds no more
+    results = check_board(stereo((uyvy, uyvy)), 320, 240)
+    assert results["edges_3d_lost_A"] > 0
