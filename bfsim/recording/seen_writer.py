@@ -17,6 +17,7 @@ from mcap_protobuf.schema import register_schema
 from bfsim import __version__
 from bfsim.errors import RecordingError
 from bfsim.recording import layout
+from bfsim.recording.container import McapContainer
 from bfsim.recording.frames import StereoGeometry
 from bfsim.recording.growing_file import growing_file, writing
 from bfsim.recording.seen_pictures import features_message, image_message
@@ -42,7 +43,7 @@ class SeenWriter:
     """Context manager that writes one file; it appears on a clean exit of the `with` block, or not at all.
 
     `geometry`: where the cameras are; where nobody knows, the file has no transforms and no calibrations. Raises
-    RecordingError where the file cannot be written.
+    RecordingError where the file cannot be written or is another one already.
     """
 
     def __init__(self, path: Path, geometry: StereoGeometry | None) -> None:
@@ -51,6 +52,10 @@ class SeenWriter:
         self._channels: dict[str, int] = {}
         if not path.name or path.is_dir():
             raise RecordingError(f"{path}: --mcap must be a file, not a folder")
+        if path.exists() and not _is_ours(path):
+            raise RecordingError(
+                f"{path}: --mcap must be a new file or what an earlier run saw, not another file"
+            )
 
     def __enter__(self) -> Self:
         with ExitStack() as stack:
@@ -103,3 +108,15 @@ class SeenWriter:
             return
         with self._file, writing(self.path):
             self._mcap.finish()  # type: ignore[no-untyped-call]  # mcap left this one unannotated
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether a file is an earlier one of `SeenWriter`, and not a recording or anything else."""
+    try:
+        container = McapContainer(path)
+    except RecordingError:
+        return False
+    try:
+        return container.channel(OBJECTS_TOPIC) is not None
+    finally:
+        container.close()

@@ -6,12 +6,13 @@ import re
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 import numpy as np
-from PIL import Image, UnidentifiedImageError
+from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from bfsim.errors import ConfigError
@@ -23,8 +24,8 @@ from bfsim.seen import SeenFrame
 FRAME_MS = 200
 """How long an animated file shows a frame: about as long as the robot works on one (T §6.6)."""
 
-TAG, TAG_VALUE = "Software", "bfsim overlay"
-"""A text in each picture, by which an earlier overlay is known."""
+TAG = "bfsim overlay"
+"""A remark in each file, by which an earlier overlay is known."""
 
 _NAME = re.compile(r"frame-\d+\.png")
 
@@ -44,6 +45,8 @@ class OverlayWriter:
             _require_folder(path)
         else:
             require_place(path)
+            if path.exists() and not _is_overlay(path):
+                raise ConfigError(f"{path} must be a new file or an earlier overlay, not another file")
         self._drawn: list[Path] = []
 
     def __enter__(self) -> Self:
@@ -57,11 +60,9 @@ class OverlayWriter:
 
     def add(self, frame: SeenFrame) -> None:
         """Draw a frame."""
-        tag = PngInfo()
-        tag.add_text(TAG, TAG_VALUE)
         file = self._folder / f"frame-{frame.index:04d}.png"
         with _writing(self.path):
-            overlay_of(frame).save(file, "PNG", pnginfo=tag)
+            overlay_of(frame).save(file, "PNG", pnginfo=_remark())
         self._drawn.append(file)
 
     def __exit__(
@@ -111,21 +112,22 @@ def _encode_gif(frames: Sequence[Path], target: Path) -> None:
         image.quantize(method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
         for image in _images(frames)
     )
-    _save_animation(few, target, format="GIF")
+    _save_animation(few, target, format="GIF", comment=TAG)
 
 
 def _encode_webp(frames: Sequence[Path], target: Path) -> None:
-    _save_animation(_images(frames), target, format="WEBP", quality=85, method=2)
+    _save_animation(_images(frames), target, format="WEBP", quality=85, method=2, xmp=TAG.encode())
 
 
 def _encode_apng(frames: Sequence[Path], target: Path) -> None:
-    _save_animation(_images(frames), target, format="PNG")
+    _save_animation(_images(frames), target, format="PNG", pnginfo=_remark())
 
 
 def _encode_mp4(frames: Sequence[Path], target: Path) -> None:
     import av
 
     with av.open(str(target), "w") as container:
+        container.metadata["comment"] = TAG
         stream = container.add_stream("libx264", rate=1000 // FRAME_MS, options={"crf": "18"})
         stream.pix_fmt = "yuv420p"
         for image in _images(frames):
@@ -177,13 +179,22 @@ def _require_folder(path: Path) -> None:
 def _earlier(folder: Path) -> Iterator[Path]:
     """Return the pictures of an earlier overlay in a folder."""
     for file in folder.iterdir():
-        if _NAME.fullmatch(file.name) and file.is_file():
-            try:
-                with Image.open(file) as image:
-                    if image.info.get(TAG) == TAG_VALUE:
-                        yield file
-            except (OSError, UnidentifiedImageError, SyntaxError, ValueError):
-                continue  # whatever it is, it is not ours
+        if _NAME.fullmatch(file.name) and file.is_file() and _is_overlay(file):
+            yield file
+
+
+def _is_overlay(file: Path) -> bool:
+    """Whether a file has the remark of an overlay: each of the formats has it as it is, in clear text."""
+    if not file.stat().st_size:
+        return False
+    with file.open("rb") as stream, mmap(stream.fileno(), 0, access=ACCESS_READ) as content:
+        return content.find(TAG.encode()) >= 0
+
+
+def _remark() -> PngInfo:
+    remark = PngInfo()
+    remark.add_text("Comment", TAG)
+    return remark
 
 
 @contextmanager

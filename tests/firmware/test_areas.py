@@ -25,7 +25,7 @@ from firmware.orders import mode_payload
 from tests.firmware.lenses import rectified
 from tests.firmware.pictures import Bytes
 from tests.firmware.test_rectification import tables
-from tests.firmware.test_stages import buffer, check_core, random_frames
+from tests.firmware.whole_pictures import buffer, check_core, random_frames
 
 
 def order(names: dict[str, Any], after_frames: int = 0) -> ScriptedMessage:

@@ -16,7 +16,7 @@ from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
 from bfsim.run import calibration_of
 from firmware import one_eye, tinyphoon
 from firmware.geometry import FARTHEST_MM, GEOMETRY_WORDS, beside_mm, depth_mm, geometry_buffer, look_at
-from tests.firmware.test_stages import buffer, random_frames, run
+from tests.firmware.whole_pictures import buffer, random_frames, run
 
 THESIS = [386 * 16, 30470, 120 * 16, 1820, 2845, 16135, 0, 0, 386 * 16]
 """T §6.2, §6.4, in the units of the buffer; 10 degrees are 1820.4 steps, with a sine of 2845.0 / 16384."""

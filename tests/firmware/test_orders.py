@@ -45,7 +45,7 @@ from firmware.orders import (
     shared_order_buffers,
 )
 from firmware.results import decode_results
-from tests.firmware.test_stages import buffer, random_frames
+from tests.firmware.whole_pictures import buffer, random_frames
 
 FULL = FrameSize(320, 240)
 TABLES = {each.name: each.values for each in shared_order_buffers(FULL, "l2_shared")}

@@ -20,7 +20,7 @@ from firmware.modes import INDOOR_FIELD
 from firmware.stages.stereo_edges import StereoEdgeThresholds, is_level, stereo_edges_row, take_right_row
 from firmware.stages.stereo_lines import Correspondence
 from tests.firmware.stereo_references import Edge, EdgeLimits, Rig, edges_3d
-from tests.firmware.test_stages import buffer, random_frames, run, stereo
+from tests.firmware.whole_pictures import buffer, random_frames, run, stereo
 
 GARBAGE = 77
 Row = Sequence[Edge]

@@ -24,7 +24,7 @@ from firmware.stages.stereo_lines import Correspondence, StereoLineThresholds, m
 from firmware.tables import arctangent_table
 from tests.firmware import stereo_references as references
 from tests.firmware.stereo_references import Line3D, Rig, Words
-from tests.firmware.test_stages import buffer, run
+from tests.firmware.whole_pictures import buffer, run
 
 GARBAGE = 77
 ATAN = arctangent_table()

@@ -15,7 +15,7 @@ from mcap_protobuf.decoder import DecoderFactory
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
-from bfsim.recording import SeenWriter, StereoGeometry
+from bfsim.recording import RecordingWriter, SeenWriter, StereoGeometry
 from tests import seen_frames as made
 
 GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
@@ -189,17 +189,30 @@ def test_a_frame_in_which_nothing_is_seen_takes_away_what_was_before(tmp_path: P
     assert not first(path)["/seen/edges_3d"].data
 
 
-def test_an_error_leaves_no_file(tmp_path: Path) -> None:
+def test_an_error_leaves_no_file(tmp_path: Path, path: Path) -> None:
     """What was there before stays."""
-    path = tmp_path / "seen.mcap"
-    path.write_text("before")
+    before = path.read_bytes()
     with pytest.raises(KeyboardInterrupt), SeenWriter(path, GEOMETRY) as writer:
         writer.add(made.frame())
         raise KeyboardInterrupt
     assert [each.name for each in tmp_path.iterdir()] == [path.name]
-    assert path.read_text() == "before"
+    assert path.read_bytes() == before
     with pytest.raises(RecordingError, match="must be a file, not a folder"):
         SeenWriter(tmp_path, GEOMETRY)
+
+
+def test_only_what_an_earlier_run_saw_is_replaced(tmp_path: Path, path: Path) -> None:
+    """A recording, above all the one that runs, is not written over."""
+    with SeenWriter(path, None) as writer:
+        writer.add(made.frame())
+    assert len(messages(path)) == 7
+    recording = tmp_path / "drive.mcap"
+    with RecordingWriter(recording, width=2, height=2) as recorder:
+        recorder.add(made.grey(2, 2), made.grey(2, 2), 0, 0)
+    (tmp_path / "notes.mcap").write_text("notes")
+    for other in (recording, tmp_path / "notes.mcap"):
+        with pytest.raises(RecordingError, match="must be a new file or what an earlier run saw"):
+            SeenWriter(other, None)
 
 
 def vector(message: Any) -> list[float]:

@@ -66,9 +66,9 @@ def test_an_error_leaves_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("suffix", [".gif", ".webp", ".apng"])
 def test_an_animated_file_shows_all_frames(tmp_path: Path, suffix: str) -> None:
-    """One after the other, for ever; an earlier file is replaced, as --json does."""
+    """One after the other, for ever; an earlier file is replaced."""
     path = tmp_path / f"seen{suffix}"
-    path.write_text("before")
+    draw(path, 0)
     draw(path, 0, 1, 2)
     assert names(tmp_path) == [path.name]
     with Image.open(path) as image:
@@ -83,6 +83,7 @@ def test_a_video_shows_all_frames(tmp_path: Path) -> None:
     """Frames of an odd height and of other sizes fit in."""
     av = pytest.importorskip("av")
     path = tmp_path / "seen.mp4"
+    draw(path, 0)
     small = Seen(camera="left", picture=made.grey(46, 11))
     with OverlayWriter(path) as writer:
         for cameras in ((small,), ()):
@@ -97,6 +98,9 @@ def test_places_that_cannot_be_are_refused_before_the_run(tmp_path: Path) -> Non
     """A format that nothing writes, a file in the place of the folder, a folder nowhere."""
     with pytest.raises(ConfigError, match=r"must be a folder or a file \*\.gif, .*, not .*seen\.jpg"):
         OverlayWriter(tmp_path / "seen.jpg")
+    (tmp_path / "drive.mp4").write_text("the film that became the recording")
+    with pytest.raises(ConfigError, match="must be a new file or an earlier overlay, not another file"):
+        OverlayWriter(tmp_path / "drive.mp4")
     (tmp_path / "file").write_text("text")
     with pytest.raises(ConfigError, match="must be a folder for the overlay, not a file"):
         OverlayWriter(tmp_path / "file")
