@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from rich.table import Table
 
 from benchmarks.quality.seen import Picture, see, uyvy
-from bfsim.api import SourcePixels
+from bfsim.api import Calibration, SourcePixels
 from bfsim.errors import BfsimError
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.recording.scenes.lens import Lens, turned
@@ -103,7 +103,7 @@ def compare(path: Path, limit: int) -> list[tuple[str, ...]]:
         replace(pair, left=uyvy(left), right=uyvy(right))
         for pair, left, right in zip(pairs, bent["left"], bent["right"], strict=True)
     ]
-    seen = see(frames, tinyphoon.rectifying(tables))
+    seen = see(frames, tinyphoon.calibrated(Calibration(sources=tables)))
     rows = []
     for number, (side, core) in enumerate((("left", "A"), ("right", "B"))):
         # a pixel at the border of the bent picture may have come from outside of the straight one

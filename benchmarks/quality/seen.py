@@ -16,7 +16,7 @@ from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, symbols_of
 from bfsim.machine.program import Main
 from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.run import THESIS_LDF, source_pixels
+from bfsim.run import THESIS_LDF, calibration_of
 from bfsim.terminal import progress_bar
 from bfsim.trace import FrameRecord
 from firmware import tinyphoon
@@ -128,7 +128,7 @@ def see_recording(path: Path, limit: int) -> list[Seen]:
     """Return what the firmware makes of up to `limit` stereo frames of a recording; raises a BfsimError."""
     with RecordingReader(path) as reader, progress_bar(f"Simulating {path.name}") as progress:
         frames = list(reader.frames(min(limit, reader.frame_count)))
-        firmware = tinyphoon.rectifying(source_pixels(reader.rectification))
+        firmware = tinyphoon.calibrated(calibration_of(reader))
         done = iter(range(1, len(frames) + 1))
         return see(frames, firmware, lambda _: progress(next(done), len(frames)))
 

@@ -15,7 +15,7 @@ from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.scenes.chessboard import write_chessboards
 from bfsim.recording.scenes.lens import Lens, Misfit
-from bfsim.run import simulate, source_pixels
+from bfsim.run import calibration_of, simulate
 from firmware import tinyphoon
 from tests.firmware.lenses import rectified
 from tests.firmware.whole_pictures import buffer, check_core, run
@@ -59,7 +59,7 @@ def test_rows_agree_in_what_the_cores_see(recording: Path) -> None:
     """Corners that were pixels apart in height lie in one row of both rectified pictures, to the rounding of the tables."""
     before, after = [], []
     with RecordingReader(recording) as reader:
-        firmware = tinyphoon.rectifying(source_pixels(reader.rectification))
+        firmware = tinyphoon.calibrated(calibration_of(reader))
         for frame in reader.frames():
             board, _ = run([frame], firmware)
             before.append(corners_of(frame.left) - corners_of(frame.right))
@@ -73,11 +73,13 @@ def test_rows_agree_in_what_the_cores_see(recording: Path) -> None:
 def test_all_stages_see_the_rectified_pictures(recording: Path) -> None:
     """All that is left in memory is that of the pictures which the tables of the recording make."""
     with RecordingReader(recording) as reader:
-        sources = source_pixels(reader.rectification)
+        calibration = calibration_of(reader)
         frames = list(reader.frames(1))
-    board, outcome = run(frames, tinyphoon.rectifying(sources))
+    board, outcome = run(frames, tinyphoon.calibrated(calibration))
     for core, picture in (("A", frames[0].left), ("B", frames[0].right)):
-        check_core(board, core, rectified(picture, sources[core]), dict(outcome.frames[0].results))
+        check_core(
+            board, core, rectified(picture, calibration.sources[core]), dict(outcome.frames[0].results)
+        )
 
 
 def test_run_rectifies_by_itself(recording: Path) -> None:

@@ -13,7 +13,7 @@ import pytest
 from bfsim.api import Core
 from bfsim.errors import LinkError
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING, source_pixels
+from bfsim.run import BUILT_IN_RECORDING, calibration_of
 from firmware import tinyphoon
 from firmware.edge_store import EDGE_CAPACITY
 from firmware.modes import INDOOR_FIELD
@@ -41,11 +41,12 @@ def test_built_in_recording(count: int) -> None:
 def test_given_recordings(given_recording: Path) -> None:
     """Every frame of the recordings that the command line names, real ones above all."""
     with RecordingReader(given_recording) as reader:
-        sources = source_pixels(reader.rectification)
+        calibration = calibration_of(reader)
         for frame in reader.frames():
-            board, outcome = run([replace(frame, index=0)], tinyphoon.rectifying(sources))
+            board, outcome = run([replace(frame, index=0)], tinyphoon.calibrated(calibration))
             for core, picture in (("A", frame.left), ("B", frame.right)):
-                seen = rectified(picture, sources[core]) if sources else picture
+                sources = calibration.sources.get(core)
+                seen = rectified(picture, sources) if sources else picture
                 check_core(board, core, seen, dict(outcome.frames[0].results))
 
 
