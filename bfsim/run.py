@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import llvmlite.binding as llvm
@@ -18,7 +18,7 @@ from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
 from bfsim.machine.capture import Feed
 from bfsim.machine.program import Calibration, FrameSize, SourcePixels
-from bfsim.machine.strategy import ScriptedMessage
+from bfsim.machine.strategy import Script
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.trace import Identity, RunRecord
 
@@ -53,7 +53,8 @@ def simulate(
     if frames is not None and frames < 1:
         raise ConfigError(f"frames must be at least 1, not {frames}")
     spec, compiler = board_named(board), profile_named(profile)
-    loaded, script = load_firmware(firmware), _read_strategy(strategy)
+    loaded = load_firmware(firmware)
+    script = _read_strategy(strategy, loaded)
     placement = read_placement(ldf, spec)
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
         size = FrameSize(reader.width, reader.height)
@@ -94,12 +95,12 @@ def read_placement(ldf: Path | None, spec: BoardSpec) -> LinkerScript:
     )
 
 
-def _read_strategy(path: Path | None) -> Sequence[ScriptedMessage]:
+def _read_strategy(path: Path | None, loaded: LoadedFirmware) -> Script:
     if path is None:
         return ()
     from bfsim.machine.strategy_script import read_script  # pydantic takes its time
 
-    return read_script(path)
+    return read_script(path, loaded.firmware.orders)
 
 
 def calibration_of(reader: RecordingReader) -> Calibration:
@@ -144,7 +145,7 @@ def _record(
     size: FrameSize,
     source: _DigestedFrames,
     compiler: CompilerProfile,
-    script: Sequence[ScriptedMessage],
+    script: Script,
 ) -> RunRecord:
     identity = Identity(
         recording=source.name,

@@ -65,7 +65,8 @@ class CoreFrame:
 class FrameRecord:
     """One stereo frame. `index` counts in the recording; latency runs from `last_line_cclk` to `result_cclk`.
 
-    `cores` holds core A first. `results` are numbers that the firmware published for the frame (edges found ...).
+    `cores` holds core A first. `results` are numbers that the firmware published for the frame (edges found ...),
+    `remarks` its sentences (an order refused ...).
     """
 
     index: int
@@ -73,6 +74,7 @@ class FrameRecord:
     result_cclk: int
     cores: tuple[CoreFrame, ...]
     results: Mapping[str, int]
+    remarks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -179,7 +181,10 @@ class CodeRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MessageRecord:
-    """One message over SPI: `direction` is out or in, seen from the board; the cycles are of core A's clock."""
+    """One message over SPI: `direction` is out or in, seen from the board; the cycles are of core A's clock.
+
+    The `type` of what came in and is no message is "damaged", its sequence number 0.
+    """
 
     direction: str
     type: str

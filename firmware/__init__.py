@@ -7,6 +7,7 @@ from firmware.buffers import buffers, calibration_buffers, one_core_buffers
 from firmware.core_a import core_a
 from firmware.core_b import core_b
 from firmware.one_core import one_core
+from firmware.orders import BY_NAME
 
 ROWS = (
     BudgetRow(stage="Edge detection", thesis_ms=87.0),  # T Table 6.4, average
@@ -24,6 +25,7 @@ tinyphoon = Firmware(
     camera="camera",
     rows=ROWS,
     calibration=calibration_buffers,
+    orders=BY_NAME,
 )
 
 one_eye = Firmware(
@@ -32,5 +34,6 @@ one_eye = Firmware(
     camera="camera",
     rows=ROWS,
     calibration=calibration_buffers,
+    orders=BY_NAME,
 )
 """The same stages for a board with one core and one camera, such as cm-bf533."""

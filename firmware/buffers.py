@@ -13,6 +13,7 @@ from firmware.edge_store import EDGE_CAPACITY
 from firmware.exchange import exchange_buffers
 from firmware.geometry import geometry_buffer, thesis_geometry_buffer
 from firmware.models import model_buffers
+from firmware.orders import order_buffers, shared_order_buffers
 from firmware.results import MESSAGE_WORDS
 from firmware.stages.blob_detection import blob_buffers
 from firmware.stages.circle_detection import circle_buffers
@@ -29,7 +30,6 @@ from firmware.stages.stereo_edges import stereo_edge_buffers
 from firmware.stages.stereo_lines import stereo_line_buffers
 from firmware.tables import arctangent_table
 
-ORDERS_WORDS = 256  # room for a message of the strategy unit
 CAMERA_FRAMES = 3  # one that is worked on, one that waits, one that is filled
 
 
@@ -38,13 +38,17 @@ def buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     return {
         "A": (*_left_buffers(size), *stereo_line_buffers(), *stereo_edge_buffers()),
         "B": _core_buffers(size, camera="sdram_bank1", images="sdram_bank3"),
-        "shared": (*exchange_buffers(size), *shared_object_buffers()),
+        "shared": (
+            *exchange_buffers(size),
+            *shared_object_buffers(),
+            *shared_order_buffers(size, "l2_shared"),
+        ),
     }
 
 
 def one_core_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     """Return the buffers for pictures of `size` of a board with one core."""
-    return {"A": _left_buffers(size)}
+    return {"A": (*_left_buffers(size), *shared_order_buffers(size, "data1"))}
 
 
 def calibration_buffers(calibration: Calibration) -> Buffers:
@@ -59,7 +63,6 @@ def _left_buffers(size: FrameSize) -> Sequence[Buffer]:
         *_core_buffers(size, camera="sdram_bank0", images="sdram_bank2"),
         *left_object_buffers(),
         Buffer("results", u16, MESSAGE_WORDS, "data1"),
-        Buffer("orders", u16, ORDERS_WORDS, "data1"),
     )
 
 
@@ -94,5 +97,6 @@ def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buff
         *circle_buffers(),
         *rectangle_buffers(),
         *object_buffers(),
+        *order_buffers(),
         *model_buffers(),
     )

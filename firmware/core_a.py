@@ -7,7 +7,7 @@ from typing import Any
 
 from bfsim.api import Core
 from firmware.features import features
-from firmware.modes import INDOOR_FIELD
+from firmware.orders import read_mode, see_by, take_orders
 from firmware.report import report
 from firmware.stages.object_detection import left_sight, object_detection
 from firmware.stages.stereo_edges import stereo_edges
@@ -19,17 +19,18 @@ def core_a(core: Core) -> Generator[Any, Any, None]:
 
     Core B writes its results again only when core A is done with them: the cores take the same next pair.
     """
-    mode = INDOOR_FIELD
     while (frame := (yield from core.next_frame())) is not None:
-        found = yield from features(core, frame, mode)
+        mode = yield from read_mode(core)
+        area = yield from see_by(core, frame, mode)
+        found = yield from features(core, frame, mode, area)
         with core.stage("Object detection"):
-            yield from left_sight(core, frame, found.outlines, mode.objects)
+            yield from left_sight(core, found.frame, found.outlines, mode.objects)
         yield from core.wait("core B is done")
         with core.stage("Line detection"):
-            yield from stereo_lines(core, frame, found.lines, mode.stereo_lines)
-            yield from stereo_edges(core, frame, mode.stereo_edges)
+            yield from stereo_lines(core, found.frame, found.lines, mode.stereo_lines)
+            yield from stereo_edges(core, found.frame, mode.stereo_edges)
         with core.stage("Object detection"):
             yield from object_detection(core, mode.objects)
+        refused = yield from take_orders(core)  # for the next frame; core B reads them when core A is done
         yield from core.post("core A is done")
-        yield from core.receive(core.array("orders"))  # modes and models: taken, not obeyed yet
-        yield from report(core, frame)
+        yield from report(core, frame, area, refused)

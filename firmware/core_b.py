@@ -8,17 +8,18 @@ from typing import Any
 from bfsim.api import Core
 from firmware.exchange import share_edges, share_lines
 from firmware.features import features
-from firmware.modes import INDOOR_FIELD
+from firmware.orders import read_mode, see_by
 from firmware.stages.object_detection import right_sight
 
 
 def core_b(core: Core) -> Generator[Any, Any, None]:
     """See every picture of the right camera. The cores end a frame together, to take the same next pair."""
-    mode = INDOOR_FIELD
     while (frame := (yield from core.next_frame())) is not None:
-        found = yield from features(core, frame, mode)
+        mode = yield from read_mode(core)
+        area = yield from see_by(core, frame, mode)
+        found = yield from features(core, frame, mode, area)
         with core.stage("Object detection"):
-            yield from right_sight(core, frame, found.outlines, mode.objects)
+            yield from right_sight(core, found.frame, found.outlines, mode.objects)
         yield from share_lines(core, found.lines)
         yield from share_edges(core, found.edges)
         yield from core.post("core B is done")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bfsim.api import Core, Frame
+from firmware.areas import WHOLE_PICTURE, Area
 from firmware.modes import Mode
 from firmware.stages.blob_detection import blob_detection
 from firmware.stages.circle_detection import circle_detection
@@ -21,18 +22,21 @@ from firmware.stages.rectification import rectification
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Features:
-    """How many features of each kind a picture has in the core's memories."""
+    """How many features of each kind an area of a picture has in the core's memories. `frame`: the area as a picture."""
 
+    frame: Frame
     edges: int
     lines: int
     outlines: Outlines
 
 
-def features(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, Features]:
-    """Leave edges, colours, blobs, lines and outlines of a picture in the core's memories."""
+def features(
+    core: Core, frame: Frame, mode: Mode, area: Area = WHOLE_PICTURE
+) -> Generator[Any, Any, Features]:
+    """Leave edges, colours, blobs, lines and outlines of an area in the core's memories, in its coordinates."""
     with core.stage("Edge detection"):
         with core.stage("Rectification"):
-            frame = yield from rectification(core, frame)
+            frame = yield from rectification(core, frame, area)
         edges = yield from edge_detection(core, frame, mode.edges)
     with core.stage("Open & closing"):
         yield from open_closing(core, frame)
@@ -47,4 +51,4 @@ def features(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, Featur
             core, blobs, lines, mode.rectangle_colours, mode.rectangles
         )
     outlines = Outlines(blobs=blobs, circles=circles, rectangles=rectangles)
-    return Features(edges=edges, lines=lines, outlines=outlines)
+    return Features(frame=frame, edges=edges, lines=lines, outlines=outlines)

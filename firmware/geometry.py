@@ -1,7 +1,7 @@
 """Where the cameras are, as the kernels read it: the buffer `geometry` of each core, a struct of 32-bit words.
 
 It comes with the recording. The pictures are rectified, the cameras equal and parallel, and the principal point is
-the middle of the picture.
+the middle of the picture, of which the stages may see an area only.
 """
 
 from __future__ import annotations
@@ -19,7 +19,11 @@ GEOMETRY_HEIGHT = 2  # above the floor, 1/16 mm
 GEOMETRY_TILT = 3  # how far the cameras look down, 1/65536 of a turn
 GEOMETRY_SINE = 4  # of the tilt, 1/16384
 GEOMETRY_COSINE = 5
-GEOMETRY_WORDS = 6
+# Of an area of interest, and of smaller pictures than the recorded ones; see `look_at`.
+GEOMETRY_SHIFT_X = 6  # how far the principal point is from the middle of the area, 1/16 px
+GEOMETRY_SHIFT_Y = 7
+GEOMETRY_FULL_FOCAL = 8  # focal length in the recorded pictures, 1/16 px
+GEOMETRY_WORDS = 9
 
 MICROMETRES = 1000
 HEIGHT_STEPS = 16
@@ -52,6 +56,9 @@ def _buffer(focal_px: float, baseline_mm: float, height_mm: float, tilt_deg: flo
         round(TILT_STEPS * tilt_deg / 360),
         round((1 << SINE_BITS) * math.sin(math.radians(tilt_deg))),
         round((1 << SINE_BITS) * math.cos(math.radians(tilt_deg))),
+        0,
+        0,
+        round(SUBPIXELS * focal_px),
     )
     if words[GEOMETRY_FOCAL] * words[GEOMETRY_BASELINE] >= DEEPEST:
         limit = DEEPEST / (SUBPIXELS * MICROMETRES)
@@ -60,6 +67,14 @@ def _buffer(focal_px: float, baseline_mm: float, height_mm: float, tilt_deg: flo
             f"not {focal_px:g} px times {baseline_mm:g} mm"
         )
     return Buffer("geometry", i32, GEOMETRY_WORDS, "data1", values=np.array(words))
+
+
+@kernel
+def look_at(geometry: i32[:], shift_x: i32, shift_y: i32, halvings: i32) -> None:
+    """Set what depends on the mode: where the principal point is, in 1/16 px, and how often the pictures are halved."""
+    geometry[GEOMETRY_SHIFT_X] = shift_x
+    geometry[GEOMETRY_SHIFT_Y] = shift_y
+    geometry[GEOMETRY_FOCAL] = geometry[GEOMETRY_FULL_FOCAL] >> halvings
 
 
 @kernel
@@ -94,8 +109,8 @@ def store_point(
     `x`, `y` and `disparity` are in 1/16 px. Of a point that is nowhere or too far away nothing is stored: 0.
     """
     depth = depth_mm(geometry, disparity)
-    across = beside_mm(geometry, depth, x - SUBPIXELS * (width - 1) // 2)
-    down = beside_mm(geometry, depth, y - SUBPIXELS * (height - 1) // 2)
+    across = beside_mm(geometry, depth, x - SUBPIXELS * (width - 1) // 2 - geometry[GEOMETRY_SHIFT_X])
+    down = beside_mm(geometry, depth, y - SUBPIXELS * (height - 1) // 2 - geometry[GEOMETRY_SHIFT_Y])
     if depth == 0 or abs(across) > FARTHEST_MM or abs(down) > FARTHEST_MM:
         return 0
     words[at] = across

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.api import Buffer, FirmwareError, i32
+from firmware.fields import allowed
 from firmware.stages.blob_detection import COLOUR_GROUPS, hues
 from firmware.stages.colour_reduction import FIRST_HUE, HUES
 
@@ -65,14 +66,14 @@ class ObjectModel:
     """
 
     name: str
-    number: int
+    number: int = allowed(1, LARGEST_NUMBER)
     shape: Shape
-    colours: int
-    width_mm: int
-    height_mm: int
-    floor_mm: int
-    aspect_min: int
-    aspect_max: int
+    colours: int = allowed(2, ALL_COLOURS, step=2)
+    width_mm: int = allowed(1, LARGEST_MM)
+    height_mm: int = allowed(1, LARGEST_MM)
+    floor_mm: int = allowed(0, LARGEST_MM)
+    aspect_min: int = allowed(1, LARGEST_ASPECT, at_most="aspect_max")
+    aspect_max: int = allowed(1, LARGEST_ASPECT)
 
     def __post_init__(self) -> None:
         self._check(1 <= self.number <= LARGEST_NUMBER, f"number must be 1 to {LARGEST_NUMBER}", self.number)

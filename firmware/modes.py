@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from firmware.areas import AS_RECORDED, WHOLE_PICTURE, Area, Camera
+from firmware.fields import not_ordered
 from firmware.line_store import SUBPIXELS
 from firmware.models import MODELS, ObjectModel, colour_groups, rectangular_colours, spherical_colours
 from firmware.stages.blob_detection import BlobThresholds
@@ -19,7 +21,7 @@ from firmware.stages.stereo_lines import Correspondence, StereoLineThresholds
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mode:
-    """The thresholds of every stage. They depend on lighting and cameras, never on one picture."""
+    """The thresholds of every stage, and what of the pictures is looked at. Thresholds depend on lighting and cameras, never on one picture."""
 
     edges: EdgeThresholds
     blobs: BlobThresholds
@@ -27,10 +29,12 @@ class Mode:
     circles: CircleThresholds
     rectangles: RectangleThresholds
     objects: ObjectThresholds
-    models: tuple[ObjectModel, ...]
+    models: tuple[ObjectModel, ...] = not_ordered()  # they have a message of their own
     refinement: RefinementThresholds
     stereo_lines: StereoLineThresholds
     stereo_edges: StereoEdgeThresholds
+    camera: Camera = AS_RECORDED
+    area: Area = WHOLE_PICTURE
 
     @property
     def ball_colours(self) -> int:

@@ -7,18 +7,19 @@ from typing import Any
 
 from bfsim.api import Core
 from firmware.features import features
-from firmware.modes import INDOOR_FIELD
+from firmware.orders import read_mode, see_by, take_orders
 from firmware.report import report
 from firmware.stages.object_detection import left_sight, remember
 
 
 def one_core(core: Core) -> Generator[Any, Any, None]:
     """See every picture of the only camera."""
-    mode = INDOOR_FIELD
     while (frame := (yield from core.next_frame())) is not None:
-        found = yield from features(core, frame, mode)
+        mode = yield from read_mode(core)
+        area = yield from see_by(core, frame, mode)
+        found = yield from features(core, frame, mode, area)
         with core.stage("Object detection"):
-            yield from left_sight(core, frame, found.outlines, mode.objects)
+            yield from left_sight(core, found.frame, found.outlines, mode.objects)
             yield from remember(core, [core.array("left_seen")], mode.objects)
-        yield from core.receive(core.array("orders"))  # modes and models: taken, not obeyed yet
-        yield from report(core, frame)
+        refused = yield from take_orders(core)
+        yield from report(core, frame, area, refused)

@@ -3,7 +3,9 @@
 The framing is bfsim's own ([ours], `bfsim/machine/spi_protocol.py`): sync word, type, sequence number, bytes of the payload,
 the payload, and the CRC-16 of CCITT over all but the sync word, byte by byte in the order of memory.
 
-The payload is 16-bit words: the frame's number, low half first; how many objects and how many lines follow; then those.
+The payload is 16-bit words: the frame's number, low half first; how many objects and how many lines follow; why an order
+was refused (`order_checks.py`), or 0; the corner of the area, in pixels, that the places in the picture count from; then
+objects and lines.
 """
 
 from __future__ import annotations
@@ -47,7 +49,7 @@ POLYNOMIAL = 0x1021  # CCITT
 GOAL = int(Shape.GOAL)
 
 HEADER_WORDS = 4
-COUNTS_WORDS = 4  # of the payload: frame number, objects, lines
+COUNTS_WORDS = 7  # of the payload: frame number, objects, lines, refusal, corner of the area
 PLACE_WORDS = OBJECT_HEIGHT - OBJECT_X + 1  # position, image, size: as they are in t_Object
 REPORT_WORDS = 3 + PLACE_WORDS
 LINE_REPORT_WORDS = 5
@@ -129,14 +131,22 @@ def pack_goal_lines(
 
 
 @kernel
-def close_message(message: u16[:], sequence: i32, frame: i32, words: i32) -> i32:
-    """Frame a payload of `words` words, begin it with the number of its frame, and return the bytes of the message."""
+def close_message(
+    message: u16[:], sequence: i32, frame: i32, refusal: i32, x: i32, y: i32, words: i32
+) -> i32:
+    """Frame a payload of `words` words, begin it with what is known of its frame, and return the bytes of the message.
+
+    `refusal`: of an order, or 0. (`x`, `y`): the corner of the area.
+    """
     message[0] = SYNC
     message[1] = RESULTS
     message[2] = sequence
     message[3] = 2 * words
     message[HEADER_WORDS] = frame & 0xFFFF
     message[HEADER_WORDS + 1] = frame >> 16
+    message[HEADER_WORDS + 4] = refusal
+    message[HEADER_WORDS + 5] = x
+    message[HEADER_WORDS + 6] = y
     crc: i32 = 0xFFFF
     for word in range(1, HEADER_WORDS + words):
         crc = crc16_byte(crc, message[word] & 255)
@@ -199,9 +209,10 @@ class GoalLine:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Results:
-    """What the strategy unit is told after a frame."""
+    """What the strategy unit is told after a frame. `refusal`: why it refused an order, or 0."""
 
     frame: int
+    refusal: int
     objects: tuple[SeenObject, ...]
     lines: tuple[GoalLine, ...]
 
@@ -211,7 +222,7 @@ def decode_results(payload: bytes) -> Results:
     words = np.frombuffer(payload[: len(payload) // 2 * 2], "<i2").tolist()
     if len(payload) < 2 * COUNTS_WORDS:
         raise FirmwareError(f"results must have at least {2 * COUNTS_WORDS} bytes, not {len(payload)}")
-    low, high, objects, lines = words[:COUNTS_WORDS]
+    low, high, objects, lines, refusal, *corner = words[:COUNTS_WORDS]
     expected = 2 * (COUNTS_WORDS + objects * REPORT_WORDS + lines * LINE_REPORT_WORDS)
     if min(objects, lines) < 0 or len(payload) != expected:
         raise FirmwareError(
@@ -220,8 +231,11 @@ def decode_results(payload: bytes) -> Results:
     first_line = COUNTS_WORDS + objects * REPORT_WORDS
     return Results(
         frame=low & 0xFFFF | high << 16,
-        objects=tuple(_object(each) for each in _records(words[COUNTS_WORDS:first_line], REPORT_WORDS)),
-        lines=tuple(_line(each) for each in _records(words[first_line:], LINE_REPORT_WORDS)),
+        refusal=refusal & 0xFFFF,
+        objects=tuple(
+            _object(each, *corner) for each in _records(words[COUNTS_WORDS:first_line], REPORT_WORDS)
+        ),
+        lines=tuple(_line(each, *corner) for each in _records(words[first_line:], LINE_REPORT_WORDS)),
     )
 
 
@@ -229,7 +243,7 @@ def _records(words: Sequence[int], size: int) -> list[Sequence[int]]:
     return [words[at : at + size] for at in range(0, len(words), size)]
 
 
-def _object(words: Sequence[int]) -> SeenObject:
+def _object(words: Sequence[int], left: int, top: int) -> SeenObject:
     (model, accuracy), (tests, cameras), (measures, age) = (
         divmod(each & 0xFFFF, 256)[::-1] for each in words[:3]
     )
@@ -243,13 +257,14 @@ def _object(words: Sequence[int]) -> SeenObject:
         measures=measures,
         age=age,
         towards=(x, y, z),
-        image_px=(image_x, image_y, width, height),
+        image_px=(left + image_x, top + image_y, width, height),
     )
 
 
-def _line(words: Sequence[int]) -> GoalLine:
+def _line(words: Sequence[int], left: int, top: int) -> GoalLine:
     x0, y0, x1, y1 = (each / SUBPIXELS for each in words[1:])
     side = words[0] >> 8 & 0xFF
     if side not in set(Side):
         raise FirmwareError(f"the side of a line must be 0, 1 or 3, not {side}")
-    return GoalLine(model=words[0] & 0xFF, side=Side(side), ends_px=(x0, y0, x1, y1))
+    ends = left + x0, top + y0, left + x1, top + y1
+    return GoalLine(model=words[0] & 0xFF, side=Side(side), ends_px=ends)

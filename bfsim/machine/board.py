@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import partial
 
 import simpy
 
@@ -26,6 +27,7 @@ from bfsim.machine.detailed_bus import DetailedBus
 from bfsim.machine.dma_checks import DmaSpace
 from bfsim.machine.fetch import CodeCache, CodeOutside
 from bfsim.machine.interrupts import Interrupts
+from bfsim.machine.layouts import Layouts
 from bfsim.machine.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.memory_dma import Dma
@@ -34,7 +36,7 @@ from bfsim.machine.program import Buffer, Firmware, FrameSize
 from bfsim.machine.records import kernel_records
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi import OUTSIDE_BYTES, Spi
-from bfsim.machine.strategy import ScriptedMessage, StrategyUnit
+from bfsim.machine.strategy import Script, StrategyUnit
 from bfsim.machine.synchronised import SharedObjects
 from bfsim.machine.traffic import traffic_records
 from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, MessageRecord, TrafficRecord
@@ -100,7 +102,7 @@ class Board:
     feed: Feed = Feed.DEMAND
     profile: CompilerProfile = VDSP_O2
     sanitize: bool = False
-    script: Sequence[ScriptedMessage] = ()
+    script: Script = ()
     fidelity: Fidelity = Fidelity.FAST
     cores: dict[str, Core] = field(init=False, default_factory=dict)
 
@@ -153,6 +155,11 @@ class Board:
         shared = placed.get("shared", {})
         return {core: shared | placed.get(core, {}) for core in self.spec.chip.cores}
 
+    def _declared(self, core: str, size: FrameSize) -> dict[str, Buffer]:
+        """Return the buffers that a core knows by name, as the firmware declares them for pictures of `size`."""
+        buffers = self.firmware.buffers(size)
+        return {each.name: each for owner in ("shared", core) for each in buffers.get(owner, ())}
+
     def _place(self, buffer: Buffer, processor: str | None) -> tuple[Row, ...]:
         return self._memories.place(buffer, self.link_map.find(processor, buffer.name))
 
@@ -192,11 +199,10 @@ class Board:
                 )
 
     def _capture(self, pictures: Iterator[StereoPictures]) -> Capture:
-        mode = self.spec.sensor.mode(self.size.width_px, self.size.height_px)
         ppis = {
             name: Ppi(
                 self.spec,
-                mode,
+                self.size,
                 camera,
                 self._bus,
                 self._memories,
@@ -248,8 +254,7 @@ class Board:
             self._env,
             name,
             self.spec,
-            memories=memories,
-            buffers=self._buffers[name],
+            layouts=Layouts(name, memories, self._buffers[name], self.size, partial(self._declared, name)),
             calls=book,
             bus=self._bus,
             number=index,
@@ -274,6 +279,7 @@ class Board:
             result_cclk=max(each.cycles.end_cclk for each in parts),
             cores=tuple(each.cycles for each in parts),
             results={name: value for each in parts for name, value in each.results.items()},
+            remarks=tuple(text for each in parts for text in each.remarks),
         )
         self._frames.append(record)
         if on_frame:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from bfsim.clocks import Clocks
 from bfsim.machine.memories import Row
 from bfsim.machine.ppi import Ppi
+from bfsim.machine.program import FrameSize
 from bfsim.machine.settling import CameraSettings
 from bfsim.machine.simulation import Simulation
 
@@ -69,9 +70,13 @@ class State(StrEnum):
 
 @dataclass(slots=True)
 class Pair:
-    """A pair of frame buffers, one per core. `index` is the recording's frame in it; `lost` the words that its PPIs lost."""
+    """A pair of frame buffers, one per core.
+
+    `index` is the recording's frame in it, `picture` the lines of that, `lost` the words that its PPIs lost.
+    """
 
     rows: Mapping[str, Sequence[Row]]
+    picture: Mapping[str, Sequence[Row]] = field(default_factory=dict)
     state: State = State.FREE
     index: int = -1
     full_at_ticks: int = 0
@@ -101,6 +106,7 @@ class Capture:
         self._handed_out: dict[str, deque[Pair]] = {core: deque() for core in ppis}
         self._held: dict[str, Pair] = {}
         self._changed = env.event()
+        self._wanted_sizes: dict[str, FrameSize] = {}
         self._receiving_until = dict.fromkeys(ppis, 0)
         self._sensors_ready_at = 0
         self._ended = False
@@ -127,6 +133,18 @@ class Capture:
     def change_camera(self, core: str, settings: CameraSettings) -> None:
         """Give the camera of a core new settings."""
         self._ppis[core].change(settings)
+
+    def change_size(self, core: str, size: FrameSize) -> None:
+        """Tell the camera of a core what size to send; the cameras change together, when all are told the same."""
+        self._ppis[core].check_size(size)
+        self._wanted_sizes[core] = size
+
+    def _change_sizes(self, frame: int) -> None:
+        """Change the size of the pictures from number `frame` on, if all cameras are told the same one."""
+        wanted = list(self._wanted_sizes.values())
+        if len(wanted) == len(self._ppis) and len(set(wanted)) == 1:
+            for ppi in self._ppis.values():
+                ppi.change_size(wanted[0], frame)
 
     def _hand_out(self, full: list[Pair]) -> None:
         newest = max(full, key=lambda each: each.index)
@@ -163,8 +181,9 @@ class Capture:
             elif self._feed is Feed.RECORDED:
                 starts = [self._clocks.ticks_of_ns(each - origin_ns) for each in stamps]
             else:
-                starts = [each.oscillator.line_start(frame, 0) for each in self._ppis.values()]
+                starts = [each.start_of(frame) for each in self._ppis.values()]
             yield self._env.after(max(0, min(starts) - self._env.tick))
+            self._change_sizes(frame)
             self._begin(pictures, dict(zip(self._ppis, starts, strict=True)))
         self._ended = True
         self._notify()
@@ -193,6 +212,7 @@ class Capture:
                 ppi.skip(images[core])
             return
         pair.state, pair.index = State.FILLING, pictures.index
+        pair.picture = {core: ppi.lines_in(pair.rows[core]) for core, ppi in self._ppis.items()}
         for core, start in starts.items():
             self._receiving_until[core] = start + self._ppis[core].picture_ticks
             self._sensors_ready_at = max(self._sensors_ready_at, start + self._ppis[core].frame_ticks)
@@ -215,7 +235,7 @@ class Capture:
     ) -> Generator[simpy.Event, Any, None]:
         yield self._env.all_of(
             [
-                self._env.process(self._receive(ppi, images[core], pair.rows[core], starts[core]))
+                self._env.process(self._receive(ppi, images[core], pair.picture[core], starts[core]))
                 for core, ppi in self._ppis.items()
             ]
         )

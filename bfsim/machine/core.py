@@ -22,10 +22,11 @@ from bfsim.machine.bus import Bus
 from bfsim.machine.cached_lines import CachedInput, CachedOutput
 from bfsim.machine.calls import CallBook, DeferredWork
 from bfsim.machine.capture import Capture
+from bfsim.machine.layouts import Layouts
 from bfsim.machine.mdma import MdmaStream
-from bfsim.machine.memories import Memories, Row
+from bfsim.machine.memories import Row
 from bfsim.machine.memory_dma import Dma, MemoryDma
-from bfsim.machine.program import Main
+from bfsim.machine.program import FrameSize, Main
 from bfsim.machine.ring import InputRing, OutputRing
 from bfsim.machine.settling import CameraSettings
 from bfsim.machine.simulation import Simulation
@@ -63,6 +64,7 @@ class FinishedFrame:
     full_at_cclk: int
     cycles: CoreFrame
     results: Mapping[str, int]
+    remarks: tuple[str, ...]
 
 
 class Core(SynchronisedCore):
@@ -74,8 +76,7 @@ class Core(SynchronisedCore):
         name: str,
         board: BoardSpec,
         *,
-        memories: Memories,
-        buffers: Mapping[str, tuple[Row, ...]],
+        layouts: Layouts,
         calls: CallBook,
         bus: Bus,
         number: int,
@@ -95,9 +96,7 @@ class Core(SynchronisedCore):
         self._entered_at_cclk = 0
         self._stages = stages
         self._on_finished = on_finished
-        self._memories = memories
-        self._buffers = buffers
-        self._overlays: dict[tuple[str, Number, int], tuple[Row, ...]] = {}
+        self._layouts = layouts
         self._calls = calls
         self._number = number
         self._follower = follower
@@ -110,6 +109,7 @@ class Core(SynchronisedCore):
         self._frame: Frame | None = None
         self._full_at_cclk = 0
         self._results: dict[str, int] = {}
+        self._remarks: list[str] = []
         self._unclaimed: Work | None = None
         self._main: Generator[Any, Any, None] | None = None
         self._in_handler = False
@@ -118,11 +118,7 @@ class Core(SynchronisedCore):
 
     def rows(self, name: str) -> tuple[Row, ...]:
         """Return the rows of the buffer called `name`."""
-        try:
-            return self._buffers[name]
-        except KeyError:
-            known = ", ".join(sorted(self._buffers))
-            raise FirmwareError(f"core {self.name} has no buffer {name!r}; it has {known}") from None
+        return self._layouts.rows(name)
 
     def array(self, name: str) -> Row:
         """Return the only row of the buffer called `name`."""
@@ -133,23 +129,31 @@ class Core(SynchronisedCore):
 
     def has_buffer(self, name: str) -> bool:
         """Whether there is a buffer called `name`: some come only with the tables of a recording."""
-        return name in self._buffers
+        return name in self._layouts
 
     def overlay(self, name: str, element: Number, columns: int) -> tuple[Row, ...]:
         """Return the memory of buffer `name`, all its rows as one, as rows of another kind: a union in C."""
-        kind = (name, element, columns)
-        if kind not in self._overlays:  # the same rows every time, so that calls with them are prepared once
-            self._overlays[kind] = self._memories.overlay(self.rows(name), element, columns)
-        return self._overlays[kind]
+        return self._layouts.overlay(name, element, columns)
 
-    def input_ring(self, image: Sequence[Row], ring: str) -> InputRing | CachedInput:
-        """Return a ring that fetches the lines of `image` into the rows of buffer `ring`, one line ahead.
+    def part(self, rows: Sequence[Row], first: int, count: int) -> tuple[Row, ...]:
+        """Return `count` elements of each row from element `first` on, such as the columns of an area: no bytes move."""
+        return self._layouts.part(rows, first, count)
+
+    def use_size(self, size: FrameSize) -> None:
+        """Have the buffers from now on as firmware declares them for pictures of `size`, in the memory of the full ones.
+
+        Their contents are not moved. Raises FirmwareError for a size that the memory has no room for.
+        """
+        self._layouts.use(size)
+
+    def input_ring(self, image: Sequence[Row], ring: str | Sequence[Row]) -> InputRing | CachedInput:
+        """Return a ring that fetches the lines of `image` into rows, or those of the buffer `ring`, one line ahead.
 
         Where the LDF has the image cached, its own rows take the place of the ring's.
         """
         if self._is_cached(image):
             return CachedInput(image)
-        return self.window_ring(image, self.rows(ring))
+        return self.window_ring(image, self.rows(ring) if isinstance(ring, str) else ring)
 
     def window_ring(self, image: Sequence[Row], rows: Sequence[Row]) -> InputRing:
         """Return a ring that fetches the lines of `image` into `rows`, where kernels need them, even if it is cached."""
@@ -197,7 +201,7 @@ class Core(SynchronisedCore):
         events = self._board.chip.events  # the interrupt of the PPI's DMA ends the wait
         self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk + events.interrupt_exit_cclk)
         self._full_at_cclk = -(-pair.full_at_ticks // self._cclk_ticks)
-        rows = pair.rows[self.name]
+        rows = pair.picture[self.name]
         width = rows[0].nbytes // 2
         self._invalidate(rows)
         if lost := pair.lost.get(self.name, 0):
@@ -215,6 +219,17 @@ class Core(SynchronisedCore):
         The two-wire bus to the camera is not modelled.
         """
         self._capture.change_camera(self.name, settings)
+
+    def set_picture_size(self, size: FrameSize) -> None:
+        """Have this core's camera send pictures of `size`: the recorded one, half or a quarter of it.
+
+        It does so once every camera is told the same, from the next picture on that it begins.
+        """
+        self._capture.change_size(self.name, size)
+
+    def remark(self, text: str) -> None:
+        """Add a sentence about the current frame to the report."""
+        self._remarks.append(f"core {self.name} {text}")
 
     def memory_dma(self, name: str) -> MemoryDma:
         """Return the memory DMA stream `name`, such as MDMA2_1 or IMDMA_0, to be programmed by its registers."""
@@ -365,8 +380,12 @@ class Core(SynchronisedCore):
         self._account = self._accounts.now
         self.finished.append(
             FinishedFrame(
-                index=self._frame.index, full_at_cclk=self._full_at_cclk, cycles=cycles, results=self._results
+                index=self._frame.index,
+                full_at_cclk=self._full_at_cclk,
+                cycles=cycles,
+                results=self._results,
+                remarks=tuple(self._remarks),
             )
         )
-        self._frame, self._results = None, {}
+        self._frame, self._results, self._remarks = None, {}, []
         self._on_finished()

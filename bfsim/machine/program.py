@@ -26,6 +26,9 @@ class FrameSize:
     width_px: int
     height_px: int
 
+    def __str__(self) -> str:
+        return f"{self.width_px}x{self.height_px}"
+
 
 @dataclass(frozen=True, slots=True)
 class SourcePixels:
@@ -122,6 +125,8 @@ class Firmware:
     `mains`: the main loop of each core. `buffers`: size of the pictures → buffers. `camera`: the buffer of each core
     that the PPI fills, a whole number of frames. `rows`: the stages in the order of the budget. `calibration`: what a
     recording knows of its cameras → the buffers that it takes, beside the others or in place of those of the same name.
+    `orders`: what the strategy unit may order by name ("mode", "models") → the payload of that message; raises a
+    FirmwareError that names the field and what it must be.
     """
 
     mains: Mapping[str, Main]
@@ -129,6 +134,7 @@ class Firmware:
     camera: str
     rows: tuple[BudgetRow, ...]
     calibration: Callable[[Calibration], Buffers] | None = None
+    orders: Mapping[str, Callable[[Any], bytes]] = field(default_factory=dict)
 
     def calibrated(self, calibration: Calibration) -> Firmware:
         """Return this firmware for the cameras of a recording."""

@@ -39,7 +39,11 @@ class Settling:
         """Take new settings. Writing the same ones again changes nothing."""
         if settings != self.settings:
             self.settings = settings
-            self.frames_since_change = 0
+            self.restart()
+
+    def restart(self) -> None:
+        """Begin to settle: after new settings, or in a new size of pictures."""
+        self.frames_since_change = 0
 
     def next_picture(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
         """Return the next UYVY picture (height, 2 · width) as the camera sends it."""

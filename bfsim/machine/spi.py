@@ -18,12 +18,13 @@ from bfsim.machine import bus_state as w
 from bfsim.machine.bus import Bus, Pace, Transfer, Walk
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.simulation import Simulation
-from bfsim.machine.spi_protocol import MessageType, decode
+from bfsim.machine.spi_protocol import MessageError, MessageType, decode
 from bfsim.machine.strategy import StrategyUnit
 from bfsim.trace import MessageRecord
 
 WORD_BYTES, WORD_BITS = 2, 16  # SPI_CTL with SIZE
 SPI_WRITES = 5  # SPI_CTL, and START_ADDR, X_COUNT, X_MODIFY and CONFIG of the channel
+DAMAGED = "damaged"  # the type, in the records, of what came in and is no message
 OUTSIDE_BYTES = 4096
 """Room for a message on its way, in the arena."""
 
@@ -77,7 +78,7 @@ class Spi:
         yield self._bus.when_done(self._bus.post(plan))
         octets = self._memories.bytes_from(self._outside, nbytes).tobytes()
         message = self._strategy.receive(octets, self._env.tick)
-        self._record("out", message.type, message.sequence, nbytes, begin)
+        self._record("out", message.type.name, message.sequence, nbytes, begin)
         if message.type is MessageType.RESULTS:
             self._results += 1
             self._waiting.extend(self._strategy.due(self._results))
@@ -90,14 +91,13 @@ class Spi:
         self._on_interrupt()
 
     def receive(self, row: Row) -> tuple[Transfer, int]:
-        """Begin to take the next message into `row`; return the transfer and its bytes."""
+        """Begin to take the next message into `row`; return the transfer and its bytes.
+
+        DMA takes as many words as `row` has room for; what the strategy unit sends beyond them is lost.
+        """
         octets = self._waiting.popleft()
-        nbytes = len(octets)
-        if nbytes > min(row.nbytes, OUTSIDE_BYTES):
-            raise FirmwareError(
-                f"{row.buffer} must have room for a message of {nbytes} bytes, not {row.nbytes}"
-            )
-        self._memories.bytes_from(self._outside, nbytes)[:] = np.frombuffer(octets, np.uint8)
+        nbytes = min(len(octets), row.nbytes // WORD_BYTES * WORD_BYTES, OUTSIDE_BYTES)
+        self._memories.bytes_from(self._outside, nbytes)[:] = np.frombuffer(octets, np.uint8, nbytes)
         plan = self._bus.plan_receive(
             w.SPI, self._walk(self._outside, nbytes), self._walk(row.offset, nbytes), nbytes // WORD_BYTES,
             element_bytes=WORD_BYTES, pace=self._pace(nbytes),
@@ -106,13 +106,17 @@ class Spi:
         begin, self.busy = self._env.tick, self._bus.when_done(transfer)
         assert self.busy.callbacks is not None
         self.busy.callbacks.append(
-            lambda done: self._received(done, octets, begin)
+            lambda done: self._received(done, octets[:nbytes], begin)
         )  # before any core goes on
         return transfer, nbytes
 
     def _received(self, transfer: simpy.Event, octets: bytes, begin: int) -> None:
-        message = decode(octets)
-        self._record("in", message.type, message.sequence, len(octets), begin)
+        try:
+            message = decode(octets)
+        except MessageError:  # the firmware is to find out
+            self._record("in", DAMAGED, 0, len(octets), begin)
+        else:
+            self._record("in", message.type.name, message.sequence, len(octets), begin)
         self._finish(transfer)
 
     def _walk(self, offset: int, nbytes: int) -> Walk:
@@ -122,10 +126,10 @@ class Spi:
         words = nbytes // WORD_BYTES
         return Pace(self._env.tick, words, self._word_ticks, words * self._word_ticks)
 
-    def _record(self, direction: str, kind: MessageType, sequence: int, nbytes: int, begin: int) -> None:
+    def _record(self, direction: str, kind: str, sequence: int, nbytes: int, begin: int) -> None:
         self.records.append(
             MessageRecord(
-                direction=direction, type=kind.name, sequence=sequence, nbytes=nbytes,
+                direction=direction, type=kind, sequence=sequence, nbytes=nbytes,
                 begin_cclk=begin // self._cclk_ticks, end_cclk=-(-self._env.tick // self._cclk_ticks),
             )
         )  # fmt: skip

@@ -18,6 +18,17 @@ class ScriptedMessage:
     payload: bytes
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScriptedBytes:
+    """The same for bytes that go over the wire as they are, whether they are a message or not."""
+
+    after_frames: int
+    octets: bytes
+
+
+Script = Sequence[ScriptedMessage | ScriptedBytes]
+
+
 @dataclass(frozen=True, slots=True)
 class Received:
     """A message, and the tick at which its last word was in."""
@@ -29,7 +40,7 @@ class Received:
 class StrategyUnit:
     """Takes messages whole and at once; what they do on the way there is the wire's and the bus's."""
 
-    def __init__(self, script: Sequence[ScriptedMessage] = ()) -> None:
+    def __init__(self, script: Script = ()) -> None:
         """`script`: in any order; messages due at the same time are sent in the order given."""
         self._to_send = deque(sorted(script, key=lambda each: each.after_frames))
         self._sent = 0
@@ -47,6 +58,9 @@ class StrategyUnit:
         due: list[bytes] = []
         while self._to_send and self._to_send[0].after_frames <= frames:
             each = self._to_send.popleft()
-            due.append(encode(Message(each.type, self._sent % 0x10000, each.payload)))
-            self._sent += 1
+            if isinstance(each, ScriptedBytes):
+                due.append(each.octets)
+            else:
+                due.append(encode(Message(each.type, self._sent % 0x10000, each.payload)))
+                self._sent += 1
         return due

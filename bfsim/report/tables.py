@@ -44,6 +44,7 @@ def run_report(run: RunRecord) -> RenderableType:
         *(_cycle_table(core) for core in budget.cores),
         _frame_table(run),
         *_results_table(run),
+        *_remarks(run),
         configuration(run),
     )
 
@@ -214,6 +215,17 @@ def _results_table(run: RunRecord) -> Iterator[Table]:
         for name in names:
             spread = Spread.of([frame.results[name] for frame in run.frames if name in frame.results])
             table.add_row(name, *(f"{value:,}" for value in _columns(spread)))
+        yield table
+
+
+def _remarks(run: RunRecord) -> Iterator[Table]:
+    """Yield what the firmware said about single frames, if it did."""
+    table = new_table("Remarks", "Frame")
+    table.add_column("", overflow="fold")
+    for frame in run.frames:
+        for text in frame.remarks:
+            table.add_row(str(frame.index), text)
+    if table.row_count:
         yield table
 
 

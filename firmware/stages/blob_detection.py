@@ -32,10 +32,12 @@ from firmware.blob_store import (
     move_segment,
     open_segment,
 )
+from firmware.fields import allowed, not_ordered
 from firmware.stages.colour_reduction import FIRST_HUE
 
 LABELS = 128  # 0 for no label; 4 KB of records
 RECYCLE_AT = 96  # so many taken: a row can still begin 31 segments
+LARGEST_PIXELS = 1 << 20  # more than any picture has
 COLOUR_GROUPS = 8  # room for the colours of as many kinds of objects
 
 
@@ -48,10 +50,10 @@ class BlobThresholds:
     `max_blobs`: how many are kept, 0..127.
     """
 
-    colour_groups: tuple[int, ...]
-    min_pixels: int
-    max_pixels: int
-    max_blobs: int
+    colour_groups: tuple[int, ...] = not_ordered()  # it follows from the models
+    min_pixels: int = allowed(1, LARGEST_PIXELS, at_most="max_pixels")
+    max_pixels: int = allowed(1, LARGEST_PIXELS)
+    max_blobs: int = allowed(0, LABELS - 1)
 
     def __post_init__(self) -> None:
         if not 1 <= len(self.colour_groups) <= COLOUR_GROUPS:

@@ -25,6 +25,8 @@ from firmware.circle_store import (
     CIRCLE_Y,
     RADIUS_PASSED,
 )
+from firmware.edge_store import EDGE_CAPACITY
+from firmware.fields import allowed
 from firmware.line_store import SUBPIXELS
 from firmware.scan_lines import window
 from firmware.stages.circle_edges import (
@@ -62,17 +64,17 @@ class CircleThresholds:
     `fit_range`: how far from the circle that is looked for.
     """
 
-    border: int
-    angle_range: int
+    border: int = allowed(0, 64)
+    angle_range: int = allowed(0, 128)
     dark_balls: bool
-    patch_reach: int
-    peak_reach: int
-    min_edges: int
-    centre_share: int
-    min_peak: int
-    radius_share: int
-    fit_rounds: int
-    fit_range: int
+    patch_reach: int = allowed(0, LARGEST_REACH)
+    peak_reach: int = allowed(0, LARGEST_REACH, at_most="patch_reach")
+    min_edges: int = allowed(1, EDGE_CAPACITY)
+    centre_share: int = allowed(0, 256)
+    min_peak: int = allowed(1, EDGE_CAPACITY)
+    radius_share: int = allowed(0, 256)
+    fit_rounds: int = allowed(0, 16)
+    fit_range: int = allowed(0, 64)
 
     def __post_init__(self) -> None:
         if not self.peak_reach <= self.patch_reach <= LARGEST_REACH:

@@ -13,6 +13,7 @@ from typing import Any, Literal
 from bfsim.api import Core, Frame, i16, i32, kernel, u8, u32
 from firmware.arithmetic import angle8, isqrt32
 from firmware.edge_store import EDGE_CAPACITY, store_edges_row
+from firmware.fields import allowed
 from firmware.scan_lines import line_ring, window
 from firmware.stages.colour_reduction import colour_row
 from firmware.stages.hysteresis import LABELS, EdgeGroups, hysteresis
@@ -30,10 +31,10 @@ class EdgeThresholds:
     """
 
     gauss_px: Literal[3, 5]
-    edge_threshold: int
-    strong_threshold: int
-    eps_black: int
-    eps_white: int
+    edge_threshold: int = allowed(1, 255, at_most="strong_threshold")
+    strong_threshold: int = allowed(1, 255)
+    eps_black: int = allowed(-182, 255, at_most="eps_white")
+    eps_white: int = allowed(-182, 255)
 
 
 @kernel

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, FrameSize, i16, i32, kernel, u8
+from firmware.fields import allowed
 from firmware.line_store import LINE_WORDS
 from firmware.stages.line_connectors import connect_far, connect_near
 from firmware.stages.line_fit import fit_line
@@ -34,13 +35,13 @@ class LineThresholds:
     `muff_range`, `far_gap`: the same for the global one (global property range, line max gap).
     """
 
-    angle_range: int
-    mean_edges: int
-    min_length: int
-    near_angle: int
-    near_gap: int
-    muff_range: int
-    far_gap: int
+    angle_range: int = allowed(0, 64)
+    mean_edges: int = allowed(1, 255)
+    min_length: int = allowed(2, 1023)
+    near_angle: int = allowed(0, 64)
+    near_gap: int = allowed(0, 1023)
+    muff_range: int = allowed(0, 1023)
+    far_gap: int = allowed(0, 1023)
 
 
 def line_buffers(size: FrameSize) -> Sequence[Buffer]:

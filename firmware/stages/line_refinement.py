@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bfsim.api import Core, Frame, i16, i32, kernel, u8
+from firmware.fields import allowed
 from firmware.line_store import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
 from firmware.stages.line_fit import SLOPE_BITS, slope, spread, store_ends
 from firmware.stages.line_segments import SEGMENT_WORDS
@@ -48,8 +49,8 @@ class RefinementThresholds:
     many grey levels a pixel's neighbours must differ by to be of the edge: more than the noise.
     """
 
-    reach: int
-    min_step: int
+    reach: int = allowed(0, 8)
+    min_step: int = allowed(1, 255)
 
 
 @kernel

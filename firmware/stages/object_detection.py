@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel
+from firmware.fields import allowed
 from firmware.line_store import SUBPIXELS
 from firmware.object_store import (
     OBJECT_CAPACITY,
@@ -44,21 +45,21 @@ class ObjectThresholds:
     in the picture since the last frame, of 256 for a focal length.
     """
 
-    colour_weight: int
-    dimension_weight: int
-    area_weight: int
-    centre_weight: int
-    size_weight: int
-    camera_weight: int
-    shortest_side: int
-    size_range: int
-    ball_area: int
-    rectangle_area: int
-    row_range: int
-    disparity_max: int
+    colour_weight: int = allowed(0, LARGEST_ACCURACY, total=LARGEST_ACCURACY)
+    dimension_weight: int = allowed(0, LARGEST_ACCURACY, total=LARGEST_ACCURACY)
+    area_weight: int = allowed(0, LARGEST_ACCURACY, total=LARGEST_ACCURACY)
+    centre_weight: int = allowed(0, LARGEST_ACCURACY, total=LARGEST_ACCURACY)
+    size_weight: int = allowed(0, LARGEST_ACCURACY, total=LARGEST_ACCURACY)
+    camera_weight: int = allowed(0, LARGEST_ACCURACY, total=LARGEST_ACCURACY)
+    shortest_side: int = allowed(1, 1023)
+    size_range: int = allowed(16, 256)
+    ball_area: int = allowed(0, 256)
+    rectangle_area: int = allowed(0, 256)
+    row_range: int = allowed(0, 255)
+    disparity_max: int = allowed(1, 1023)
     refined: bool
-    age_max: int
-    apart_max: int
+    age_max: int = allowed(0, 255)
+    apart_max: int = allowed(0, 1024)
 
     def __post_init__(self) -> None:
         if min(self.weights) < 0 or sum(self.weights) > LARGEST_ACCURACY:

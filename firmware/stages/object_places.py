@@ -21,6 +21,8 @@ from firmware.geometry import (
     GEOMETRY_COSINE,
     GEOMETRY_FOCAL,
     GEOMETRY_HEIGHT,
+    GEOMETRY_SHIFT_X,
+    GEOMETRY_SHIFT_Y,
     GEOMETRY_SINE,
     HEIGHT_STEPS,
     SINE_BITS,
@@ -108,6 +110,8 @@ def place_object(geometry: i32[:], objects: i16[:], number: i32, depth: i32, wid
     at = number * OBJECT_WORDS
     if depth == 0:
         depth = DIRECTION_Z
-    objects[at + OBJECT_X] = beside_mm(geometry, depth, objects[at + OBJECT_IMAGE_X] - principal(width))
-    objects[at + OBJECT_Y] = beside_mm(geometry, depth, objects[at + OBJECT_IMAGE_Y] - principal(height))
+    middle_x = principal(width) + geometry[GEOMETRY_SHIFT_X]
+    middle_y = principal(height) + geometry[GEOMETRY_SHIFT_Y]
+    objects[at + OBJECT_X] = beside_mm(geometry, depth, objects[at + OBJECT_IMAGE_X] - middle_x)
+    objects[at + OBJECT_Y] = beside_mm(geometry, depth, objects[at + OBJECT_IMAGE_Y] - middle_y)
     objects[at + OBJECT_Z] = depth

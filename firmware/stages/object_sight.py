@@ -5,7 +5,7 @@ from __future__ import annotations
 from bfsim.api import i16, i32, kernel, u32
 from firmware.blob_store import ACROSS, BLOB_WORDS, DOWN
 from firmware.circle_store import CIRCLE_BLOB, CIRCLE_RADIUS, CIRCLE_WORDS, CIRCLE_X, CIRCLE_Y
-from firmware.geometry import GEOMETRY_COSINE, GEOMETRY_SINE, SINE_BITS, beside_mm
+from firmware.geometry import GEOMETRY_COSINE, GEOMETRY_SHIFT_Y, GEOMETRY_SINE, SINE_BITS, beside_mm
 from firmware.line_store import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
 from firmware.models import (
     MODEL_FLOOR,
@@ -163,7 +163,8 @@ def see_rectangle(
     column = i32(seen[at + OBJECT_IMAGE_X])
     row: i32 = 0
     if tests & DIMENSION_TEST != 0 and is_cut(down, height) == 0:
-        row = bottom_row(down, rectangles, i32(seen[at + OBJECT_OUTLINE]), lines, column) - principal(height)
+        row = bottom_row(down, rectangles, i32(seen[at + OBJECT_OUTLINE]), lines, column)
+        row = row - principal(height) - geometry[GEOMETRY_SHIFT_Y]
         depth = depth_by_floor(geometry, row, models[model + MODEL_FLOOR])
     place_object(geometry, seen, place, depth, width, height)
     if depth != 0:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from bfsim.api import i16, i32, kernel, u32
 from firmware.blob_store import ACROSS, BLOB_WORDS, COLOURS, DOWN, PIXELS
 from firmware.circle_store import CENTRE_PASSED, CIRCLE_TESTS, CIRCLE_WORDS, RADIUS_PASSED
-from firmware.geometry import GEOMETRY_FOCAL
+from firmware.geometry import GEOMETRY_FOCAL, GEOMETRY_SHIFT_Y
 from firmware.line_store import SUBPIXELS
 from firmware.models import (
     ASPECT_UNITS,
@@ -93,7 +93,7 @@ def has_size(down: u32, geometry: i32[:], height_mm: i32, floor_mm: i32, size_ra
     """
     if is_cut(down, height) != 0:
         return 1
-    row = SUBPIXELS * i32(down >> 16) + HALF_PIXEL - principal(height)
+    row = SUBPIXELS * i32(down >> 16) + HALF_PIXEL - principal(height) - geometry[GEOMETRY_SHIFT_Y]
     looks = extent_of(down) * depth_by_floor(geometry, row, floor_mm)
     model = geometry[GEOMETRY_FOCAL] * height_mm // SUBPIXELS
     if SIZE_UNITS * looks > size_range * model or SIZE_UNITS * model > size_range * looks:

@@ -16,6 +16,7 @@ from typing import Any
 
 from bfsim.api import Buffer, Core, i16, i32, kernel, u32
 from firmware.blob_store import ACROSS, BLOB_WORDS, COLOURS, DOWN
+from firmware.fields import allowed
 from firmware.line_store import LINE_WORDS, LINE_X0, LINE_X1, SUBPIXELS
 from firmware.rectangle_store import (
     NO_LINE,
@@ -47,9 +48,9 @@ class RectangleThresholds:
     outside. `overlap`: the share of the blob's side that it runs along, of 256.
     """
 
-    border_px: int
-    dark_px: int
-    overlap: int
+    border_px: int = allowed(0, 64)
+    dark_px: int = allowed(0, 64)
+    overlap: int = allowed(0, 256)
 
 
 def rectangle_buffers() -> Sequence[Buffer]:

@@ -14,13 +14,13 @@ The window is a plain variable (section data1): the LDF puts it into L1 if the l
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.api import Buffer, Buffers, Core, FirmwareError, Frame, SourcePixels, i32, kernel, u8, u16
+from firmware.areas import WHOLE_PICTURE, Area, area_in, cropped
 
 BLACK_PAIR = (128, 0, 128, 0)  # U Y V Y
 PLACES = 1 << 16  # an entry has 16 bits
@@ -85,20 +85,28 @@ def _core_buffers(core: str, sources: SourcePixels) -> Sequence[Buffer]:
     )
 
 
-def rectification(core: Core, frame: Frame) -> Generator[Any, Any, Frame]:
-    """Rectify a picture in one pass of DMA lines; leaves `rectified_image` in SDRAM and returns it as a frame.
+def rectification(core: Core, frame: Frame, area: Area = WHOLE_PICTURE) -> Generator[Any, Any, Frame]:
+    """Rectify an area of a picture in one pass of DMA lines; leaves `rectified_image` in SDRAM and returns it as a frame.
 
-    A picture of a recording without tables is taken as rectified and returned as it is.
+    A picture of a recording without tables is taken as rectified: its area is returned.
     """
+    area = area_in(frame, area)
     if not core.has_buffer("camera_window"):
-        return frame
+        return cropped(core, frame, area)
     window, reached = core.array("camera_window"), core.array("lines_reached")
     depth = (window.nbytes - len(BLACK_PAIR)) // (2 * frame.width)
-    camera = core.window_ring(frame.rows, core.overlay("camera_window", u8, 2 * frame.width)[:depth])
-    places = core.input_ring(core.rows("places"), "places_ring")
-    rectified = core.output_ring("camera_ring", core.rows("rectified_image"))
-    taken = 0
-    for y in range(frame.height):
+    rows = core.rows("places")[area.y : area.y + area.height]
+    places = core.input_ring(
+        core.part(rows, area.x, area.width), core.overlay("places_ring", u16, area.width)[:2]
+    )
+    image = core.overlay("rectified_image", u8, 2 * area.width)[: area.height]
+    rectified = core.output_ring("camera_ring", image)
+    # Line n of the camera lies in row n modulo the depth: so the window begins with a line that has row 0.
+    lines = yield core.run(load_lines, reached, area.y)
+    above = max(0, lines - depth + 1) // depth * depth
+    camera = core.window_ring(frame.rows[above:], core.overlay("camera_window", u8, 2 * frame.width)[:depth])
+    taken = above
+    for y in range(area.y, area.y + area.height):
         lines = yield core.run(load_lines, reached, y)
         for _ in range(taken, lines):
             yield from camera.line()
@@ -108,4 +116,4 @@ def rectification(core: Core, frame: Frame) -> Generator[Any, Any, Frame]:
         yield core.run(rectify_row, window, table, row)
         rectified.send()
     yield from rectified.flush()
-    return replace(frame, rows=core.rows("rectified_image"))
+    return Frame(frame.index, image, area.width, area.height)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, i16, i32, kernel, u16, u32
+from firmware.fields import allowed
 from firmware.geometry import store_point
 from firmware.line3d_store import EDGE3D_CAPACITY, EDGE3D_LEFT, EDGE3D_WORDS, EDGE3D_X
 from firmware.line_store import SUBPIXELS
@@ -32,10 +33,10 @@ class StereoEdgeThresholds:
     """
 
     correspondence: Correspondence
-    level_range: int
-    direction_range: int
-    min_disparity: int
-    max_disparity: int
+    level_range: int = allowed(0, 64)
+    direction_range: int = allowed(0, 64)
+    min_disparity: int = allowed(1, 1023, at_most="max_disparity")
+    max_disparity: int = allowed(1, 1023)
 
     def __post_init__(self) -> None:
         if not 1 <= self.min_disparity <= self.max_disparity:

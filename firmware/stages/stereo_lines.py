@@ -13,6 +13,7 @@ from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel, u32
 from firmware.exchange import copy_words, shared_count, words_of
+from firmware.fields import allowed
 from firmware.geometry import store_point
 from firmware.line3d_store import LINE3D_LEFT, LINE3D_RIGHT, LINE3D_WORDS, LINE3D_X0, LINE3D_X1
 from firmware.line_store import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1
@@ -38,11 +39,11 @@ class StereoLineThresholds:
     """
 
     correspondence: Correspondence
-    angle_range: int
-    min_rise: int
-    min_disparity: int
-    max_disparity: int
-    min_common: int
+    angle_range: int = allowed(0, 64)
+    min_rise: int = allowed(16, 4096)
+    min_disparity: int = allowed(0, 1 << 14, at_most="max_disparity")
+    max_disparity: int = allowed(0, 1 << 14)
+    min_common: int = allowed(0, 256)
 
     def __post_init__(self) -> None:
         if self.min_rise < 16:  # a slope of 16 over 2048 rows still goes into 32 bits

@@ -320,7 +320,7 @@ def _pair(one: Record, other: Record, geometry: Sequence[int], weight: int, refi
     both["measures"] = one["measures"] | other["measures"]
     disparity = one["image_x"] - other["image_x"]
     depth = disparity_depth(geometry, disparity)
-    agree = 0 < depth and both["z"] <= 2 * depth and depth <= 2 * both["z"]
+    agree = depth > 0 and both["z"] <= 2 * depth and depth <= 2 * both["z"]
     if refined and one["tests"] & other["tests"] & 16 and agree and both["measures"]:
         weights = [max(min((each + 8) // 16, 128), 1) ** 2 for each in (both["extent"], disparity)]
         better = rounded(Fraction(both["z"] * weights[0] + depth * weights[1], sum(weights)))

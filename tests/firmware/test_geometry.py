@@ -15,16 +15,16 @@ from bfsim.api import Calibration, FirmwareError, FrameSize
 from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
 from bfsim.run import calibration_of
 from firmware import one_eye, tinyphoon
-from firmware.geometry import FARTHEST_MM, beside_mm, depth_mm, geometry_buffer
+from firmware.geometry import FARTHEST_MM, GEOMETRY_WORDS, beside_mm, depth_mm, geometry_buffer, look_at
 from tests.firmware.test_stages import buffer, random_frames, run
 
-THESIS = [386 * 16, 30470, 120 * 16, 1820]
-"""T §6.2, §6.4, in the units of the buffer; 10 degrees are 1820.4 steps."""
+THESIS = [386 * 16, 30470, 120 * 16, 1820, 2845, 16135, 0, 0, 386 * 16]
+"""T §6.2, §6.4, in the units of the buffer; 10 degrees are 1820.4 steps, with a sine of 2845.0 / 16384."""
 
 
 def words(focal: int, baseline: int) -> np.ndarray:
     """A geometry buffer, in its own units."""
-    return np.array([focal, baseline, 0, 0], np.int32)
+    return np.array([focal, baseline, *[0] * (GEOMETRY_WORDS - 2)], np.int32)
 
 
 @pytest.mark.parametrize("firmware", [tinyphoon, one_eye])
@@ -38,7 +38,7 @@ def test_a_recording_brings_its_geometry(tmp_path: Path, firmware) -> None:
         program = firmware.calibrated(calibration_of(reader))
     for core in firmware.mains:
         (found,) = (each for each in program.buffers(FrameSize(16, 8))[core] if each.name == "geometry")
-        assert list(found.values) == [4980, 30001, 968, -4096]
+        assert list(found.values) == [4980, 30001, 968, -4096, -6270, 15137, 0, 0, 4980]
 
 
 @pytest.mark.parametrize("calibration", [None, Calibration()])
@@ -53,7 +53,7 @@ def test_larger_pictures_of_the_same_camera_have_more_pixels_to_its_focal_length
     """The thesis measured it at 320x240."""
     for each in tinyphoon.buffers(FrameSize(640, 480))["A"]:
         if each.name == "geometry":
-            assert list(each.values) == [2 * THESIS[0], *THESIS[1:]]
+            assert list(each.values) == [2 * THESIS[0], *THESIS[1:8], 2 * THESIS[8]]
 
 
 def test_cameras_that_32_bits_cannot_compute_with_are_refused() -> None:
@@ -76,3 +76,12 @@ def test_beside_is_equation_3_17(focal: int, depth: int, off_axis: int) -> None:
     assert beside_mm(words(focal, 1), depth, off_axis) == floor(
         Fraction(depth * off_axis, focal) + Fraction(1, 2)
     )
+
+
+def test_a_mode_changes_what_depends_on_it() -> None:
+    """The focal length in halved pictures, from the recorded one each time; where the principal point is."""
+    geometry = np.array(THESIS, np.int32)
+    look_at(geometry, -40, 7, 2)
+    assert geometry.tolist() == [386 * 4, *THESIS[1:6], -40, 7, 386 * 16]
+    look_at(geometry, 0, 0, 0)
+    assert geometry.tolist() == THESIS

@@ -47,13 +47,15 @@ A_GOAL = A_BALL | {"model": 2, "accuracy": 0, "tests": 1, "cameras": 1, "measure
 LINES = [(952, 1720, 4168, 1721), (952, 952, 953, 1700), (4168, 1700, 4168, -8)]
 
 
-def packed(objects, seen=(), rectangles=(), lines=LINES, sequence: int = 7, frame: int = 0) -> bytes:
-    """The bytes of the message that the firmware makes."""
+def packed(
+    objects, seen=(), rectangles=(), lines=LINES, sequence: int = 7, frame: int = 0, known=(0, 0, 0)
+) -> bytes:
+    """The bytes of the message that the firmware makes. `known`: a refusal, and the corner of the area."""
     message = np.full(MESSAGE_WORDS, 0xA5A5, np.uint16)
     words = pack_objects(message, object_words(*objects, room=OBJECT_CAPACITY))
     now = object_words(*seen), models_of()
     words = pack_goal_lines(message, words, *now, rectangle_words(*rectangles), line_words(lines))
-    nbytes = close_message(message, sequence, frame, words)
+    nbytes = close_message(message, sequence, frame, *known, words)
     assert not (message[nbytes // 2 :] != 0xA5A5).any()
     return message.tobytes()[:nbytes]
 
@@ -74,7 +76,7 @@ def test_the_numbers_of_the_protocol_are_the_same_on_both_sides() -> None:
 
 def test_an_empty_frame() -> None:
     """Nothing seen is a message too, and says so."""
-    payload = struct.pack("<LHH", 70_000, 0, 0)
+    payload = struct.pack("<L5H", 70_000, 0, 0, 0, 0, 0)
     assert packed([], frame=70_000) == encode(Message(MessageType.RESULTS, 7, payload))
 
 
@@ -127,6 +129,19 @@ def test_numbers_of_message_and_frame(sequence: int, frame: int) -> None:
     assert read(octets).frame == frame
 
 
+def test_places_in_the_picture_count_from_the_corner_of_the_area() -> None:
+    """The strategy unit reads those of the whole picture; and why an order was refused."""
+    known = 0x0107, 300, 20
+    whole, area = (
+        read(packed([A_BALL], [A_GOAL], [(0, 1, 0, 2, 0)], known=each)) for each in ((0, 0, 0), known)
+    )
+    assert (whole.refusal, area.refusal) == (0, 0x0107)
+    (before,), (after,) = whole.objects, area.objects
+    assert after.towards == before.towards
+    assert np.subtract(after.image_px, before.image_px).tolist() == [300, 20, 0, 0]
+    assert np.subtract(area.lines[0].ends_px, whole.lines[0].ends_px).tolist() == [300, 20, 300, 20]
+
+
 def test_old_ages_are_cut() -> None:
     """An age has a byte."""
     (found,) = read(packed([A_BALL | {"age": 300, "measures": BY_FLOOR}])).objects
@@ -136,19 +151,22 @@ def test_old_ages_are_cut() -> None:
 @pytest.mark.parametrize(
     ("payload", "message"),
     [
-        (b"", "at least 8 bytes, not 0"),
-        (bytes(7), "at least 8 bytes, not 7"),
-        (struct.pack("<4H", 0, 0, 1, 0), "of 1 objects and 0 lines must have 28 bytes, not 8"),
-        (struct.pack("<4H", 0, 0, 0, 0) + bytes(2), "0 lines must have 8 bytes, not 10"),
-        (struct.pack("<4h", 0, 0, -1, 2), "-1 objects"),
-        (struct.pack("<4H5h", 0, 0, 0, 1, 2 | 2 << 8, 0, 0, 0, 0), "side of a line must be 0, 1 or 3, not 2"),
+        (b"", "at least 14 bytes, not 0"),
+        (bytes(13), "at least 14 bytes, not 13"),
+        (struct.pack("<7H", 0, 0, 1, 0, 0, 0, 0), "of 1 objects and 0 lines must have 34 bytes, not 14"),
+        (bytes(16), "0 lines must have 14 bytes, not 16"),
+        (struct.pack("<7h", 0, 0, -1, 2, 0, 0, 0), "-1 objects"),
+        (
+            struct.pack("<7H5h", 0, 0, 0, 1, 0, 0, 0, 2 | 2 << 8, 0, 0, 0, 0),
+            "side of a line must be 0, 1 or 3, not 2",
+        ),
     ],
 )
 def test_what_is_no_result_is_refused(payload: bytes, message: str) -> None:
     """Cut short, too long, or nonsense."""
     with pytest.raises(FirmwareError, match=message):
         decode_results(payload)
-    assert COUNTS_WORDS == 4
+    assert COUNTS_WORDS == 7
 
 
 @given(st.integers(0, 0xFFFF), st.integers(0, 255))

@@ -15,6 +15,7 @@ from bfsim.api import Calibration
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
 from firmware.arithmetic import angle8
+from firmware.geometry import GEOMETRY_WORDS
 from firmware.line3d_store import LINE3D_WORDS
 from firmware.line_store import LINE_WORDS
 from firmware.modes import INDOOR_FIELD
@@ -48,7 +49,7 @@ def found(
         line_slopes(table, len(lines), slope, mode.min_rise)
         tables.append(table)
         slopes.append(slope)
-    geometry = np.array([rig.focal, rig.baseline, 0, 0], np.int32)
+    geometry = np.array([rig.focal, rig.baseline, *[0] * (GEOMETRY_WORDS - 2)], np.int32)
     lines_3d = np.full((len(left) + 1) * LINE3D_WORDS, GARBAGE, np.int16)
     pictures = tables[0], slopes[0], len(left), tables[1], slopes[1], len(right)
     if mode.correspondence is Correspondence.NEAREST:

@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from bfsim.api import Buffer, Core, Frame, FrameSize, i32
+from bfsim.api import Buffer, Core, FirmwareError, Frame, FrameSize, i32
 from bfsim.chip.boards import CM_BF561, board_named
 from bfsim.chip.sensors import LEFT_CAMERA, MHZ, RIGHT_CAMERA
 from bfsim.chip.spec import BoardSpec, SensorMode, SensorSpec
@@ -21,6 +23,7 @@ from bfsim.machine.dma_config import DmaConfig
 from bfsim.machine.oscillator import Oscillator
 from bfsim.machine.ppi import Ppi
 from bfsim.machine.settling import CameraSettings, settled
+from bfsim.machine.skipping import SKIPS, skipped
 from tests.machine.kernels import first, spin, total
 from tests.machine.made_boards import CHIP, CLOCKS, assert_accounted, play
 from tests.machine.rig import SIZE, Picture, Play, every_frame, noise, see_all
@@ -194,6 +197,100 @@ def test_a_camera_settles_also_while_nobody_takes_its_pictures() -> None:
     for index, each in zip(taken[1:], got["A"][1:], strict=True):  # the left one had begun picture 1
         expected = settled(recorded.left, index - 2, LEFT_CAMERA)
         np.testing.assert_array_equal(each, expected, err_msg=str(index))
+
+
+# ---- smaller pictures
+
+
+@given(st.integers(1, 9), st.integers(1, 5), st.sampled_from(SKIPS), st.integers(0, 3), st.integers(0, 7))
+def test_a_sensor_skips_pixels_and_lines(
+    height: int, pairs: int, step: int, more_lines: int, more_pixels: int
+) -> None:
+    """Luma of each pixel that is sent; the colour of a pair from the pair of its left one."""
+    rng = np.random.default_rng(height)
+    shape = height * step + min(more_lines, step - 1), 4 * (pairs * step + min(more_pixels, step - 1) // 2)
+    picture = rng.integers(0, 256, shape, np.uint8)
+    sent = skipped(picture, step)
+    assert sent.shape[0] == height
+    assert sent.shape[1] >= 4 * pairs
+    for y in range(height):
+        for pair in range(pairs):
+            left, right = 2 * pair * step, (2 * pair + 1) * step
+            u, first, v, second = sent[y, 4 * pair : 4 * pair + 4]
+            line = picture[y * step]
+            assert (first, second) == (line[2 * left + 1], line[2 * right + 1])
+            assert (u, v) == (line[4 * (left // 2)], line[4 * (left // 2) + 2])
+
+
+HALF = FrameSize(SIZE.width_px // 2, SIZE.height_px // 2)
+
+
+@pytest.mark.parametrize("feed", [Feed.DEMAND, Feed.CAMERAS, Feed.RECORDED])
+def test_both_cameras_send_smaller_pictures_once_both_are_told(feed: Feed) -> None:
+    """The left one is told a frame earlier; pictures of both become smaller together, and are settled later."""
+    got: dict[str, list[Any]] = {"A": [], "B": []}
+
+    def work(core: Core, frame: Frame) -> Play:
+        got[core.name].append(
+            (frame.index, (frame.width, frame.height), np.array([row.array for row in frame.rows]))
+        )
+        if frame.index == (1 if core.name == "A" else 2):
+            core.set_picture_size(HALF)
+        yield core.run(first, frame.rows[0])
+
+    pictures = flat(16)
+    stamped = [replace(each, left_ns=each.index * 10**8, right_ns=each.index * 10**8) for each in pictures]
+    outcome = play(every_frame(work), every_frame(work), frames=stamped, feed=feed)
+    assert_accounted(outcome)
+    for core, recorded in (("A", pictures[0].left), ("B", pictures[0].right)):
+        small = [index for index, size, _ in got[core] if size == (HALF.width_px, HALF.height_px)]
+        assert small[0] in (3, 4)
+        assert small == list(range(small[0], 16))
+        last = got[core][-1][2]
+        np.testing.assert_array_equal(last, skipped(recorded, 2))
+        np.testing.assert_array_equal(got[core][small[0]][2], settled(skipped(recorded, 2), 0, CAMERAS[core]))
+    assert [each[:2] for each in got["A"]] == [each[:2] for each in got["B"]]
+
+
+def test_cameras_keep_their_pace_when_the_size_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first smaller picture begins when it would have; from then on at the frame rate of that size."""
+    starts: list[int] = []
+    receive = Ppi.receive
+
+    def noting(self: Ppi, picture: NDArray[np.uint8], rows: Any, start: int) -> Any:
+        if self.status._name == "PPI0":
+            starts.append(start)
+        return receive(self, picture, rows, start)
+
+    def work(core: Core, frame: Frame) -> Play:
+        if frame.index == 0:
+            core.set_picture_size(HALF)
+        yield core.run(first, frame.rows[0])
+
+    monkeypatch.setattr(Ppi, "receive", noting)
+    play(every_frame(work), every_frame(work), frames=8, feed=Feed.CAMERAS)
+    whole = Oscillator(CLOCKS, MODE, LEFT_CAMERA)
+    half = Oscillator(CLOCKS, CM_BF561.sensor.mode(HALF.width_px, HALF.height_px), LEFT_CAMERA)
+    assert starts[:3] == [whole.line_start(frame, 0) for frame in range(3)]
+    periods = np.diff(starts[2:])
+    expected = half.line_start(1, 0) - half.line_start(0, 0)
+    assert abs(periods - expected).max() <= 1
+
+
+@pytest.mark.parametrize(
+    "size", [FrameSize(2 * SIZE.width_px, 2 * SIZE.height_px), FrameSize(SIZE.width_px, 2)]
+)
+def test_sizes_that_no_recorded_picture_can_have(size: FrameSize) -> None:
+    """Larger than recorded, or of another shape."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        core.set_picture_size(size)
+        yield core.run(first, frame.rows[0])
+
+    with pytest.raises(
+        FirmwareError, match=f"pictures must be of {SIZE} or {HALF}.*, not of {size} .*test_cameras"
+    ):
+        play(every_frame(work))
 
 
 # ---- the FIFO

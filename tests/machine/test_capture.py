@@ -6,7 +6,7 @@ The camera here needs 100 ns a line, 200 for a picture of two lines and 300 for 
 from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import cycle
 from typing import Any
@@ -16,10 +16,11 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from bfsim.chip.spec import SensorMode
+from bfsim.chip.spec import SensorMode, SensorSpec
 from bfsim.clocks import Clocks
 from bfsim.machine.capture import Capture, Feed, Pair
 from bfsim.machine.ppi import Ppi
+from bfsim.machine.program import FrameSize
 from tests.machine.rig import STEADY, Bench, Picture
 
 GHZ = 10**9
@@ -59,11 +60,12 @@ class Studio:
 
     def __init__(self, stamps: Stamps, *, frame_buffers: int, feed: Feed) -> None:
         bench = Bench(clocks=CLOCKS, outside_nbytes=2 * 2 * PICTURE_NBYTES)
+        spec = replace(bench.spec, sensor=SensorSpec(name="quick", modes=(MODE,)))
         self.env = bench.env
         ppis = {
             core: Ppi(
-                bench.spec,
-                MODE,
+                spec,
+                FrameSize(MODE.width_px, MODE.height_px),
                 STEADY,
                 bench.bus,
                 bench.memories,

@@ -15,6 +15,7 @@ from bfsim.machine import bus_state as w
 from bfsim.machine.bus import Pace, Transfer, Walk
 from bfsim.machine.memories import Row
 from bfsim.machine.ppi import Ppi
+from bfsim.machine.program import FrameSize
 from tests.machine.rig import STEADY, Bench
 
 HEIGHT, WIDTH = 8, 16
@@ -27,10 +28,9 @@ FIFO_WORDS = 12  # 4 of the DMA, 8 of the PPI
 
 def new_ppi(bench: Bench) -> Ppi:
     """Return a PPI with a camera of 16x8 pixels on it."""
-    mode = bench.spec.sensor.mode(WIDTH, HEIGHT)
     return Ppi(
         bench.spec,
-        mode,
+        FrameSize(WIDTH, HEIGHT),
         STEADY,
         bench.bus,
         bench.memories,

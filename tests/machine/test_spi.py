@@ -24,7 +24,7 @@ from bfsim.cli import main
 from bfsim.errors import FirmwareError
 from bfsim.machine.board import Outcome
 from bfsim.machine.spi_protocol import Message, MessageError, MessageType, encode, message_nbytes
-from bfsim.machine.strategy import ScriptedMessage
+from bfsim.machine.strategy import ScriptedBytes, ScriptedMessage
 from bfsim.trace import MessageRecord, StallReason
 from tests.machine.kernels import spin
 from tests.machine.made_boards import CHIP, assert_accounted, cclk_now, in_work, made_board
@@ -250,17 +250,37 @@ def test_two_cores_take_one_message_once() -> None:
     assert sorted(got) == [0, message_nbytes(5)]
 
 
-def test_a_message_needs_room() -> None:
-    """What it is, and what the buffer has."""
+def test_what_has_no_room_is_lost() -> None:
+    """The DMA takes as many words as the buffer has; the rest goes by, and the next message is whole."""
+    got = []
 
     def work(core: Core, frame: Frame) -> Play:
-        yield from core.receive(core.rows("short_ring")[0])
+        for row in (core.rows("short_ring")[0], core.array("message")):
+            nbytes = yield from core.receive(row)
+            got.append(row.octets[:nbytes].tobytes())
 
-    script = (ScriptedMessage(after_frames=0, type=MessageType.MODE, payload=bytes(100)),)
-    with pytest.raises(
-        FirmwareError, match=r"short_ring must have room for a message of 110 bytes, not 16 .*test_spi.py:"
-    ):
-        run(every_frame(work), script=script)
+    long = ScriptedMessage(after_frames=0, type=MessageType.MODE, payload=bytes(100))
+    outcome, _ = run(every_frame(work), script=(long, SCRIPT[0]))
+    assert got == [
+        encode(Message(MessageType.MODE, 0, bytes(100)))[:16],
+        encode(Message(MessageType.MODE, 1, b"first")),
+    ]
+    assert [(each.type, each.nbytes) for each in outcome.messages] == [("damaged", 16), ("MODE", 16)]
+
+
+def test_bytes_that_are_no_message_come_in_too() -> None:
+    """It is the firmware's to find out; the records call them damaged."""
+    got = []
+
+    def work(core: Core, frame: Frame) -> Play:
+        row = core.array("message")
+        nbytes = yield from core.receive(row)
+        got.append(row.octets[:nbytes].tobytes())
+        yield core.run(spin, 1)
+
+    outcome, _ = run(every_frame(work), script=(ScriptedBytes(after_frames=0, octets=b"no message"),))
+    assert got == [b"no message"]
+    assert [(each.type, each.sequence, each.nbytes) for each in outcome.messages] == [("damaged", 0, 10)]
 
 
 # ---- what is refused

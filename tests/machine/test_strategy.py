@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bfsim.errors import ConfigError
+from bfsim.errors import ConfigError, FirmwareError
 from bfsim.machine.spi_protocol import Message, MessageError, MessageType, decode, encode
-from bfsim.machine.strategy import Received, ScriptedMessage, StrategyUnit
+from bfsim.machine.strategy import Received, ScriptedBytes, ScriptedMessage, StrategyUnit
 from bfsim.machine.strategy_script import read_script
 
 TOML = """
@@ -92,7 +92,7 @@ def test_a_script_is_read(tmp_path: Path, name: str) -> None:
         }
     )
     text = TOML if name.endswith("toml") else as_json
-    assert read_script(written(tmp_path, name, text)) == SCRIPT
+    assert read_script(written(tmp_path, name, text), {}) == SCRIPT
 
 
 @pytest.mark.parametrize(
@@ -108,7 +108,7 @@ def test_a_script_is_read(tmp_path: Path, name: str) -> None:
         ('"MODE"', '"RESULTS"', "send.0.type must be 'MODE' or 'MODELS', not 'RESULTS'"),
         ("-28", "65536", "send.0.words.1 must be less than or equal to 65535, not 65536"),
         ("words = []", "word = []", "the key send.1.words must be there"),
-        ("words = []", "words = []\nbytes = 3", "send.1.bytes must be a key of a script, and is none"),
+        ("words = []", "words = []\noctets = 3", "send.1.octets must be a key of a script, and is none"),
         ("[[send]]", "[[sent]]", "the key send must be there"),
         ("[[send]]", "[[send", "must be TOML: "),
     ],
@@ -117,18 +117,80 @@ def test_mistakes_in_a_script(tmp_path: Path, old: str, new: str, message: str) 
     """File, key, what must be there, what is."""
     path = written(tmp_path, "script.toml", TOML.replace(old, new))
     with pytest.raises(ConfigError) as caught:
-        read_script(path)
+        read_script(path, {})
     assert str(path) in str(caught.value)
     assert message in str(caught.value)
+
+
+def speed(wanted: object) -> bytes:
+    """An order that firmware may take: one byte."""
+    if not isinstance(wanted, dict) or set(wanted) != {"speed"}:
+        raise FirmwareError(f"mode must have speed, not {wanted}")
+    return bytes([wanted["speed"]])
+
+
+NAMED = """
+[[send]]
+after_frames = 1
+mode.speed = 7
+
+[[send]]
+after_frames = 2
+bytes = [241, 0]
+"""
+
+
+def test_orders_by_name_and_bytes_as_they_are(tmp_path: Path) -> None:
+    """The firmware makes the payload; bytes need nobody."""
+    assert read_script(written(tmp_path, "script.toml", NAMED), {"mode": speed}) == (
+        ScriptedMessage(after_frames=1, type=MessageType.MODE, payload=b"\x07"),
+        ScriptedBytes(after_frames=2, octets=b"\xf1\x00"),
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("mode.speed = 7", "mode.sped = 7", "send.0.mode must have speed, not {'sped': 7}"),
+        (
+            "mode.speed = 7",
+            "models = []",
+            "send.0.models must be an order that the firmware takes, which are mode",
+        ),
+        (
+            "mode.speed = 7",
+            "mode.speed = 7\nwords = []",
+            "send.0.words must be a key of a script, and is none",
+        ),
+        ("after_frames = 1", "", "the key send.0.after_frames must be there"),
+        ("[241, 0]", "[241, 256]", "send.1.bytes.1 must be less than or equal to 255, not 256"),
+        ("[241, 0]", "[241]", "send.1.bytes must be words of 2 bytes each, at least one, not 1 bytes"),
+        ("[241, 0]", "[]", "send.1.bytes must be words of 2 bytes each, at least one, not 0 bytes"),
+    ],
+)
+def test_mistakes_in_orders(tmp_path: Path, old: str, new: str, message: str) -> None:
+    """The firmware knows its own names; the script tells in which file and entry."""
+    path = written(tmp_path, "script.toml", NAMED.replace(old, new))
+    with pytest.raises(ConfigError) as caught:
+        read_script(path, {"mode": speed})
+    assert str(path) in str(caught.value)
+    assert message in str(caught.value)
+
+
+def test_raw_bytes_are_sent_as_they_are() -> None:
+    """They do not count as a message."""
+    unit = StrategyUnit([ScriptedBytes(after_frames=0, octets=b"??"), scripted(0, b"first!")])
+    raw, message = unit.due(0)
+    assert (raw, decode(message).sequence) == (b"??", 0)
 
 
 def test_files_that_are_no_scripts(tmp_path: Path) -> None:
     """By their name, by their contents, or not there."""
     with pytest.raises(ConfigError, match="must end in .json or .toml"):
-        read_script(written(tmp_path, "script.yaml", TOML))
+        read_script(written(tmp_path, "script.yaml", TOML), {})
     with pytest.raises(ConfigError, match="must be JSON"):
-        read_script(written(tmp_path, "script.json", TOML))
+        read_script(written(tmp_path, "script.json", TOML), {})
     with pytest.raises(ConfigError, match=r"the script must be a valid dictionary or .*, not \[\]"):
-        read_script(written(tmp_path, "list.json", "[]"))
+        read_script(written(tmp_path, "list.json", "[]"), {})
     with pytest.raises(ConfigError, match="must be a readable file: No such file"):
-        read_script(tmp_path / "none.toml")
+        read_script(tmp_path / "none.toml", {})

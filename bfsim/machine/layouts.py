@@ -1,0 +1,98 @@
+"""The buffers of a core by name: as placed, or as the firmware declares them for smaller pictures over the same memory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from bfsim.errors import FirmwareError
+from bfsim.kernel.types import Number
+from bfsim.machine.memories import Memories, Row
+from bfsim.machine.program import Buffer, FrameSize
+
+Rows = tuple[Row, ...]
+
+
+class Layouts:
+    """One layout for each size of pictures that was used; the first is that of the placed buffers."""
+
+    def __init__(
+        self,
+        core: str,
+        memories: Memories,
+        placed: Mapping[str, Rows],
+        size: FrameSize,
+        declared: Callable[[FrameSize], Mapping[str, Buffer]],
+    ) -> None:
+        """`placed`: the buffers for pictures of `size`. `declared`: what the firmware wants for another size."""
+        self._core = core
+        self._memories = memories
+        self._placed = placed
+        self._full = size
+        self._declared = declared
+        self._layouts = {size: placed}
+        # the same rows every time, so that calls and copies with them are prepared once
+        self._overlays: dict[tuple[FrameSize, str, Number, int], Rows] = {}
+        self._parts: dict[tuple[Row, int, int], Row] = {}
+        self.use(size)
+
+    def use(self, size: FrameSize) -> None:
+        """Give out the buffers for pictures of `size` from now on. Raises FirmwareError where they find no room."""
+        if size not in self._layouts:
+            self._layouts[size] = {
+                each.name: self._laid_out(each, size) for each in self._declared(size).values()
+            }
+        self._size = size
+        self._buffers = self._layouts[size]
+
+    def _laid_out(self, buffer: Buffer, size: FrameSize) -> Rows:
+        """Return the rows of a buffer declared for `size` in the memory of the placed one."""
+        placed = self._placed[buffer.name]
+        if (len(placed), placed[0].nbytes) == (buffer.rows, buffer.columns * buffer.element.nbytes):
+            return placed
+        if buffer.values is not None or buffer.nbytes > len(placed) * placed[0].nbytes:
+            raise FirmwareError(
+                f"buffer {buffer.name} must be no table and fit into its memory at {self._full} "
+                f"to be used for pictures of {size}"
+            )
+        return self._memories.overlay(placed, buffer.element, buffer.columns)[: buffer.rows]
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._buffers
+
+    def rows(self, name: str) -> Rows:
+        """Return the rows of the buffer called `name`."""
+        try:
+            return self._buffers[name]
+        except KeyError:
+            known = ", ".join(sorted(self._buffers))
+            raise FirmwareError(f"core {self._core} has no buffer {name!r}; it has {known}") from None
+
+    def overlay(self, name: str, element: Number, columns: int) -> Rows:
+        """Return the memory of buffer `name` as rows of `columns` elements of another kind."""
+        kind = (self._size, name, element, columns)
+        if kind not in self._overlays:
+            self._overlays[kind] = self._memories.overlay(self.rows(name), element, columns)
+        return self._overlays[kind]
+
+    def part(self, rows: Sequence[Row], first: int, count: int) -> Rows:
+        """Return `count` elements of each row, from element `first` on."""
+        if not rows or not 0 <= first < first + count <= len(rows[0].array):
+            length = len(rows[0].array) if rows else 0
+            raise FirmwareError(
+                f"a part of rows of {length} elements must lie in them, not at {first} to {first + count - 1}"
+            )
+        return tuple(self._part(row, first, count) for row in rows)
+
+    def _part(self, row: Row, first: int, count: int) -> Row:
+        if count == len(row.array):
+            return row
+        if (row, first, count) not in self._parts:
+            skipped = first * row.array.itemsize
+            self._parts[row, first, count] = Row(
+                row.buffer,
+                row.memory,
+                row.address + skipped,
+                row.offset + skipped,
+                row.array[first : first + count],
+            )
+        return self._parts[row, first, count]

@@ -1,0 +1,180 @@
+"""Areas of interest and smaller pictures: the stages see the area as if it were the picture, bit for bit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bfsim.api import Calibration, Firmware, FrameSize
+from bfsim.chip.boards import CM_BF561
+from bfsim.chip.sensors import LEFT_CAMERA, RIGHT_CAMERA
+from bfsim.linker import link, parse_ldf
+from bfsim.machine.board import Board, Outcome, symbols_of
+from bfsim.machine.settling import settled
+from bfsim.machine.skipping import skipped
+from bfsim.machine.spi_protocol import MessageType
+from bfsim.machine.strategy import ScriptedMessage
+from bfsim.recording import StereoFrame
+from bfsim.run import PLACEMENTS, THESIS_LDF
+from firmware import tinyphoon
+from firmware.areas import Area, area_in, principal_shift
+from firmware.orders import mode_payload
+from tests.firmware.lenses import rectified
+from tests.firmware.pictures import Bytes
+from tests.firmware.test_rectification import tables
+from tests.firmware.test_stages import buffer, check_core, random_frames
+
+
+def order(names: dict[str, Any], after_frames: int = 0) -> ScriptedMessage:
+    """A mode that the strategy unit sends."""
+    return ScriptedMessage(after_frames=after_frames, type=MessageType.MODE, payload=mode_payload(names))
+
+
+def run(
+    frames: Sequence[StereoFrame],
+    *names: dict[str, Any],
+    firmware: Firmware = tinyphoon,
+    ldf: Any = THESIS_LDF,
+) -> tuple[Board, Outcome]:
+    """Play the frames; mode number n of `names` comes in frame n, to be in force in the next one."""
+    height, double_width = frames[0].left.shape
+    size = FrameSize(double_width // 2, height)
+    link_map = link(parse_ldf(ldf), symbols_of(firmware, size), CM_BF561.chip.regions)
+    script = [order(each, number) for number, each in enumerate(names)]
+    board = Board(CM_BF561, firmware, size, link_map, script=script)
+    return board, board.run(iter(frames))
+
+
+def part(uyvy: Bytes, area: tuple[int, int, int, int]) -> Bytes:
+    """The area of a picture."""
+    x, y, width, height = area
+    return uyvy[y : y + height, 2 * x : 2 * (x + width)]
+
+
+def check(board: Board, outcome: Outcome, left: Bytes, right: Bytes) -> None:
+    """Compare what both cores made of the last frame with what the references make of these pictures alone."""
+    assert outcome.frames[-1].remarks == ()
+    results = dict(outcome.frames[-1].results)
+    check_core(board, "A", left, results)
+    check_core(board, "B", right, results)
+
+
+@pytest.mark.parametrize(
+    "area",
+    [(0, 0, 64, 48), (2, 1, 60, 46), (10, 20, 16, 16), (46, 30, 18, 18), (0, 5, 64, 20), (6, 0, 34, 48)],
+)
+@pytest.mark.parametrize("ldf", ["thesis.ldf", "cache.ldf"])
+def test_an_area_is_seen_like_the_cropped_picture(area: tuple[int, int, int, int], ldf: str) -> None:
+    """Borders too: nothing beyond the area is looked at. The frames before were whole."""
+    frames = random_frames(64, 48, count=3)
+    board, outcome = run(frames, {"area": list(area)}, ldf=PLACEMENTS / ldf)
+    check(board, outcome, part(frames[-1].left, area), part(frames[-1].right, area))
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_areas_follow_each_other(count: int) -> None:
+    """From one area to another and back to the whole picture: nothing of the one before is left."""
+    areas = [(10, 20, 16, 16), (4, 3, 58, 30), (0, 0, 64, 48)]
+    frames = random_frames(64, 48, count)
+    names = [{"area": list(areas[0])}, {"area": list(areas[1])}, {}]
+    board, outcome = run(frames, *names[: count - 1])
+    area = areas[count - 2]
+    check(board, outcome, part(frames[-1].left, area), part(frames[-1].right, area))
+
+
+@pytest.mark.parametrize("area", [(10, 20, 40, 16), (0, 0, 16, 48), (2, 31, 62, 17), (48, 1, 16, 40)])
+def test_an_area_of_a_rectified_picture(area: tuple[int, int, int, int]) -> None:
+    """The same as the area of the picture that is rectified whole."""
+    frames = random_frames(64, 48, count=2)
+    sources = tables(64, 48)
+    board, outcome = run(
+        frames, {"area": list(area)}, firmware=tinyphoon.calibrated(Calibration(sources=sources))
+    )
+    left, right = (
+        part(rectified(uyvy, sources[core]), area)
+        for core, uyvy in (("A", frames[-1].left), ("B", frames[-1].right))
+    )
+    _, y, width, height = area
+    image = buffer(board, "A", "rectified_image").ravel()[: 2 * width * height]
+    np.testing.assert_array_equal(image.reshape(height, 2 * width), left)
+    check(board, outcome, left, right)
+    assert y + height <= 48
+
+
+def test_a_smaller_area_takes_less_time() -> None:
+    """In proportion to its pixels, for the stages that look at every one."""
+    frames = random_frames(128, 96, count=2)
+    _, outcome = run(frames, {"area": [0, 0, 64, 48]})
+    whole, area = (
+        {each.stage: each.elapsed_cclk for each in frame.cores[0].stages} for frame in outcome.frames
+    )
+    for stage in ("Edge detection", "Open & closing"):
+        assert 0.2 < area[stage] / whole[stage] < 0.3
+
+
+def principal_point(width: int, area: Area, halvings: int) -> float:
+    """Where in the area the principal point is, in pixels, of which the recorded picture has `width` in a row."""
+    frame: Any = type("Frame", (), {"width": width >> halvings, "height": 48 >> halvings})
+    shift, _ = principal_shift(frame, area, halvings)
+    return (area.width - 1) / 2 + shift / 16
+
+
+def test_the_principal_point_moves_with_the_area() -> None:
+    """It stays at the same place of the picture, between two pixels."""
+    assert principal_point(64, Area(width=64, height=48), 0) == 31.5
+    assert principal_point(64, Area(x=10, y=20, width=16, height=16), 0) == 21.5
+    assert principal_point(64, Area(x=40, y=20, width=24, height=16), 0) == -8.5
+
+
+@pytest.mark.parametrize("halvings", [1, 2])
+def test_the_principal_point_of_smaller_pictures(halvings: int) -> None:
+    """Pixel k of these is pixel 2 k, or 4 k, of the recorded one."""
+    area = Area(x=2, y=0, width=8, height=8)
+    assert (principal_point(64, area, halvings) + area.x) * 2**halvings == 31.5
+
+
+def test_the_area_is_the_whole_picture_while_it_does_not_lie_in_it() -> None:
+    """As long as pictures of the size before are on their way."""
+    frame: Any = type("Frame", (), {"width": 64, "height": 48})
+    whole = Area(width=64, height=48)
+    assert area_in(frame, Area(x=10, y=40, width=16, height=16)) == whole
+    assert area_in(frame, Area()) == whole
+    assert area_in(frame, whole) == whole
+
+
+# ---- smaller pictures
+
+
+@pytest.mark.parametrize(("step", "size"), [(2, (64, 48)), (4, (32, 24))])
+def test_smaller_pictures(step: int, size: tuple[int, int]) -> None:
+    """The cameras skip pixels, and settle again; the stages see what they send."""
+    frames = random_frames(128, 96, count=4)
+    board, outcome = run(frames, {"camera": {"width": size[0], "height": size[1]}})
+    # taken at the end of frame 0, set when frame 1 begins: frame 2 is the first one after the change, 3 the second
+    sent = [
+        settled(skipped(uyvy, step), 1, camera)
+        for uyvy, camera in ((frames[-1].left, LEFT_CAMERA), (frames[-1].right, RIGHT_CAMERA))
+    ]
+    check(board, outcome, *sent)
+
+
+def test_an_area_of_smaller_pictures() -> None:
+    """It counts in the pixels of those; the pictures on their way when they change are seen whole."""
+    frames = random_frames(128, 96, count=4)
+    names = {"camera": {"width": 64, "height": 48}, "area": [20, 10, 30, 30]}
+    board, outcome = run(frames, names)
+    sent = [
+        part(settled(skipped(uyvy, 2), 1, camera), (20, 10, 30, 30))
+        for uyvy, camera in ((frames[-1].left, LEFT_CAMERA), (frames[-1].right, RIGHT_CAMERA))
+    ]
+    check(board, outcome, *sent)
+
+
+def test_pictures_settle_after_new_camera_settings() -> None:
+    """A gain that changes makes the pictures drift for some frames; the same one again does not."""
+    frames = random_frames(64, 48, count=3)
+    board, outcome = run(frames, {"camera": {"gain": 20}})
+    check(board, outcome, settled(frames[2].left, 0, LEFT_CAMERA), settled(frames[2].right, 0, RIGHT_CAMERA))

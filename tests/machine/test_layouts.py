@@ -1,0 +1,95 @@
+"""Buffers for smaller pictures over the memory of the full ones, and parts of rows: what lies where, and what is refused."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bfsim.api import Buffer, Core, FirmwareError, Frame, FrameSize, u8, u16
+from tests.machine.kernels import first
+from tests.machine.made_boards import play
+from tests.machine.rig import SIZE, Play, every_frame
+
+HALF = FrameSize(SIZE.width_px // 2, SIZE.height_px // 2)
+TABLE = Buffer("table", u8, 4, "L1_data_a", values=np.arange(4))
+
+
+def in_frame(body: Any, **made: Any) -> None:
+    """Let core A do `body(core, frame)` in a frame."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        body(core, frame)
+        yield core.run(first, frame.rows[0])
+
+    play(every_frame(work), **made)
+
+
+def test_buffers_of_a_smaller_size_lie_at_the_beginning_of_the_full_ones() -> None:
+    """Row behind row; what does not depend on the size is the same. Back at the full size all is as before."""
+
+    def body(core: Core, frame: Frame) -> None:
+        full, words, table = core.rows("image"), core.array("words"), core.array("table")
+        core.use_size(HALF)
+        small = core.rows("image")
+        assert [(each.address - full[0].address, each.nbytes) for each in small] == [
+            (number * SIZE.width_px, SIZE.width_px) for number in range(HALF.height_px)
+        ]
+        assert core.rows("image") is small, "calls with them are prepared once"
+        assert (core.array("words"), core.array("table")) == (words, table)
+        assert len(core.overlay("image", u16, 2)) == HALF.height_px * SIZE.width_px // 4
+        core.use_size(SIZE)
+        assert core.rows("image") is full
+        assert len(core.overlay("image", u16, 2)) == SIZE.height_px * SIZE.width_px // 2
+
+    in_frame(body, more=(TABLE,))
+
+
+def test_a_larger_size_is_refused() -> None:
+    """There is nothing behind a buffer."""
+    large = FrameSize(SIZE.width_px, SIZE.height_px + 1)
+    with pytest.raises(
+        FirmwareError, match=f"must be no table and fit into its memory at {SIZE} .* of {large}"
+    ):
+        in_frame(lambda core, frame: core.use_size(large))
+
+
+def test_a_part_of_rows_is_the_same_memory() -> None:
+    """Some elements of each; all of them are the row itself."""
+
+    def body(core: Core, frame: Frame) -> None:
+        rows = core.rows("wide_image")[1:3]
+        part = core.part(rows, 2, 3)
+        assert [(each.address, each.offset, each.nbytes) for each in part] == [
+            (row.address + 4, row.offset + 4, 6) for row in rows
+        ]
+        rows[1].array[2:5] = 7, 8, 9
+        assert part[1].array.tolist() == [7, 8, 9]
+        assert core.part(rows, 2, 3) == part
+        assert core.part(rows, 0, SIZE.width_px) == rows
+
+    in_frame(body)
+
+
+@pytest.mark.parametrize(("start", "count"), [(-1, 2), (0, 0), (0, SIZE.width_px + 1), (SIZE.width_px, 1)])
+def test_a_part_must_lie_in_its_rows(start: int, count: int) -> None:
+    """Nothing before them, behind them, or of no length."""
+    with pytest.raises(
+        FirmwareError, match=f"a part of rows of {SIZE.width_px} elements must lie in them, not at {start}"
+    ):
+        in_frame(lambda core, frame: core.part(core.rows("wide_image"), start, count))
+
+
+def test_remarks_are_in_the_record_of_their_frame() -> None:
+    """With the core that made them, in order."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        if frame.index == 1:
+            core.remark("is tired")
+            core.remark("goes on")
+        yield core.run(first, frame.rows[0])
+
+    outcome = play(every_frame(work), every_frame(work), frames=3)
+    said = ("core A is tired", "core A goes on", "core B is tired", "core B goes on")
+    assert [each.remarks for each in outcome.frames] == [(), said, ()]
