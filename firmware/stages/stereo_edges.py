@@ -51,16 +51,6 @@ def stereo_edge_buffers() -> Sequence[Buffer]:
 
 
 @kernel
-def take_row(right_edges: u32[:], right_rows: u32[:], y: i32, row: u32[:]) -> i32:
-    """Copy the edges of row `y` of the right picture to `row`, and return how many they are."""
-    first = i32(right_rows[y] & 0xFFFF)
-    count = i32(right_rows[y] >> 16)
-    for edge in range(count):
-        row[edge] = right_edges[first + edge]
-    return count
-
-
-@kernel
 def is_level(edge: u32, level_range: i32) -> i32:
     """Return 1 for an edge whose gradient looks up or down, to less than `level_range`; else 0."""
     from_up = abs(turn_between(i32(edge >> 8 & 255) << 1 & 255, 128))
@@ -68,19 +58,36 @@ def is_level(edge: u32, level_range: i32) -> i32:
 
 
 @kernel
+def take_edges(edges: u32[:], first: i32, count: i32, row: u32[:], level_range: i32) -> i32:
+    """Copy `count` edges from place `first` on to `row`, without the level ones, and return how many are left."""
+    taken = 0
+    for place in range(first, first + count):
+        edge = edges[place]
+        if is_level(edge, level_range) == 0:
+            row[taken] = edge
+            taken = taken + 1
+    return taken
+
+
+@kernel
+def take_right_row(right_edges: u32[:], right_rows: u32[:], y: i32, row: u32[:], level_range: i32) -> i32:
+    """Do so with row `y` of the edge store that core B shares."""
+    here = right_rows[y]
+    return take_edges(right_edges, i32(here & 0xFFFF), i32(here >> 16), row, level_range)
+
+
+@kernel
 def matching_edge(
     edge: u32,
     others: u32[:],
-    first: i32,
     count: i32,
     side: i32,
     by_likeness: i32,
-    level_range: i32,
     direction_range: i32,
     min_disparity: i32,
     max_disparity: i32,
 ) -> i32:
-    """Return the place of the edge in `others`, `count` from place `first` on, that corresponds to an edge, or NONE.
+    """Return the place of the one of `count` other edges that corresponds to an edge, or NONE.
 
     `side` is 1 for an edge of the left picture and others of the right one, -1 for the reverse. With `by_likeness` 0 it
     is the nearest, with 1 the one with the most similar gradient and of these the nearest.
@@ -88,12 +95,17 @@ def matching_edge(
     x = i32(edge >> 16)
     best = NONE
     least: i32 = 1 << 30
-    for place in range(first, first + count):
+    # the others go to the right: the first ones are those with the greatest disparity, or with the least
+    last_disparity = min_disparity if side > 0 else -max_disparity
+    for place in range(count):
         other = others[place]
-        disparity = side * (x - i32(other >> 16))
+        apart = x - i32(other >> 16)
+        if apart < last_disparity:
+            break
+        disparity = side * apart
         if min_disparity <= disparity <= max_disparity:
             turn = abs(turn_between(i32(other >> 8 & 255), i32(edge >> 8 & 255)))
-            if turn <= direction_range and is_level(other, level_range) == 0:
+            if turn <= direction_range:
                 unlike = 2 * turn + abs(i32(other & 255) - i32(edge & 255))
                 off = (by_likeness * unlike << DISPARITY_BITS) + disparity
                 if off < least:
@@ -108,8 +120,9 @@ def stereo_edges_row(
     edge_index: u32[:],
     edge_counts: u16[:],
     y: i32,
-    row: u32[:],
-    row_count: i32,
+    left_row: u32[:],
+    right_row: u32[:],
+    right_count: i32,
     geometry: i32[:],
     is_mutual: i32,
     level_range: i32,
@@ -121,35 +134,31 @@ def stereo_edges_row(
     edges_3d: i16[:],
     found: i32,
 ) -> i32:
-    """Store the 3-D edges of row `y`, where the right picture has the `row_count` edges in `row`.
+    """Store the 3-D edges of row `y`, where the right picture has the `right_count` edges in `right_row`.
 
-    `found` is how many the rows before gave; returns it with this row. Those beyond the length of `edges_3d` are counted,
-    not stored.
+    `left_row` is room for those of the left one. `found` is how many the rows before gave; returns it with this row.
+    Those beyond the length of `edges_3d` are counted, not stored.
     """
-    first = i32(edge_index[y])
-    count = i32(edge_counts[y])
-    for edge in range(first, first + count):
-        other = NONE
-        if is_level(edge_data[edge], level_range) == 0:
-            other = matching_edge(
-                edge_data[edge], row, 0, row_count, 1,
-                is_mutual, level_range, direction_range, min_disparity, max_disparity,
-            )  # fmt: skip
-        if other != NONE and is_mutual != 0:
+    place = i32(edge_index[y])
+    left_count = take_edges(edge_data, place, i32(edge_counts[y]), left_row, level_range)
+    for left in range(left_count):
+        edge = left_row[left]
+        right = matching_edge(
+            edge, right_row, right_count, 1, is_mutual, direction_range, min_disparity, max_disparity
+        )
+        if right != NONE and is_mutual != 0:
             back = matching_edge(
-                row[other], edge_data, first, count, -1,
-                is_mutual, level_range, direction_range, min_disparity, max_disparity,
+                right_row[right], left_row, left_count, -1, is_mutual, direction_range, min_disparity, max_disparity
             )  # fmt: skip
-            if back != edge:
-                other = NONE
-        if other != NONE:
-            x = i32(edge_data[edge] >> 16)
-            disparity = SUBPIXELS * (x - i32(row[other] >> 16))
+            if back != left:
+                right = NONE
+        if right != NONE:
+            x = i32(edge >> 16)
+            disparity = SUBPIXELS * (x - i32(right_row[right] >> 16))
             base = EDGE3D_WORDS * found
-            if base >= len(edges_3d):
-                found = found + 1
-            elif (
-                store_point(
+            stored = 1
+            if base < len(edges_3d):
+                stored = store_point(
                     geometry,
                     SUBPIXELS * x,
                     SUBPIXELS * y,
@@ -159,10 +168,11 @@ def stereo_edges_row(
                     edges_3d,
                     base + EDGE3D_X,
                 )
-                != 0
-            ):
-                edges_3d[base + EDGE3D_LEFT] = edge
-                found = found + 1
+            if stored != 0 and base < len(edges_3d):
+                while edge_data[place] != edge:
+                    place = place + 1
+                edges_3d[base + EDGE3D_LEFT] = place
+            found = found + stored
     return found
 
 
@@ -174,11 +184,12 @@ def stereo_edges(core: Core, frame: Frame, thresholds: StereoEdgeThresholds) -> 
     """
     store = core.array("edge_data"), core.array("edge_index"), core.array("edge_counts")
     right = core.array("right_edge_data"), core.array("right_edge_rows")
-    row = core.overlay("segments", u32, frame.width)[0]
-    edges_3d = core.array("edges_3d")
+    left_row, right_row, *_ = core.overlay("segments", u32, frame.width)
+    geometry, edges_3d = core.array("geometry"), core.array("edges_3d")
+    level_range = thresholds.level_range
     limits = (
         int(thresholds.correspondence),
-        thresholds.level_range,
+        level_range,
         thresholds.direction_range,
         thresholds.min_disparity,
         thresholds.max_disparity,
@@ -186,10 +197,9 @@ def stereo_edges(core: Core, frame: Frame, thresholds: StereoEdgeThresholds) -> 
     size = frame.width, frame.height
     found = 0
     for y in range(frame.height - 1, -1, -1):
-        count = yield core.run(take_row, *right, y, row)
-        found = yield core.run(
-            stereo_edges_row, *store, y, row, count, core.array("geometry"), *limits, *size, edges_3d, found
-        )
+        count = yield core.run(take_right_row, *right, y, right_row, level_range)
+        rows = left_row, right_row, count
+        found = yield core.run(stereo_edges_row, *store, y, *rows, geometry, *limits, *size, edges_3d, found)
     kept = min(found, EDGE3D_CAPACITY)
     core.publish(edges_3d=kept, edges_3d_lost=found - kept)
     return kept

@@ -13,11 +13,10 @@ from hypothesis import strategies as st
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
 from firmware.exchange import copy_words, pack_edge_rows
-from firmware.geometry import GEOMETRY_WORDS
 from firmware.line3d_store import EDGE3D_CAPACITY, EDGE3D_WORDS
 from firmware.line_store import LINE_WORDS
 from firmware.modes import INDOOR_FIELD
-from firmware.stages.stereo_edges import StereoEdgeThresholds, is_level, stereo_edges_row, take_row
+from firmware.stages.stereo_edges import StereoEdgeThresholds, is_level, stereo_edges_row, take_right_row
 from firmware.stages.stereo_lines import Correspondence
 from tests.firmware.stereo_references import Edge, EdgeLimits, Rig, edges_3d
 from tests.firmware.test_stages import buffer, random_frames, run, stereo
@@ -45,8 +44,8 @@ def found(
     rows = np.full(len(right), GARBAGE, np.uint32)
     pack_edge_rows(index, counts, rows)
     table = np.full(room * EDGE3D_WORDS, GARBAGE, np.int16)
-    row = np.full(rig.width, GARBAGE, np.uint32)
-    geometry = np.array([rig.focal, rig.baseline, *[0] * (GEOMETRY_WORDS - 2)], np.int32)
+    left_row, right_row = np.full((2, rig.width), GARBAGE, np.uint32)
+    geometry = np.array([rig.focal, rig.baseline, 0, 0], np.int32)
     limits = (
         int(mode.correspondence),
         mode.level_range,
@@ -56,10 +55,9 @@ def found(
     )
     number = 0
     for y in reversed(range(len(left))):
-        count = take_row(shared, rows, y, row)
-        number = stereo_edges_row(
-            *store(left), y, row, count, geometry, *limits, rig.width, rig.height, table, number
-        )
+        count = take_right_row(shared, rows, y, right_row, mode.level_range)
+        picture = *store(left), y, left_row, right_row, count
+        number = stereo_edges_row(*picture, geometry, *limits, rig.width, rig.height, table, number)
     return [tuple(each) for each in table.reshape(-1, EDGE3D_WORDS)[: min(number, room)].tolist()], number
 
 
