@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
 from firmware.exchange import copy_words, pack_edge_rows
+from firmware.geometry import GEOMETRY_WORDS
 from firmware.line3d_store import EDGE3D_CAPACITY, EDGE3D_WORDS
 from firmware.line_store import LINE_WORDS
 from firmware.modes import INDOOR_FIELD
@@ -45,7 +46,7 @@ def found(
     pack_edge_rows(index, counts, rows)
     table = np.full(room * EDGE3D_WORDS, GARBAGE, np.int16)
     left_row, right_row = np.full((2, rig.width), GARBAGE, np.uint32)
-    geometry = np.array([rig.focal, rig.baseline, 0, 0], np.int32)
+    geometry = np.array([rig.focal, rig.baseline, *[0] * (GEOMETRY_WORDS - 2)], np.int32)
     limits = (
         int(mode.correspondence),
         mode.level_range,
