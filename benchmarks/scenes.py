@@ -26,7 +26,9 @@ from firmware.models import MODELS, Shape
 from firmware.object_store import DIMENSION_TEST
 from firmware.results import SeenObject
 
-SHAPES = {"ball": Shape.BALL, "goal": Shape.GOAL, "robot": Shape.MARKER}
+PLACED_BY = {Shape.GOAL: "mouth_mm", Shape.MARKER: "mark_corners_mm", Shape.BALL: "centre_mm"}
+"""What of the ground truth tells where a thing is, and with it what it is."""
+
 SHAPE_OF = {each.number: each.shape for each in MODELS}
 
 SLACK_DEG = 1.0
@@ -46,13 +48,21 @@ class Tally:
     accuracies: list[int] = field(default_factory=list)
 
 
+def shape_of(thing: Any) -> Shape | None:
+    """Return the shape of a thing's model; None if there is no model of it."""
+    return next(
+        (shape for shape, name in PLACED_BY.items() if isinstance(thing, dict) and name in thing), None
+    )
+
+
 def place_of(thing: Mapping[str, Any], camera: Mapping[str, Any]) -> Vector:
     """Return where a thing is in the frame of the left camera, in mm."""
-    if thing["kind"] == "ball":
-        return np.array(thing["left"]["camera_mm"])
-    corners = np.array(thing["mouth_mm" if thing["kind"] == "goal" else "mark_corners_mm"])
+    shape = shape_of(thing)
+    corners = np.array(thing[PLACED_BY[shape]])
     inside = (corners - np.array(camera["position_mm"])) @ np.array(camera["rotation"]).T
-    if thing["kind"] == "goal":
+    if shape == Shape.BALL:
+        return np.asarray(inside)
+    if shape == Shape.GOAL:
         return np.asarray(inside.mean(axis=0))
     nearest = np.argsort(np.hypot(*(corners[:4, :2] - np.array(camera["position_mm"])[:2]).T))[:2]
     return np.asarray(inside[[*nearest, *(nearest + 4)]].mean(axis=0))
@@ -66,9 +76,9 @@ def angle_deg(one: Vector, other: Vector) -> float:
 
 def half_width_deg(thing: Mapping[str, Any], place: Vector) -> float:
     """Return how wide half a thing looks from where the camera is."""
-    if thing["kind"] == "ball":
+    if shape_of(thing) == Shape.BALL:
         half_mm = thing["radius_mm"]
-    elif thing["kind"] == "goal":
+    elif shape_of(thing) == Shape.GOAL:
         half_mm = np.ptp(np.array(thing["mouth_mm"]), axis=0).max() / 2
     else:
         half_mm = thing["side_mm"] / 2
@@ -78,7 +88,7 @@ def half_width_deg(thing: Mapping[str, Any], place: Vector) -> float:
 def things(truth: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
     """Yield the things of a scene that there are models for."""
     for name, thing in truth.items():
-        if name not in ("cameras", "lines", "arcs") and thing["kind"] in SHAPES:
+        if shape_of(thing) is not None:
             yield name, thing
 
 
@@ -96,7 +106,7 @@ def compare(seen: Sequence[Seen]) -> tuple[dict[str, Tally], int]:
             reach_deg = half_width_deg(thing, place) + SLACK_DEG
             near = [
                 index for index, found in enumerate(now)
-                if SHAPE_OF[found.model] == SHAPES[thing["kind"]]
+                if SHAPE_OF[found.model] == shape_of(thing)
                 and angle_deg(np.array(found.towards, float), place) <= reach_deg
             ]  # fmt: skip
             if near:

@@ -53,7 +53,7 @@ HORIZON = 0.47
 """Where these cameras have the horizon, by the far border of the field: what ends above it stands on no floor."""
 
 FOCAL_SHARE = 0.66  # of the picture's width; of a fish-eye it means little
-ANY_SIZE = 1 << 14
+ANY_SIZE = 256  # to a factor of 16, the widest range that a mode may have
 
 BOX_SLACK = 1.25
 """A centre in a box that is larger by this is on the ball."""
@@ -156,7 +156,7 @@ def report(counts: dict[str, Count], balls: int, frames: int) -> Table:
 
 @click.command()
 @click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
-@click.option("--size", default="304x240", help="Size of the recording.", show_default=True)
+@click.option("--size", default="400x300", help="Size of the recording.", show_default=True)
 def main(folder: Path, size: str) -> None:
     """Print how many balls of the pictures in FOLDER are found, and how much else."""
     width, height = (int(each) for each in size.split("x"))

@@ -49,6 +49,7 @@ from firmware.tables import tangent_table
 
 CIRCLE_CAPACITY = 64  # 1 KB; as many as there are blobs in the modes
 LARGEST_REACH = 32  # of the patch: 65 x 65 votes lie over the segments of the line detection
+LARGEST_FIT_RANGE = 8  # the fit's sums over all edges of a picture 640 wide have 32 bits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +62,7 @@ class CircleThresholds:
     `peak_reach`: how many cells round a peak belong to it; 0 is the thesis, whole pixels.
     `min_edges`, `centre_share`: of the centre test T_c (T Eq. 5.6). `min_peak`, `radius_share`: of the radius test
     T_r (T Eq. 5.7). `fit_rounds`: how often centre and radius are fitted to the outline; 0 is the thesis.
-    `fit_range`: how far from the circle that is looked for.
+    `fit_range`: how far from the circle that is looked for, 1..8.
     """
 
     border: int = allowed(0, 64)
@@ -81,6 +82,8 @@ class CircleThresholds:
             raise ValueError(
                 f"patch_reach must be peak_reach ({self.peak_reach}) to {LARGEST_REACH}, not {self.patch_reach}"
             )
+        if not 1 <= self.fit_range <= LARGEST_FIT_RANGE:
+            raise ValueError(f"fit_range must be 1 to {LARGEST_FIT_RANGE}, not {self.fit_range}")
 
 
 def circle_buffers() -> Sequence[Buffer]:

@@ -182,14 +182,14 @@ def test_the_fit_goes_to_the_circle(x: float, y: float, radius: float, start: fl
 
 
 def test_sums_of_the_largest_picture_stay_in_32_bits() -> None:
-    """All edges that a picture 640 wide has room for, 3 px outside a circle as far as it can be."""
+    """All edges that a picture 640 wide has room for, 8 px outside a circle as far as it can be."""
     count = 1920
     points = np.full(count, 40_900 | 30_600 << 16, np.uint32)
     fit = np.zeros(FIT_WORDS, np.int32)
     fit[REFINED] = count
-    fit[2] = expected.distance((40_900, 30_600), (0, 0)) - 192
-    circle = expected.refined((0, 0, int(fit[2])), [(40_900, 30_600)] * count, 192)
-    fit_circle(points, fit, 3, 1)
+    fit[2] = expected.distance((40_900, 30_600), (0, 0)) - 512
+    circle = expected.refined((0, 0, int(fit[2])), [(40_900, 30_600)] * count, 512)
+    fit_circle(points, fit, 8, 1)
     assert tuple(fit[:3].tolist()) == circle
 
 

@@ -256,8 +256,10 @@ def test_the_machine_finds_the_same() -> None:
 
 
 def test_thresholds_that_cannot_be() -> None:
-    """A patch larger than its memory, and a peak larger than the patch."""
+    """A patch larger than its memory, a peak larger than the patch, and sums beyond 32 bits."""
     with pytest.raises(ValueError, match=r"patch_reach must be peak_reach \(1\) to 32, not 33"):
         replace(FITTED_CIRCLES, patch_reach=33)
     with pytest.raises(ValueError, match=r"patch_reach must be peak_reach \(9\) to 32, not 8"):
         replace(FITTED_CIRCLES, peak_reach=9, patch_reach=8)
+    with pytest.raises(ValueError, match="fit_range must be 1 to 8, not 9"):
+        replace(FITTED_CIRCLES, fit_range=9)
