@@ -57,8 +57,8 @@ def shared_order_buffers(size: FrameSize, section: str) -> Sequence[Buffer]:
         Buffer("orders", u16, MESSAGE_WORDS, section),
         Buffer("ordered_mode", i32, len(MODE_WORDS), section, values=np.array(to_words(INDOOR_FIELD))),
         Buffer("ordered_models", i32, MODEL_CAPACITY * MODEL_WORDS, section, values=model_words(MODELS)),
-        _limits("mode_limits", MODE_WORDS, section),
-        _limits("model_limits", MODEL_FIELDS, section),
+        _limits("mode_limits", MODE_WORDS),
+        _limits("model_limits", MODEL_FIELDS),
         Buffer("full_size", i32, 2, section, values=np.array([size.width_px, size.height_px])),
     )
 
@@ -68,10 +68,11 @@ def order_buffers() -> Sequence[Buffer]:
     return (Buffer("mode", i32, len(MODE_WORDS), "data1"),)
 
 
-def _limits(name: str, words: Sequence[Word], section: str) -> Buffer:
+def _limits(name: str, words: Sequence[Word]) -> Buffer:
+    """Return the limits of words, in the SDRAM of the images: they are read only when a message has come."""
     names = [each.name for each in words]
     limits = [(each.lowest, each.highest, each.step, names.index(each.at_most), each.total) for each in words]
-    return Buffer(name, i32, LIMIT_WORDS * len(words), section, values=np.ravel(limits))
+    return Buffer(name, i32, LIMIT_WORDS * len(words), "sdram_bank2", values=np.ravel(limits))
 
 
 def take_orders(core: Core) -> Generator[Any, Any, int]:
