@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -99,6 +100,35 @@ def test_lines_are_in_the_picture(run: tuple[list[SeenFrame], Any]) -> None:
             assert -1 < x < 320
             assert -1 < y < 240
         assert 0 < line.probability <= 1
+
+
+AREA_SCRIPT = """
+[[send]]
+after_frames = 0
+mode.area = [40, 30, 240, 140]
+"""
+
+
+def test_what_is_in_space_is_seen_where_it_is(run: tuple[list[SeenFrame], Any], tmp_path: Path) -> None:
+    """Places project to where the left picture shows them, also when the stages see an area only."""
+    script = tmp_path / "area.toml"
+    script.write_text(AREA_SCRIPT)
+    areas: list[SeenFrame] = []
+    simulate(frames=FRAMES, strategy=script, on_seen=areas.append)
+    assert (areas[1].cameras[0].width_px, areas[1].cameras[0].height_px) == (240, 140)
+    assert (areas[1].cameras[0].picture == run[0][1].cameras[0].picture[30:170, 80:560]).all()
+    for frame in (run[0][1], areas[1]):
+        left = frame.cameras[0]
+        assert left.geometry
+        assert len(left.edges_3d) > 100 < len(left.edges)
+        x, y, depth = left.edges_3d.places_mm.T
+        across = left.geometry.principal_px[0] + left.geometry.focal_px * x / depth
+        down = left.geometry.principal_px[1] + left.geometry.focal_px * y / depth
+        assert np.abs(across - left.edges.x_px[left.edges_3d.left_edges]).max() < 2
+        assert np.abs(down - left.edges.y_px[left.edges_3d.left_edges]).max() < 2
+        ball = next(each for each in frame.objects if each.name == "ball")
+        seen_at = left.geometry.principal_px[0] + left.geometry.focal_px * ball.place_mm[0] / ball.place_mm[2]
+        assert abs(seen_at - ball.image_px[0]) < 2
 
 
 def readout(results: dict[str, int], mode: Mode = INDOOR_FIELD, **buffers: Any) -> Readout:
