@@ -21,6 +21,7 @@ from bfsim.seen import (
     SeenCircle,
     SeenEdges,
     SeenEdges3D,
+    SeenGeometry,
     SeenLine,
     SeenLine3D,
     SeenObject,
@@ -33,6 +34,6 @@ from bfsim.trace import BudgetRow
 __all__ = [
     "BudgetRow", "Buffer", "Buffers", "Calibration", "CameraSettings", "Colour", "Core", "DmaConfig", "Firmware", "FirmwareError", "Flow", "Frame",
     "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "OutputRing", "Readout", "Row", "Seen", "SeenBlob",
-    "SeenCircle", "SeenEdges", "SeenEdges3D", "SeenLine", "SeenLine3D", "SeenObject", "SeenRectangle", "Solid", "SourcePixels",
+    "SeenCircle", "SeenEdges", "SeenEdges3D", "SeenGeometry", "SeenLine", "SeenLine3D", "SeenObject", "SeenRectangle", "Solid", "SourcePixels",
     "WdSize", "Work", "f32", "i8", "i16", "i32", "kernel", "no_edges_3d", "sqrt", "u8", "u16", "u32", "write_descriptor",
 ]  # fmt: skip

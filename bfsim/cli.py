@@ -163,7 +163,7 @@ def run(
 
     if features or show or overlay or mcap:
         require_view(what["firmware"])
-    with watching(show=show, overlay=overlay, mcap=mcap, recording=what["recording"]) as watchers:
+    with watching(show=show, overlay=overlay, mcap=mcap) as watchers:
         if json_path:
             watchers.append(keep)
         done = _simulate(watchers=watchers, **what)

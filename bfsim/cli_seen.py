@@ -55,9 +55,7 @@ def require_view(firmware: str) -> None:
 
 
 @contextmanager
-def watching(
-    *, show: bool, overlay: Path | None, mcap: Path | None, recording: Path | None
-) -> Iterator[Watchers]:
+def watching(*, show: bool, overlay: Path | None, mcap: Path | None) -> Iterator[Watchers]:
     """Yield what is to be called with each frame that is seen; its files are there on a clean exit, or not at all.
 
     Raises a BfsimError for a place that cannot be written.
@@ -65,7 +63,7 @@ def watching(
     with ExitStack() as stack:
         watchers: Watchers = []
         if mcap:
-            watchers.append(stack.enter_context(_seen_writer(mcap, recording)).add)
+            watchers.append(stack.enter_context(_seen_writer(mcap)).add)
         if show and not overlay:
             overlay = stack.enter_context(_lasting_folder()) / "overlay.gif"
         if overlay:
@@ -77,13 +75,12 @@ def watching(
         _show(overlay)
 
 
-def _seen_writer(path: Path, recording: Path | None) -> SeenWriter:
+def _seen_writer(path: Path) -> SeenWriter:
     from bfsim.recording import SeenWriter
     from bfsim.report.save import require_place
-    from bfsim.run import geometry_of
 
     require_place(path)
-    return SeenWriter(path, geometry_of(recording))
+    return SeenWriter(path)
 
 
 @contextmanager

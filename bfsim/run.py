@@ -20,7 +20,7 @@ from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
 from bfsim.machine.capture import Feed
 from bfsim.machine.program import Calibration, FrameSize, SourcePixels
 from bfsim.machine.strategy import Script
-from bfsim.recording import RecordingReader, StereoFrame, StereoGeometry
+from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.seen import Seen, SeenFrame
 from bfsim.trace import Identity, RunRecord
 
@@ -100,12 +100,6 @@ def simulate(
 def has_view(firmware: str) -> bool:
     """Whether `firmware` ("PACKAGE:NAME") can tell what it sees. Raises FirmwareError as `simulate`."""
     return load_firmware(firmware).firmware.view is not None
-
-
-def geometry_of(recording: Path | None) -> StereoGeometry | None:
-    """Return where the cameras of a recording, or of the built-in one, are, if it says. Raises RecordingError."""
-    with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
-        return reader.geometry
 
 
 def read_placement(ldf: Path | None, spec: BoardSpec) -> LinkerScript:

@@ -14,6 +14,7 @@ from bfsim.api import (
     SeenCircle,
     SeenEdges,
     SeenEdges3D,
+    SeenGeometry,
     SeenLine,
     SeenLine3D,
     SeenRectangle,
@@ -21,9 +22,12 @@ from bfsim.api import (
 )
 from firmware import blob_store as b
 from firmware import circle_store as c
+from firmware import geometry as g
 from firmware import line3d_store as s
 from firmware import line_store as n
 from firmware import rectangle_store as r
+from firmware.areas import Area, area_in
+from firmware.orders import mode_in
 from firmware.view_colours import colour_of
 from firmware.view_objects import objects_of
 
@@ -39,24 +43,45 @@ SIDES = {
 
 
 def view(readout: Readout) -> Seen:
-    """Return what a core saw. Stages whose buffers it does not have left nothing."""
+    """Return what a core saw, in coordinates of the area that it looked at. Stages that it does not have left nothing."""
+    mode = mode_in(readout.values("mode"), readout.values("models"))
+    picture = _picture(readout, mode.area)
     return Seen(
         camera=CAMERAS[readout.core],
-        picture=_picture(readout),
+        picture=picture,
+        geometry=_geometry(readout, picture),
         edges=_edges(readout),
         blobs=_blobs(readout),
         lines=_lines(readout),
-        circles=_circles(readout) if readout.has_buffer("circles") else (),
-        rectangles=_rectangles(readout) if readout.has_buffer("rectangles") else (),
-        objects=objects_of(readout) if readout.has_buffer("objects") else (),
+        circles=_circles(readout),
+        rectangles=_rectangles(readout),
+        objects=objects_of(readout, mode.models) if readout.has_buffer("objects") else (),
         lines_3d=_lines_3d(readout) if readout.has_buffer("lines_3d") else (),
         edges_3d=_edges_3d(readout) if readout.has_buffer("edges_3d") else no_edges_3d(),
     )
 
 
-def _picture(readout: Readout) -> NDArray[np.uint8]:
-    rectified = readout.has_buffer("rectified_image")
-    return readout.values("rectified_image") if rectified else readout.picture()
+def _picture(readout: Readout, area: Area) -> NDArray[np.uint8]:
+    if readout.has_buffer("rectified_image"):
+        return readout.values("rectified_image")
+    picture = readout.picture()
+    seen = area_in(readout.frame, area)
+    return picture[seen.y : seen.y + seen.height, 2 * seen.x : 2 * (seen.x + seen.width)]
+
+
+def _geometry(readout: Readout, picture: NDArray[np.uint8]) -> SeenGeometry:
+    words = readout.values("geometry")
+    height, width = picture.shape[0], picture.shape[1] // 2
+    return SeenGeometry(
+        focal_px=float(words[g.GEOMETRY_FOCAL] / n.SUBPIXELS),
+        principal_px=(
+            float((width - 1) / 2 + words[g.GEOMETRY_SHIFT_X] / n.SUBPIXELS),
+            float((height - 1) / 2 + words[g.GEOMETRY_SHIFT_Y] / n.SUBPIXELS),
+        ),
+        baseline_mm=float(words[g.GEOMETRY_BASELINE] / g.MICROMETRES),
+        height_mm=float(words[g.GEOMETRY_HEIGHT] / g.HEIGHT_STEPS),
+        tilt_deg=float(360 * words[g.GEOMETRY_TILT] / g.TILT_STEPS),
+    )
 
 
 def _edges(readout: Readout) -> SeenEdges:

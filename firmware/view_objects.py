@@ -2,39 +2,42 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from bfsim.api import Readout, SeenObject, Solid
-from firmware import models as m
 from firmware import object_store as o
 from firmware.line_store import SUBPIXELS
+from firmware.models import ObjectModel, Shape
 from firmware.view_colours import colour_of
 
-NAMES = {each.number: each.name for each in m.MODELS}
+TESTS = {
+    "colour": o.COLOUR_TEST,
+    "dimension": o.DIMENSION_TEST,
+    "area": o.AREA_TEST,
+    "centre": o.CENTRE_TEST,
+    "size": o.SIZE_TEST,
+    "second camera": o.VERIFIED,
+}
 
-TESTS = ("colour", "dimensions", "area", "centre", "size", "second camera")
-"""By the bits of OBJECT_TESTS."""
 
-
-def objects_of(readout: Readout) -> tuple[SeenObject, ...]:
-    """Return the objects that `objects` holds, with what `models` says of them."""
-    models = {words[m.MODEL_NUMBER]: words for words in _structs(readout, "models", m.MODEL_WORDS)}
-    objects = _structs(readout, "objects", o.OBJECT_WORDS)
+def objects_of(readout: Readout, models: Sequence[ObjectModel]) -> tuple[SeenObject, ...]:
+    """Return the objects of the object history whose models are still known."""
+    known = {each.number: each for each in models}
+    objects = readout.values("objects").reshape(-1, o.OBJECT_WORDS).tolist()
     return tuple(
-        _object(each, models[each[o.OBJECT_MODEL]])
-        for each in objects
-        if each[o.OBJECT_MODEL] != o.NO_MODEL and each[o.OBJECT_MODEL] in models
+        _object(each, known[each[o.OBJECT_MODEL]]) for each in objects if each[o.OBJECT_MODEL] in known
     )
 
 
-def _object(words: list[int], model: list[int]) -> SeenObject:
-    number = model[m.MODEL_NUMBER]
+def _object(words: list[int], model: ObjectModel) -> SeenObject:
     return SeenObject(
-        name=NAMES.get(number, f"model {number}"),
-        solid=Solid.SPHERE if model[m.MODEL_SHAPE] == m.Shape.BALL else Solid.BOX,
-        colour=colour_of(model[m.MODEL_COLOURS]),
-        width_mm=model[m.MODEL_WIDTH],
-        height_mm=model[m.MODEL_HEIGHT],
+        name=model.name,
+        solid=Solid.SPHERE if model.shape == Shape.BALL else Solid.BOX,
+        colour=colour_of(model.colours),
+        width_mm=model.width_mm,
+        height_mm=model.height_mm,
         accuracy=words[o.OBJECT_ACCURACY] / 255,
-        tests=tuple(name for bit, name in enumerate(TESTS) if words[o.OBJECT_TESTS] >> bit & 1),
+        tests=tuple(name for name, bit in TESTS.items() if words[o.OBJECT_TESTS] & bit),
         place_mm=(words[o.OBJECT_X], words[o.OBJECT_Y], words[o.OBJECT_Z]),
         is_direction=not words[o.OBJECT_MEASURES],
         camera="left" if words[o.OBJECT_CAMERAS] & o.SEEN_LEFT else "right",
@@ -42,9 +45,3 @@ def _object(words: list[int], model: list[int]) -> SeenObject:
         image_size_px=(words[o.OBJECT_WIDTH] / SUBPIXELS, words[o.OBJECT_HEIGHT] / SUBPIXELS),
         age_frames=words[o.OBJECT_AGE],
     )
-
-
-def _structs(readout: Readout, name: str, words: int) -> list[list[int]]:
-    values = readout.values(name)
-    found: list[list[int]] = values.reshape(-1, words).tolist()
-    return found

@@ -11,6 +11,7 @@ from bfsim.seen import (
     SeenEdges,
     SeenEdges3D,
     SeenFrame,
+    SeenGeometry,
     SeenLine,
     SeenLine3D,
     SeenObject,
@@ -89,6 +90,11 @@ BLOB = SeenBlob(
 CIRCLE = SeenCircle(centre_px=(39.5, 29.5), radius_px=10.0, edges=60, passed=True, tests=("centre", "radius"))
 
 
+GEOMETRY = SeenGeometry(
+    focal_px=386.0, principal_px=(39.5, 29.5), baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0
+)
+
+
 def grey(width_px: int = 80, height_px: int = 60) -> np.ndarray:
     """A grey UYVY picture."""
     return np.full((height_px, 2 * width_px), 128, np.uint8)
@@ -97,6 +103,7 @@ def grey(width_px: int = 80, height_px: int = 60) -> np.ndarray:
 def left(**changes: object) -> Seen:
     """What the core with the results of both cameras saw."""
     known = {
+        "geometry": GEOMETRY,
         "edges": EDGES,
         "blobs": (BLOB,),
         "lines": LINES,
@@ -116,5 +123,5 @@ def frame(index: int = 4, *cameras: Seen, time_ns: int = 500_000_000) -> SeenFra
     return SeenFrame(
         index=index,
         times_ns={"left": time_ns, "right": time_ns + 2_000_000},
-        cameras=cameras or (left(), Seen(camera="right", picture=grey())),
+        cameras=cameras or (left(), Seen(camera="right", picture=grey(), geometry=GEOMETRY)),
     )

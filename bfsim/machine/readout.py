@@ -41,6 +41,11 @@ class Readout:
         """Return a copy of the first `count` structs of `words` elements of a buffer, of shape (count, words)."""
         return self.values(name)[: count * words].reshape(count, words)
 
+    @property
+    def frame(self) -> Frame:
+        """The frame, as the core got it."""
+        return self._frame
+
     def picture(self) -> NDArray[np.uint8]:
         """Return a copy of the camera's picture, UYVY of shape (height, 2 · width)."""
         return stacked(self._frame.rows)

@@ -29,9 +29,8 @@ from foxglove_schemas_protobuf.SpherePrimitive_pb2 import SpherePrimitive
 from foxglove_schemas_protobuf.TextPrimitive_pb2 import TextPrimitive
 from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 
-from bfsim.recording.frames import StereoGeometry
 from bfsim.recording.seen_pictures import color
-from bfsim.seen import PointMm, SeenEdges3D, SeenLine3D, SeenObject, Solid
+from bfsim.seen import PointMm, SeenEdges3D, SeenGeometry, SeenLine3D, SeenObject, Solid
 from bfsim.seen.colours import depth_colour
 
 LEFT, RIGHT, FLOOR = "left", "right", "floor"
@@ -46,7 +45,7 @@ FAINTEST = 0.3
 """Opacity of an object of accuracy 0."""
 
 
-def transforms_message(geometry: StereoGeometry, time_ns: int) -> FrameTransforms:
+def transforms_message(geometry: SeenGeometry, time_ns: int) -> FrameTransforms:
     """Return where the cameras are."""
     half = math.radians(geometry.tilt_deg) / 2
     down, up = (math.cos(half) + math.sin(half)) / 2, (math.cos(half) - math.sin(half)) / 2
@@ -69,11 +68,11 @@ def transforms_message(geometry: StereoGeometry, time_ns: int) -> FrameTransform
 
 
 def calibration_message(
-    geometry: StereoGeometry, camera: str, size_px: tuple[int, int], time_ns: int
+    geometry: SeenGeometry, camera: str, size_px: tuple[int, int], time_ns: int
 ) -> CameraCalibration:
-    """Return how a rectified camera sees; the principal point is the middle of the picture."""
+    """Return how a rectified camera sees."""
     width, height = size_px
-    focal, x, y = geometry.focal_px, (width - 1) / 2, (height - 1) / 2
+    focal, (x, y) = geometry.focal_px, geometry.principal_px
     shift = -focal * geometry.baseline_mm * MM if camera == RIGHT else 0.0
     message = CameraCalibration(
         frame_id=camera,

@@ -18,7 +18,6 @@ from bfsim import __version__
 from bfsim.errors import RecordingError
 from bfsim.recording import layout
 from bfsim.recording.container import McapContainer
-from bfsim.recording.frames import StereoGeometry
 from bfsim.recording.growing_file import growing_file, writing
 from bfsim.recording.seen_pictures import features_message, image_message
 from bfsim.recording.seen_space import (
@@ -42,13 +41,11 @@ EDGES_TOPIC = "/seen/edges_3d"
 class SeenWriter:
     """Context manager that writes one file; it appears on a clean exit of the `with` block, or not at all.
 
-    `geometry`: where the cameras are; where nobody knows, the file has no transforms and no calibrations. Raises
-    RecordingError where the file cannot be written or is another one already.
+    Raises RecordingError where the file cannot be written or is another one already.
     """
 
-    def __init__(self, path: Path, geometry: StereoGeometry | None) -> None:
+    def __init__(self, path: Path) -> None:
         self.path = path
-        self._geometry = geometry
         self._channels: dict[str, int] = {}
         if not path.name or path.is_dir():
             raise RecordingError(f"{path}: --mcap must be a file, not a folder")
@@ -77,18 +74,18 @@ class SeenWriter:
 
     def _messages(self, frame: SeenFrame) -> Iterator[tuple[str, int, Any]]:
         """Yield topic, time and message of all there is to say of a frame."""
-        time_ns, geometry = frame.time_ns, self._geometry
-        if geometry:
+        time_ns, tilt_deg = frame.time_ns, 0.0
+        for geometry in list(frame.geometries.values())[:1]:  # the cameras are parallel, and one rig
+            tilt_deg = geometry.tilt_deg
             yield TRANSFORMS_TOPIC, time_ns, transforms_message(geometry, time_ns)
         for seen in frame.cameras:
             camera, taken_ns = seen.camera, frame.times_ns[seen.camera]
             yield IMAGE_TOPIC.format(camera), taken_ns, image_message(seen, taken_ns)
             yield FEATURES_TOPIC.format(camera), taken_ns, features_message(seen, frame.objects, taken_ns)
-            if geometry:
+            if seen.geometry:
                 size_px = seen.width_px, seen.height_px
-                calibration = calibration_message(geometry, camera, size_px, taken_ns)
+                calibration = calibration_message(seen.geometry, camera, size_px, taken_ns)
                 yield CALIBRATION_TOPIC.format(camera), taken_ns, calibration
-        tilt_deg = geometry.tilt_deg if geometry else 0.0
         yield OBJECTS_TOPIC, time_ns, objects_message(frame.objects, tilt_deg, time_ns)
         yield LINES_TOPIC, time_ns, lines_message(frame.lines_3d, time_ns)
         yield EDGES_TOPIC, time_ns, edges_message(frame.edges_3d(), time_ns)

@@ -75,7 +75,8 @@ def panel_of(
     for each in objects:
         pen.object(each)
         x, y = each.image_px
-        labels.append(Label(x, y - each.image_size_px[1] / 2, each.caption, each.colour, is_boxed=True))
+        colour = style.faded(each.colour, each.accuracy)
+        labels.append(Label(x, y - each.image_size_px[1] / 2, each.caption, colour, is_boxed=True))
     placed = [replace(each, x=(each.x + 0.5) * scale, y=(each.y + 0.5) * scale) for each in labels]
     return image.reduce(style.SMOOTH), placed
 
@@ -144,7 +145,8 @@ class Pen:
             self._draw.arc(box, degrees, degrees + DASH_DEG, colours.FAILED, self._stroke)
 
     def object(self, each: SeenObject) -> None:
-        """Mark the corners of where an object is."""
+        """Mark the corners of where an object is; the surer, the brighter."""
+        colour = style.faded(each.colour, each.accuracy)
         x, y = self._at(each.image_px)
         half = [side * self._scale / 2 + 2 * self._stroke for side in each.image_size_px]
         arm = [max(side / 3, 2 * self._stroke) for side in half]
@@ -153,7 +155,7 @@ class Pen:
                 corner = x + across * half[0], y + down * half[1]
                 inwards = (corner[0] - across * arm[0], corner[1]), (corner[0], corner[1] - down * arm[1])
                 for end in inwards:
-                    self._draw.line((corner, end), each.colour, self._stroke)
+                    self._draw.line((corner, end), colour, self._stroke)
 
     def _at(self, point: Point) -> Point:
         x, y = ((point[axis] + self._origin[axis] + 0.5) * self._scale for axis in (0, 1))

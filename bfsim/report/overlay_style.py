@@ -23,6 +23,7 @@ SMOOTH = 2
 
 STROKE = 2
 DOT = 3.5  # radius of the mark at the start of a line
+FAINTEST = 0.45
 MARGIN = 20
 HEAD = 46
 FOOT = 44
@@ -35,6 +36,13 @@ DEPTH_FONT = 15
 def dark_levels() -> list[int]:
     """Return for each level of red, then of green, then of blue the one to draw."""
     return 3 * [round(255 * BRIGHTNESS * (level / 255) ** GAMMA) for level in range(256)]
+
+
+def faded(colour: Colour, share: float) -> Colour:
+    """Return a colour nearer to that of the paper: `share` of 1 is all of it, 0 can just be read."""
+    part = FAINTEST + (1 - FAINTEST) * share
+    red, green, blue = (round(low + (high - low) * part) for low, high in zip(PAPER, colour, strict=True))
+    return red, green, blue
 
 
 @cache

@@ -158,14 +158,31 @@ def no_edges_3d() -> SeenEdges3D:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SeenGeometry:
+    """Where the firmware takes its cameras to be: equal, parallel, side by side.
+
+    `focal_px` and `principal_px` are those of the picture that it looked at. The cameras are `baseline_mm` apart,
+    `height_mm` above the floor, and look `tilt_deg` down.
+    """
+
+    focal_px: float
+    principal_px: Point
+    baseline_mm: float
+    height_mm: float
+    tilt_deg: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Seen:
     """What one core saw. `camera` is left or right; `picture`, UYVY of shape (height, 2 · width), is what it looked at.
 
-    Objects and all that is in space are those of the core that has the results of both.
+    Objects and all that is in space are those of the core that has the results of both. Without a `geometry` the
+    firmware takes the cameras to be nowhere in particular.
     """
 
     camera: str
     picture: NDArray[np.uint8]
+    geometry: SeenGeometry | None = None
     edges: SeenEdges = field(default_factory=no_edges)
     blobs: tuple[SeenBlob, ...] = ()
     lines: tuple[SeenLine, ...] = ()
@@ -198,6 +215,11 @@ class SeenFrame:
     def time_ns(self) -> int:
         """When the first of its pictures was taken."""
         return min(self.times_ns[each.camera] for each in self.cameras)
+
+    @property
+    def geometries(self) -> dict[str, SeenGeometry]:
+        """The geometry of each camera that has one."""
+        return {each.camera: each.geometry for each in self.cameras if each.geometry}
 
     @property
     def objects(self) -> tuple[SeenObject, ...]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,7 +16,10 @@ from bfsim.report.digest import cycle_digest
 from bfsim.run import BUILT_IN_RECORDING, simulate
 from bfsim.seen import SeenFrame, Solid
 from firmware import models, object_store
+from firmware.areas import Area
 from firmware.circle_store import CENTRE_PASSED, RADIUS_PASSED
+from firmware.fields import to_words
+from firmware.modes import INDOOR_FIELD, Mode
 from firmware.stages.blob_detection import hues
 from firmware.stages.colour_reduction import BLACK, WHITE
 from firmware.view import view
@@ -97,17 +102,53 @@ def test_lines_are_in_the_picture(run: tuple[list[SeenFrame], Any]) -> None:
         assert 0 < line.probability <= 1
 
 
-def readout(results: dict[str, int], **buffers: Any) -> Readout:
+AREA_SCRIPT = """
+[[send]]
+after_frames = 0
+mode.area = [40, 30, 240, 140]
+"""
+
+
+def test_what_is_in_space_is_seen_where_it_is(run: tuple[list[SeenFrame], Any], tmp_path: Path) -> None:
+    """Places project to where the left picture shows them, also when the stages see an area only."""
+    script = tmp_path / "area.toml"
+    script.write_text(AREA_SCRIPT)
+    areas: list[SeenFrame] = []
+    simulate(frames=FRAMES, strategy=script, on_seen=areas.append)
+    assert (areas[1].cameras[0].width_px, areas[1].cameras[0].height_px) == (240, 140)
+    assert (areas[1].cameras[0].picture == run[0][1].cameras[0].picture[30:170, 80:560]).all()
+    for frame in (run[0][1], areas[1]):
+        left = frame.cameras[0]
+        assert left.geometry
+        assert len(left.edges_3d) > 100 < len(left.edges)
+        x, y, depth = left.edges_3d.places_mm.T
+        across = left.geometry.principal_px[0] + left.geometry.focal_px * x / depth
+        down = left.geometry.principal_px[1] + left.geometry.focal_px * y / depth
+        assert np.abs(across - left.edges.x_px[left.edges_3d.left_edges]).max() < 2
+        assert np.abs(down - left.edges.y_px[left.edges_3d.left_edges]).max() < 2
+        ball = next(each for each in frame.objects if each.name == "ball")
+        seen_at = left.geometry.principal_px[0] + left.geometry.focal_px * ball.place_mm[0] / ball.place_mm[2]
+        assert abs(seen_at - ball.image_px[0]) < 2
+
+
+def readout(results: dict[str, int], mode: Mode = INDOOR_FIELD, **buffers: Any) -> Readout:
     """What core A would have in memory."""
     empty = {
         "edge_data": np.zeros(8, np.uint32),
         "edge_counts": np.zeros(4, np.uint16),
         "blob_data": np.zeros(8, np.uint32),
-        "lines": np.zeros(9, np.int16),
+        "mode": np.array(to_words(mode), np.int32),
+        "models": models.model_words(mode.models),
+        "geometry": np.array([6176, 30_470, 1920, 1820, 0, 0, 24, -8, 6176], np.int32),
+        **{name: np.zeros(9, np.int16) for name in ("lines", "circles", "rectangles")},
     }
-    rows = {name: (SimpleNamespace(array=np.asarray(each)),) for name, each in {**empty, **buffers}.items()}
+    rows = {
+        name: [SimpleNamespace(array=row) for row in np.atleast_2d(each)]
+        for name, each in {**empty, **buffers}.items()
+    }
     core: Any = SimpleNamespace(name="A", rows=rows.__getitem__, has_buffer=rows.__contains__)
-    frame: Any = SimpleNamespace(rows=[SimpleNamespace(array=np.zeros(8, np.uint8))] * 4)
+    picture = np.arange(32, dtype=np.uint8).reshape(4, 8)
+    frame: Any = SimpleNamespace(rows=[SimpleNamespace(array=each) for each in picture], width=4, height=4)
     return Readout(core, frame, {f"{name}_A": count for name, count in results.items()})
 
 
@@ -118,6 +159,33 @@ def test_stages_that_are_not_there_saw_nothing() -> None:
     assert not len(seen.edges)
     assert not len(seen.edges_3d)
     assert (seen.blobs, seen.lines, seen.circles, seen.rectangles, seen.objects, seen.lines_3d) == ((),) * 6
+
+
+def test_the_picture_is_the_area_that_the_stages_saw() -> None:
+    """What is beyond it is cut off; where the area does not lie in the picture, nothing is."""
+    inside = replace(INDOOR_FIELD, area=Area(x=2, y=1, width=2, height=3))
+    assert view(readout({}, inside)).picture.tolist() == [
+        [12, 13, 14, 15],
+        [20, 21, 22, 23],
+        [28, 29, 30, 31],
+    ]
+    beyond = replace(INDOOR_FIELD, area=Area(x=2, y=1, width=4, height=3))
+    assert view(readout({}, beyond)).picture.shape == (4, 8)
+
+
+def test_a_rectified_picture_is_shown_as_it_is() -> None:
+    """It is of the area already."""
+    rectified = np.full((2, 4), 7, np.uint8)
+    assert view(readout({}, rectified_image=rectified)).picture.tolist() == rectified.tolist()
+
+
+def test_the_geometry_is_the_one_that_the_kernels_read() -> None:
+    """In pixels, millimetres and degrees; the principal point counted from the first pixel."""
+    geometry = view(readout({})).geometry
+    assert geometry
+    assert (geometry.focal_px, geometry.baseline_mm, geometry.height_mm) == (386, 30.47, 120)
+    assert geometry.principal_px == (1.5 + 1.5, 1.5 - 0.5)
+    assert abs(geometry.tilt_deg - 10) < 360 / 65536
 
 
 def test_circles_are_those_of_the_store() -> None:
@@ -162,8 +230,7 @@ def test_objects_are_those_of_the_history() -> None:
         )
     words[0, object_store.OBJECT_MEASURES] = object_store.BY_FLOOR
     words[2, object_store.OBJECT_AGE] = 4
-    buffers = {"objects": words.ravel(), "models": models.model_words(models.MODELS)}
-    ball, goal = view(readout({}, **buffers)).objects
+    ball, goal = view(readout({}, objects=words.ravel())).objects
     assert (ball.name, ball.solid, ball.width_mm, ball.accuracy) == ("ball", Solid.SPHERE, 60, 0.2)
     assert (ball.place_mm, ball.is_direction, ball.camera) == ((10, -20, 500), False, "left")
     assert (ball.image_px, ball.image_size_px, ball.age_frames) == ((100, 50), (20, 10), 0)

@@ -15,10 +15,9 @@ from mcap_protobuf.decoder import DecoderFactory
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
-from bfsim.recording import RecordingWriter, SeenWriter, StereoGeometry
+from bfsim.recording import RecordingWriter, SeenWriter
 from tests import seen_frames as made
 
-GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
 SCHEMAS = {
     "/transforms": "foxglove.FrameTransforms",
     "/camera/left/image_rect": "foxglove.RawImage",
@@ -37,7 +36,7 @@ SCHEMAS = {
 def _path(tmp_path: Path) -> Path:
     """A file of three frames."""
     path = tmp_path / "seen.mcap"
-    with SeenWriter(path, GEOMETRY) as writer:
+    with SeenWriter(path) as writer:
         for index in range(3):
             writer.add(made.frame(index, time_ns=1_000_000_000 + 33_000_000 * index))
     return path
@@ -168,8 +167,8 @@ def test_the_floor_is_where_the_camera_stands(path: Path) -> None:
 def test_without_geometry_there_is_no_guess(tmp_path: Path) -> None:
     """No transforms, no calibrations; the rest is there."""
     path = tmp_path / "seen.mcap"
-    with SeenWriter(path, None) as writer:
-        writer.add(made.frame())
+    with SeenWriter(path) as writer:
+        writer.add(made.frame(0, made.left(geometry=None), made.Seen(camera="right", picture=made.grey())))
     assert set(first(path)) == {
         each for each in SCHEMAS if "calibration" not in each and each != "/transforms"
     }
@@ -181,7 +180,7 @@ def test_a_frame_in_which_nothing_is_seen_takes_away_what_was_before(tmp_path: P
     empty = made.left(
         objects=(), lines_3d=(), edges_3d=made.Seen(camera="left", picture=made.grey()).edges_3d
     )
-    with SeenWriter(path, GEOMETRY) as writer:
+    with SeenWriter(path) as writer:
         writer.add(made.frame(0, empty))
     update = first(path)["/seen/objects"]
     assert len(update.deletions) == 1
@@ -192,27 +191,27 @@ def test_a_frame_in_which_nothing_is_seen_takes_away_what_was_before(tmp_path: P
 def test_an_error_leaves_no_file(tmp_path: Path, path: Path) -> None:
     """What was there before stays."""
     before = path.read_bytes()
-    with pytest.raises(KeyboardInterrupt), SeenWriter(path, GEOMETRY) as writer:
+    with pytest.raises(KeyboardInterrupt), SeenWriter(path) as writer:
         writer.add(made.frame())
         raise KeyboardInterrupt
     assert [each.name for each in tmp_path.iterdir()] == [path.name]
     assert path.read_bytes() == before
     with pytest.raises(RecordingError, match="must be a file, not a folder"):
-        SeenWriter(tmp_path, GEOMETRY)
+        SeenWriter(tmp_path)
 
 
 def test_only_what_an_earlier_run_saw_is_replaced(tmp_path: Path, path: Path) -> None:
     """A recording, above all the one that runs, is not written over."""
-    with SeenWriter(path, None) as writer:
+    with SeenWriter(path) as writer:
         writer.add(made.frame())
-    assert len(messages(path)) == 7
+    assert len(messages(path)) == 10
     recording = tmp_path / "drive.mcap"
     with RecordingWriter(recording, width=2, height=2) as recorder:
         recorder.add(made.grey(2, 2), made.grey(2, 2), 0, 0)
     (tmp_path / "notes.mcap").write_text("notes")
     for other in (recording, tmp_path / "notes.mcap"):
         with pytest.raises(RecordingError, match="must be a new file or what an earlier run saw"):
-            SeenWriter(other, None)
+            SeenWriter(other)
 
 
 def vector(message: Any) -> list[float]:

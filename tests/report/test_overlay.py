@@ -81,8 +81,15 @@ def test_near_is_red_and_far_is_blue() -> None:
 
 def test_an_object_is_in_the_picture_that_shows_it() -> None:
     """The goal, which only the right camera has, is marked there."""
-    assert shown(made.frame(), 20 - 15 - 0.33, 15 + 1, camera=1) == made.BLUE
-    assert shown(made.frame(), 20 - 15 - 0.33, 15 + 1) != made.BLUE
+    faint = style.faded(made.BLUE, made.GOAL.accuracy)
+    assert shown(made.frame(), 20 - 15 - 0.33, 15 + 1, camera=1) == faint
+    assert shown(made.frame(), 20 - 15 - 0.33, 15 + 1) != faint
+
+
+def test_what_is_sure_is_bright() -> None:
+    """Accuracy fades the marks of an object, and none out of sight."""
+    assert style.faded(made.BLUE, 1) == made.BLUE
+    assert made.BLUE > style.faded(made.BLUE, 0.5) > style.faded(made.BLUE, 0) > style.PAPER
 
 
 def test_captions_say_how_far_and_how_sure() -> None:
@@ -105,7 +112,8 @@ def test_every_caption_can_be_read() -> None:
     """Objects at one place get labels beside each other: as many boxes as objects."""
     alone = overlay_of(one(objects=(made.BALL,)))
     both = overlay_of(one(objects=(made.BALL, replace(made.BALL, name="other"))))
-    yellow = [(np.asarray(sheet) == made.YELLOW).all(axis=2).sum() for sheet in (alone, both)]
+    colour = style.faded(made.YELLOW, made.BALL.accuracy)
+    yellow = [(np.asarray(sheet) == colour).all(axis=2).sum() for sheet in (alone, both)]
     assert yellow[1] > 1.3 * yellow[0]
 
 
