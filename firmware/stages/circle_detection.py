@@ -75,7 +75,7 @@ class CircleThresholds:
     min_peak: int = allowed(1, EDGE_CAPACITY)
     radius_share: int = allowed(0, 256)
     fit_rounds: int = allowed(0, 16)
-    fit_range: int = allowed(0, 64)
+    fit_range: int = allowed(1, LARGEST_FIT_RANGE)
 
     def __post_init__(self) -> None:
         if not self.peak_reach <= self.patch_reach <= LARGEST_REACH:

@@ -75,6 +75,28 @@ def begin_sums(lines: i16[:], count: i32, sums: i32[:]) -> None:
 
 
 @kernel
+def first_row(sums: i32[:], count: i32, height: i32) -> i32:
+    """Return the first row that one of the lines is looked at in; `height` without any."""
+    first = height
+    for line in range(count):
+        base = line * SEGMENT_WORDS
+        if sums[base + FIRST_ROW] <= sums[base + LAST_ROW]:
+            first = min(first, sums[base + FIRST_ROW])
+    return first
+
+
+@kernel
+def last_row(sums: i32[:], count: i32) -> i32:
+    """Return the last row that one of the lines is looked at in; -1 without any."""
+    last = -1
+    for line in range(count):
+        base = line * SEGMENT_WORDS
+        if sums[base + FIRST_ROW] <= sums[base + LAST_ROW]:
+            last = max(last, sums[base + LAST_ROW])
+    return last
+
+
+@kernel
 def line_column(lines: i16[:], line: i32, rise: i32, row: i32) -> i32:
     """Return where a line crosses the middle of a row, in 1/16 px."""
     at = line * LINE_WORDS
@@ -144,7 +166,7 @@ def refine_lines(lines: i16[:], count: i32, sums: i32[:], atan: u8[:], width: i3
 def line_refinement(
     core: Core, frame: Frame, count: int, thresholds: RefinementThresholds
 ) -> Generator[Any, Any, None]:
-    """Refine the first `count` of `lines` by one pass of DMA lines over the picture.
+    """Refine the first `count` of `lines` by one pass of DMA lines over the rows that they cross.
 
     Publishes `lines_refined`, how many were.
     """
@@ -152,9 +174,13 @@ def line_refinement(
         return
     lines, sums = core.array("lines"), core.array("segments")
     yield core.run(begin_sums, lines, count, sums)
-    camera = core.input_ring(frame.rows, "camera_ring")
-    for y in range(frame.height):
-        line = yield from camera.line()
-        yield core.run(look_at_row, line, y, lines, count, sums, thresholds.reach, thresholds.min_step)
+    first = yield core.run(first_row, sums, count, frame.height)
+    last = yield core.run(last_row, sums, count)
+    if first <= last:
+        camera = core.input_ring(frame.rows[first : last + 1], "camera_ring")
+        for y in range(first, last + 1):
+            line = yield from camera.line()
+            limits = thresholds.reach, thresholds.min_step
+            yield core.run(look_at_row, line, y, lines, count, sums, *limits)
     refined = yield core.run(refine_lines, lines, count, sums, core.array("atan"), frame.width, frame.height)
     core.publish(lines_refined=refined)

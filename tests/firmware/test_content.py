@@ -18,8 +18,8 @@ STEADY = ("Edge detection", "Open & closing", "Blob detection")
 
 @pytest.fixture(scope="module")
 def shipped() -> list[Seen]:
-    """Both pictures of every frame of the built-in recording."""
-    return see_recording(BUILT_IN_RECORDING, 8)
+    """The right picture of every frame of the built-in recording: core A's stages have the stereo in them, too."""
+    return see_recording(BUILT_IN_RECORDING, 8)[1::2]
 
 
 def covered() -> Bytes:
@@ -37,7 +37,7 @@ def far_apart() -> list[Seen]:
         stripes(12, 1, 0)(WIDTH, HEIGHT),
         random_uyvy(WIDTH, HEIGHT, seed=1),
     )
-    return see(stereo(pictures[:2], pictures[2:]))
+    return see(stereo(*((each, each) for each in pictures)))[1::2]
 
 
 def ratio(seen: Sequence[Seen], stage: str) -> float:
@@ -63,10 +63,10 @@ def test_steady_stages_between_nothing_and_clutter(far_apart: list[Seen], stage:
 
 
 def test_lines_depend_on_the_picture(shipped: list[Seen], far_apart: list[Seen]) -> None:
-    """An empty picture costs little but to look at its rows; the soccer field over thirty times as much, clutter more."""
+    """An empty picture costs little but to look at its rows; field, stripes and clutter over thirty times as much."""
     dark, white, lines, clutter = (each.stages_cclk["Line detection"] for each in far_apart)
     field = min(each.stages_cclk["Line detection"] for each in shipped)
     assert dark == white
     assert field > 30 * white
-    assert 30 * white < lines < clutter
+    assert min(lines, clutter) > 30 * white
     assert ratio(shipped, "Line detection") > 1.2

@@ -15,6 +15,7 @@ from tests.firmware.line_references import Row
 from tests.firmware.line_rig import edge_across, edges_of, find_lines
 from tests.firmware.pictures import random_uyvy
 from tests.firmware.references import luma
+from tests.firmware.refinement_references import refined
 
 THESIS_MEAN_PX = 2.11  # T Table 6.1
 
@@ -175,5 +176,7 @@ def test_squares_by_chance() -> None:
 def test_on_the_board(width: int, height: int) -> None:
     """On the simulated board, after another picture, it finds what it finds without one; so does the other core."""
     pictures = [luma(random_uyvy(width, height, seed)) for seed in range(4)]
+    limits = INDOOR_FIELD.refinement.reach, INDOOR_FIELD.refinement.min_step
     for picture, each in zip(pictures, see_pictures(pictures), strict=True):
-        np.testing.assert_array_equal(each.lines, find_lines(edges_of(picture), width).ends)
+        lines, _ = refined(find_lines(edges_of(picture), width).lines.tolist(), picture, *limits)
+        assert each.lines.tolist() == [[word / 16 for word in line[:4]] for line in lines]

@@ -243,6 +243,7 @@ def seen_by_tinyphoon(ldf: str, size: FrameSize) -> tuple[dict[str, bytes], Outc
         f"{name} {core}": b"".join(row.octets.tobytes() for row in rows[name])
         for core, rows in board._buffers.items()
         for name in names
+        if name in rows
     }, outcome
 
 
