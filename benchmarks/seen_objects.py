@@ -14,7 +14,7 @@ from bfsim.api import Core, Firmware, FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, symbols_of
-from bfsim.machine.spi_protocol import decode, message_nbytes
+from bfsim.machine.spi.protocol import decode, message_nbytes
 from bfsim.recording import RecordingReader
 from bfsim.run import THESIS_LDF, calibration_of
 from firmware import ROWS

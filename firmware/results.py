@@ -1,6 +1,6 @@
 """What leaves for the strategy unit after every frame: the object history, and the border lines of goals (T §5.2.6, §6.4).
 
-The framing is bfsim's own ([ours], `bfsim/machine/spi_protocol.py`): sync word, type, sequence number, bytes of the payload,
+The framing is bfsim's own ([ours], `bfsim/machine/spi/protocol.py`): sync word, type, sequence number, bytes of the payload,
 the payload, and the CRC-16 of CCITT over all but the sync word, byte by byte in the order of memory.
 
 The payload is 16-bit words: the frame's number, low half first; how many objects and how many lines follow; why an order

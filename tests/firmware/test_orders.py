@@ -15,8 +15,8 @@ from bfsim.api import FirmwareError, FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, Outcome, symbols_of
-from bfsim.machine.spi_protocol import Message, MessageError, MessageType, decode, encode
-from bfsim.machine.strategy import ScriptedBytes, ScriptedMessage
+from bfsim.machine.spi.protocol import Message, MessageError, MessageType, decode, encode
+from bfsim.machine.spi.strategy import ScriptedBytes, ScriptedMessage
 from bfsim.run import THESIS_LDF
 from firmware import order_checks as checks
 from firmware import tinyphoon

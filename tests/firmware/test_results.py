@@ -11,7 +11,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from bfsim.api import FirmwareError
-from bfsim.machine.spi_protocol import SYNC, Message, MessageType, decode, encode, message_nbytes
+from bfsim.machine.spi.protocol import SYNC, Message, MessageType, decode, encode, message_nbytes
 from firmware import results
 from firmware.models import MODELS
 from firmware.object_store import BY_FLOOR, NO_OUTLINE, OBJECT_CAPACITY
