@@ -16,8 +16,8 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from bfsim.errors import ConfigError
-from bfsim.report.overlay import overlay_of
-from bfsim.report.overlay_style import PAPER
+from bfsim.report.overlay.overlay import overlay_of
+from bfsim.report.overlay.style import PAPER
 from bfsim.report.save import require_place
 from bfsim.seen import SeenFrame
 

@@ -1,4 +1,4 @@
-"""The memory map as rectangles and words on a sheet: what `ldf_picture` writes as PNG or SVG.
+"""The memory map as rectangles and words on a sheet: what `picture` writes as PNG or SVG.
 
 Each segment is a panel: a bar to its own scale, names where they fit, and below it a legend of all that lies in it.
 Panels of core A stand on the left, those of core B on the right, shared memories below both.
@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
 
-from bfsim.report.ldf_colours import colours_of
-from bfsim.report.ldf_map import SHARED, Kind, MapSegment, MemoryMap, Piece
+from bfsim.report.ldf.colours import colours_of
+from bfsim.report.ldf.map import SHARED, Kind, MapSegment, MemoryMap, Piece
 from bfsim.report.units import size
 
 # lengths in px

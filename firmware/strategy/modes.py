@@ -6,8 +6,6 @@ from dataclasses import dataclass, replace
 
 from firmware.areas import AS_RECORDED, WHOLE_PICTURE, Area, Camera
 from firmware.fields import not_ordered
-from firmware.line_store import SUBPIXELS
-from firmware.models import MODELS, ObjectModel, colour_groups, rectangular_colours, spherical_colours
 from firmware.stages.blob_detection import BlobThresholds
 from firmware.stages.circle_detection import CircleThresholds
 from firmware.stages.edge_detection import EdgeThresholds
@@ -17,6 +15,14 @@ from firmware.stages.object_detection import ObjectThresholds
 from firmware.stages.rectangle_detection import RectangleThresholds
 from firmware.stages.stereo_edges import StereoEdgeThresholds
 from firmware.stages.stereo_lines import Correspondence, StereoLineThresholds
+from firmware.stores.lines import SUBPIXELS
+from firmware.strategy.models import (
+    MODELS,
+    ObjectModel,
+    colour_groups,
+    rectangular_colours,
+    spherical_colours,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

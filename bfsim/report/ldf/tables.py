@@ -11,9 +11,9 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from bfsim.report.ldf_bars import bars
-from bfsim.report.ldf_lint import Finding
-from bfsim.report.ldf_map import MapSegment, MemoryMap
+from bfsim.report.ldf.bars import bars
+from bfsim.report.ldf.lint import Finding
+from bfsim.report.ldf.map import MapSegment, MemoryMap
 from bfsim.report.tables import new_table, percent, stacked
 from bfsim.report.units import size
 

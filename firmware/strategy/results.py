@@ -17,9 +17,8 @@ from enum import IntEnum
 import numpy as np
 
 from bfsim.api import FirmwareError, i16, i32, kernel, u16, u32
-from firmware.line_store import LINE_WORDS, LINE_X0, SUBPIXELS
-from firmware.models import MODEL_NUMBER, MODEL_SHAPE, MODEL_WORDS, Shape
-from firmware.object_store import (
+from firmware.stores.lines import LINE_WORDS, LINE_X0, SUBPIXELS
+from firmware.stores.objects import (
     NO_MODEL,
     NO_OUTLINE,
     OBJECT_ACCURACY,
@@ -34,13 +33,14 @@ from firmware.object_store import (
     OBJECT_WORDS,
     OBJECT_X,
 )
-from firmware.rectangle_store import (
+from firmware.stores.rectangles import (
     NO_LINE,
     RECTANGLE_BOTTOM,
     RECTANGLE_LEFT,
     RECTANGLE_RIGHT,
     RECTANGLE_WORDS,
 )
+from firmware.strategy.models import MODEL_NUMBER, MODEL_SHAPE, MODEL_WORDS, Shape
 
 SYNC = 0xB5F1
 RESULTS = 1

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from bfsim.api import Readout, SeenObject, Solid
-from firmware import object_store as o
-from firmware.line_store import SUBPIXELS
-from firmware.models import ObjectModel, Shape
-from firmware.view_colours import colour_of
+from firmware.stores import objects as o
+from firmware.stores.lines import SUBPIXELS
+from firmware.strategy.models import ObjectModel, Shape
+from firmware.view.colours import colour_of
 
 TESTS = {
     "colour": o.COLOUR_TEST,

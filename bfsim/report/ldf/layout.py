@@ -9,7 +9,7 @@ from itertools import groupby
 from bfsim.chip.memory_map import KIB, Region
 from bfsim.linker import LinkerScript, LinkMap, Placement
 from bfsim.linker.script import InputSections, Segment
-from bfsim.report.ldf_map import (
+from bfsim.report.ldf.map import (
     SHARED,
     CacheRange,
     Kind,

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from bfsim.report.ldf_map import SHARED, Kind, MapSymbol, MemoryMap
+from bfsim.report.ldf.map import SHARED, Kind, MapSymbol, MemoryMap
 
 FULL_SHARE = 0.95
 """A segment that is used beyond this share is nearly full."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from bfsim.api import FrameSize
 from firmware.areas import LEAST_AREA_PX
 from firmware.fields import Word
-from firmware.order_checks import (
+from firmware.strategy.order_checks import (
     ABOVE,
     AREA,
     BALL_SIZE,
@@ -32,7 +32,7 @@ from firmware.order_checks import (
     TYPE,
     WHICH_BIT,
 )
-from firmware.results import SYNC
+from firmware.strategy.results import SYNC
 
 TYPES = {MODE: "MODE", MODELS: "MODELS"}
 

@@ -9,8 +9,8 @@ from rich.console import Group
 from rich.style import Style
 from rich.text import Text
 
-from bfsim.report.ldf_colours import colours_of
-from bfsim.report.ldf_map import Kind, MapSegment, MemoryMap, Piece
+from bfsim.report.ldf.colours import colours_of
+from bfsim.report.ldf.map import Kind, MapSegment, MemoryMap, Piece
 from bfsim.report.units import size
 
 CELLS = 80

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from PIL import Image, ImageDraw
 
-from bfsim.report import overlay_style as style
-from bfsim.report.overlay_legend import legend
-from bfsim.report.overlay_panel import Label, panel_of
+from bfsim.report.overlay import style
+from bfsim.report.overlay.legend import legend
+from bfsim.report.overlay.panel import Label, panel_of
 from bfsim.seen import Seen, SeenFrame
 
 BOX_PAD = 4

@@ -7,8 +7,8 @@ from functools import cache
 
 from PIL import Image, ImageDraw
 
-from bfsim.report import overlay_style as style
-from bfsim.report.overlay_panel import Pen
+from bfsim.report.overlay import style
+from bfsim.report.overlay.panel import Pen
 from bfsim.seen import SeenBlob, SeenCircle, SeenLine, SeenObject, Solid, colours
 
 GLYPH = 26  # width of a mark

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import colorsys
 
-from bfsim.report.ldf_map import Kind, MemoryMap
+from bfsim.report.ldf.map import Kind, MemoryMap
 
 CODE_COLOUR = "#8c96a8"
 GOLDEN_TURN = 0.618034

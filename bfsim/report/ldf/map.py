@@ -1,6 +1,6 @@
 """The memory map of one link as records: what lies where in each segment of an LDF, and what is still free.
 
-`ldf_layout.memory_map` makes it. Tables, picture and lint read nothing but these records.
+`layout.memory_map` makes it. Tables, picture and lint read nothing but these records.
 """
 
 from __future__ import annotations

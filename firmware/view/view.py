@@ -20,16 +20,16 @@ from bfsim.api import (
     SeenRectangle,
     no_edges_3d,
 )
-from firmware import blob_store as b
-from firmware import circle_store as c
 from firmware import geometry as g
-from firmware import line3d_store as s
-from firmware import line_store as n
-from firmware import rectangle_store as r
 from firmware.areas import Area, area_in
-from firmware.orders import mode_in
-from firmware.view_colours import colour_of
-from firmware.view_objects import objects_of
+from firmware.stores import blobs as b
+from firmware.stores import circles as c
+from firmware.stores import lines as n
+from firmware.stores import lines3d as s
+from firmware.stores import rectangles as r
+from firmware.strategy.orders import mode_in
+from firmware.view.colours import colour_of
+from firmware.view.objects import objects_of
 
 CAMERAS: Mapping[str, str] = {"A": "left", "B": "right"}
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from bfsim.report import overlay_style as style
+from bfsim.report.overlay import style
 from bfsim.seen import (
     Colour,
     Point,

@@ -7,7 +7,7 @@ from typing import Any
 
 from bfsim.api import Core, Frame
 from firmware.areas import WHOLE_PICTURE, Area
-from firmware.results import close_message, pack_goal_lines, pack_objects
+from firmware.strategy.results import close_message, pack_goal_lines, pack_objects
 
 SEQUENCE_MASK = 0x7FFF
 

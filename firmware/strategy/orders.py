@@ -18,7 +18,7 @@ from bfsim.api import Buffer, Core, FirmwareError, Frame, FrameSize, Row, i32, u
 from firmware.areas import LEAST_AREA_PX, Area, principal_shift, see
 from firmware.fields import Word, from_words, named_words, to_words, words_of
 from firmware.geometry import look_at
-from firmware.models import (
+from firmware.strategy.models import (
     MODEL_CAPACITY,
     MODEL_NUMBER,
     MODEL_WORDS,
@@ -27,8 +27,8 @@ from firmware.models import (
     colour_groups,
     model_words,
 )
-from firmware.modes import INDOOR_FIELD, Mode
-from firmware.order_checks import (
+from firmware.strategy.modes import INDOOR_FIELD, Mode
+from firmware.strategy.order_checks import (
     HEADER_BYTES,
     LIMIT_WORDS,
     MODE,
@@ -40,7 +40,7 @@ from firmware.order_checks import (
     store_order,
     words_refusal,
 )
-from firmware.order_texts import refusal_text
+from firmware.strategy.order_texts import refusal_text
 
 MESSAGE_WORDS = 256  # of 16 bits: room for a message of the strategy unit
 HALVINGS = 2  # of the pictures' size, as sensors do: VGA to QQVGA

@@ -7,8 +7,15 @@ has it in words. Orders are words of 32 bits, low half first, in the frame of `r
 from __future__ import annotations
 
 from bfsim.api import i32, kernel, u16
-from firmware.models import MODEL_COLOURS, MODEL_HEIGHT, MODEL_NUMBER, MODEL_SHAPE, MODEL_WIDTH, MODEL_WORDS
-from firmware.results import SYNC, crc16_byte
+from firmware.strategy.models import (
+    MODEL_COLOURS,
+    MODEL_HEIGHT,
+    MODEL_NUMBER,
+    MODEL_SHAPE,
+    MODEL_WIDTH,
+    MODEL_WORDS,
+)
+from firmware.strategy.results import SYNC, crc16_byte
 
 MODE = 2
 MODELS = 3
@@ -43,7 +50,7 @@ LIMIT_AT_MOST = 3  # the word of the same record that this one must not exceed; 
 LIMIT_TOTAL = 4  # what the words with one may be together; 0 for none
 LIMIT_WORDS = 5
 
-BALL = 1  # firmware.models.Shape.BALL
+BALL = 1  # firmware.strategy.models.Shape.BALL
 
 
 @kernel

@@ -10,8 +10,8 @@ from xml.sax.saxutils import escape
 from PIL import Image, ImageDraw, ImageFont
 
 from bfsim.errors import ConfigError
-from bfsim.report.ldf_drawing import PAPER, Box, Sheet, Words, drawing_of
-from bfsim.report.ldf_map import MemoryMap
+from bfsim.report.ldf.drawing import PAPER, Box, Sheet, Words, drawing_of
+from bfsim.report.ldf.map import MemoryMap
 
 PIXELS = 2
 """PNG pixels per px of the drawing: small letters stay readable."""
