@@ -16,12 +16,12 @@ from rich.table import Table
 
 from bfsim.errors import BfsimError
 from bfsim.recording import StereoGeometry
-from bfsim.report.ldf_drawing import FAINT, INK, Box, Sheet, Words
-from bfsim.report.ldf_picture import format_of
+from bfsim.report.ldf.drawing import FAINT, INK, Box, Sheet, Words
+from bfsim.report.ldf.picture import format_of
 from bfsim.report.tables import new_table
 from bfsim.terminal import print_report
 from firmware.geometry import depth_mm, geometry_buffer
-from firmware.line_store import SUBPIXELS
+from firmware.stores.lines import SUBPIXELS
 
 LEAST_PX, MOST_PX = 4, 60
 MOST_MM, MOST_PERCENT = 3000, 40

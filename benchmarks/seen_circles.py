@@ -17,9 +17,9 @@ from bfsim.recording import StereoFrame
 from bfsim.run import THESIS_LDF
 from firmware import ROWS
 from firmware.buffers import buffers
-from firmware.circle_store import CIRCLE_WORDS
 from firmware.features import features
-from firmware.modes import Mode
+from firmware.stores.circles import CIRCLE_WORDS
+from firmware.strategy.modes import Mode
 
 SIDES = {"A": "left", "B": "right"}
 SHAPE_ROW = "Shape detection"

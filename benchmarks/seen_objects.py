@@ -14,18 +14,18 @@ from bfsim.api import Core, Firmware, FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, symbols_of
-from bfsim.machine.spi_protocol import decode, message_nbytes
+from bfsim.machine.spi.protocol import decode, message_nbytes
 from bfsim.recording import RecordingReader
 from bfsim.run import THESIS_LDF, calibration_of
 from firmware import ROWS
 from firmware.buffers import buffers, calibration_buffers
 from firmware.features import features
-from firmware.models import model_words
-from firmware.modes import INDOOR_FIELD, Mode
-from firmware.object_store import NO_MODEL, OBJECT_MODEL, OBJECT_WORDS
-from firmware.report import report
-from firmware.results import Results, decode_results
 from firmware.stages.object_detection import left_sight, object_detection, right_sight
+from firmware.stores.objects import NO_MODEL, OBJECT_MODEL, OBJECT_WORDS
+from firmware.strategy.models import model_words
+from firmware.strategy.modes import INDOOR_FIELD, Mode
+from firmware.strategy.report import report
+from firmware.strategy.results import Results, decode_results
 
 Records = NDArray[np.int16]
 """Rows of t_Object."""

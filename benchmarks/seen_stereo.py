@@ -17,13 +17,13 @@ from bfsim.recording import StereoFrame
 from bfsim.run import THESIS_LDF
 from firmware.buffers import buffers, calibration_buffers
 from firmware.exchange import share_lines
-from firmware.line3d_store import LINE3D_WORDS, LINE3D_X0, LINE3D_Z1
-from firmware.modes import Mode
 from firmware.stages.edge_detection import edge_detection
 from firmware.stages.line_detection import line_detection
 from firmware.stages.line_refinement import line_refinement
 from firmware.stages.rectification import rectification
 from firmware.stages.stereo_lines import stereo_lines
+from firmware.stores.lines3d import LINE3D_WORDS, LINE3D_X0, LINE3D_Z1
+from firmware.strategy.modes import Mode
 
 STAGES = ("Edge detection", "Line detection", "3-D lines")
 

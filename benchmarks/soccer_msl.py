@@ -27,10 +27,9 @@ from rich.table import Table
 from benchmarks.seen_objects import Records, Seen, see
 from bfsim.report.tables import new_table
 from bfsim.terminal import print_report
-from firmware.line_store import SUBPIXELS
-from firmware.models import MODELS, Shape, colour_groups
-from firmware.modes import INDOOR_FIELD, Mode
-from firmware.object_store import (
+from firmware.stages.blob_detection import hues
+from firmware.stores.lines import SUBPIXELS
+from firmware.stores.objects import (
     AREA_TEST,
     CENTRE_TEST,
     COLOUR_TEST,
@@ -40,7 +39,8 @@ from firmware.object_store import (
     OBJECT_TESTS,
     SIZE_TEST,
 )
-from firmware.stages.blob_detection import hues
+from firmware.strategy.models import MODELS, Shape, colour_groups
+from firmware.strategy.modes import INDOOR_FIELD, Mode
 
 BALL_CLASS = "0"
 BALL_MM = 220  # a football of size 5, the ball of RoboCup's middle-size league

@@ -5,15 +5,15 @@ from __future__ import annotations
 from bfsim.chip.dma_registers import Flow, WdSize
 from bfsim.errors import FirmwareError
 from bfsim.kernel import Kernel, Work, f32, i8, i16, i32, kernel, sqrt, u8, u16, u32
-from bfsim.machine.core import Core, Frame
-from bfsim.machine.dma_config import DmaConfig
-from bfsim.machine.dma_descriptors import write_descriptor
+from bfsim.machine.cameras.settling import CameraSettings
+from bfsim.machine.core.core import Core, Frame
+from bfsim.machine.core.readout import Readout
+from bfsim.machine.dma.config import DmaConfig
+from bfsim.machine.dma.descriptors import write_descriptor
+from bfsim.machine.dma.memory_dma import MemoryDma
+from bfsim.machine.dma.ring import InputRing, OutputRing
 from bfsim.machine.memories import Row
-from bfsim.machine.memory_dma import MemoryDma
 from bfsim.machine.program import Buffer, Buffers, Calibration, Firmware, FrameSize, Geometry, SourcePixels
-from bfsim.machine.readout import Readout
-from bfsim.machine.ring import InputRing, OutputRing
-from bfsim.machine.settling import CameraSettings
 from bfsim.seen import (
     Colour,
     Seen,

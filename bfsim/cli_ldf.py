@@ -77,9 +77,9 @@ def ldf(
       bfsim ldf my.ldf --picture my.png
     """
     from bfsim.mapping import map_memory
-    from bfsim.report.ldf_lint import lint
-    from bfsim.report.ldf_picture import format_of, picture_bytes
-    from bfsim.report.ldf_tables import ldf_json, ldf_report
+    from bfsim.report.ldf.lint import lint
+    from bfsim.report.ldf.picture import format_of, picture_bytes
+    from bfsim.report.ldf.tables import ldf_json, ldf_report
     from bfsim.report.save import require_place, write_bytes
 
     if picture:

@@ -67,7 +67,7 @@ def watching(*, show: bool, overlay: Path | None, mcap: Path | None) -> Iterator
         if show and not overlay:
             overlay = stack.enter_context(_lasting_folder()) / "overlay.gif"
         if overlay:
-            from bfsim.report.overlay_files import OverlayWriter
+            from bfsim.report.overlay.files import OverlayWriter
 
             watchers.append(stack.enter_context(OverlayWriter(overlay)).add)
         yield watchers

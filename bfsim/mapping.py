@@ -11,8 +11,8 @@ from bfsim.linker import LinkerScript, link
 from bfsim.loading import load_firmware
 from bfsim.machine.board import PROCESSORS, symbols_of
 from bfsim.machine.program import Buffer, Firmware, FrameSize
-from bfsim.report.ldf_layout import Memories, memory_map
-from bfsim.report.ldf_map import Kind, MemoryMap
+from bfsim.report.ldf.layout import Memories, memory_map
+from bfsim.report.ldf.map import Kind, MemoryMap
 from bfsim.run import read_placement
 
 

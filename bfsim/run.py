@@ -15,11 +15,11 @@ from bfsim.errors import ConfigError, RecordingError
 from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
 from bfsim.linker import LinkerScript, link, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
-from bfsim.machine.ahead import compiled_ahead
 from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
-from bfsim.machine.capture import Feed
+from bfsim.machine.bus.ahead import compiled_ahead
+from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.program import Calibration, FrameSize, SourcePixels
-from bfsim.machine.strategy import Script
+from bfsim.machine.spi.strategy import Script
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.seen import Seen, SeenFrame
 from bfsim.trace import Identity, RunRecord
@@ -112,7 +112,7 @@ def read_placement(ldf: Path | None, spec: BoardSpec) -> LinkerScript:
 def _read_strategy(path: Path | None, loaded: LoadedFirmware) -> Script:
     if path is None:
         return ()
-    from bfsim.machine.strategy_script import read_script  # pydantic takes its time
+    from bfsim.machine.spi.script import read_script  # pydantic takes its time
 
     return read_script(path, loaded.firmware.orders)
 

@@ -7,8 +7,8 @@ from firmware.buffers import buffers, calibration_buffers, one_core_buffers
 from firmware.core_a import core_a
 from firmware.core_b import core_b
 from firmware.one_core import one_core
-from firmware.orders import BY_NAME
-from firmware.view import view
+from firmware.strategy.orders import BY_NAME
+from firmware.view.view import view
 
 ROWS = (
     BudgetRow(stage="Edge detection", thesis_ms=87.0),  # T Table 6.4, average

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from bfsim.api import CameraSettings, Core, Frame, FrameSize
 from firmware.fields import allowed
-from firmware.line_store import SUBPIXELS
+from firmware.stores.lines import SUBPIXELS
 
 HALF_PIXEL = SUBPIXELS // 2
 LARGEST_PX = 4094  # twelve bits

@@ -9,12 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from bfsim.api import Buffer, Buffers, Calibration, FrameSize, i16, u8, u16, u32
-from firmware.edge_store import EDGE_CAPACITY
 from firmware.exchange import exchange_buffers
 from firmware.geometry import geometry_buffer, thesis_geometry_buffer
-from firmware.models import model_buffers
-from firmware.orders import order_buffers, shared_order_buffers
-from firmware.results import MESSAGE_WORDS
 from firmware.stages.blob_detection import blob_buffers
 from firmware.stages.circle_detection import circle_buffers
 from firmware.stages.hysteresis import hysteresis_buffers
@@ -28,6 +24,10 @@ from firmware.stages.rectangle_detection import rectangle_buffers
 from firmware.stages.rectification import rectification_buffers
 from firmware.stages.stereo_edges import stereo_edge_buffers
 from firmware.stages.stereo_lines import stereo_line_buffers
+from firmware.stores.edges import EDGE_CAPACITY
+from firmware.strategy.models import model_buffers
+from firmware.strategy.orders import order_buffers, shared_order_buffers
+from firmware.strategy.results import MESSAGE_WORDS
 from firmware.tables import arctangent_table
 
 CAMERA_FRAMES = 3  # one that is worked on, one that waits, one that is filled

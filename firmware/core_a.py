@@ -7,11 +7,11 @@ from typing import Any
 
 from bfsim.api import Core
 from firmware.features import features
-from firmware.orders import read_mode, see_by, take_orders
-from firmware.report import report
 from firmware.stages.object_detection import left_sight, object_detection
 from firmware.stages.stereo_edges import stereo_edges
 from firmware.stages.stereo_lines import stereo_lines
+from firmware.strategy.orders import read_mode, see_by, take_orders
+from firmware.strategy.report import report
 
 
 def core_a(core: Core) -> Generator[Any, Any, None]:

@@ -8,8 +8,8 @@ from typing import Any
 from bfsim.api import Core
 from firmware.exchange import share_edges, share_lines
 from firmware.features import features
-from firmware.orders import read_mode, see_by
 from firmware.stages.object_detection import right_sight
+from firmware.strategy.orders import read_mode, see_by
 
 
 def core_b(core: Core) -> Generator[Any, Any, None]:

@@ -11,10 +11,10 @@ from collections.abc import Generator, Sequence
 from typing import Any
 
 from bfsim.api import Buffer, Core, FrameSize, Row, i16, i32, kernel, u16, u32
-from firmware.edge_store import EDGE_CAPACITY
-from firmware.line_store import LINE_WORDS
-from firmware.results import load_word, store_word
 from firmware.stages.line_segments import SEGMENT_CAPACITY
+from firmware.stores.edges import EDGE_CAPACITY
+from firmware.stores.lines import LINE_WORDS
+from firmware.strategy.results import load_word, store_word
 
 SHARED = "l2_shared"
 

@@ -8,7 +8,6 @@ from typing import Any
 
 from bfsim.api import Core, Frame
 from firmware.areas import WHOLE_PICTURE, Area
-from firmware.modes import Mode
 from firmware.stages.blob_detection import blob_detection
 from firmware.stages.circle_detection import circle_detection
 from firmware.stages.edge_detection import edge_detection
@@ -18,6 +17,7 @@ from firmware.stages.object_detection import Outlines
 from firmware.stages.open_closing import open_closing
 from firmware.stages.rectangle_detection import rectangle_detection
 from firmware.stages.rectification import rectification
+from firmware.strategy.modes import Mode
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from enum import IntEnum
+from functools import cache
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 from bfsim.api import FirmwareError
@@ -78,12 +79,15 @@ def _words_of(kind: type, within: str) -> Iterator[Word]:
             yield _word(within, name, hint, limits)
 
 
-def _ordered(kind: type) -> Iterator[tuple[str, Any, Mapping[str, Any]]]:
-    """Yield name, type and limits of the fields that are words, or have them."""
+@cache
+def _ordered(kind: type) -> tuple[tuple[str, Any, Mapping[str, Any]], ...]:
+    """Return name, type and limits of the fields that are words, or have them."""
     hints = get_type_hints(kind)
-    for each in fields(kind):
-        if not each.metadata.get("not_ordered") and hints[each.name] is not str:
-            yield each.name, hints[each.name], each.metadata
+    return tuple(
+        (each.name, hints[each.name], each.metadata)
+        for each in fields(kind)
+        if not each.metadata.get("not_ordered") and hints[each.name] is not str
+    )
 
 
 def _word(within: str, name: str, hint: Any, limits: Mapping[str, Any]) -> Word:
@@ -137,7 +141,7 @@ def named_words(base: Any, names: object, at: str) -> list[int]:
 
     Whether they are allowed is not asked: that is the receiver's. Raises FirmwareError that names the field under `at`.
     """
-    parts = list(_ordered(type(base)))
+    parts = _ordered(type(base))
     known = [name for name, _, _ in parts]
     if isinstance(names, list | tuple):
         if len(names) != len(known):

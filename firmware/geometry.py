@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from bfsim.api import Buffer, FirmwareError, FrameSize, Geometry, i16, i32, kernel
-from firmware.line_store import SUBPIXELS
+from firmware.stores.lines import SUBPIXELS
 
 GEOMETRY_FOCAL = 0  # focal length, 1/16 px
 GEOMETRY_BASELINE = 1  # distance of the optical centres, µm

@@ -7,9 +7,9 @@ from typing import Any
 
 from bfsim.api import Core
 from firmware.features import features
-from firmware.orders import read_mode, see_by, take_orders
-from firmware.report import report
 from firmware.stages.object_detection import left_sight, remember
+from firmware.strategy.orders import read_mode, see_by, take_orders
+from firmware.strategy.report import report
 
 
 def one_core(core: Core) -> Generator[Any, Any, None]:

@@ -20,8 +20,8 @@ from bfsim.run import THESIS_LDF, calibration_of
 from bfsim.terminal import progress_bar
 from bfsim.trace import FrameRecord
 from firmware import tinyphoon
-from firmware.blob_store import BLOB_WORDS
-from firmware.line_store import LINE_WORDS, LINE_X0, LINE_Y1, SUBPIXELS
+from firmware.stores.blobs import BLOB_WORDS
+from firmware.stores.lines import LINE_WORDS, LINE_X0, LINE_Y1, SUBPIXELS
 
 Picture = NDArray[np.uint8]
 """Grey, `height` x `width`, or bytes U Y V Y, twice as wide."""

@@ -29,7 +29,7 @@ ROOMS = ("kernel", "machine")
 def _folder() -> Path:
     package = Path(__file__).parent.parent
     digest = hashlib.sha256()
-    for path in sorted(path for room in ROOMS for path in (package / room).glob("*.py")):
+    for path in sorted(path for room in ROOMS for path in (package / room).rglob("*.py")):
         digest.update(path.read_bytes())
     return store.folder() / f"compiled-{digest.hexdigest()[:24]}"
 

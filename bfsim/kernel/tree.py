@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cache
 
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, Value
 
@@ -233,10 +234,15 @@ class Function:
 
     def callees(self) -> tuple[Function, ...]:
         """Kernels that this one calls, directly or not, each once, callees first."""
-        found: dict[Function, None] = {}
-        for call in calls_in(self.body):
-            found.update(dict.fromkeys((*call.callee.callees(), call.callee)))
-        return tuple(found)
+        return _callees(self)
+
+
+@cache
+def _callees(function: Function) -> tuple[Function, ...]:
+    found: dict[Function, None] = {}
+    for call in calls_in(function.body):
+        found.update(dict.fromkeys((*call.callee.callees(), call.callee)))
+    return tuple(found)
 
 
 def calls_in(node: object) -> list[Call]:

@@ -1,1 +1,1 @@
-"""The simulated machine: one file per block of the chip's diagram; `board` wires them. Only here is SimPy used."""
+"""The simulated machine: a folder per block of the chip's diagram; `board` wires them. Only here is SimPy used."""

@@ -15,30 +15,30 @@ from bfsim.errors import DeadlockError, FirmwareError
 from bfsim.kernel import VDSP_O2, CompilerProfile
 from bfsim.kernel.followers import Follower
 from bfsim.linker import LinkMap, Symbol
-from bfsim.machine import bus_state as w
-from bfsim.machine.bus import Bus
-from bfsim.machine.caches import cached_parts, caches_of, check_caches
-from bfsim.machine.calls import CallBook
-from bfsim.machine.capture import Capture, Feed, Pair, StereoPictures
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.traffic import traffic_records
+from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches
+from bfsim.machine.calls.calls import CallBook
+from bfsim.machine.calls.conflicts import SubBanks
+from bfsim.machine.calls.fetch import CodeCache, CodeOutside
+from bfsim.machine.calls.records import kernel_records
+from bfsim.machine.cameras.capture import Capture, Feed, Pair, StereoPictures
+from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.code import code_outside_l1, code_records, code_symbols
-from bfsim.machine.conflicts import SubBanks
-from bfsim.machine.core import Core
-from bfsim.machine.detailed_bus import DetailedBus
-from bfsim.machine.dma_checks import DmaSpace
-from bfsim.machine.fetch import CodeCache, CodeOutside
-from bfsim.machine.interrupts import Interrupts
-from bfsim.machine.layouts import Layouts
-from bfsim.machine.mdma import MdmaStream
+from bfsim.machine.core.core import Core
+from bfsim.machine.core.interrupts import Interrupts
+from bfsim.machine.core.layouts import Layouts
+from bfsim.machine.core.synchronised import SharedObjects
+from bfsim.machine.detailed.bus import DetailedBus
+from bfsim.machine.dma.checks import DmaSpace
+from bfsim.machine.dma.mdma import MdmaStream
+from bfsim.machine.dma.memory_dma import Dma
 from bfsim.machine.memories import Memories, Row
-from bfsim.machine.memory_dma import Dma
-from bfsim.machine.ppi import Ppi
 from bfsim.machine.program import Buffer, Firmware, FrameSize
-from bfsim.machine.records import kernel_records
 from bfsim.machine.simulation import Simulation
-from bfsim.machine.spi import OUTSIDE_BYTES, Spi
-from bfsim.machine.strategy import Script, StrategyUnit
-from bfsim.machine.synchronised import SharedObjects
-from bfsim.machine.traffic import traffic_records
+from bfsim.machine.spi.spi import OUTSIDE_BYTES, Spi
+from bfsim.machine.spi.strategy import Script, StrategyUnit
 from bfsim.seen import Seen
 from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, MessageRecord, TrafficRecord
 

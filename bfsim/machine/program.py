@@ -15,8 +15,8 @@ from bfsim.seen import Seen
 from bfsim.trace import BudgetRow
 
 if TYPE_CHECKING:
-    from bfsim.machine.core import Core
-    from bfsim.machine.readout import Readout
+    from bfsim.machine.core.core import Core
+    from bfsim.machine.core.readout import Readout
 
 Main = Callable[["Core"], Generator[Any, Any, None]]
 

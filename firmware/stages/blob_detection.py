@@ -21,7 +21,9 @@ from operator import or_
 from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, FrameSize, i32, kernel, u8, u32
-from firmware.blob_store import (
+from firmware.fields import allowed, not_ordered
+from firmware.stages.colour_reduction import FIRST_HUE
+from firmware.stores.blobs import (
     BLOB_WORDS,
     COLOURS,
     PIXELS,
@@ -32,8 +34,6 @@ from firmware.blob_store import (
     move_segment,
     open_segment,
 )
-from firmware.fields import allowed, not_ordered
-from firmware.stages.colour_reduction import FIRST_HUE
 
 LABELS = 128  # 0 for no label; 4 KB of records
 RECYCLE_AT = 96  # so many taken: a row can still begin 31 segments

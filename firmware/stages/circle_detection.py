@@ -11,23 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel, u8, u16, u32
-from firmware.blob_store import BLOB_WORDS, PIXELS, SUM_X, SUM_Y
-from firmware.circle_store import (
-    CENTRE_PASSED,
-    CIRCLE_BLOB,
-    CIRCLE_CENTRE,
-    CIRCLE_EDGES,
-    CIRCLE_RADIUS,
-    CIRCLE_RADIUS_SHARE,
-    CIRCLE_TESTS,
-    CIRCLE_WORDS,
-    CIRCLE_X,
-    CIRCLE_Y,
-    RADIUS_PASSED,
-)
-from firmware.edge_store import EDGE_CAPACITY
 from firmware.fields import allowed
-from firmware.line_store import SUBPIXELS
 from firmware.scan_lines import window
 from firmware.stages.circle_edges import (
     AREA_WORDS,
@@ -45,6 +29,22 @@ from firmware.stages.circle_fit import CENTRE_X, CENTRE_Y, FIT_WORDS, RADIUS, fi
 from firmware.stages.circle_outline import LUMA_LINES, REACH_LINES, clear_points, luma_row, refine_row
 from firmware.stages.circle_radius import edges_round, fill_histogram, find_radius, mean_radius
 from firmware.stages.circle_votes import clear_votes, draw_lines, find_peak, mean_offset, votes_round
+from firmware.stores.blobs import BLOB_WORDS, PIXELS, SUM_X, SUM_Y
+from firmware.stores.circles import (
+    CENTRE_PASSED,
+    CIRCLE_BLOB,
+    CIRCLE_CENTRE,
+    CIRCLE_EDGES,
+    CIRCLE_RADIUS,
+    CIRCLE_RADIUS_SHARE,
+    CIRCLE_TESTS,
+    CIRCLE_WORDS,
+    CIRCLE_X,
+    CIRCLE_Y,
+    RADIUS_PASSED,
+)
+from firmware.stores.edges import EDGE_CAPACITY
+from firmware.stores.lines import SUBPIXELS
 from firmware.tables import tangent_table
 
 CIRCLE_CAPACITY = 64  # 1 KB; as many as there are blobs in the modes

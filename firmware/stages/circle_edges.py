@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from bfsim.api import i32, kernel, u8, u16, u32
 from firmware.arithmetic import angle8
-from firmware.blob_store import ACROSS, BLOB_WORDS, CENTRE, COLOURS, DOWN
 from firmware.stages.line_segments import turn_between
+from firmware.stores.blobs import ACROSS, BLOB_WORDS, CENTRE, COLOURS, DOWN
 
 NONE = -1
 

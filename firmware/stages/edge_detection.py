@@ -12,11 +12,11 @@ from typing import Any, Literal
 
 from bfsim.api import Core, Frame, i16, i32, kernel, u8, u32
 from firmware.arithmetic import angle8, isqrt32
-from firmware.edge_store import EDGE_CAPACITY, store_edges_row
 from firmware.fields import allowed
 from firmware.scan_lines import line_ring, window
 from firmware.stages.colour_reduction import colour_row
 from firmware.stages.hysteresis import LABELS, EdgeGroups, hysteresis
+from firmware.stores.edges import EDGE_CAPACITY, store_edges_row
 
 # Making room takes a pass over the store. It is worth it again when so many edges have come since.
 ROOM_WORTH_A_PASS = EDGE_CAPACITY // 8

@@ -7,7 +7,6 @@ they take the nearest. The last segment of the table fills the place of one that
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel, u8
-from firmware.line_store import LINE_AHEAD, LINE_BEHIND, LINE_WORDS
 from firmware.stages.line_fit import fit_line
 from firmware.stages.line_segments import (
     DIRECTION,
@@ -26,6 +25,7 @@ from firmware.stages.line_segments import (
     copy_segment,
     turn_between,
 )
+from firmware.stores.lines import LINE_AHEAD, LINE_BEHIND, LINE_WORDS
 
 
 @kernel

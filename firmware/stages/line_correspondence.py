@@ -8,8 +8,8 @@ best with the line's own: the ends of a whole line lie in the same rows of both 
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel
-from firmware.line_store import LINE_ANGLE, LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1
 from firmware.stages.line_segments import NONE, turn_between
+from firmware.stores.lines import LINE_ANGLE, LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1
 
 SLOPE_BITS = 12
 LEVEL = -(1 << 31)

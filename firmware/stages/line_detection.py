@@ -11,7 +11,6 @@ from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, FrameSize, i16, i32, kernel, u8
 from firmware.fields import allowed
-from firmware.line_store import LINE_WORDS
 from firmware.stages.line_connectors import connect_far, connect_near
 from firmware.stages.line_fit import fit_line
 from firmware.stages.line_scan import segments_row
@@ -23,6 +22,7 @@ from firmware.stages.line_segments import (
     clear_segments,
     keep_segments,
 )
+from firmware.stores.lines import LINE_WORDS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

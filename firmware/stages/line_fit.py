@@ -4,19 +4,6 @@ from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel, u8
 from firmware.arithmetic import angle8
-from firmware.line_store import (
-    LINE_AHEAD,
-    LINE_ANGLE,
-    LINE_BEHIND,
-    LINE_EDGES,
-    LINE_PROBABILITY,
-    LINE_WORDS,
-    LINE_X0,
-    LINE_X1,
-    LINE_Y0,
-    LINE_Y1,
-    SUBPIXELS,
-)
 from firmware.stages.line_segments import (
     EDGES,
     END_X,
@@ -29,6 +16,19 @@ from firmware.stages.line_segments import (
     SUM_XY,
     SUM_Y,
     SUM_YY,
+)
+from firmware.stores.lines import (
+    LINE_AHEAD,
+    LINE_ANGLE,
+    LINE_BEHIND,
+    LINE_EDGES,
+    LINE_PROBABILITY,
+    LINE_WORDS,
+    LINE_X0,
+    LINE_X1,
+    LINE_Y0,
+    LINE_Y1,
+    SUBPIXELS,
 )
 
 HALF_PIXEL = SUBPIXELS // 2

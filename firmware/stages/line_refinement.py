@@ -16,9 +16,9 @@ from typing import Any
 
 from bfsim.api import Core, Frame, i16, i32, kernel, u8
 from firmware.fields import allowed
-from firmware.line_store import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
 from firmware.stages.line_fit import SLOPE_BITS, slope, spread, store_ends
 from firmware.stages.line_segments import SEGMENT_WORDS
+from firmware.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
 
 # What is summed up of a line, in words of the place of its segment.
 FIRST_ROW = 0  # the rows to look at, none if the last is above the first

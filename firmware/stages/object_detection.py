@@ -12,18 +12,18 @@ from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel
 from firmware.fields import allowed
-from firmware.line_store import SUBPIXELS
-from firmware.object_store import (
+from firmware.stages.object_history import age_objects, remember_objects
+from firmware.stages.object_sight import see_objects
+from firmware.stages.object_tests import LIMIT_WORDS
+from firmware.stages.object_verification import verify_objects
+from firmware.stores.lines import SUBPIXELS
+from firmware.stores.objects import (
     OBJECT_CAPACITY,
     OBJECT_WORDS,
     SEEN_CAPACITY,
     SEEN_LEFT,
     SEEN_RIGHT,
 )
-from firmware.stages.object_history import age_objects, remember_objects
-from firmware.stages.object_sight import see_objects
-from firmware.stages.object_tests import LIMIT_WORDS
-from firmware.stages.object_verification import verify_objects
 
 LARGEST_ACCURACY = 255
 

@@ -7,7 +7,7 @@ bearing, which is known of all. What is not seen any more stays with its age unt
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel
-from firmware.object_store import (
+from firmware.stores.objects import (
     NO_MODEL,
     OBJECT_AGE,
     OBJECT_MODEL,

@@ -28,7 +28,7 @@ from firmware.geometry import (
     SINE_BITS,
     beside_mm,
 )
-from firmware.object_store import (
+from firmware.stores.objects import (
     DIRECTION_Z,
     OBJECT_IMAGE_X,
     OBJECT_IMAGE_Y,

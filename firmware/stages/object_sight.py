@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel, u32
-from firmware.blob_store import ACROSS, BLOB_WORDS, DOWN
-from firmware.circle_store import CIRCLE_BLOB, CIRCLE_RADIUS, CIRCLE_WORDS, CIRCLE_X, CIRCLE_Y
 from firmware.geometry import GEOMETRY_COSINE, GEOMETRY_SHIFT_Y, GEOMETRY_SINE, SINE_BITS, beside_mm
-from firmware.line_store import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
-from firmware.models import (
-    MODEL_FLOOR,
-    MODEL_HEIGHT,
-    MODEL_NUMBER,
-    MODEL_SHAPE,
-    MODEL_WIDTH,
-    MODEL_WORDS,
+from firmware.stages.object_places import (
+    HALF_PIXEL,
+    depth_by_floor,
+    depth_by_size,
+    depth_of_sphere,
+    floor_extent,
+    place_object,
+    principal,
 )
-from firmware.object_store import (
+from firmware.stages.object_tests import (
+    BALL,
+    REFINED,
+    accuracy_of,
+    extent_of,
+    is_cut,
+    tests_passed,
+)
+from firmware.stages.rectangle_detection import crossing
+from firmware.stores.blobs import ACROSS, BLOB_WORDS, DOWN
+from firmware.stores.circles import CIRCLE_BLOB, CIRCLE_RADIUS, CIRCLE_WORDS, CIRCLE_X, CIRCLE_Y
+from firmware.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
+from firmware.stores.objects import (
     BY_FLOOR,
     BY_SIZE,
     DIMENSION_TEST,
@@ -39,25 +49,15 @@ from firmware.object_store import (
     SIZE_TEST,
     free_objects,
 )
-from firmware.rectangle_store import NO_LINE, RECTANGLE_BLOB, RECTANGLE_BOTTOM, RECTANGLE_WORDS
-from firmware.stages.object_places import (
-    HALF_PIXEL,
-    depth_by_floor,
-    depth_by_size,
-    depth_of_sphere,
-    floor_extent,
-    place_object,
-    principal,
+from firmware.stores.rectangles import NO_LINE, RECTANGLE_BLOB, RECTANGLE_BOTTOM, RECTANGLE_WORDS
+from firmware.strategy.models import (
+    MODEL_FLOOR,
+    MODEL_HEIGHT,
+    MODEL_NUMBER,
+    MODEL_SHAPE,
+    MODEL_WIDTH,
+    MODEL_WORDS,
 )
-from firmware.stages.object_tests import (
-    BALL,
-    REFINED,
-    accuracy_of,
-    extent_of,
-    is_cut,
-    tests_passed,
-)
-from firmware.stages.rectangle_detection import crossing
 
 MODEL_SHIFT = 8
 TESTS_MASK = (1 << MODEL_SHIFT) - 1

@@ -7,11 +7,27 @@ one that is tried. Each one passed adds its weight to the accuracy.
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel, u32
-from firmware.blob_store import ACROSS, BLOB_WORDS, COLOURS, DOWN, PIXELS
-from firmware.circle_store import CENTRE_PASSED, CIRCLE_TESTS, CIRCLE_WORDS, RADIUS_PASSED
 from firmware.geometry import GEOMETRY_FOCAL, GEOMETRY_SHIFT_Y
-from firmware.line_store import SUBPIXELS
-from firmware.models import (
+from firmware.stages.object_places import HALF_PIXEL, depth_by_floor, principal
+from firmware.stores.blobs import ACROSS, BLOB_WORDS, COLOURS, DOWN, PIXELS
+from firmware.stores.circles import CENTRE_PASSED, CIRCLE_TESTS, CIRCLE_WORDS, RADIUS_PASSED
+from firmware.stores.lines import SUBPIXELS
+from firmware.stores.objects import (
+    AREA_TEST,
+    CENTRE_TEST,
+    COLOUR_TEST,
+    DIMENSION_TEST,
+    NO_OUTLINE,
+    SIZE_TEST,
+)
+from firmware.stores.rectangles import (
+    NO_LINE,
+    RECTANGLE_BOTTOM,
+    RECTANGLE_LEFT,
+    RECTANGLE_RIGHT,
+    RECTANGLE_WORDS,
+)
+from firmware.strategy.models import (
     ASPECT_UNITS,
     MODEL_ASPECT_MAX,
     MODEL_ASPECT_MIN,
@@ -21,22 +37,6 @@ from firmware.models import (
     MODEL_SHAPE,
     Shape,
 )
-from firmware.object_store import (
-    AREA_TEST,
-    CENTRE_TEST,
-    COLOUR_TEST,
-    DIMENSION_TEST,
-    NO_OUTLINE,
-    SIZE_TEST,
-)
-from firmware.rectangle_store import (
-    NO_LINE,
-    RECTANGLE_BOTTOM,
-    RECTANGLE_LEFT,
-    RECTANGLE_RIGHT,
-    RECTANGLE_WORDS,
-)
-from firmware.stages.object_places import HALF_PIXEL, depth_by_floor, principal
 
 BALL = int(Shape.BALL)  # kernels know integers
 

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel
 from firmware.geometry import GEOMETRY_BASELINE, MICROMETRES, depth_mm
-from firmware.line_store import SUBPIXELS
-from firmware.object_store import (
+from firmware.stages.object_places import HALF_PIXEL
+from firmware.stores.lines import SUBPIXELS
+from firmware.stores.objects import (
     BY_DISPARITY,
     NO_MODEL,
     OBJECT_ACCURACY,
@@ -31,7 +32,6 @@ from firmware.object_store import (
     SIZE_TEST,
     VERIFIED,
 )
-from firmware.stages.object_places import HALF_PIXEL
 
 NOBODY = -1
 LARGEST_ACCURACY = 255

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from bfsim.api import Buffer, Core, i16, i32, kernel, u32
-from firmware.blob_store import ACROSS, BLOB_WORDS, COLOURS, DOWN
 from firmware.fields import allowed
-from firmware.line_store import LINE_WORDS, LINE_X0, LINE_X1, SUBPIXELS
-from firmware.rectangle_store import (
+from firmware.stores.blobs import ACROSS, BLOB_WORDS, COLOURS, DOWN
+from firmware.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, SUBPIXELS
+from firmware.stores.rectangles import (
     NO_LINE,
     RECTANGLE_BLOB,
     RECTANGLE_BOTTOM,

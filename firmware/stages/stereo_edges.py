@@ -15,10 +15,10 @@ from typing import Any
 from bfsim.api import Buffer, Core, Frame, i16, i32, kernel, u16, u32
 from firmware.fields import allowed
 from firmware.geometry import store_point
-from firmware.line3d_store import EDGE3D_CAPACITY, EDGE3D_LEFT, EDGE3D_WORDS, EDGE3D_X
-from firmware.line_store import SUBPIXELS
 from firmware.stages.line_segments import NONE, turn_between
 from firmware.stages.stereo_lines import Correspondence
+from firmware.stores.lines import SUBPIXELS
+from firmware.stores.lines3d import EDGE3D_CAPACITY, EDGE3D_LEFT, EDGE3D_WORDS, EDGE3D_X
 
 DISPARITY_BITS = 12
 

@@ -15,10 +15,10 @@ from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel, u32
 from firmware.exchange import copy_words, shared_count, words_of
 from firmware.fields import allowed
 from firmware.geometry import store_point
-from firmware.line3d_store import LINE3D_LEFT, LINE3D_RIGHT, LINE3D_WORDS, LINE3D_X0, LINE3D_X1
-from firmware.line_store import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1
 from firmware.stages.line_correspondence import LEVEL, best_line, column_at, line_slopes, nearest_line
 from firmware.stages.line_segments import NONE, SEGMENT_CAPACITY
+from firmware.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1
+from firmware.stores.lines3d import LINE3D_LEFT, LINE3D_RIGHT, LINE3D_WORDS, LINE3D_X0, LINE3D_X1
 
 
 class Correspondence(IntEnum):

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from firmware.blob_store import BLOB_WORDS
-from firmware.circle_store import CIRCLE_WORDS
-from firmware.modes import INDOOR_FIELD
 from firmware.stages.blob_detection import LABELS, hues
 from firmware.stages.circle_detection import CircleThresholds, circle_buffers, circle_detection
+from firmware.stores.blobs import BLOB_WORDS
+from firmware.stores.circles import CIRCLE_WORDS
+from firmware.strategy.modes import INDOOR_FIELD
 from firmware.tables import arctangent_table
 from tests.firmware import references
 from tests.firmware.blob_references import segments

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from bfsim.api import FrameSize
-from firmware.edge_store import EDGE_CAPACITY
-from firmware.line_store import LINE_WORDS
-from firmware.modes import INDOOR_FIELD
 from firmware.stages.hysteresis import LABELS
 from firmware.stages.line_detection import LineThresholds, line_buffers, line_detection
 from firmware.stages.line_segments import SEGMENT_CAPACITY, SEGMENT_WORDS
+from firmware.stores.edges import EDGE_CAPACITY
+from firmware.stores.lines import LINE_WORDS
+from firmware.strategy.modes import INDOOR_FIELD
 from firmware.tables import arctangent_table
 from tests.firmware import edge_references, references
 from tests.firmware.line_references import Row

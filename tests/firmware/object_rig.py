@@ -9,13 +9,13 @@ import numpy as np
 from hypothesis import strategies as st
 
 from bfsim.recording import StereoGeometry
-from firmware import object_store
-from firmware.circle_store import CIRCLE_WORDS
 from firmware.geometry import geometry_buffer
-from firmware.models import MODELS, ObjectModel, model_words
-from firmware.modes import INDOOR_FIELD
-from firmware.object_store import OBJECT_WORDS
-from firmware.rectangle_store import RECTANGLE_WORDS
+from firmware.stores import objects as object_store
+from firmware.stores.circles import CIRCLE_WORDS
+from firmware.stores.objects import OBJECT_WORDS
+from firmware.stores.rectangles import RECTANGLE_WORDS
+from firmware.strategy.models import MODELS, ObjectModel, model_words
+from firmware.strategy.modes import INDOOR_FIELD
 
 WIDTH, HEIGHT = 320, 240
 THRESHOLDS = INDOOR_FIELD.objects

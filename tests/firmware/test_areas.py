@@ -13,15 +13,15 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.chip.sensors import LEFT_CAMERA, RIGHT_CAMERA
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, Outcome, symbols_of
-from bfsim.machine.settling import settled
-from bfsim.machine.skipping import skipped
-from bfsim.machine.spi_protocol import MessageType
-from bfsim.machine.strategy import ScriptedMessage
+from bfsim.machine.cameras.settling import settled
+from bfsim.machine.cameras.skipping import skipped
+from bfsim.machine.spi.protocol import MessageType
+from bfsim.machine.spi.strategy import ScriptedMessage
 from bfsim.recording import StereoFrame
 from bfsim.run import PLACEMENTS, THESIS_LDF
 from firmware import tinyphoon
 from firmware.areas import Area, area_in, principal_shift
-from firmware.orders import mode_payload
+from firmware.strategy.orders import mode_payload
 from tests.firmware.lenses import rectified
 from tests.firmware.pictures import Bytes
 from tests.firmware.test_rectification import tables

@@ -15,8 +15,6 @@ from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
-from firmware.blob_store import BLOB_WORDS
-from firmware.modes import INDOOR_FIELD
 from firmware.stages.blob_detection import (
     LABELS,
     RECYCLE_AT,
@@ -24,6 +22,8 @@ from firmware.stages.blob_detection import (
     blob_buffers,
     blob_detection,
 )
+from firmware.stores.blobs import BLOB_WORDS
+from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware import references
 from tests.firmware.blob_references import labelled, segments
 from tests.firmware.colour_pictures import (

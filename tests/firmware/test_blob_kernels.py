@@ -13,7 +13,6 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from firmware.blob_store import BLOB_WORDS, add_run, add_segment, close_blob, move_segment, open_segment
 from firmware.stages.blob_detection import (
     COLOUR_GROUPS,
     LABELS,
@@ -30,6 +29,7 @@ from firmware.stages.blob_detection import (
     store_group,
     unite_segments,
 )
+from firmware.stores.blobs import BLOB_WORDS, add_run, add_segment, close_blob, move_segment, open_segment
 from tests.firmware import references
 from tests.firmware.blob_references import Blob, labelled, segments
 from tests.firmware.colour_pictures import (

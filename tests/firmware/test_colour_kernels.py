@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from firmware.modes import INDOOR_FIELD
 from firmware.stages.colour_reduction import BLACK, WHITE, colour_row
 from firmware.stages.open_closing import dilate_row, erode_row
+from firmware.strategy.modes import INDOOR_FIELD
 from firmware.tables import arctangent_table
 from tests.firmware import references
 from tests.firmware.pictures import WIDTHS, Bytes, random_uyvy

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from firmware.arithmetic import isqrt32
-from firmware.edge_store import store_edges_row
 from firmware.stages.edge_detection import (
     direction_row,
     gauss3_row,
@@ -21,6 +20,7 @@ from firmware.stages.edge_detection import (
     sobel_row,
     suppress_row,
 )
+from firmware.stores.edges import store_edges_row
 from firmware.tables import arctangent_table
 from tests.firmware import references
 from tests.firmware.pictures import WIDTHS, Bytes, random_uyvy, three_rows

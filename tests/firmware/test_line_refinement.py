@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from firmware.line_store import LINE_WORDS
-from firmware.modes import INDOOR_FIELD
 from firmware.stages.line_refinement import begin_sums, look_at_row, refine_lines
 from firmware.stages.line_segments import SEGMENT_WORDS
+from firmware.stores.lines import LINE_WORDS
+from firmware.strategy.modes import INDOOR_FIELD
 from firmware.tables import arctangent_table
 from tests.firmware import refinement_references as references
 from tests.firmware.line_rig import edges_of, find_lines

@@ -10,7 +10,7 @@ import pytest
 
 from benchmarks.quality.seen import see_pictures
 from benchmarks.table_6_1 import SQUARES, differences, sides, squares_picture, turned_squares
-from firmware.modes import INDOOR_FIELD
+from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware.line_references import Row
 from tests.firmware.line_rig import edge_across, edges_of, find_lines
 from tests.firmware.pictures import random_uyvy

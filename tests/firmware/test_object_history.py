@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from firmware.object_store import NO_MODEL
 from firmware.stages.object_history import age_objects, remember_objects
+from firmware.stores.objects import NO_MODEL
 from tests.firmware import object_references as references
 from tests.firmware.object_rig import THRESHOLDS, as_dicts, object_words
 

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from bfsim.recording import StereoGeometry
 from firmware.geometry import FARTHEST_MM
-from firmware.object_store import DIRECTION_Z
 from firmware.stages.object_places import (
     depth_by_floor,
     depth_by_size,
@@ -20,6 +19,7 @@ from firmware.stages.object_places import (
     place_object,
     principal,
 )
+from firmware.stores.objects import DIRECTION_Z
 from tests.firmware.object_rig import HEIGHT, WIDTH, as_dicts, geometries, geometry_words, object_words
 
 

@@ -11,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.recording import StereoGeometry
-from firmware.models import BLUE, MODELS, RED, YELLOW
-from firmware.object_store import (
+from firmware.stages.object_detection import ObjectThresholds
+from firmware.stages.object_sight import place_for, see_objects
+from firmware.stores.objects import (
     AREA_TEST,
     BY_FLOOR,
     BY_SIZE,
@@ -23,8 +24,7 @@ from firmware.object_store import (
     SEEN_LEFT,
     SIZE_TEST,
 )
-from firmware.stages.object_detection import ObjectThresholds
-from firmware.stages.object_sight import place_for, see_objects
+from firmware.strategy.models import BLUE, MODELS, RED, YELLOW
 from tests.firmware import object_references as references
 from tests.firmware.object_rig import (
     HEIGHT,

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from firmware.object_store import (
+from firmware.stages.object_verification import verify_objects
+from firmware.stores.objects import (
     BY_DISPARITY,
     BY_FLOOR,
     BY_SIZE,
@@ -16,7 +17,6 @@ from firmware.object_store import (
     SIZE_TEST,
     VERIFIED,
 )
-from firmware.stages.object_verification import verify_objects
 from tests.firmware import object_references as references
 from tests.firmware.object_rig import THESIS, THRESHOLDS, as_dicts, geometry_words, object_words
 

@@ -10,9 +10,7 @@ import pytest
 from benchmarks.scenes import place_of
 from benchmarks.seen_objects import Seen, see
 from bfsim.run import BUILT_IN_RECORDING, simulate
-from firmware.models import MODELS, Shape
-from firmware.modes import INDOOR_FIELD, PLAIN_CIRCLES
-from firmware.object_store import (
+from firmware.stores.objects import (
     BY_DISPARITY,
     BY_FLOOR,
     BY_SIZE,
@@ -21,7 +19,9 @@ from firmware.object_store import (
     SEEN_RIGHT,
     VERIFIED,
 )
-from firmware.results import SeenObject
+from firmware.strategy.models import MODELS, Shape
+from firmware.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES
+from firmware.strategy.results import SeenObject
 
 NUMBERS = {each.shape: each.number for each in MODELS if each.name != "yellow goal"}
 THESIS_MS = 1.0  # T Table 6.4

@@ -15,15 +15,15 @@ from bfsim.api import FirmwareError, FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, Outcome, symbols_of
-from bfsim.machine.spi_protocol import Message, MessageError, MessageType, decode, encode
-from bfsim.machine.strategy import ScriptedBytes, ScriptedMessage
+from bfsim.machine.spi.protocol import Message, MessageError, MessageType, decode, encode
+from bfsim.machine.spi.strategy import ScriptedBytes, ScriptedMessage
 from bfsim.run import THESIS_LDF
-from firmware import order_checks as checks
 from firmware import tinyphoon
 from firmware.fields import from_words, to_words
-from firmware.models import MODELS, ObjectModel, Shape, check_models, model_words
-from firmware.modes import INDOOR_FIELD, Mode
-from firmware.order_checks import (
+from firmware.strategy import order_checks as checks
+from firmware.strategy.models import MODELS, ObjectModel, Shape, check_models, model_words
+from firmware.strategy.modes import INDOOR_FIELD, Mode
+from firmware.strategy.order_checks import (
     WHICH_BIT,
     frame_refusal,
     models_refusal,
@@ -31,8 +31,8 @@ from firmware.order_checks import (
     store_order,
     words_refusal,
 )
-from firmware.order_texts import refusal_text
-from firmware.orders import (
+from firmware.strategy.order_texts import refusal_text
+from firmware.strategy.orders import (
     AREA,
     CAMERA,
     MESSAGE_WORDS,
@@ -44,7 +44,7 @@ from firmware.orders import (
     payload,
     shared_order_buffers,
 )
-from firmware.results import decode_results
+from firmware.strategy.results import decode_results
 from tests.firmware.whole_pictures import buffer, random_frames
 
 FULL = FrameSize(320, 240)

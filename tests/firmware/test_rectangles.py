@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from firmware.line_store import LINE_WORDS
-from firmware.models import BLUE, YELLOW
-from firmware.modes import INDOOR_FIELD
-from firmware.rectangle_store import NO_LINE, RECTANGLE_CAPACITY, RECTANGLE_WORDS
 from firmware.stages.rectangle_detection import find_rectangles, rectangle_buffers, rectangle_detection
+from firmware.stores.lines import LINE_WORDS
+from firmware.stores.rectangles import NO_LINE, RECTANGLE_CAPACITY, RECTANGLE_WORDS
+from firmware.strategy.models import BLUE, YELLOW
+from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware import object_references as references
 from tests.firmware.line_rig import BareCore
 from tests.firmware.object_rig import blob_words

@@ -11,12 +11,12 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from bfsim.api import FirmwareError
-from bfsim.machine.spi_protocol import SYNC, Message, MessageType, decode, encode, message_nbytes
-from firmware import results
-from firmware.models import MODELS
-from firmware.object_store import BY_FLOOR, NO_OUTLINE, OBJECT_CAPACITY
-from firmware.rectangle_store import NO_LINE
-from firmware.results import (
+from bfsim.machine.spi.protocol import SYNC, Message, MessageType, decode, encode, message_nbytes
+from firmware.stores.objects import BY_FLOOR, NO_OUTLINE, OBJECT_CAPACITY
+from firmware.stores.rectangles import NO_LINE
+from firmware.strategy import results
+from firmware.strategy.models import MODELS
+from firmware.strategy.results import (
     COUNTS_WORDS,
     LINE_CAPACITY,
     MESSAGE_WORDS,

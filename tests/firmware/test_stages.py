@@ -15,9 +15,9 @@ from bfsim.errors import LinkError
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING, calibration_of
 from firmware import tinyphoon
-from firmware.edge_store import EDGE_CAPACITY
-from firmware.modes import INDOOR_FIELD
 from firmware.stages.edge_detection import edge_detection
+from firmware.stores.edges import EDGE_CAPACITY
+from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware.lenses import rectified
 from tests.firmware.pictures import EXTREMES
 from tests.firmware.whole_pictures import (

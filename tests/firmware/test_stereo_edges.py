@@ -14,11 +14,11 @@ from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
 from firmware.exchange import copy_words, pack_edge_rows
 from firmware.geometry import GEOMETRY_WORDS
-from firmware.line3d_store import EDGE3D_CAPACITY, EDGE3D_WORDS
-from firmware.line_store import LINE_WORDS
-from firmware.modes import INDOOR_FIELD
 from firmware.stages.stereo_edges import StereoEdgeThresholds, is_level, stereo_edges_row, take_right_row
 from firmware.stages.stereo_lines import Correspondence
+from firmware.stores.lines import LINE_WORDS
+from firmware.stores.lines3d import EDGE3D_CAPACITY, EDGE3D_WORDS
+from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware.stereo_references import Edge, EdgeLimits, Rig, edges_3d
 from tests.firmware.whole_pictures import buffer, random_frames, run, stereo
 

@@ -16,11 +16,11 @@ from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
 from firmware.arithmetic import angle8
 from firmware.geometry import GEOMETRY_WORDS
-from firmware.line3d_store import LINE3D_WORDS
-from firmware.line_store import LINE_WORDS
-from firmware.modes import INDOOR_FIELD
 from firmware.stages.line_correspondence import line_slopes
 from firmware.stages.stereo_lines import Correspondence, StereoLineThresholds, mutual_lines, nearest_lines
+from firmware.stores.lines import LINE_WORDS
+from firmware.stores.lines3d import LINE3D_WORDS
+from firmware.strategy.modes import INDOOR_FIELD
 from firmware.tables import arctangent_table
 from tests.firmware import stereo_references as references
 from tests.firmware.stereo_references import Line3D, Rig, Words

@@ -15,15 +15,16 @@ from bfsim.recording import RecordingReader
 from bfsim.report.digest import cycle_digest
 from bfsim.run import BUILT_IN_RECORDING, simulate
 from bfsim.seen import SeenFrame, Solid
-from firmware import models, object_store
 from firmware.areas import Area
-from firmware.circle_store import CENTRE_PASSED, RADIUS_PASSED
 from firmware.fields import to_words
-from firmware.modes import INDOOR_FIELD, Mode
 from firmware.stages.blob_detection import hues
 from firmware.stages.colour_reduction import BLACK, WHITE
-from firmware.view import view
-from firmware.view_colours import colour_of
+from firmware.stores import objects as object_store
+from firmware.stores.circles import CENTRE_PASSED, RADIUS_PASSED
+from firmware.strategy import models
+from firmware.strategy.modes import INDOOR_FIELD, Mode
+from firmware.view.colours import colour_of
+from firmware.view.view import view
 
 FRAMES = 2
 

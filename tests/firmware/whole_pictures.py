@@ -15,15 +15,15 @@ from bfsim.machine.program import FrameSize
 from bfsim.recording import StereoFrame
 from bfsim.run import THESIS_LDF
 from firmware import tinyphoon
-from firmware.blob_store import BLOB_WORDS
-from firmware.edge_store import EDGE_CAPACITY
-from firmware.line_store import LINE_WORDS
-from firmware.modes import INDOOR_FIELD
 from firmware.stages.blob_detection import LABELS as BLOB_LABELS
 from firmware.stages.blob_detection import RECYCLE_AT
 from firmware.stages.edge_detection import ROOM_WORTH_A_PASS, EdgeThresholds
 from firmware.stages.hysteresis import LABELS
 from firmware.stages.line_segments import SEGMENT_CAPACITY
+from firmware.stores.blobs import BLOB_WORDS
+from firmware.stores.edges import EDGE_CAPACITY
+from firmware.stores.lines import LINE_WORDS
+from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware import (
     blob_references,
     edge_references,

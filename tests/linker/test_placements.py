@@ -8,8 +8,8 @@ from itertools import pairwise
 import pytest
 
 from bfsim.mapping import map_memory
-from bfsim.report.ldf_lint import lint
-from bfsim.report.ldf_map import Kind, MemoryMap
+from bfsim.report.ldf.lint import lint
+from bfsim.report.ldf.map import Kind, MemoryMap
 from bfsim.run import THESIS_LDF
 
 FOLDER = THESIS_LDF.parent

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from bfsim.chip.dma_channels import BF561_CHANNELS
 from bfsim.chip.memory_map import CM_BF561_REGIONS, KIB, Region
-from bfsim.machine.dma_channel import DmaChannel
-from bfsim.machine.dma_checks import DmaSpace
+from bfsim.machine.dma.channel import DmaChannel
+from bfsim.machine.dma.checks import DmaSpace
 
 SDRAM, L1_A, L2, SCRATCH = 0x0000_1000, 0xFF80_0000, 0xFEB0_0000, 0xFFB0_0000
 DESCRIPTORS = 0xFF90_0000

@@ -20,12 +20,12 @@ from bfsim.chip.sensors import LEFT_CAMERA
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import Kernel, followers
 from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
-from bfsim.machine import bus_state as w
 from bfsim.machine.board import Board, Outcome, symbols_of
-from bfsim.machine.bus import Bus, Transfer
-from bfsim.machine.capture import Feed
-from bfsim.machine.core import BUS_STALLS
-from bfsim.machine.mdma import MdmaStream
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.bus import Bus, Transfer
+from bfsim.machine.cameras.capture import Feed
+from bfsim.machine.core.core import BUS_STALLS
+from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.program import Main
 from bfsim.machine.simulation import END_OF_TIME, Simulation

@@ -15,9 +15,9 @@ from random import Random
 
 from bfsim.chip.boards import board_named
 from bfsim.kernel.followers import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
-from bfsim.machine import bus_state as w
-from bfsim.machine import core_requests, dma_requests
-from bfsim.machine.bus import Pace, Plan, Transfer, Walk
+from bfsim.machine.bus import core_requests, dma_requests
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.bus import Pace, Plan, Transfer, Walk
 from tests.machine.rig import Bench, Call, Play
 
 SDRAM_PLACES = (0x0000_1000, 0x0000_1F00, 0x0000_8000, 0x0080_1000, 0x0100_0700)

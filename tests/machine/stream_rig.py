@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from bfsim.api import Buffer, u8, u16
 from bfsim.chip.dma_registers import Flow
-from bfsim.machine.dma_config import DmaConfig
-from bfsim.machine.dma_descriptors import write_descriptor
+from bfsim.machine.dma.config import DmaConfig
+from bfsim.machine.dma.descriptors import write_descriptor
 from tests.machine.made_boards import CCLK_PER_SCLK, CHIP
 
 DMA = CHIP.dma

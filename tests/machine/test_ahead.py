@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from bfsim.machine import ahead
-from bfsim.machine.weave import advance
+from bfsim.machine.bus import ahead
+from bfsim.machine.bus.weave import advance
 from bfsim.run import simulate
 
 

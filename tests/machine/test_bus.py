@@ -11,8 +11,8 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
 from bfsim.kernel.followers import LOAD, STORE
-from bfsim.machine import bus_state as w
-from bfsim.machine.bus import Pace, Transfer, Walk
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.bus import Pace, Transfer, Walk
 from bfsim.trace import StallReason
 from tests.machine.rig import Bench, Call
 

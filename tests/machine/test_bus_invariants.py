@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bfsim.machine import bus_state as w
+from bfsim.machine.bus import state as w
 from tests.machine.rig import Bench
 from tests.machine.scenarios import Scene
 

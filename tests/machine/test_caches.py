@@ -16,8 +16,8 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.errors import FirmwareError, LinkError, MmrError
 from bfsim.linker import LinkerScript, link
 from bfsim.machine.board import Board, Outcome, symbols_of
-from bfsim.machine.caches import caches_of
-from bfsim.machine.dma_config import DmaConfig
+from bfsim.machine.calls.caches import caches_of
+from bfsim.machine.dma.config import DmaConfig
 from bfsim.machine.program import FrameSize
 from bfsim.trace import StallReason
 from firmware import tinyphoon

@@ -18,12 +18,12 @@ from bfsim.chip.boards import CM_BF561, board_named
 from bfsim.chip.sensors import LEFT_CAMERA, MHZ, RIGHT_CAMERA
 from bfsim.chip.spec import BoardSpec, SensorMode, SensorSpec
 from bfsim.clocks import Clocks
-from bfsim.machine.capture import Feed
-from bfsim.machine.dma_config import DmaConfig
-from bfsim.machine.oscillator import Oscillator
-from bfsim.machine.ppi import Ppi
-from bfsim.machine.settling import CameraSettings, settled
-from bfsim.machine.skipping import SKIPS, skipped
+from bfsim.machine.cameras.capture import Feed
+from bfsim.machine.cameras.oscillator import Oscillator
+from bfsim.machine.cameras.ppi import Ppi
+from bfsim.machine.cameras.settling import CameraSettings, settled
+from bfsim.machine.cameras.skipping import SKIPS, skipped
+from bfsim.machine.dma.config import DmaConfig
 from tests.machine.kernels import first, spin, total
 from tests.machine.made_boards import CHIP, CLOCKS, assert_accounted, play
 from tests.machine.rig import SIZE, Picture, Play, every_frame, noise, see_all

@@ -18,8 +18,8 @@ from hypothesis import strategies as st
 
 from bfsim.chip.spec import SensorMode, SensorSpec
 from bfsim.clocks import Clocks
-from bfsim.machine.capture import Capture, Feed, Pair
-from bfsim.machine.ppi import Ppi
+from bfsim.machine.cameras.capture import Capture, Feed, Pair
+from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.program import FrameSize
 from tests.machine.rig import STEADY, Bench, Picture
 

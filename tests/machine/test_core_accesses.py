@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS
 from bfsim.kernel.followers import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
-from bfsim.machine import bus_state as w
+from bfsim.machine.bus import state as w
 from bfsim.trace import StallReason
 from tests.machine.rig import Bench, Call
 

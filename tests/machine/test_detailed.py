@@ -16,11 +16,11 @@ from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS, board_named
 from bfsim.kernel import followers as log
-from bfsim.machine import bus_state as w
-from bfsim.machine.bus import Bus, Pace, Transfer, Walk
-from bfsim.machine.detailed_arbiter import Grant, MdmaTurns, Request, SdramArbiter
-from bfsim.machine.detailed_bus import DetailedBus
-from bfsim.machine.detailed_sdram import Page, SdramBanks
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.bus import Bus, Pace, Transfer, Walk
+from bfsim.machine.detailed.arbiter import Grant, MdmaTurns, Request, SdramArbiter
+from bfsim.machine.detailed.bus import DetailedBus
+from bfsim.machine.detailed.sdram import Page, SdramBanks
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import END_OF_TIME, Simulation
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from bfsim.chip.dma_registers import Flow, IrqStatus, WdSize
-from bfsim.machine.dma_channel import DmaChannel, Fetch, Step
-from bfsim.machine.dma_config import DmaConfig
-from bfsim.machine.dma_descriptors import write_descriptor
+from bfsim.machine.dma.channel import DmaChannel, Fetch, Step
+from bfsim.machine.dma.config import DmaConfig
+from bfsim.machine.dma.descriptors import write_descriptor
 from tests.machine.dma_rig import DESCRIPTORS, L1_A, SDRAM, Memory, channel_on, program
 
 DONE, ERR, DFETCH, RUN = IrqStatus.DMA_DONE, IrqStatus.DMA_ERR, IrqStatus.DFETCH, IrqStatus.DMA_RUN

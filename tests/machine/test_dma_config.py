@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from bfsim.chip.dma_channels import BF561_CHANNELS, DMA1, DMA2, TC_PER_ADDRESSES, Direction, register_address
 from bfsim.chip.dma_registers import REGISTERS, Flow, WdSize
 from bfsim.errors import BfsimError, MmrError
-from bfsim.machine.dma_config import DmaConfig
+from bfsim.machine.dma.config import DmaConfig
 
 configs = st.builds(
     DmaConfig,

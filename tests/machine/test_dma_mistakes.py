@@ -7,9 +7,9 @@ import pytest
 from bfsim.chip.dma_channels import Direction
 from bfsim.chip.dma_registers import Flow, IrqStatus, WdSize
 from bfsim.errors import MmrError
-from bfsim.machine.dma_channel import DmaChannel, check_pair
-from bfsim.machine.dma_config import DmaConfig
-from bfsim.machine.dma_descriptors import write_descriptor
+from bfsim.machine.dma.channel import DmaChannel, check_pair
+from bfsim.machine.dma.config import DmaConfig
+from bfsim.machine.dma.descriptors import write_descriptor
 from tests.machine.dma_rig import (
     DESCRIPTORS,
     L1_A,

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.chip.dma_registers import WdSize
-from bfsim.machine.dma_config import DmaConfig
-from bfsim.machine.dma_unit import WorkUnit
+from bfsim.machine.dma.config import DmaConfig
+from bfsim.machine.dma.unit import WorkUnit
 
 
 def walk(unit: WorkUnit) -> Iterator[int]:

@@ -15,9 +15,9 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import VDSP_O2, Kernel, followers
 from bfsim.kernel.followers import Follower
 from bfsim.linker import LinkerScript, link
-from bfsim.machine.bus_state import FETCH_BYTES
+from bfsim.machine.bus.state import FETCH_BYTES
+from bfsim.machine.calls.fetch import CodeCache
 from bfsim.machine.code import code_symbols
-from bfsim.machine.fetch import CodeCache
 from bfsim.trace import StallReason
 from tests.machine.kernels import copy, spin, total
 from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, in_work, play

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS
-from bfsim.machine import bus_state as w
-from bfsim.machine.bus import Transfer
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.bus import Transfer
 from bfsim.machine.memories import Row
 from tests.machine.rig import Bench
 

@@ -12,7 +12,7 @@ from bfsim.api import Core, Frame
 from bfsim.chip.dma_registers import Flow
 from bfsim.errors import DeadlockError
 from bfsim.machine.board import Outcome
-from bfsim.machine.dma_config import DmaConfig
+from bfsim.machine.dma.config import DmaConfig
 from bfsim.machine.simulation import Simulation
 from tests.machine.kernels import spin
 from tests.machine.made_boards import assert_accounted, cclk_now, in_work, play

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS, CM_BF561
 from bfsim.chip.sensors import LEFT_CAMERA, OV9650, RIGHT_CAMERA
-from bfsim.machine.oscillator import Oscillator
+from bfsim.machine.cameras.oscillator import Oscillator
 
 CLOCKS = CM_BF561.clocks
 TICK_HZ = CLOCKS.tick_hz

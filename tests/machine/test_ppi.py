@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS
-from bfsim.machine import bus_state as w
-from bfsim.machine.bus import Pace, Transfer, Walk
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.bus import Pace, Transfer, Walk
+from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.memories import Row
-from bfsim.machine.ppi import Ppi
 from bfsim.machine.program import FrameSize
 from tests.machine.rig import STEADY, Bench
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.chip.ppi_registers import PpiStatusBit
-from bfsim.machine.ppi_status import PpiStatus
+from bfsim.machine.cameras.ppi_status import PpiStatus
 
 FRAME_LINES, LINE_SAMPLES = 4, 16
 FT_ERR, OVR, UNDR = PpiStatusBit.FT_ERR, PpiStatusBit.OVR, PpiStatusBit.UNDR

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from bfsim.chip.boards import CM_BF561, CM_BF561_RATINGS
 from bfsim.chip.spec import BoardSpec, SdramSpec
-from bfsim.machine import bus_state as w
-from bfsim.machine.sdram import access, hits_ahead, new_sdram, stream
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.sdram import access, hits_ahead, new_sdram, stream
 from tests.machine.naive_sdram import NaiveSdram
 
 CLASSES = ("hit", "miss", "conflict")

@@ -13,7 +13,7 @@ from hypothesis.extra.numpy import arrays
 
 from bfsim.chip.sensors import LEFT_CAMERA, RIGHT_CAMERA
 from bfsim.chip.spec import CameraSpec
-from bfsim.machine.settling import CameraSettings, Settling, settled
+from bfsim.machine.cameras.settling import CameraSettings, Settling, settled
 
 SETTINGS = CameraSettings(exposure_lines=200, gain=16, red_gain=128, blue_gain=128)
 each_camera = pytest.mark.parametrize("camera", [LEFT_CAMERA, RIGHT_CAMERA], ids=lambda each: each.name)

@@ -23,8 +23,8 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.cli import main
 from bfsim.errors import FirmwareError
 from bfsim.machine.board import Outcome
-from bfsim.machine.spi_protocol import Message, MessageError, MessageType, encode, message_nbytes
-from bfsim.machine.strategy import ScriptedBytes, ScriptedMessage
+from bfsim.machine.spi.protocol import Message, MessageError, MessageType, encode, message_nbytes
+from bfsim.machine.spi.strategy import ScriptedBytes, ScriptedMessage
 from bfsim.trace import MessageRecord, StallReason
 from tests.machine.kernels import spin
 from tests.machine.made_boards import CHIP, assert_accounted, cclk_now, in_work, made_board

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.errors import ConfigError, FirmwareError
-from bfsim.machine.spi_protocol import Message, MessageError, MessageType, decode, encode
-from bfsim.machine.strategy import Received, ScriptedBytes, ScriptedMessage, StrategyUnit
-from bfsim.machine.strategy_script import read_script
+from bfsim.machine.spi.protocol import Message, MessageError, MessageType, decode, encode
+from bfsim.machine.spi.script import read_script
+from bfsim.machine.spi.strategy import Received, ScriptedBytes, ScriptedMessage, StrategyUnit
 
 TOML = """
 [[send]]

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bfsim.errors import FirmwareError
-from bfsim.machine import bus_state as w
-from bfsim.machine.bus import Walk
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.bus import Walk
 from tests.machine.rig import Bench
 
 # From the middle of each of these the longest walk stays within it.

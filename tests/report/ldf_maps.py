@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.report.ldf_map import SHARED, CacheRange, Kind, MapSection, MapSegment, MapSymbol, MemoryMap, Piece
+from bfsim.report.ldf.map import SHARED, CacheRange, Kind, MapSection, MapSegment, MapSymbol, MemoryMap, Piece
 
 BANK_BYTES = 8 * 1024**2
 DATA_A = 0xFF800000

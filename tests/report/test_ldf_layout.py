@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from bfsim.chip.memory_map import CM_BF561_REGIONS
 from bfsim.linker import Symbol, link, parse_ldf
-from bfsim.report.ldf_layout import Memories, memory_map
-from bfsim.report.ldf_map import SHARED, Kind, MemoryMap
+from bfsim.report.ldf.layout import Memories, memory_map
+from bfsim.report.ldf.map import SHARED, Kind, MemoryMap
 
 TEXT = """
 ARCHITECTURE(ADSP-BF561)

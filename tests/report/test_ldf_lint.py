@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from bfsim.report.ldf_lint import Finding, Stream, lint, streams_by_bank
-from bfsim.report.ldf_map import SHARED, CacheRange, Kind, MemoryMap
+from bfsim.report.ldf.lint import Finding, Stream, lint, streams_by_bank
+from bfsim.report.ldf.map import SHARED, CacheRange, Kind, MemoryMap
 from tests.report.ldf_maps import BANK_BYTES, DATA_A, a_map, a_segment, a_symbol
 
 SCRATCH = 0xFFB00000

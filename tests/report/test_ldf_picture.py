@@ -10,10 +10,10 @@ import pytest
 from PIL import Image
 
 from bfsim.errors import ConfigError
-from bfsim.report.ldf_colours import colours_of
-from bfsim.report.ldf_drawing import BAR_HEIGHT, PANEL_WIDTH, drawing_of
-from bfsim.report.ldf_map import Kind
-from bfsim.report.ldf_picture import PIXELS, picture_bytes, png_of, svg_of
+from bfsim.report.ldf.colours import colours_of
+from bfsim.report.ldf.drawing import BAR_HEIGHT, PANEL_WIDTH, drawing_of
+from bfsim.report.ldf.map import Kind
+from bfsim.report.ldf.picture import PIXELS, picture_bytes, png_of, svg_of
 from tests.report.ldf_maps import BANK_BYTES, a_map, a_segment, a_symbol
 
 CAMERA = a_symbol("camera", Kind.CAMERA, "A", 0, BANK_BYTES // 4)

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from rich.console import Console, RenderableType
 
-from bfsim.report.ldf_bars import CELLS, bars, cells_of
-from bfsim.report.ldf_lint import lint
-from bfsim.report.ldf_map import Kind
-from bfsim.report.ldf_tables import SCHEMA, ldf_json, ldf_report
+from bfsim.report.ldf.bars import CELLS, bars, cells_of
+from bfsim.report.ldf.lint import lint
+from bfsim.report.ldf.map import Kind
+from bfsim.report.ldf.tables import SCHEMA, ldf_json, ldf_report
 from tests.report.ldf_maps import BANK_BYTES, a_map, a_segment, a_symbol
 
 CAMERA = a_symbol("camera", Kind.CAMERA, "A", 0, BANK_BYTES // 4)

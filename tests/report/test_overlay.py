@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from bfsim.report import overlay_style as style
-from bfsim.report.overlay import overlay_of
-from bfsim.report.overlay_panel import panel_of, rgb_of
+from bfsim.report.overlay import style
+from bfsim.report.overlay.overlay import overlay_of
+from bfsim.report.overlay.panel import panel_of, rgb_of
 from bfsim.seen import Colour, Seen, SeenEdges, SeenFrame, colours
 from tests import seen_frames as made
 

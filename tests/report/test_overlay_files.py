@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 from bfsim.errors import ConfigError
-from bfsim.report.overlay_files import ENCODERS, FRAME_MS, OverlayWriter
+from bfsim.report.overlay.files import ENCODERS, FRAME_MS, OverlayWriter
 from bfsim.seen import Seen
 from tests import seen_frames as made
 

@@ -1,0 +1,287 @@
+"""What moves between the memories: transfers of the DMAs and accesses of the cores, played by the compiled weave.
+
+The bus keeps its own time, which is behind the simulated time until somebody looks. Whoever wants to know whether something is
+done settles it first; while anybody waits, the simulation plays it up to each event, and wakes those whose transfer is over.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import lcm
+from typing import Any
+
+import numpy as np
+import simpy
+from numpy.typing import NDArray
+
+from bfsim.chip.spec import BoardSpec
+from bfsim.errors import FirmwareError
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.sdram import new_sdram
+from bfsim.machine.bus.weave import advance
+from bfsim.machine.memories import Memories
+from bfsim.machine.simulation import Simulation
+
+SLOT = struct.Struct(f"@{w.SLOT_WORDS}q")
+
+# Ranks of DMA: HRM of the BF537, 5-50 to 5-54 (lower channel first, memory DMA last); DMA1 before DMA2 [assumed].
+RANKS = {
+    w.PPI0: 0, w.PPI1: 1, w.MDMA1_0: 20, w.MDMA1_1: 21, w.SPI: 40, w.MDMA2_0: 44, w.MDMA2_1: 45, w.IMDMA_0: 48, w.IMDMA_1: 49,
+}  # fmt: skip
+PARTNERS = ((w.MDMA1_0, w.MDMA1_1), (w.MDMA2_0, w.MDMA2_1))
+CORE_FIRST, CORE_LAST = -100, 200  # ranks of core A; core B has its own turn after A had the bus
+STORES_AFTER = 10  # loads overtake stores (Programming Reference p.294)
+
+
+@dataclass(frozen=True, slots=True)
+class Walk:
+    """One side of a transfer: `x_count` elements a line, `x_modify` bytes apart, and `y_modify` to the next line."""
+
+    offset: int
+    x_count: int
+    x_modify: int
+    y_modify: int
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """How a device delivers or takes elements: from tick `start`, so many ticks an element and a line (exact)."""
+
+    start: int
+    line_elements: int
+    element_ticks: Fraction
+    line_ticks: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A transfer of one master, ready to be posted as often as needed. `words`: the slot's, from SETUP on."""
+
+    master: int
+    words: tuple[int, ...]
+
+
+class Transfer:
+    """One transfer of a DMA on its way. `end` is the tick at which it is done, or None as long as nobody can know."""
+
+    __slots__ = ("_bus", "number", "place")
+
+    def __init__(self, bus: Bus, number: int, place: int) -> None:
+        self._bus = bus
+        self.number = number
+        self.place = place
+
+    @property
+    def end(self) -> int | None:
+        """Tick at which it is done."""
+        tick = self._bus.words[w.ENDS_AT + self.number % w.ENDS]
+        return None if tick == w.NONE else tick
+
+
+class Bus:
+    """The SDRAM bus and the port of L2 of one board, with all who use them."""
+
+    def __init__(self, env: Simulation, board: BoardSpec, memories: Memories) -> None:
+        self._env = env
+        self._chip = board.chip
+        self._clocks = board.clocks
+        self._state: Any = np.zeros(w.STATE_WORDS, np.int64)
+        self._memory: Any = memories.arena.view(np.uint32)
+        self.words: Any = self._state.data
+        """The whole state, word by word."""
+        self._transfers = 0
+        self._waiting: dict[int, simpy.Event] = {}
+        self._state[: w.SDRAM_WORDS] = new_sdram(board)
+        self._set_up(board, memories)
+        self._set_masters(board)
+        free = np.arange(w.SLOTS)[::-1]
+        self._state[w.FREE_AT_STACK : w.FREE_AT_STACK + w.SLOTS] = free
+        env.follow(self)
+
+    def _set_up(self, board: BoardSpec, memories: Memories) -> None:
+        chip, clocks = board.chip, board.clocks
+        l2 = chip.l2
+        bus = {
+            w.CCLK: clocks.cclk_ticks,
+            w.SDRAM_END: memories.sdram_end,
+            w.L2_FIRST: memories.sdram_end,
+            w.L2_END: memories.l2_end,
+            w.L1_FIRST: memories.l1,
+            w.SUBBANK_BITS: chip.l1.subbank_bytes.bit_length() - 1,
+            w.L2_READ: l2.read_cclk * clocks.cclk_ticks if l2 else 0,
+            w.L2_NEXT: l2.next_cclk * clocks.cclk_ticks if l2 else 0,
+            w.L2_PORT_BITS: l2.port_bytes.bit_length() - 1 if l2 else 0,
+            w.CORE_SYNC: chip.external.core_sync_sclk * clocks.sclk_ticks,
+            w.STORE_DEPTH: chip.external.store_buffer,
+            w.DEB_PERIOD: board.deb_period,
+            w.MDMA_PERIOD: board.mdma_period,
+            w.LINE_BYTES: chip.cache.line_bytes,
+            w.LOT: chip.dma.fifo_words,
+            w.LAST_CORE: w.NONE,
+            w.FREE_SLOTS: w.SLOTS,
+        }
+        for word, value in bus.items():
+            self._state[word] = value
+
+    def _set_masters(self, board: BoardSpec) -> None:
+        chip = board.chip
+        gap = chip.dma.read_word_sclk - 1
+        cores = CORE_LAST if board.dma_over_core else CORE_FIRST
+        ranks = RANKS | {w.CORE_A + core: cores + core for core in range(w.CORES)}
+        ranks |= {w.STORES_A + core: cores + STORES_AFTER + core for core in range(w.CORES)}
+        partners = dict(PARTNERS) | {other: one for one, other in PARTNERS}
+        for number, rank in ranks.items():
+            fields = {
+                w.RANK: rank, w.READY: w.NEVER, w.SLOT: w.NONE, w.LAST_SLOT: w.NONE, w.PARTNER: partners.get(number, w.NONE),
+                w.FIFO: chip.dma.fifo_words + (chip.ppi_fifo_words if number in (w.PPI0, w.PPI1) else 0),
+                w.GAP_NUMERATOR: gap.numerator, w.GAP_DENOMINATOR: gap.denominator * chip.dma.fifo_words,
+            }  # fmt: skip
+            for field, value in fields.items():
+                self._state[w.MASTERS_AT + number + field] = value
+
+    # ---- time
+
+    def settle(self) -> None:
+        """Grant everything that was asked for before the simulated time."""
+        self.play_until(self._env.tick)
+
+    def play_until(self, tick: int) -> bool:
+        """Grant everything that was asked for before `tick`; stop early, with True, at an end that somebody waits for.
+
+        The event of whoever waits is put on the simulation's queue at its tick.
+        """
+        while (woken := advance(self._state, self._memory, tick)) != w.NONE:
+            event = self._waiting.pop(woken, None)
+            if event is not None:
+                self._env.trigger_at(event, self.words[w.DONE_AT])
+                return True
+        return False
+
+    @property
+    def is_awaited(self) -> bool:
+        """Whether anybody waits for an end."""
+        return bool(self._waiting)
+
+    # ---- transfers
+
+    def plan_copy(
+        self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, setup: int
+    ) -> Plan:
+        """Plan to move `count` elements by a memory DMA that takes `setup` ticks to start."""
+        end = self.words[w.SDRAM_END]
+        reads, writes = source.offset < end, destination.offset < end
+        mode = w.BOTH if reads and writes else w.READ if reads else w.WRITE if writes else w.ON_CHIP
+        word = self._on_chip_ticks(master) if mode == w.ON_CHIP else Fraction(1)
+        return self._plan(
+            master, mode, source, destination, count, element_bytes, setup, Pace(0, 1, word, Fraction(1))
+        )
+
+    def _on_chip_ticks(self, master: int) -> Fraction:
+        dma = self._chip.dma
+        if master in (w.IMDMA_0, w.IMDMA_1):
+            return Fraction(dma.imdma_word_cclk * self._clocks.cclk_ticks)
+        return dma.on_chip_word_sclk * self._clocks.sclk_ticks
+
+    def plan_receive(
+        self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, pace: Pace
+    ) -> Plan:
+        """Plan to write `count` elements as a device delivers them."""
+        return self._plan(master, w.PACED_IN, source, destination, count, element_bytes, 0, pace)
+
+    def plan_send(
+        self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, pace: Pace
+    ) -> Plan:
+        """Plan to read `count` elements as a device takes them."""
+        return self._plan(master, w.PACED_OUT, source, destination, count, element_bytes, 0, pace)
+
+    def _plan(
+        self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, setup: int, pace: Pace
+    ) -> Plan:  # fmt: skip
+        for side in (source, destination):
+            if count % side.x_count:
+                raise FirmwareError(
+                    f"a DMA transfer must have whole lines of {side.x_count} elements, not {count} in all"
+                )
+        parts = lcm(pace.element_ticks.denominator, pace.line_ticks.denominator)
+        element, line = int(pace.element_ticks * parts), int(pace.line_ticks * parts)
+        return Plan(
+            master,
+            (
+                setup, 0, mode, element_bytes.bit_length() - 1, count, 0, 0,
+                source.offset, source.x_count, source.x_modify, source.y_modify, source.x_count,
+                destination.offset, destination.x_count, destination.x_modify, destination.y_modify, destination.x_count,
+                pace.start, parts, element, line, pace.line_elements, 0, 0,
+            ),
+        )  # fmt: skip
+
+    def post(self, plan: Plan, at: int = 0) -> Transfer:
+        """Put a transfer behind those that its master has already; it begins at tick `at` or later."""
+        words, now = self.words, self._env.tick
+        top = words[w.FREE_SLOTS] - 1
+        if top < 0:
+            self.settle()  # those that are over make room
+            top = words[w.FREE_SLOTS] - 1
+        if top < 0:
+            raise FirmwareError(f"DMA must have at most {w.SLOTS} transfers to do at a time")
+        words[w.FREE_SLOTS] = top
+        place = words[w.FREE_AT_STACK + top]
+        number = self._transfers
+        self._transfers = number + 1
+        words[w.ENDS_AT + number % w.ENDS] = w.NONE
+        # the bus may still be behind the simulated time; the transfer is not
+        SLOT.pack_into(
+            words, 8 * (w.SLOTS_AT + place * w.SLOT_WORDS), number, w.NONE, max(at, now), *plan.words
+        )
+        posted = words[w.POSTED]
+        words[w.POSTS_AT + 2 * posted], words[w.POSTS_AT + 2 * posted + 1] = plan.master, place
+        words[w.POSTED] = posted + 1
+        return Transfer(self, number, place)
+
+    def when_done(self, transfer: Transfer) -> simpy.Event:
+        """Return the event at a transfer's end, which must not be known yet."""
+        self.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.WAKE] = w.AT_END
+        return self._await(transfer.number)
+
+    def when_row(self, transfer: Transfer) -> simpy.Event:
+        """Return the event at the end of the next row that a transfer writes, or at its own end; neither is known yet."""
+        self.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.WAKE] = w.AT_ROWS
+        return self._await(transfer.number)
+
+    def moved_by(self, transfer: Transfer) -> int:
+        """Return how many elements a transfer that is not over has moved."""
+        return int(self.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.MOVED])
+
+    def _await(self, number: int) -> simpy.Event:
+        event = self._waiting.get(number)
+        if event is None:
+            event = self._waiting[number] = self._env.event()
+        return event
+
+    def lost_by(self, master: int) -> int:
+        """Return how many elements a peripheral's DMA has lost, since they found its FIFO full or did not come in time."""
+        return int(self.words[w.MASTERS_AT + master + w.ALL_LOST])
+
+    # ---- cores
+
+    def access(self, core: int, begin: int, cclk: int, entries: int) -> simpy.Event:
+        """Play the first `entries` accesses of a core's log, of a call of `cclk` cycles from tick `begin`; return its end."""
+        self.settle()
+        job = w.JOBS_AT + core * w.JOB_WORDS
+        for word, value in ((w.STATE, w.STARTING), (w.BEGIN, begin), (w.TOTAL, cclk), (w.END, entries)):
+            self.words[job + word] = value
+        return self._await(w.NONE - 1 - core)
+
+    def stalls_of(self, core: int) -> Sequence[int]:
+        """Return what the accesses of the core's last call stalled, in cycles, in the order of `bus.state`."""
+        first = w.JOBS_AT + core * w.JOB_WORDS + w.STALL
+        stalls: list[int] = self.words[first : first + w.STALLS].tolist()
+        return stalls
+
+    def room_of(self, core: int) -> NDArray[np.int64]:
+        """Return where a core's follower keeps its state and its log."""
+        first = w.LOGS_AT + core * w.FOLLOWER_WORDS
+        room: NDArray[np.int64] = self._state[first : first + w.FOLLOWER_WORDS]
+        return room

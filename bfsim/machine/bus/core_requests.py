@@ -1,0 +1,230 @@
+"""A core on the bus, compiled: the accesses outside L1 that a kernel call made, one after the other, and what each stalls.
+
+A load, a line fill and a fetch wait for their data; a store goes into the store buffer and waits only when that is full.
+Loads overtake stores, except that a load from an address in the store buffer waits until that is empty.
+"""
+
+from __future__ import annotations
+
+from bfsim.kernel import followers as log
+from bfsim.kernel.compiled import compiled
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.dma_requests import aligned, count_access, count_traffic
+from bfsim.machine.bus.sdram import access, stream
+from bfsim.machine.bus.state import State
+
+
+@compiled
+def bytes_of(state: State, kind: int) -> int:
+    """Return what an access of this kind moves: a 32-bit word whatever its width, a cache line, or 64 bits of code."""
+    if kind in (log.LOAD, log.STORE):
+        return 4
+    return w.FETCH_BYTES if kind == log.FETCH else state[w.LINE_BYTES]
+
+
+@compiled
+def next_entry(state: State, core: int, not_before: int) -> int:
+    """Set the core's next access up; after the last one end the job and return its number, NONE - 1 - core."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    master = w.MASTERS_AT + w.CORE_A + core
+    cclk = state[w.CCLK]
+    if state[job + w.ENTRY] == state[job + w.END]:
+        state[job + w.STATE] = w.IDLE
+        state[master + w.READY] = w.NEVER
+        state[w.DONE_AT] = state[job + w.BEGIN] + state[job + w.TOTAL] * cclk + state[job + w.STALLED]
+        return w.NONE - 1 - core
+    entry = state[w.LOGS_AT + core * w.FOLLOWER_WORDS + log.LOG + state[job + w.ENTRY]]
+    issued = max(not_before, state[job + w.BEGIN] + (entry >> log.STAMP_BIT) * cclk + state[job + w.STALLED])
+    kind = entry >> log.KIND_BIT & log.KIND_MASK
+    waits = kind not in (log.STORE, log.WRITE_BACK)
+    if waits and state[job + w.LINE_DONE] > issued:  # a core reads one line at a time
+        cycles = (state[job + w.LINE_DONE] - issued + cclk - 1) // cclk
+        state[job + w.STALL + (w.CODE_FETCH if kind == log.FETCH_LINE else w.CACHE_FILL)] += cycles
+        state[job + w.STALLED] += cycles * cclk
+        issued += cycles * cclk
+    state[job + w.ISSUED_AT] = issued
+    state[master + w.USES_BUS] = waits and entry & log.OFFSET_MASK < state[w.SDRAM_END]
+    state[master + w.READY] = aligned(issued, state[w.SCLK]) if state[master + w.USES_BUS] else issued
+    return w.NONE
+
+
+@compiled
+def start_jobs(state: State) -> None:
+    """Let the cores begin with what was handed to them."""
+    for core in range(w.CORES):
+        job = w.JOBS_AT + core * w.JOB_WORDS
+        if state[job + w.STATE] == w.STARTING:
+            state[job + w.STATE] = w.RUNNING
+            state[job + w.STALLED] = 0
+            state[job + w.ENTRY] = 0
+            for reason in range(w.STALLS):
+                state[job + w.STALL + reason] = 0
+            next_entry(state, core, state[job + w.BEGIN])
+
+
+@compiled
+def stall(state: State, job: int, cclk: int, done: int, reason: int) -> int:
+    """Stall the core for `reason` from its present access until `done`, less that access's own cycle; return the cycles."""
+    cycles = max(0, (done - state[job + w.ISSUED_AT] + cclk - 1) // cclk - 1)
+    state[job + w.STALL + reason] += cycles
+    state[job + w.STALLED] += cycles * cclk
+    return cycles
+
+
+@compiled
+def wait_for_buffer(state: State, core: int, what: int) -> int:
+    """Let the core wait until its store buffer has room, or is empty."""
+    state[w.JOBS_AT + core * w.JOB_WORDS + w.STATE] = what
+    state[w.MASTERS_AT + w.CORE_A + core + w.READY] = w.NEVER
+    return w.NONE
+
+
+@compiled
+def store(state: State, core: int, at: int, entry: int) -> int:
+    """Put a store into the core's buffer."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    if state[job + w.STORES] >= state[w.STORE_DEPTH]:
+        return wait_for_buffer(state, core, w.BUFFER_FULL)
+    state[job + w.STORE_QUEUE + (state[job + w.STORE_HEAD] + state[job + w.STORES]) % w.MAX_STORES] = entry
+    state[job + w.STORES] += 1
+    if state[job + w.STORES] == 1:
+        prepare_drain(state, core, at)
+    state[job + w.ENTRY] += 1
+    return next_entry(state, core, at)
+
+
+@compiled
+def prepare_drain(state: State, core: int, at: int) -> None:
+    """Let the oldest store ask for its bus from tick `at` on."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    master = w.MASTERS_AT + w.STORES_A + core
+    if state[job + w.STORES] == 0:
+        state[master + w.READY] = w.NEVER
+        return
+    uses_bus = state[job + w.STORE_QUEUE + state[job + w.STORE_HEAD]] & log.OFFSET_MASK < state[w.SDRAM_END]
+    state[master + w.USES_BUS] = uses_bus
+    state[master + w.READY] = aligned(at, state[w.SCLK]) if uses_bus else at
+
+
+@compiled
+def serve_stores(state: State, core: int, at: int) -> int:
+    """Write the oldest store of a core's buffer, and let the core go on if it waited for that."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    entry = state[job + w.STORE_QUEUE + state[job + w.STORE_HEAD]]
+    offset, nbytes = entry & log.OFFSET_MASK, bytes_of(state, entry >> log.KIND_BIT & log.KIND_MASK)
+    if offset < state[w.SDRAM_END]:
+        access(state, at, offset, True)
+        more = (nbytes >> state[w.WORD_BITS]) - 1
+        if more > 0:
+            stream(state, more, True, offset)
+        state[w.LAST_CORE] = core
+        count_access(state, w.STORES_A + core, 1 + max(0, more))
+        count_traffic(state, w.STORES_A + core, w.IN_SDRAM, True, nbytes)
+        free = state[w.COMMAND_FREE]
+    elif at < state[w.L2_FREE]:
+        state[w.MASTERS_AT + w.STORES_A + core + w.READY] = state[w.L2_FREE]
+        return w.NONE
+    else:
+        free = at + ((nbytes - 1 >> state[w.L2_PORT_BITS]) + 1) * state[w.L2_NEXT]
+        state[w.L2_FREE] = free
+        count_traffic(state, w.STORES_A + core, w.IN_L2, True, nbytes)
+    state[job + w.STORE_HEAD] = (state[job + w.STORE_HEAD] + 1) % w.MAX_STORES
+    state[job + w.STORES] -= 1
+    prepare_drain(state, core, free)
+    waited = state[job + w.STATE]
+    if waited == w.BUFFER_FULL or (waited == w.BUFFER_NOT_EMPTY and state[job + w.STORES] == 0):
+        state[job + w.STATE] = w.RUNNING
+        cclk = state[w.CCLK]
+        stall(state, job, cclk, free + cclk, w.STORE_BUFFER)
+        return next_entry(state, core, free)
+    return w.NONE
+
+
+@compiled
+def is_in_buffer(state: State, job: int, offset: int, nbytes: int) -> bool:
+    """Whether the store buffer has anything of the `nbytes` (a power of two) at `offset`, or a line that holds them."""
+    for number in range(state[job + w.STORES]):
+        entry = state[job + w.STORE_QUEUE + (state[job + w.STORE_HEAD] + number) % w.MAX_STORES]
+        size = max(nbytes, bytes_of(state, entry >> log.KIND_BIT & log.KIND_MASK))
+        if ((entry ^ offset) & log.OFFSET_MASK) // size == 0:
+            return True
+    return False
+
+
+@compiled
+def serve_core(state: State, core: int, at: int) -> int:
+    """Make the core's present access at tick `at`; return the number of its job when that is done, else NONE."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    entry = (
+        state[w.LOGS_AT + core * w.FOLLOWER_WORDS + log.LOG + state[job + w.ENTRY]]
+        if state[job + w.ENTRY] < state[job + w.END]
+        else w.NONE
+    )
+    kind, offset = entry >> log.KIND_BIT & log.KIND_MASK, entry & log.OFFSET_MASK
+    if kind in (log.STORE, log.WRITE_BACK):
+        return store(state, core, at, entry & ((1 << log.STAMP_BIT) - 1))
+    if is_in_buffer(state, job, offset, bytes_of(state, kind)):
+        return wait_for_buffer(state, core, w.BUFFER_NOT_EMPTY)
+    if offset < state[w.SDRAM_END]:
+        done = read_sdram(state, core, at, kind, offset)
+    else:
+        done = read_l2(state, core, at, kind)
+    state[job + w.ENTRY] += 1
+    return next_entry(state, core, done)
+
+
+@compiled
+def read_l2(state: State, core: int, at: int, kind: int) -> int:
+    """Read from L2 through the port that both cores share; return when the first data are there."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    nbytes = bytes_of(state, kind)
+    start = max(at, state[w.L2_FREE])
+    state[w.L2_FREE] = start + ((nbytes - 1 >> state[w.L2_PORT_BITS]) + 1) * state[w.L2_NEXT]
+    count_traffic(state, w.CORE_A + core, w.IN_L2, False, nbytes)
+    if start > at:
+        stall(state, job, state[w.CCLK], start + state[w.CCLK], w.L2_PORT)
+        state[job + w.ISSUED_AT] = start
+    done = start + state[w.L2_READ]
+    state[job + w.LINE_DONE] = done + (nbytes - 1 >> state[w.L2_PORT_BITS]) * state[w.L2_NEXT]
+    stall(
+        state,
+        job,
+        state[w.CCLK],
+        done,
+        w.L2_LATENCY if kind == log.LOAD else w.CACHE_FILL if kind == log.FILL else w.CODE_FETCH,
+    )
+    return done
+
+
+@compiled
+def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
+    """Read from SDRAM; return when the first data are at the core.
+
+    The wait for an SCLK edge is part of the cycles of synchronisation. Until the bus is free the core waits for
+    arbitration, then perhaps for a refresh, and else for the page.
+    """
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    cclk = state[w.CCLK]
+    through = access(state, at, offset, False)
+    nbytes = bytes_of(state, kind)
+    more = max(0, (nbytes >> state[w.WORD_BITS]) - 1)
+    if kind == log.LOAD and more:
+        through = stream(state, more, False, offset)  # a load needs all of its word
+    elif more:  # the core goes on with the first word
+        whole = stream(state, more, False, offset) + state[w.CORE_SYNC] - state[w.SCLK]
+        if kind != log.FETCH:
+            state[job + w.LINE_DONE] = whole
+    count_access(state, w.CORE_A + core, 1 + more)
+    count_traffic(state, w.CORE_A + core, w.IN_SDRAM, False, nbytes)
+    state[w.LAST_CORE] = core
+    page, refresh_wait = state[w.PAGE_CLASS], state[w.REFRESH_WAIT]
+    edge = aligned(state[job + w.ISSUED_AT], state[w.SCLK])
+    done = through + state[w.CORE_SYNC] - state[w.SCLK] - (edge - state[job + w.ISSUED_AT])
+    cycles = stall(state, job, cclk, done, w.ARBITRATION)
+    waited = min(cycles, max(0, state[w.BEGAN] - edge) // cclk)
+    refreshed = min(cycles - waited, refresh_wait // cclk)
+    reason = w.PAGE_HIT + page if kind == log.LOAD else w.CACHE_FILL if kind == log.FILL else w.CODE_FETCH
+    state[job + w.STALL + reason] += cycles - waited - refreshed
+    state[job + w.STALL + w.REFRESHING] += refreshed
+    state[job + w.STALL + w.ARBITRATION] -= cycles - waited
+    return done

@@ -1,0 +1,50 @@
+"""How a transfer walks through memory: the next elements of both its sides, and their bytes moved from one to the other."""
+
+from __future__ import annotations
+
+from bfsim.kernel.compiled import compiled
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.state import Memory, State
+
+WORD_BYTES, WORD_BITS = 4, 2  # the arena is an array of 32-bit words
+
+
+@compiled
+def go_on(state: State, side: int, count: int) -> None:
+    """Move a side on by `count` elements of its line. Behind a line's last one Y_MODIFY stands in for X_MODIFY."""
+    state[side + w.POSITION] += count * state[side + w.X_MODIFY]
+    state[side + w.X_LEFT] -= count
+    if state[side + w.X_LEFT] == 0:
+        state[side + w.POSITION] += state[side + w.Y_MODIFY] - state[side + w.X_MODIFY]
+        state[side + w.X_LEFT] = state[side + w.X_COUNT]
+
+
+@compiled
+def copy_element(memory: Memory, source: int, target: int, bits: int) -> None:
+    """Copy the element of 1 << `bits` bytes at `source` to `target`."""
+    if bits == WORD_BITS:
+        memory[target >> WORD_BITS] = memory[source >> WORD_BITS]
+        return
+    mask, shift = (1 << (8 << bits)) - 1, target % WORD_BYTES * 8
+    value = memory[source >> WORD_BITS] >> (source % WORD_BYTES * 8) & mask
+    memory[target >> WORD_BITS] = memory[target >> WORD_BITS] & ~(mask << shift) | value << shift
+
+
+@compiled
+def move(state: State, memory: Memory, slot: int, count: int) -> None:
+    """Move `count` elements, none beyond the end of either side's line, and step both sides on."""
+    source, target, bits = state[slot + w.FROM], state[slot + w.TO], state[slot + w.ELEMENT_BITS]
+    source_step, target_step = state[slot + w.FROM_X_MODIFY], state[slot + w.TO_X_MODIFY]
+    if bits == WORD_BITS and source_step == target_step == WORD_BYTES:
+        source, target = source >> WORD_BITS, target >> WORD_BITS
+        for word in range(count):
+            memory[target + word] = memory[source + word]
+    else:
+        for _ in range(count):
+            copy_element(memory, source, target, bits)
+            source += source_step
+            target += target_step
+    go_on(state, slot + w.FROM, count)
+    go_on(state, slot + w.TO, count)
+    state[slot + w.MOVED] += count
+    state[slot + w.LEFT] -= count

@@ -1,0 +1,125 @@
+"""The weave, compiled: every word that a DMA, a camera or a core moves over the SDRAM bus or the port of L2, in order of time.
+
+`advance` plays the masters against each other up to a tick. The one whose request comes first has the bus; of several, the
+one with the best rank. Runs of words that nobody can interrupt are done at once, which saves the host's time only.
+"""
+
+from __future__ import annotations
+
+from bfsim.kernel.compiled import compiled, entry
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.core_requests import serve_core, serve_stores, start_jobs
+from bfsim.machine.bus.dma_requests import accept, arrival, serve_dma
+from bfsim.machine.bus.state import Memory, State
+
+# What changes a rank (HRM of the BF537, 5-50 to 5-54): an urgent request comes before everything else, one against the
+# direction of the traffic behind all of its kind. A request that needs no bus cannot keep anybody waiting.
+NO_BUS, URGENT, AGAINST, HAD_ITS_TURN, HAD_THE_BUS = -10_000, -1_000, 100, 2, 2
+
+
+@compiled
+def rank_of(state: State, number: int, at: int) -> int:
+    """Return the rank of a master's request at tick `at`."""
+    master = w.MASTERS_AT + number
+    rank = state[master + w.RANK]
+    if not state[master + w.USES_BUS]:
+        return rank + NO_BUS
+    if number >= w.STORES_A:  # the cores take turns, with their loads and with their stores
+        return rank + (HAD_THE_BUS if state[w.LAST_CORE] == (number - w.STORES_A) % w.CORES else 0)
+    if state[w.DEB_LEFT] > 0 and state[master + w.WRITES] != state[w.LAST_WRITE]:
+        rank += AGAINST
+    if state[master + w.PARTNER] != w.NONE and 0 < state[w.MDMA_PERIOD] <= state[master + w.SERVED]:
+        rank += HAD_ITS_TURN
+    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
+    half = state[master + w.FIFO] // 2
+    if state[slot + w.MODE] == w.PACED_IN and arrival(state, slot, half) <= at:
+        rank += URGENT  # more than half of the FIFO waits
+    elif state[slot + w.MODE] == w.PACED_OUT and arrival(state, slot, -1 - half) <= at:
+        rank += URGENT  # less than half of the FIFO is left
+    return rank
+
+
+@compiled
+def count_direction(state: State, before: int) -> None:
+    """Begin the period in which requests of the same direction are preferred, or use up a transfer of it."""
+    if state[w.LAST_WRITE] != before:
+        state[w.DEB_LEFT] = state[w.DEB_PERIOD]
+    elif state[w.DEB_LEFT] > 0:
+        state[w.DEB_LEFT] -= 1
+
+
+@compiled
+def first_request(state: State, until: int) -> tuple[int, int]:
+    """Return who can be served first, and when; NONE if nobody before tick `until`."""
+    free = state[w.COMMAND_FREE]
+    first, first_at, first_rank = w.NONE, until, w.NEVER
+    for number in range(w.MASTERS):
+        master = w.MASTERS_AT + number
+        at = state[master + w.READY]
+        if at >= until:
+            continue
+        if at < free and state[master + w.USES_BUS]:
+            at = free
+        if at < first_at:
+            first, first_at, first_rank = number, at, w.NEVER
+        elif at == first_at and first != w.NONE:
+            if first_rank == w.NEVER:
+                first_rank = rank_of(state, first, at)
+            rank = rank_of(state, number, at)
+            if rank < first_rank:
+                first, first_rank = number, rank
+    return first, first_at
+
+
+@compiled
+def serve_cameras(state: State, memory: Memory, number: int, at: int, until: int) -> int:
+    """Serve a PPI, and then the words of both that come before anybody else can want the bus; return who is woken.
+
+    Most requests are theirs; this saves looking at everybody each time.
+    """
+    woken = serve_dma(state, memory, number, at, until)
+    limit = until
+    for other in range(w.SPI, w.MASTERS):
+        limit = min(limit, state[w.MASTERS_AT + other + w.READY])
+    while woken == w.NONE:
+        left, right = state[w.MASTERS_AT + w.PPI0 + w.READY], state[w.MASTERS_AT + w.PPI1 + w.READY]
+        ready, master = min(left, right), w.PPI0 if left <= right else w.PPI1
+        if ready >= limit or ready < state[w.COMMAND_FREE] or not state[w.MASTERS_AT + master + w.USES_BUS]:
+            break
+        woken = serve_dma(state, memory, master, ready, until)
+    return woken
+
+
+@compiled
+def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int:
+    """Serve the request of a master; return who is woken."""
+    if number <= w.PPI1 and not state[w.DEB_PERIOD]:
+        return serve_cameras(state, memory, number, at, until)
+    if number >= w.CORE_A:
+        return serve_core(state, number - w.CORE_A, at)
+    if number >= w.STORES_A:
+        return serve_stores(state, number - w.STORES_A, at)
+    return serve_dma(state, memory, number, at, until)
+
+
+@entry
+def advance(state: State, memory: Memory, until: int) -> int:
+    """Grant all requests before tick `until`, in order; return early with who is woken, at tick DONE_AT, else NONE.
+
+    A transfer is woken by its number, the job of core c by NONE - 1 - c.
+    """
+    accept(state)
+    start_jobs(state)
+    while True:
+        first, at = first_request(state, until)
+        if first == w.NONE:
+            return w.NONE
+        before, counts = (
+            state[w.LAST_WRITE],
+            first < w.STORES_A and state[w.DEB_PERIOD] and state[w.MASTERS_AT + first + w.USES_BUS],
+        )
+        woken = serve(state, memory, first, at, until)
+        if counts:
+            count_direction(state, before)
+        if woken != w.NONE:
+            return woken

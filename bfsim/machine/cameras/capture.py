@@ -1,0 +1,258 @@
+"""Stereo capture: which pictures are taken, into which frame buffers, and which pair the firmware gets.
+
+Both cores see the interrupts of both PPIs and agree on a pair through a shared variable; here that is one
+object. A pair that is overwritten, or comes when no buffer is free, is missed.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any, Protocol
+
+import numpy as np
+import simpy
+from numpy.typing import NDArray
+
+from bfsim.clocks import Clocks
+from bfsim.machine.cameras.ppi import Ppi
+from bfsim.machine.cameras.settling import CameraSettings
+from bfsim.machine.memories import Row
+from bfsim.machine.program import FrameSize
+from bfsim.machine.simulation import Simulation
+
+
+class Feed(StrEnum):
+    """When pictures come: as fast as the firmware asks, at the time stamps of the recording, or at the cameras' own pace.
+
+    Only with the last one do the cameras run free of each other, each by its oscillator.
+    """
+
+    DEMAND = "demand"
+    RECORDED = "recorded"
+    CAMERAS = "cameras"
+
+
+class StereoPictures(Protocol):
+    """One stereo frame of a recording."""
+
+    @property
+    def index(self) -> int:
+        """Number in the recording."""
+
+    @property
+    def left(self) -> NDArray[np.uint8]:
+        """UYVY bytes, (height, 2 · width)."""
+
+    @property
+    def right(self) -> NDArray[np.uint8]:
+        """UYVY bytes, (height, 2 · width)."""
+
+    @property
+    def left_ns(self) -> int:
+        """Time stamp of the left picture."""
+
+    @property
+    def right_ns(self) -> int:
+        """Time stamp of the right picture."""
+
+
+class State(StrEnum):
+    """Life of a frame buffer."""
+
+    FREE = "free"
+    FILLING = "filling"
+    FULL = "full"
+    IN_USE = "in use"
+
+
+@dataclass(slots=True)
+class Pair:
+    """A pair of frame buffers, one per core.
+
+    `index` is the recording's frame in it, `picture` the lines of that, `lost` the words that its PPIs lost.
+    """
+
+    rows: Mapping[str, Sequence[Row]]
+    picture: Mapping[str, Sequence[Row]] = field(default_factory=dict)
+    state: State = State.FREE
+    index: int = -1
+    full_at_ticks: int = 0
+    users: int = 0
+    lost: Mapping[str, int] = field(default_factory=dict)
+
+
+class Capture:
+    """Fills pairs of frame buffers from a recording and hands them to the cores, the newest first."""
+
+    def __init__(
+        self,
+        env: Simulation,
+        clocks: Clocks,
+        ppis: Mapping[str, Ppi],
+        pairs: Sequence[Pair],
+        pictures: Iterator[StereoPictures],
+        feed: Feed,
+    ) -> None:
+        """`ppis`: PPI of each core; the first core has the left camera."""
+        self._env = env
+        self._clocks = clocks
+        self._ppis = ppis
+        self._pairs = pairs
+        self._pictures = pictures
+        self._feed = feed
+        self._handed_out: dict[str, deque[Pair]] = {core: deque() for core in ppis}
+        self._held: dict[str, Pair] = {}
+        self._changed = env.event()
+        self._wanted_sizes: dict[str, FrameSize] = {}
+        self._receiving_until = dict.fromkeys(ppis, 0)
+        self._sensors_ready_at = 0
+        self._ended = False
+        self.missed: list[int] = []
+        """Frames of the recording that the firmware never got."""
+        env.process(self._take())
+
+    def claim(self, core: str) -> Generator[simpy.Event, Any, Pair | None]:
+        """Give back the pair that `core` had, and wait for the next one; None after the last."""
+        if core in self._held:
+            self._release(self._held.pop(core))
+        mine = self._handed_out[core]
+        while not mine:
+            full = [each for each in self._pairs if each.state is State.FULL]
+            if full:
+                self._hand_out(full)
+            elif self._ended and all(each.state is not State.FILLING for each in self._pairs):
+                return None
+            else:
+                yield self._changed
+        self._held[core] = mine.popleft()
+        return self._held[core]
+
+    def change_camera(self, core: str, settings: CameraSettings) -> None:
+        """Give the camera of a core new settings."""
+        self._ppis[core].change(settings)
+
+    def change_size(self, core: str, size: FrameSize) -> None:
+        """Tell the camera of a core what size to send; the cameras change together, when all are told the same."""
+        self._ppis[core].check_size(size)
+        self._wanted_sizes[core] = size
+
+    def _change_sizes(self, frame: int) -> None:
+        """Change the size of the pictures from number `frame` on, if all cameras are told the same one."""
+        wanted = list(self._wanted_sizes.values())
+        if len(wanted) == len(self._ppis) and len(set(wanted)) == 1:
+            for ppi in self._ppis.values():
+                ppi.change_size(wanted[0], frame)
+
+    def _hand_out(self, full: list[Pair]) -> None:
+        newest = max(full, key=lambda each: each.index)
+        for each in full:
+            if each is not newest:
+                self._miss(each)
+        newest.state, newest.users = State.IN_USE, len(self._ppis)
+        for queue in self._handed_out.values():
+            queue.append(newest)
+        self._notify()
+
+    def _release(self, pair: Pair) -> None:
+        pair.users -= 1
+        if not pair.users:
+            pair.state = State.FREE
+            self._notify()
+
+    def _miss(self, pair: Pair) -> None:
+        self.missed.append(pair.index)
+        pair.state = State.FREE
+
+    def _notify(self) -> None:
+        event, self._changed = self._changed, self._env.event()
+        event.succeed()
+
+    def _take(self) -> Generator[simpy.Event, Any, None]:
+        """Take every picture of the recording at its time."""
+        origin_ns: int | None = None
+        for frame, pictures in enumerate(self._pictures):
+            stamps = (pictures.left_ns, pictures.right_ns)[: len(self._ppis)]
+            origin_ns = min(stamps) if origin_ns is None else origin_ns
+            if self._feed is Feed.DEMAND:
+                starts = yield from self._when_wanted()
+            elif self._feed is Feed.RECORDED:
+                starts = [self._clocks.ticks_of_ns(each - origin_ns) for each in stamps]
+            else:
+                starts = [each.start_of(frame) for each in self._ppis.values()]
+            yield self._env.after(max(0, min(starts) - self._env.tick))
+            self._change_sizes(frame)
+            self._begin(pictures, dict(zip(self._ppis, starts, strict=True)))
+        self._ended = True
+        self._notify()
+
+    def _when_wanted(self) -> Generator[simpy.Event, Any, list[int]]:
+        """Wait until the firmware has taken the picture before, a buffer is free and the sensors are through."""
+        while not self._is_picture_wanted():
+            yield self._changed
+        return [max(self._env.tick, self._sensors_ready_at)] * len(self._ppis)
+
+    def _is_picture_wanted(self) -> bool:
+        states = {each.state for each in self._pairs}
+        return State.FREE in states and states.isdisjoint({State.FILLING, State.FULL})
+
+    def _begin(self, pictures: StereoPictures, starts: Mapping[str, int]) -> None:
+        """Receive a pair of pictures, unless a PPI still receives the one before or no buffer can be had.
+
+        Recorded time stamps jitter; a picture may come as early as in the vertical blanking of the one before.
+        """
+        images = dict(zip(self._ppis, (pictures.left, pictures.right), strict=False))
+        receiving = any(start < self._receiving_until[core] for core, start in starts.items())
+        pair = None if receiving else self._empty_pair()
+        if pair is None:
+            self.missed.append(pictures.index)
+            for core, ppi in self._ppis.items():
+                ppi.skip(images[core])
+            return
+        pair.state, pair.index = State.FILLING, pictures.index
+        pair.picture = {core: ppi.lines_in(pair.rows[core]) for core, ppi in self._ppis.items()}
+        for core, start in starts.items():
+            self._receiving_until[core] = start + self._ppis[core].picture_ticks
+            self._sensors_ready_at = max(self._sensors_ready_at, start + self._ppis[core].frame_ticks)
+        self._env.process(self._fill(pair, images, starts))
+
+    def _empty_pair(self) -> Pair | None:
+        """A free pair, or else the oldest full one, whose frame is missed then."""
+        free = [each for each in self._pairs if each.state is State.FREE]
+        if free:
+            return free[0]
+        full = [each for each in self._pairs if each.state is State.FULL]
+        if not full:
+            return None
+        oldest = min(full, key=lambda each: each.index)
+        self._miss(oldest)
+        return oldest
+
+    def _fill(
+        self, pair: Pair, images: Mapping[str, NDArray[np.uint8]], starts: Mapping[str, int]
+    ) -> Generator[simpy.Event, Any, None]:
+        yield self._env.all_of(
+            [
+                self._env.process(self._receive(ppi, images[core], pair.picture[core], starts[core]))
+                for core, ppi in self._ppis.items()
+            ]
+        )
+        pair.lost = {core: ppi.take_lost() for core, ppi in self._ppis.items()}
+        pair.state = State.FULL
+        pair.full_at_ticks = self._env.tick
+        self._notify()
+
+    def _receive(
+        self, ppi: Ppi, image: NDArray[np.uint8], rows: Sequence[Row], start: int
+    ) -> Generator[simpy.Event, Any, None]:
+        """Let a PPI receive a picture that begins at tick `start`; until then it may still be at the one before.
+
+        The last words of that one may be in its FIFO even longer.
+        """
+        if start > self._env.tick:
+            yield self._env.after(start - self._env.tick)
+        if ppi.through is not None and not ppi.through.processed:
+            yield ppi.through
+        yield ppi.receive(image, rows, start)

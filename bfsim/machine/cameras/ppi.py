@@ -1,0 +1,158 @@
+"""PPI and camera: a picture arrives word by word, at the pace of the camera's own oscillator, in a frame buffer in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import numpy as np
+import simpy
+from numpy.typing import NDArray
+
+from bfsim.chip.ppi_registers import check_ppi_clk
+from bfsim.chip.spec import BoardSpec, CameraSpec
+from bfsim.clocks import PeriodicEdges
+from bfsim.errors import FirmwareError
+from bfsim.kernel.types import u8
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.bus import Bus, Pace, Walk
+from bfsim.machine.cameras.oscillator import Oscillator
+from bfsim.machine.cameras.ppi_status import PpiStatus
+from bfsim.machine.cameras.settling import CameraSettings, Settling
+from bfsim.machine.cameras.skipping import SKIPS, skipped
+from bfsim.machine.memories import Memories, Row
+from bfsim.machine.program import FrameSize
+
+
+class Ppi:
+    """One parallel peripheral interface with the camera on it. `status` is what the chip's PPI_STATUS shows."""
+
+    def __init__(
+        self,
+        board: BoardSpec,
+        size: FrameSize,
+        camera: CameraSpec,
+        bus: Bus,
+        memories: Memories,
+        *,
+        number: int,
+        outside: int,
+    ) -> None:
+        """`size`: of the recorded pictures. `number`: 0 or 1. `outside`: where in the arena two pictures stand while they come in.
+
+        Two, since the next one may begin before the bus has taken the last words of the one before.
+        """
+        self._bus = bus
+        self._memories = memories
+        self._master = w.PPI0 + number
+        self._clocks = board.clocks
+        self._sensor = board.sensor
+        self._recorded = size
+        self._camera = camera
+        self._name = f"PPI{number}"
+        self._outside = outside, outside + 2 * size.width_px * size.height_px
+        self._word_bytes = (
+            board.chip.dma.word_bytes
+        )  # PPI_CONTROL with PACK_EN, and DMA32 where DMA has 32 bits
+        self._lines: dict[tuple[int, FrameSize], tuple[Row, ...]] = {}
+        self._first_frame, self._origin_ticks = 0, 0
+        self._send(size)
+        # a change of settings is what the firmware asks for; a run begins with settled cameras
+        self._settling = Settling(
+            camera, CameraSettings(exposure_lines=0, gain=0, red_gain=0, blue_gain=0), camera.settling_frames
+        )
+        self._lost = 0
+        self.through: simpy.Event | None = None
+        """The event at which the last picture that was begun is in its frame buffer."""
+
+    def _send(self, size: FrameSize) -> None:
+        """Program sensor and PPI for pictures of `size`."""
+        self.size = size
+        mode = self._sensor.mode(size.width_px, size.height_px)
+        check_ppi_clk(mode.ppi_clk_hz, self._clocks.sclk_hz)
+        self._oscillator = Oscillator(self._clocks, mode, self._camera)
+        ppi_clk_ticks = self._clocks.tick_hz / self._oscillator.ppi_clk_hz
+        self._word_ticks = ppi_clk_ticks * self._word_bytes
+        self._line_ticks: Fraction = ppi_clk_ticks * mode.line_clocks
+        lines = PeriodicEdges(self._line_ticks)
+        self.picture_ticks = lines.after(mode.height_px - 1) + PeriodicEdges(ppi_clk_ticks).after(
+            mode.active_clocks
+        )
+        """Ticks from the first byte of a picture to its last one."""
+        self.frame_ticks = lines.after(mode.frame_lines)
+        """Ticks from one picture's first line to the next one's, vertical blanking included."""
+        self.status = PpiStatus(self._name, mode.height_px, mode.active_clocks)
+
+    def start_of(self, frame: int) -> int:
+        """Return the tick at which the camera, left to itself, sends the first byte of its picture number `frame`."""
+        return self._origin_ticks + self._oscillator.line_start(frame - self._first_frame, 0)
+
+    def check_size(self, size: FrameSize) -> None:
+        """Raise FirmwareError unless the recorded pictures can be sent in that size."""
+        width_px, height_px = self._recorded.width_px, self._recorded.height_px
+        sizes = [
+            FrameSize(width_px // step, height_px // step) for step in SKIPS if width_px % (2 * step) == 0
+        ]
+        if size not in sizes:
+            raise FirmwareError(f"pictures must be of {' or '.join(map(str, sizes))}, not of {size}")
+
+    def change_size(self, size: FrameSize, frame: int) -> None:
+        """Send pictures of `size` from number `frame` on, and settle. [assumed] That one begins when it would have anyway."""
+        if size == self.size:
+            return
+        start = self.start_of(frame)
+        self._send(size)
+        self._first_frame, self._origin_ticks = frame, start - self._oscillator.line_start(0, 0)
+        self._settling.restart()
+
+    def lines_in(self, rows: Sequence[Row]) -> Sequence[Row]:
+        """Return the lines that a picture of the present size takes in the frame buffer `rows`."""
+        if self.size == self._recorded:
+            return rows
+        key = (rows[0].offset, self.size)
+        if (
+            key not in self._lines
+        ):  # the same rows every time, so that calls and copies with them are prepared once
+            lines = self._memories.overlay(rows, u8, 2 * self.size.width_px)
+            self._lines[key] = lines[: self.size.height_px]
+        return self._lines[key]
+
+    def _sent(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        return self._settling.next_picture(skipped(picture, self._recorded.width_px // self.size.width_px))
+
+    def change(self, settings: CameraSettings) -> None:
+        """Give the camera new settings: the next pictures are off until they have worked."""
+        self._settling.change(settings)
+
+    def skip(self, picture: NDArray[np.uint8]) -> None:
+        """Let a picture go by: the camera sends it and goes on settling, but nobody takes it."""
+        self._sent(picture)
+
+    def receive(self, picture: NDArray[np.uint8], rows: Sequence[Row], start: int) -> simpy.Event:
+        """Write a recorded `picture` (height, 2 · width) to `rows`, as the camera sends it; its first line begins at tick `start`. Return the event at its end."""
+        picture = self._sent(picture)
+        words = picture.shape[1] // self._word_bytes
+        self.status.frame_sync()
+        for line in picture:
+            self.status.line(len(line))
+        outside, other = self._outside
+        self._outside = other, outside
+        self._memories.bytes_from(outside, picture.nbytes)[:] = picture.reshape(-1)
+        plan = self._bus.plan_receive(
+            self._master,
+            Walk(outside, words, self._word_bytes, self._word_bytes),
+            Walk(rows[0].offset, words, self._word_bytes, self._word_bytes),
+            words * len(rows),
+            element_bytes=self._word_bytes,
+            pace=Pace(start, words, self._word_ticks, self._line_ticks),
+        )
+        self.through = self._bus.when_done(self._bus.post(plan))
+        return self.through
+
+    def take_lost(self) -> int:
+        """Return how many words found the FIFO full since the last time; any of them sets OVR."""
+        total = self._bus.lost_by(self._master)
+        lost, self._lost = total - self._lost, total
+        if lost:
+            self.status.overrun(lost * self._word_bytes)
+        return lost

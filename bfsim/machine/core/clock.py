@@ -1,0 +1,119 @@
+"""A core's clock and its accounts: how time passes for a core, and which account each cycle goes to.
+
+The core runs ahead of the simulated time: kernel work only adds to its own clock, and it catches up with the
+simulated time where it meets another device. Every cycle of its clock goes to one account, so that
+issue + stall + idle = elapsed holds by construction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import Any
+
+import simpy
+
+from bfsim.chip.spec import BoardSpec
+from bfsim.machine.bus.bus import Bus, Transfer
+from bfsim.machine.core.accounts import FrameAccounts
+from bfsim.machine.simulation import Simulation
+from bfsim.trace import StallReason
+
+
+class CoreClock:
+    """The clock of one core. It never goes back, and is never behind the simulated time when the core acts."""
+
+    def __init__(
+        self, env: Simulation, name: str, board: BoardSpec, bus: Bus, stages: tuple[str, ...]
+    ) -> None:
+        self.name = name
+        self.waiting_for: str | None = None
+        """What the core waits for, in words, while only another device can let it go on."""
+        self._env = env
+        self._board = board
+        self._bus = bus
+        self._cclk_ticks = board.clocks.cclk_ticks
+        self._cclk = 0
+        self._owed_cclk = 0  # of a wait: what passed before its interrupts, on no account yet
+        self._accounts = FrameAccounts(name, stages)
+        self._account = self._accounts.now
+
+    @property
+    def now_ticks(self) -> int:
+        """The core's own clock, in ticks: the simulated time or later."""
+        return self._cclk * self._cclk_ticks
+
+    def catch_up(self) -> simpy.Event | None:
+        """Return the event at which the simulated time reaches the core's clock; None when it has."""
+        ahead_ticks = self._cclk * self._cclk_ticks - self._env.tick
+        return self._env.after(ahead_ticks) if ahead_ticks > 0 else None
+
+    def settle(self) -> None:
+        """Let everything on the bus happen that is due; the core's clock must have been caught up with."""
+        self._bus.settle()
+
+    def has(self, transfer: Transfer) -> bool:
+        """Whether `transfer` is done by the core's clock."""
+        end = transfer.end
+        return end is not None and end <= self._cclk * self._cclk_ticks
+
+    def wait_transfer(self, transfer: Transfer, reason: StallReason) -> Generator[Any, Any, None]:
+        """Stall for `reason` until `transfer` is done."""
+        if transfer.end is None:
+            yield from self._sync()
+            self._bus.settle()
+            if transfer.end is None:
+                yield from self._blocked(iter([self._bus.when_done(transfer)]), "DMA")
+        self._charge(reason, self._until(transfer.end))
+
+    def wait_event(self, event: simpy.Event | None, what: str) -> Generator[Any, Any, None]:
+        """Stall until `event`, the end of a DMA that this core started."""
+        yield from self._sync()
+        if event is not None and not event.processed:
+            yield from self._blocked(iter([event]), what)
+            self._wake(StallReason.RING_EMPTY)
+
+    def stall(self, reason: StallReason, cclk: int) -> None:
+        """Let `cclk` cycles pass without work, for `reason`."""
+        self._cclk += cclk
+        stalls = self._account.stall_cclk
+        stalls[reason] = stalls.get(reason, 0) + cclk
+
+    def issue(self, cclk: int) -> None:
+        """Let `cclk` cycles pass with work that is no kernel's."""
+        self._cclk += cclk
+        self._account.issue_cclk += cclk
+
+    def program_device(self, writes: int, reads: int = 0) -> None:
+        """Write and read registers of a device: that is DMA set-up."""
+        events = self._board.chip.events
+        self.stall(StallReason.DMA_SETUP, writes * events.mmr_write_cclk + reads * events.mmr_read_cclk)
+
+    def _sync(self) -> Generator[Any, Any, None]:
+        if late := self.catch_up():
+            yield late
+
+    def _until(self, tick: int | None) -> int:
+        """Return the cycles up to the first CCLK edge from `tick` on, which must be known; 0 if that is over."""
+        assert tick is not None
+        return max(0, -(-tick // self._cclk_ticks) - self._cclk)
+
+    def _wake(self, reason: StallReason | None, step_cclk: int = 1) -> None:
+        """Go on at the first CCLK edge from now, or whole `step_cclk` later; that was a stall, or idle without a reason."""
+        self._charge(reason, -(-self._until(self._env.tick) // step_cclk) * step_cclk)
+
+    def _charge(self, reason: StallReason | None, waited_cclk: int) -> None:
+        """Let `waited_cclk` pass, and charge them with what the wait owes from before its interrupts."""
+        self._cclk += waited_cclk
+        waited_cclk, self._owed_cclk = waited_cclk + self._owed_cclk, 0
+        if reason is None:
+            self._account.idle_cclk += waited_cclk
+        elif waited_cclk:
+            stalls = self._account.stall_cclk
+            stalls[reason] = stalls.get(reason, 0) + waited_cclk
+
+    def _blocked(self, wait: Any, what: str) -> Generator[Any, Any, Any]:
+        """Play `wait`, a generator of events, saying meanwhile what the core waits for."""
+        self.waiting_for = f"{what}, since cycle {self._cclk:,}"
+        result = yield from wait
+        self.waiting_for = None
+        return result

@@ -1,0 +1,395 @@
+"""A core: plays the firmware's main loop, charges what its kernels cost, and waits for the rest of the machine."""
+
+from __future__ import annotations
+
+import contextlib
+import traceback
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from operator import index
+from typing import Any
+
+import simpy
+
+from bfsim.chip.spec import BoardSpec
+from bfsim.errors import BfsimError, FirmwareError
+from bfsim.kernel import Kernel, Work
+from bfsim.kernel.followers import Follower
+from bfsim.kernel.types import Number
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
+from bfsim.machine.calls.calls import CallBook, DeferredWork
+from bfsim.machine.cameras.capture import Capture
+from bfsim.machine.cameras.settling import CameraSettings
+from bfsim.machine.core.layouts import Layouts
+from bfsim.machine.core.readout import Readout
+from bfsim.machine.core.synchronised import SharedObjects, SynchronisedCore
+from bfsim.machine.dma.mdma import MdmaStream
+from bfsim.machine.dma.memory_dma import Dma, MemoryDma
+from bfsim.machine.dma.ring import InputRing, OutputRing
+from bfsim.machine.firmware_lines import NOT_FIRMWARE
+from bfsim.machine.memories import Row
+from bfsim.machine.program import FrameSize, Main
+from bfsim.machine.simulation import Simulation
+from bfsim.machine.spi.spi import SPI_WRITES, Spi
+from bfsim.seen import Seen
+from bfsim.trace import REST, CoreFrame, StallReason
+
+BUS_STALLS = (
+    StallReason.L2_LATENCY, StallReason.L2_PORT, StallReason.SDRAM_PAGE_HIT, StallReason.SDRAM_PAGE_MISS,
+    StallReason.SDRAM_PAGE_CONFLICT, StallReason.SDRAM_REFRESH, StallReason.EBIU_ARBITRATION, StallReason.STORE_BUFFER,
+    StallReason.CACHE_FILL, StallReason.CODE_FETCH,
+)  # fmt: skip
+"""What the bus stalls a core for, in the order of its counters (`bus.state`)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """One picture of this core's camera. `rows`: its lines in memory, 2 · `width` bytes of UYVY each."""
+
+    index: int
+    rows: Sequence[Row]
+    width: int
+    height: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FinishedFrame:
+    """What one core reports at the end of a frame."""
+
+    index: int
+    full_at_cclk: int
+    cycles: CoreFrame
+    results: Mapping[str, int]
+    remarks: tuple[str, ...]
+    seen: Seen | None
+
+
+class Core(SynchronisedCore):
+    """One core. Firmware gets it as the argument of its main loop."""
+
+    def __init__(
+        self,
+        env: Simulation,
+        name: str,
+        board: BoardSpec,
+        *,
+        layouts: Layouts,
+        calls: CallBook,
+        bus: Bus,
+        number: int,
+        follower: Follower,
+        capture: Capture,
+        streams: tuple[MdmaStream, MdmaStream],
+        dma: Dma,
+        spi: Spi,
+        shared: SharedObjects,
+        stages: tuple[str, ...],
+        on_finished: Callable[[], None],
+        view: Callable[[Readout], Seen] | None,
+    ) -> None:
+        """`streams`: the MDMA streams of its input and of its output rings. `on_finished`: called at a frame's end.
+
+        `view`: reads out what was seen, if anyone wants to know.
+        """
+        super().__init__(env, name, board, bus, stages)
+        self.finished: list[FinishedFrame] = []
+        """Frames that are done, until the board takes them."""
+        self._entered_at_cclk = 0
+        self._stages = stages
+        self._on_finished = on_finished
+        self._layouts = layouts
+        self._view = view
+        self._calls = calls
+        self._number = number
+        self._follower = follower
+        self._capture = capture
+        self._streams = streams
+        self._dma = dma
+        self._spi = spi
+        self._shared = shared
+        self._interrupts = shared.interrupts[name]
+        self._frame: Frame | None = None
+        self._full_at_cclk = 0
+        self._results: dict[str, int] = {}
+        self._remarks: list[str] = []
+        self._unclaimed: Work | None = None
+        self._main: Generator[Any, Any, None] | None = None
+        self._in_handler = False
+
+    # What firmware uses
+
+    def rows(self, name: str) -> tuple[Row, ...]:
+        """Return the rows of the buffer called `name`."""
+        return self._layouts.rows(name)
+
+    def array(self, name: str) -> Row:
+        """Return the only row of the buffer called `name`."""
+        rows = self.rows(name)
+        if len(rows) != 1:
+            raise FirmwareError(f"buffer {name} has {len(rows)} rows; use core.rows({name!r})")
+        return rows[0]
+
+    def has_buffer(self, name: str) -> bool:
+        """Whether there is a buffer called `name`: some come only with the tables of a recording."""
+        return name in self._layouts
+
+    def overlay(self, name: str, element: Number, columns: int) -> tuple[Row, ...]:
+        """Return the memory of buffer `name`, all its rows as one, as rows of another kind: a union in C."""
+        return self._layouts.overlay(name, element, columns)
+
+    def part(self, rows: Sequence[Row], first: int, count: int) -> tuple[Row, ...]:
+        """Return `count` elements of each row from element `first` on, such as the columns of an area: no bytes move."""
+        return self._layouts.part(rows, first, count)
+
+    def use_size(self, size: FrameSize) -> None:
+        """Have the buffers from now on as firmware declares them for pictures of `size`, in the memory of the full ones.
+
+        Their contents are not moved. Raises FirmwareError for a size that the memory has no room for.
+        """
+        self._layouts.use(size)
+
+    def input_ring(self, image: Sequence[Row], ring: str | Sequence[Row]) -> InputRing | CachedInput:
+        """Return a ring that fetches the lines of `image` into rows, or those of the buffer `ring`, one line ahead.
+
+        Where the LDF has the image cached, its own rows take the place of the ring's.
+        """
+        if self._is_cached(image):
+            return CachedInput(image)
+        return self.window_ring(image, self.rows(ring) if isinstance(ring, str) else ring)
+
+    def window_ring(self, image: Sequence[Row], rows: Sequence[Row]) -> InputRing:
+        """Return a ring that fetches the lines of `image` into `rows`, where kernels need them, even if it is cached."""
+        return InputRing(self, self._streams[0], image, rows)
+
+    def output_ring(self, ring: str, image: Sequence[Row]) -> OutputRing | CachedOutput:
+        """Return a ring that takes finished lines from the rows of buffer `ring` to `image`, which may be cached as above."""
+        if self._is_cached(image):
+            return CachedOutput(image)
+        return OutputRing(self, self._streams[1], self.rows(ring), image)
+
+    def run(self, kernel: Kernel, *arguments: Row | int) -> Work:
+        """Run a kernel on rows and ints. Yield the result: the cycles are charged then, and you get its value."""
+        if self._unclaimed is not None:
+            self._check_claimed()
+        try:
+            call = self._calls.known[kernel, kernel.arrays_of(arguments)]
+        except (LookupError, TypeError):  # the first time, or something is wrong with the arguments
+            call = self._calls.prepare(kernel, arguments)
+        # what reaches outside L1 may meet what others do: it runs when the simulated time is there
+        work = self._unclaimed = call.run(arguments) if call.stays_in_l1 else DeferredWork(call, arguments)
+        return work
+
+    @contextlib.contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Charge everything inside to the row `name` of the budget."""
+        if name not in self._stages:
+            raise FirmwareError(f"stage must be one of {', '.join(self._stages)}, not {name!r}")
+        before = self._calls.stage
+        self._enter(name)
+        yield
+        self._enter(before)
+
+    def next_frame(self) -> Generator[Any, Any, Frame | None]:
+        """Finish the current frame and wait for the next picture; None when the recording is over."""
+        if self._calls.stage != REST:
+            raise FirmwareError(f"next_frame must be called outside of stages, not in {self._calls.stage!r}")
+        self._check_claimed()
+        yield from self._sync()
+        self._close_frame()
+        pair = yield from self._blocked(self._capture.claim(self.name), "the next picture")
+        self._wake(None)
+        if pair is None:
+            return None
+        events = self._board.chip.events  # the interrupt of the PPI's DMA ends the wait
+        self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk + events.interrupt_exit_cclk)
+        self._full_at_cclk = -(-pair.full_at_ticks // self._cclk_ticks)
+        rows = pair.picture[self.name]
+        width = rows[0].nbytes // 2
+        self._invalidate(rows)
+        if lost := pair.lost.get(self.name, 0):
+            self.publish(ppi_words_lost=lost)
+        self._frame = Frame(pair.index, rows, width, len(rows))
+        return self._frame
+
+    def publish(self, **results: int) -> None:
+        """Add numbers to the record of the current frame."""
+        self._results.update({f"{name}_{self.name}": index(value) for name, value in results.items()})
+
+    def set_camera(self, settings: CameraSettings) -> None:
+        """Give this core's camera new settings: its next pictures are off in brightness and colour until they have worked.
+
+        The two-wire bus to the camera is not modelled.
+        """
+        self._capture.change_camera(self.name, settings)
+
+    def set_picture_size(self, size: FrameSize) -> None:
+        """Have this core's camera send pictures of `size`: the recorded one, half or a quarter of it.
+
+        It does so once every camera is told the same, from the next picture on that it begins.
+        """
+        self._capture.change_size(self.name, size)
+
+    def remark(self, text: str) -> None:
+        """Add a sentence about the current frame to the report."""
+        self._remarks.append(f"core {self.name} {text}")
+
+    def memory_dma(self, name: str) -> MemoryDma:
+        """Return the memory DMA stream `name`, such as MDMA2_1 or IMDMA_0, to be programmed by its registers."""
+        return self._dma.stream(name, self)
+
+    def send(self, row: Row, nbytes: int) -> Generator[Any, Any, None]:
+        """Send the first `nbytes` of `row` to the strategy unit by SPI and DMA, once the message before is out."""
+        yield from self._sync()
+        if self._spi.busy is not None:
+            yield from self._blocked(iter([self._spi.busy]), "the SPI")
+            self._wake(StallReason.RING_FULL)
+        self.program_device(writes=SPI_WRITES)
+        yield from self._sync()
+        self._spi.send(row, nbytes)
+
+    def receive(self, row: Row) -> Generator[Any, Any, int]:
+        """Take the next message of the strategy unit into `row`, if one has come; return its bytes, 0 without one."""
+        yield from self._sync()
+        if not self._spi.has_message:
+            return 0
+        self.program_device(writes=SPI_WRITES)
+        yield from self._sync()
+        if not self._spi.has_message:  # the other core was faster
+            return 0
+        transfer, nbytes = self._spi.receive(row)
+        yield from self.wait_transfer(transfer, StallReason.RING_EMPTY)
+        return nbytes
+
+    def _is_cached(self, image: Sequence[Row]) -> bool:
+        return bool(image) and self._follower.caches(image[0].offset)
+
+    def _invalidate(self, rows: Sequence[Row]) -> None:
+        """Let the data cache forget what it holds of a picture that DMA has written over."""
+        lines = self._follower.forget(rows[0].offset, rows[0].nbytes * len(rows))
+        cclk = lines * self._board.chip.cache.invalidate_cclk
+        self.issue(cclk)
+
+    def _enter(self, stage: str) -> None:
+        """Go over to another row of the budget, and charge the one that ends what conflicts in L1 cost it."""
+        self._bus.settle()
+        conflicts_cclk = self._calls.conflicts_cclk(self._cclk - self._entered_at_cclk)
+        if conflicts_cclk:
+            self.stall(StallReason.L1_CONFLICT, conflicts_cclk)
+        self._entered_at_cclk = self._cclk
+        self._accounts.enter(stage)
+        self._account = self._accounts.now
+        self._calls.enter(stage)
+
+    # What the board uses
+
+    def play(self, main: Main) -> Generator[Any, Any, None]:
+        """Run the firmware's main loop: the process of this core."""
+        self._main = task = main(self)
+        if not isinstance(task, Generator):
+            raise FirmwareError(f"core {self.name}: the main loop must be a generator function, not {main!r}")
+        yield from self._perform(task)
+        yield from self._sync()
+        self._close_frame()
+        self._main = None
+
+    def _perform(self, task: Generator[Any, Any, Any]) -> Generator[Any, Any, None]:
+        """Play a generator of the firmware: charge the kernels that it yields, and wait for the events."""
+        value = None
+        while True:
+            try:
+                item = task.send(value)
+            except StopIteration:
+                break
+            except Exception as error:
+                raise self._told(error) from error
+            if item is self._unclaimed and item is not None:
+                self._unclaimed = None
+                if isinstance(item, DeferredWork):
+                    yield from self._sync()
+                    item = item.run()
+                    if item.accesses:
+                        yield from self._outside_l1(item)
+                self._cclk += item.issue_cclk + item.stall_cclk
+                self._account.issue_cclk += item.issue_cclk
+                if item.stall_cclk:
+                    stalls = self._account.stall_cclk
+                    stalls[StallReason.INTERLOCK] = stalls.get(StallReason.INTERLOCK, 0) + item.stall_cclk
+                value = item.value
+            elif isinstance(item, simpy.Event):
+                value = yield item
+            else:
+                raise FirmwareError(
+                    f"core {self.name}: firmware must yield each core.run(...) once, or `yield from` a wait, "
+                    f"not {item!r}{self.place()}"
+                )
+            if self._interrupts.are_handled and not self._in_handler:
+                yield from self._sync()
+                yield from self._take_interrupts()
+        self._check_claimed()
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the main loop has ended."""
+        return self._main is None
+
+    def describe_wait(self) -> str:
+        """Say what the core waits for and where in the firmware."""
+        if self.is_done:
+            return f"core {self.name} has ended"
+        return f"core {self.name} waits for {self.waiting_for or 'a device'}{self.place()}"
+
+    # Inside
+
+    def place(self) -> str:
+        """Return the innermost line of the firmware that is being played, as ` (file:line)`."""
+        place = ""
+        generator: Any = self._main
+        while generator is not None and getattr(generator, "gi_frame", None) is not None:
+            code = generator.gi_frame.f_code
+            if not code.co_filename.startswith(NOT_FIRMWARE):
+                place = f" ({code.co_filename}:{generator.gi_frame.f_lineno})"
+            generator = generator.gi_yieldfrom
+        return place
+
+    def _told(self, error: Exception) -> BfsimError:
+        """Return what went wrong in the firmware, with its line there."""
+        calls = traceback.extract_tb(error.__traceback__)
+        places = [
+            f"{each.filename}:{each.lineno}" for each in calls if not each.filename.startswith(NOT_FIRMWARE)
+        ]
+        place = f" ({places[-1]})" if places else ""
+        if isinstance(error, BfsimError):
+            return type(error)(f"{error}{place}")
+        return FirmwareError(f"core {self.name}: firmware failed with {type(error).__name__}: {error}{place}")
+
+    def _check_claimed(self) -> None:
+        if self._unclaimed is not None:
+            raise FirmwareError(f"core {self.name}: core.run(...) must be yielded, or its cycles are lost")
+
+    def _outside_l1(self, work: Work) -> Generator[Any, Any, None]:
+        """Play the accesses of a call outside L1 from the core's clock on, and charge what they stall."""
+        begin, cclk = self.now_ticks, work.issue_cclk + work.stall_cclk
+        yield self._bus.access(self._number, begin, cclk, work.accesses)
+        for reason, stalled in zip(BUS_STALLS, self._bus.stalls_of(self._number), strict=True):
+            if stalled:
+                self.stall(reason, stalled)
+
+    def _close_frame(self) -> None:
+        """Turn the cycles since the last frame's end into a record, if there was a frame."""
+        if self._frame is None:
+            return
+        cycles = self._accounts.close(self._cclk)
+        self._account = self._accounts.now
+        self.finished.append(
+            FinishedFrame(
+                index=self._frame.index,
+                full_at_cclk=self._full_at_cclk,
+                cycles=cycles,
+                results=self._results,
+                remarks=tuple(self._remarks),
+                seen=self._view(Readout(self, self._frame, self._results)) if self._view else None,
+            )
+        )
+        self._frame, self._results, self._remarks = None, {}, []
+        self._on_finished()

@@ -1,0 +1,60 @@
+"""Reading a core's memories from outside, as a debugger does: it takes no cycle and changes nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.machine.memories import Row
+
+if TYPE_CHECKING:
+    from bfsim.machine.core.core import Core, Frame
+
+
+class Readout:
+    """What a core has in memory at the end of a frame, before anything of the next one is in it."""
+
+    def __init__(self, core: Core, frame: Frame, results: Mapping[str, int]) -> None:
+        """`results`: the numbers published for the frame."""
+        self._core = core
+        self._frame = frame
+        self._results = results
+
+    @property
+    def core(self) -> str:
+        """Name of the core."""
+        return self._core.name
+
+    def has_buffer(self, name: str) -> bool:
+        """Whether there is a buffer called `name`."""
+        return self._core.has_buffer(name)
+
+    def values(self, name: str) -> NDArray[Any]:
+        """Return a copy of a buffer: one-dimensional if it has one row, else of shape (rows, columns)."""
+        rows = self._core.rows(name)
+        return rows[0].array.copy() if len(rows) == 1 else stacked(rows)
+
+    def records(self, name: str, words: int, count: int) -> NDArray[Any]:
+        """Return a copy of the first `count` structs of `words` elements of a buffer, of shape (count, words)."""
+        return self.values(name)[: count * words].reshape(count, words)
+
+    @property
+    def frame(self) -> Frame:
+        """The frame, as the core got it."""
+        return self._frame
+
+    def picture(self) -> NDArray[np.uint8]:
+        """Return a copy of the camera's picture, UYVY of shape (height, 2 · width)."""
+        return stacked(self._frame.rows)
+
+    def published(self, name: str) -> int:
+        """Return a number that the core has published for the frame; 0 if it has not."""
+        return self._results.get(f"{name}_{self.core}", 0)
+
+
+def stacked(rows: Sequence[Row]) -> NDArray[Any]:
+    """Return a copy of the elements of rows, of shape (rows, columns)."""
+    return np.stack([each.array for each in rows])

@@ -1,0 +1,103 @@
+"""The bus of the detailed mode: every transaction an event, every master a process. Slow, and the judge of the fast mode.
+
+It does what `Bus` does and keeps the same counters, but nothing of it is compiled and nothing is done in lots.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import simpy
+
+from bfsim.chip.spec import BoardSpec
+from bfsim.kernel import followers
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.bus import RANKS, Bus, Pace, Plan, Transfer, Walk
+from bfsim.machine.detailed.arbiter import L2Port, SdramArbiter
+from bfsim.machine.detailed.core import CorePort
+from bfsim.machine.detailed.dma import DetailedPlan, DmaChannel, Errand
+from bfsim.machine.memories import Memories
+from bfsim.machine.simulation import Simulation
+
+
+class DetailedBus(Bus):
+    """The SDRAM bus and the port of L2 of one board, with all who use them, as processes."""
+
+    def __init__(self, env: Simulation, board: BoardSpec, memories: Memories) -> None:
+        super().__init__(env, board, memories)
+        sdram, l2 = SdramArbiter(env, board, self.words), L2Port(env, board, self.words)
+        self._channels = {
+            master: DmaChannel(env, board, memories, sdram, self.words, master) for master in RANKS
+        }
+        self._ports = [
+            CorePort(env, board, sdram, l2, memories.sdram_end, number) for number in range(w.CORES)
+        ]
+        self._errands: dict[int, Errand] = {}
+
+    # ---- time: nothing here is ever behind the simulation
+
+    def settle(self) -> None:
+        """Do nothing: everything that is due has happened."""
+
+    def play_until(self, tick: int) -> bool:  # noqa: ARG002
+        """Do nothing, and stop at nothing: the simulation plays every master."""
+        return False
+
+    @property
+    def is_awaited(self) -> bool:
+        """Whether anybody waits for what only this bus knows: nobody does."""
+        return False
+
+    # ---- transfers
+
+    def _plan(
+        self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, setup: int, pace: Pace
+    ) -> Plan:  # fmt: skip
+        return DetailedPlan(master, (), mode, source, destination, count, element_bytes, setup, pace)
+
+    def post(self, plan: Plan, at: int = 0) -> Transfer:
+        """Put a transfer behind those that its master has already; it begins at tick `at` or later."""
+        assert isinstance(plan, DetailedPlan), "a plan belongs to the bus that made it"
+        number = self._transfers
+        self._transfers = number + 1
+        self.words[w.ENDS_AT + number % w.ENDS] = w.NONE
+        errand = Errand(number, plan, max(at, self._env.tick), self._env.event())
+        self._errands[number] = errand
+        assert errand.done.callbacks is not None
+        errand.done.callbacks.append(lambda _event: self._forget(number))
+        self._channels[plan.master].post(errand)
+        return Transfer(self, number, w.NONE)
+
+    def _forget(self, number: int) -> None:
+        del self._errands[number]
+
+    def when_done(self, transfer: Transfer) -> simpy.Event:
+        """Return the event at a transfer's end, which must not be known yet."""
+        return self._errands[transfer.number].done
+
+    def when_row(self, transfer: Transfer) -> simpy.Event:
+        """Return the event at the end of the next row that a transfer writes, or at its own end; neither is known yet."""
+        event = self._env.event()
+        self._errands[transfer.number].rows.append(event)
+        return event
+
+    def moved_by(self, transfer: Transfer) -> int:
+        """Return how many elements a transfer that is not over has moved."""
+        return self._errands[transfer.number].moved
+
+    def lost_by(self, master: int) -> int:
+        """Return how many elements of a device found the FIFO of its DMA full."""
+        return self._channels[master].lost
+
+    # ---- cores
+
+    def access(self, core: int, begin: int, cclk: int, entries: int) -> simpy.Event:
+        """Play the first `entries` accesses of a core's log, of a call of `cclk` cycles from tick `begin`; return its end."""
+        done = self._env.event()
+        log = self.room_of(core)[followers.LOG :][:entries]
+        self._env.process(self._ports[core].call(begin, cclk, log, done))
+        return done
+
+    def stalls_of(self, core: int) -> Sequence[int]:
+        """Return what the accesses of the core's last call stalled, in cycles, in the order of `bus.state`."""
+        return self._ports[core].stalls

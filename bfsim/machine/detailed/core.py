@@ -1,0 +1,191 @@
+"""A core on the buses of the detailed mode: the accesses of a kernel call one by one, and its store buffer beside it.
+
+A load, a line fill and a fetch wait for their data. A store goes into the buffer, and waits only when that is full; it keeps
+its place until it is written. A load of anything that is in the buffer waits until that is empty.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
+from typing import Any
+
+import simpy
+from numpy.typing import NDArray
+
+from bfsim.chip.spec import BoardSpec
+from bfsim.kernel import followers as log
+from bfsim.machine.bus import state as w
+from bfsim.machine.detailed.arbiter import Arbiter, Grant, wait_until
+from bfsim.machine.detailed.sdram import Page
+from bfsim.machine.simulation import Simulation
+
+WORD_BYTES = 4  # what a load or a store moves, whatever its width
+
+
+@dataclass(frozen=True, slots=True)
+class CoreAccess:
+    """One access outside L1: cycle of its call, what it is, and where."""
+
+    stamp_cclk: int
+    kind: int
+    offset: int
+    nbytes: int
+
+    def overlaps(self, other: CoreAccess) -> bool:
+        """Whether both touch the same bytes."""
+        return self.offset < other.offset + other.nbytes and other.offset < self.offset + self.nbytes
+
+
+class CorePort:
+    """One core with its store buffer. `stalls`: cycles that the last call stalled, by reason, in the order of `bus.state`."""
+
+    def __init__(
+        self, env: Simulation, board: BoardSpec, sdram: Arbiter, l2: Arbiter, sdram_end: int, number: int
+    ) -> None:
+        self._env = env
+        self._board = board
+        self._sdram, self._l2, self._sdram_end = sdram, l2, sdram_end
+        self._number = number
+        self._cclk, self._sclk = board.clocks.cclk_ticks, board.clocks.sclk_ticks
+        self._buffer: deque[CoreAccess] = deque()
+        self._line_done = 0
+        self._buffer_changed = env.event()
+        self.stalls = [0] * w.STALLS
+        env.process(self._drain())
+
+    def call(
+        self, begin: int, cclk: int, entries: NDArray[Any], done: simpy.Event
+    ) -> Generator[simpy.Event, Any, None]:
+        """Make the accesses of a call of `cclk` cycles from tick `begin` on; `done` happens at its end."""
+        self.stalls = [0] * w.STALLS
+        for entry in entries.tolist():
+            access = self._access(entry)
+            yield from self._issue(begin, access)
+            if access.kind in (log.STORE, log.WRITE_BACK):
+                yield from self._wait_for_buffer(begin, access, self._is_full)
+                self._buffer.append(access)
+                self._change_buffer()
+                continue
+            yield from self._wait_for_line(begin, access)
+            if any(access.overlaps(store) for store in self._buffer):
+                yield from self._wait_for_buffer(begin, access, self._has_stores)
+            yield from (self._read_sdram if access.offset < self._sdram_end else self._read_l2)(access)
+        yield from wait_until(self._env, begin + (cclk + sum(self.stalls)) * self._cclk)
+        done.succeed()
+
+    def _wait_for_line(self, begin: int, access: CoreAccess) -> Generator[simpy.Event, Any, None]:
+        """Stall until the last line is whole: a core reads one at a time."""
+        late = self._line_done - self._env.tick
+        if late > 0:
+            self.stalls[w.CODE_FETCH if access.kind == log.FETCH_LINE else w.CACHE_FILL] += -(
+                -late // self._cclk
+            )
+            yield from self._issue(begin, access)
+
+    def _access(self, entry: int) -> CoreAccess:
+        kind = entry >> log.KIND_BIT & log.KIND_MASK
+        nbytes = self._board.chip.cache.line_bytes
+        if kind in (log.LOAD, log.STORE):
+            nbytes = WORD_BYTES
+        elif kind == log.FETCH:
+            nbytes = w.FETCH_BYTES
+        offset = entry & log.OFFSET_MASK
+        return CoreAccess(entry >> log.STAMP_BIT, kind, offset // WORD_BYTES * WORD_BYTES, nbytes)
+
+    def _issue(self, begin: int, access: CoreAccess) -> Generator[simpy.Event, Any, None]:
+        """Wait for the cycle of the call at which an access is made, behind everything that stalled so far."""
+        yield from wait_until(self._env, begin + (access.stamp_cclk + sum(self.stalls)) * self._cclk)
+
+    def _cycles_since(self, tick: int, until: int) -> int:
+        """Cycles of which the core loses all but the access's own."""
+        return max(0, -(-(until - tick) // self._cclk) - 1)
+
+    # ---- loads, fills and fetches
+
+    def _read_sdram(self, access: CoreAccess) -> Generator[simpy.Event, Any, None]:
+        """Read from SDRAM. The wait for an SCLK edge is part of the cycles of synchronisation."""
+        issued = self._env.tick
+        edge = self._edge(issued)
+        yield from wait_until(self._env, edge)
+        grant: Grant = yield self._sdram.ask(
+            w.CORE_A + self._number, access.offset, access.nbytes, write=False
+        )
+        # a load needs all of its word; with a line the core goes on when its first word is there
+        through = grant.through if access.kind == log.LOAD else grant.first_through
+        sync = (self._board.chip.external.core_sync_sclk - 1) * self._sclk
+        done = through + sync - (edge - issued)
+        if access.kind in (log.FILL, log.FETCH_LINE):
+            self._line_done = grant.through + sync
+        self._charge_read(access, grant, self._cycles_since(issued, done))
+        yield from wait_until(self._env, done)
+
+    def _charge_read(self, access: CoreAccess, grant: Grant, cycles: int) -> None:
+        """Charge the latency of an idle bus to what was read, and what is beyond to a refresh or to the others on the bus."""
+        sdram = self._board.sdram
+        sclk = self._board.chip.external.core_sync_sclk + sdram.nCL
+        sclk += {Page.HIT: 0, Page.MISS: sdram.miss_sclk, Page.CONFLICT: sdram.conflict_sclk}[grant.page]
+        ticks = sclk * self._sclk + (grant.through - grant.first_through if access.kind == log.LOAD else 0)
+        unloaded = min(cycles, self._cycles_since(0, ticks))
+        refreshed = min(cycles - unloaded, grant.refresh_wait // self._cclk)
+        self._charge(access, w.PAGE_HIT + grant.page, unloaded)
+        self.stalls[w.REFRESHING] += refreshed
+        self.stalls[w.ARBITRATION] += cycles - unloaded - refreshed
+
+    def _read_l2(self, access: CoreAccess) -> Generator[simpy.Event, Any, None]:
+        """Read from L2."""
+        issued = self._env.tick
+        grant: Grant = yield self._l2.ask(w.CORE_A + self._number, access.offset, access.nbytes, write=False)
+        self.stalls[w.L2_PORT] += -(-(grant.at - issued) // self._cclk)
+        self._charge(access, w.L2_LATENCY, self._cycles_since(grant.at, grant.through))
+        l2 = self._board.chip.l2
+        assert l2 is not None, "a board without L2 has no accesses to it"
+        if access.kind in (log.FILL, log.FETCH_LINE):
+            self._line_done = grant.through + (access.nbytes // l2.port_bytes - 1) * l2.next_cclk * self._cclk
+        yield from wait_until(self._env, grant.through)
+
+    def _charge(self, access: CoreAccess, of_load: int, cycles: int) -> None:
+        reason = (
+            of_load if access.kind == log.LOAD else w.CACHE_FILL if access.kind == log.FILL else w.CODE_FETCH
+        )
+        self.stalls[reason] += cycles
+
+    def _edge(self, tick: int) -> int:
+        return -(-tick // self._sclk) * self._sclk
+
+    # ---- stores
+
+    def _is_full(self) -> bool:
+        return len(self._buffer) >= self._board.chip.external.store_buffer
+
+    def _has_stores(self) -> bool:
+        return bool(self._buffer)
+
+    def _wait_for_buffer(
+        self, begin: int, access: CoreAccess, holds_up: Callable[[], bool]
+    ) -> Generator[simpy.Event, Any, None]:
+        """Stall for as long as the buffer holds an access up, and make it then."""
+        since = self._env.tick
+        while holds_up():
+            yield self._buffer_changed
+        self.stalls[w.STORE_BUFFER] += -(-(self._env.tick - since) // self._cclk)
+        yield from self._issue(begin, access)
+
+    def _change_buffer(self) -> None:
+        event, self._buffer_changed = self._buffer_changed, self._env.event()
+        event.succeed()
+
+    def _drain(self) -> Generator[simpy.Event, Any, None]:
+        """Write the stores of the buffer, the oldest first: the process of the store buffer."""
+        while True:
+            while not self._buffer:
+                yield self._buffer_changed
+            store, memory = self._buffer[0], self._l2
+            if store.offset < self._sdram_end:
+                memory = self._sdram
+                yield from wait_until(self._env, self._edge(self._env.tick))
+            grant: Grant = yield memory.ask(w.STORES_A + self._number, store.offset, store.nbytes, write=True)
+            yield from wait_until(self._env, grant.free)
+            self._buffer.popleft()
+            self._change_buffer()

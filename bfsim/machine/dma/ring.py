@@ -1,0 +1,117 @@
+"""Line rings in L1: an MDMA stream fetches lines from a picture ahead of the core, or takes finished ones back.
+
+A ring of n rows holds n - 1 lines that the core may use and one that the DMA is working on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from bfsim.errors import FirmwareError
+from bfsim.machine.bus.bus import Transfer
+from bfsim.machine.dma.mdma import MdmaStream
+from bfsim.machine.memories import Row
+from bfsim.trace import StallReason
+
+if TYPE_CHECKING:
+    from bfsim.machine.core.core import Core
+
+COPY_WRITES = 5  # START_ADDR and CONFIG of source and destination; IRQ_STATUS is read before and cleared
+
+
+def _check(rows: Sequence[Row], image: Sequence[Row]) -> None:
+    if not image:
+        raise FirmwareError(f"the picture for ring {rows[0].buffer} must have at least one line, not none")
+    if len(rows) < 2:
+        raise FirmwareError(f"a ring needs at least 2 rows, not the {len(rows)} of {rows[0].buffer}")
+    for each in (rows[0], image[0]):
+        if "SCRATCH" in each.memory:
+            raise FirmwareError(f"{each.buffer} must be where DMA can reach it, not in {each.memory}")
+    if rows[0].nbytes != image[0].nbytes:
+        raise FirmwareError(
+            f"the rows of ring {rows[0].buffer} must be as long as those of {image[0].buffer} "
+            f"({image[0].nbytes} bytes), not {rows[0].nbytes} bytes"
+        )
+
+
+class InputRing:
+    """Lines of a picture, first to last, one line ahead of the core."""
+
+    def __init__(self, core: Core, stream: MdmaStream, image: Sequence[Row], rows: Sequence[Row]) -> None:
+        _check(rows, image)
+        self._core = core
+        self._stream = stream
+        self._image = image
+        self._rows = rows
+        self._height, self._depth = len(image), len(rows)
+        self._taken = 0
+        self._coming: Transfer | None = None
+        """The next line's transfer."""
+
+    def line(self) -> Generator[Any, Any, Row]:
+        """Wait for the next line and return its row. It stays valid for as many calls as the ring has rows, less one."""
+        core, number = self._core, self._taken
+        if late := core.catch_up():
+            yield late
+        if number == self._height:
+            raise FirmwareError(
+                f"the ring of {self._rows[0].buffer} has no line {number}: the picture has {self._height}"
+            )
+        self._taken = number + 1
+        core.program_device(writes=COPY_WRITES, reads=1)
+        transfer = self._coming or self._fetch(number)
+        # one line ahead: its row is the one that the core gave up with this call
+        self._coming = self._fetch(number + 1) if number + 1 < self._height else None
+        core.settle()
+        if not core.has(transfer):
+            yield from core.wait_transfer(transfer, StallReason.RING_EMPTY)
+        return self._rows[number % self._depth]
+
+    def _fetch(self, number: int) -> Transfer:
+        return self._stream.copy(self._image[number], self._rows[number % self._depth], self._core.now_ticks)
+
+    def __getitem__(self, number: int) -> Row:
+        """Return the row of line `number`, which must still be in the ring."""
+        if not self._taken - self._depth < number < self._taken or number < 0:
+            raise FirmwareError(
+                f"line {number} is not in ring {self._rows[0].buffer}, which has {self._depth} rows "
+                f"and is at line {self._taken - 1}"
+            )
+        return self._rows[number % self._depth]
+
+
+class OutputRing:
+    """Finished lines on their way to a picture in memory."""
+
+    def __init__(self, core: Core, stream: MdmaStream, rows: Sequence[Row], image: Sequence[Row]) -> None:
+        _check(rows, image)
+        self._core = core
+        self._stream = stream
+        self._image = image
+        self._rows = rows
+        self._height, self._depth = len(image), len(rows)
+        self._transfers: list[Transfer] = []
+
+    def row(self) -> Generator[Any, Any, Row]:
+        """Wait until a row is free and return it, to be written and then sent."""
+        number, depth = len(self._transfers), self._depth
+        if number >= depth and not self._core.has(transfer := self._transfers[number - depth]):
+            yield from self._core.wait_transfer(transfer, StallReason.RING_FULL)
+        return self._rows[number % depth]
+
+    def send(self) -> None:
+        """Start the DMA of the row that was written, to the next line of the picture."""
+        number = len(self._transfers)
+        if number == self._height:
+            raise FirmwareError(
+                f"the picture {self._image[0].buffer} has {self._height} lines; one more was sent"
+            )
+        self._core.program_device(writes=COPY_WRITES, reads=1)
+        row = self._rows[number % self._depth]
+        self._transfers.append(self._stream.copy(row, self._image[number], self._core.now_ticks))
+
+    def flush(self) -> Generator[Any, Any, None]:
+        """Wait until every line that was sent has arrived."""
+        if self._transfers:
+            yield from self._core.wait_transfer(self._transfers[-1], StallReason.RING_FULL)

@@ -1,0 +1,1 @@
+"""The SPI and the strategy unit at its other end."""

@@ -1,0 +1,1 @@
+"""What an LDF makes of a memory: the map as records, tables and drawings, and what in it costs time."""

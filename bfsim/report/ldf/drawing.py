@@ -1,0 +1,169 @@
+"""The memory map as rectangles and words on a sheet: what `picture` writes as PNG or SVG.
+
+Each segment is a panel: a bar to its own scale, names where they fit, and below it a legend of all that lies in it.
+Panels of core A stand on the left, those of core B on the right, shared memories below both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import groupby
+
+from bfsim.report.ldf.colours import colours_of
+from bfsim.report.ldf.map import SHARED, Kind, MapSegment, MemoryMap, Piece
+from bfsim.report.units import size
+
+# lengths in px
+MARGIN, GUTTER = 24, 32
+PANEL_WIDTH = 640
+BAR_HEIGHT, TITLE_HEIGHT, LINE_HEIGHT, PANEL_GAP = 44, 24, 20, 22
+FONT, SMALL_FONT, TITLE_FONT = 14, 12, 20
+LETTER_WIDTH = 0.6  # of the font's size: the widest sans-serif digits
+SWATCH = 12
+LEGEND_COLUMNS = 3
+
+INK, FAINT, PAPER = "#1c2430", "#6b7585", "#ffffff"
+FREE_COLOUR, RESERVED_COLOUR = "#eef1f5", "#c3cad6"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Box:
+    """A filled rectangle; coordinates in px from the upper left corner."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    fill: str
+    outline: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Words:
+    """One line of text; (x, y) is the middle of its left end, or with `is_right` of its right end."""
+
+    x: float
+    y: float
+    text: str
+    font_px: int = FONT
+    colour: str = INK
+    is_right: bool = False
+
+
+@dataclass(slots=True)
+class Sheet:
+    """A drawing that grows downwards."""
+
+    width: float
+    height: float = 0
+    boxes: list[Box] = field(default_factory=list)
+    words: list[Words] = field(default_factory=list)
+
+
+def drawing_of(memory_map: MemoryMap) -> Sheet:
+    """Return the drawing of every segment of a map."""
+    sheet = Sheet(width=2 * MARGIN + 2 * PANEL_WIDTH + GUTTER)
+    pen = _Pen(sheet, colours_of(memory_map))
+    pen.heading(memory_map)
+    owners = sorted({each.owner for each in memory_map.segments} - {SHARED})
+    columns = [[each for each in memory_map.segments if each.owner == owner] for owner in owners]
+    shared = [each for each in memory_map.segments if each.owner == SHARED]
+    pen.columns(columns)
+    for _, group in groupby(shared, key=lambda each: each.memory):
+        alike = list(group)
+        pen.columns([alike[::2], alike[1::2]])
+    sheet.height += MARGIN
+    return sheet
+
+
+@dataclass(slots=True)
+class _Pen:
+    """Draws panels onto a sheet."""
+
+    sheet: Sheet
+    colours: dict[str, str]
+
+    def heading(self, memory_map: MemoryMap) -> None:
+        """Draw what the map is of, and what its two greys mean."""
+        y = MARGIN + TITLE_FONT / 2
+        what = f" with {memory_map.firmware} at {memory_map.width_px}x{memory_map.height_px}"
+        title = f"{memory_map.ldf} on {memory_map.board}{what if memory_map.firmware else ''}"
+        self._write(MARGIN, y, title, font_px=TITLE_FONT)
+        y += 30
+        x: float = MARGIN
+        for fill, name in ((FREE_COLOUR, "free"), (RESERVED_COLOUR, "reserved, or a gap")):
+            x = self._entry(x, y, fill, name)
+        caches = ", ".join(f"{size(each.nbytes)} of {each.memory}" for each in memory_map.caches)
+        if caches:
+            y += LINE_HEIGHT
+            self._write(MARGIN, y, f"cache: {caches}", colour=FAINT)
+        self.sheet.height = y + LINE_HEIGHT + PANEL_GAP / 2
+
+    def columns(self, columns: Sequence[Sequence[MapSegment]]) -> None:
+        """Draw each list of segments below each other, the lists side by side."""
+        top = bottom = self.sheet.height
+        for number, segments in enumerate(columns):
+            y = top
+            for segment in segments:
+                y = self.panel(MARGIN + (number % 2) * (PANEL_WIDTH + GUTTER), y, segment)
+            bottom = max(bottom, y)
+        self.sheet.height = bottom
+
+    def panel(self, x: float, y: float, segment: MapSegment) -> float:
+        """Draw one segment; return where the next one can begin."""
+        use = f"{size(segment.used_bytes)} used, {size(segment.free_bytes)} free of {size(segment.nbytes)}"
+        self._write(x, y + TITLE_HEIGHT / 2, segment.name)
+        self._write(x + PANEL_WIDTH, y + TITLE_HEIGHT / 2, use, colour=FAINT, is_right=True)
+        y += TITLE_HEIGHT
+        self._bar(x, y, segment)
+        y += BAR_HEIGHT + LINE_HEIGHT / 2
+        end = f"0x{segment.start + segment.nbytes - 1:08X}"
+        self._write(x, y, f"0x{segment.start:08X}", font_px=SMALL_FONT, colour=FAINT)
+        self._write(x + PANEL_WIDTH, y, end, font_px=SMALL_FONT, colour=FAINT, is_right=True)
+        y += LINE_HEIGHT
+        entries = [each for each in segment.pieces if each.is_named]
+        for number, piece in enumerate(entries):
+            column, line = number % LEGEND_COLUMNS, number // LEGEND_COLUMNS
+            place = x + column * PANEL_WIDTH / LEGEND_COLUMNS
+            self._entry(
+                place,
+                y + line * LINE_HEIGHT,
+                self._fill(piece),
+                f"{segment.label(piece)}  {size(piece.nbytes)}",
+            )
+        return y + -(-len(entries) // LEGEND_COLUMNS) * LINE_HEIGHT + PANEL_GAP
+
+    def _bar(self, x: float, y: float, segment: MapSegment) -> None:
+        scale = PANEL_WIDTH / segment.nbytes
+        for piece in segment.pieces:
+            left, width = x + (piece.start - segment.start) * scale, piece.nbytes * scale
+            self._box(left, y, width, BAR_HEIGHT, self._fill(piece))
+            if piece.is_named and _width(segment.label(piece), SMALL_FONT) < width - 6:
+                middle = y + BAR_HEIGHT / 2
+                self._write(left + 3, middle - 8, segment.label(piece), font_px=SMALL_FONT)
+                self._write(left + 3, middle + 8, size(piece.nbytes), font_px=SMALL_FONT)
+        self.sheet.boxes.append(Box(x=x, y=y, width=PANEL_WIDTH, height=BAR_HEIGHT, fill="", outline=FAINT))
+
+    def _entry(self, x: float, y: float, fill: str, label: str) -> float:
+        """Draw a line of a legend; return where the next one can begin."""
+        self._box(x, y - SWATCH / 2, SWATCH, SWATCH, fill, FAINT)
+        self._write(x + SWATCH + 6, y, label, font_px=SMALL_FONT)
+        return x + SWATCH + 6 + _width(label, SMALL_FONT) + 24
+
+    def _fill(self, piece: Piece) -> str:
+        if piece.kind is Kind.FREE:
+            return FREE_COLOUR
+        return RESERVED_COLOUR if piece.kind is Kind.RESERVED else self.colours[piece.name]
+
+    def _box(self, x: float, y: float, width: float, height: float, fill: str, outline: str = "") -> None:
+        self.sheet.boxes.append(Box(x=x, y=y, width=width, height=height, fill=fill, outline=outline))
+
+    def _write(
+        self, x: float, y: float, text: str, *, font_px: int = FONT, colour: str = INK, is_right: bool = False
+    ) -> None:
+        self.sheet.words.append(Words(x=x, y=y, text=text, font_px=font_px, colour=colour, is_right=is_right))
+
+
+def _width(text: str, font_px: int) -> float:
+    return len(text) * font_px * LETTER_WIDTH

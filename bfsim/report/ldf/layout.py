@@ -1,0 +1,215 @@
+"""Lays a link out by address: what the linker says, the board's memories and the LDF's switches → a MemoryMap."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+
+from bfsim.chip.memory_map import KIB, Region
+from bfsim.linker import LinkerScript, LinkMap, Placement
+from bfsim.linker.script import InputSections, Segment
+from bfsim.report.ldf.map import (
+    SHARED,
+    CacheRange,
+    Kind,
+    MapSection,
+    MapSegment,
+    MapSymbol,
+    MemoryMap,
+    Piece,
+)
+
+CACHE_SWITCHES = {
+    "___l1_data_cache_a": "L1_DATA_A",
+    "___l1_data_cache_b": "L1_DATA_B",
+    "___l1_code_cache": "L1_CODE_CACHE",
+}
+"""Symbols by which an LDF of VisualDSP++ turns the upper half of an L1 memory into cache, if they are not 0."""
+
+CACHE_BYTES = 16 * KIB
+"""What a cache takes from the end of its memory: ADSP-BF561, and ADSP-BF533 alike."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Memories:
+    """What the map must know of a board: its memories, and how its SDRAM is divided."""
+
+    board: str
+    regions: Sequence[Region]
+    bank_bytes: int
+
+
+def memory_map(
+    script: LinkerScript,
+    link_map: LinkMap | None,
+    memories: Memories,
+    kinds: Mapping[tuple[str | None, str], Kind],
+    *,
+    firmware: str,
+    width_px: int,
+    height_px: int,
+) -> MemoryMap:
+    """Return the map of `script` as `link_map` fills it, or empty without one.
+
+    `kinds`: what the symbols are, by processor (None: both) and name; every other one is code.
+    """
+    builder = _Builder(script, link_map, memories, kinds)
+    return MemoryMap(
+        ldf=script.path.name,
+        firmware=firmware,
+        board=memories.board,
+        width_px=width_px,
+        height_px=height_px,
+        segments=tuple(builder.segment(each) for each in script.segments),
+        caches=tuple(_caches(script, memories.regions)),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Builder:
+    """Makes the parts of one map."""
+
+    script: LinkerScript
+    link_map: LinkMap | None
+    memories: Memories
+    kinds: Mapping[tuple[str | None, str], Kind]
+
+    def segment(self, segment: Segment) -> MapSegment:
+        """Return one segment with what was placed in it, under whatever name of the same memory."""
+        region = next((r for r in self.memories.regions if r.holds(segment.start, segment.nbytes)), None)
+        memory, owner = (region.name, str(region.owner)) if region else ("no memory of the board", SHARED)
+        placed = [
+            each
+            for each in (self.link_map.placements if self.link_map else ())
+            if segment.start <= each.address <= segment.end
+        ]
+        reserves = list(self.reserves(segment))
+        symbols = tuple(self.symbol(each, memory) for each in sorted(placed, key=lambda p: p.address))
+        usages = {each.name: each.used_bytes for each in self.link_map.segments} if self.link_map else {}
+        used = usages.get(segment.name, sum(each.nbytes for each in reserves))
+        return MapSegment(
+            name=segment.name,
+            memory=memory,
+            owner=owner,
+            start=segment.start,
+            nbytes=segment.nbytes,
+            used_bytes=used,
+            sections=tuple(self.sections(segment, placed)),
+            symbols=symbols,
+            pieces=tuple(_pieces(segment, used, symbols, reserves)),
+        )
+
+    def symbol(self, placed: Placement, memory: str) -> MapSymbol:
+        """Return one symbol in its place."""
+        symbol, bank_bytes = placed.symbol, self.memories.bank_bytes
+        last = placed.address + max(symbol.nbytes, 1) - 1
+        in_sdram = memory == "SDRAM"
+        return MapSymbol(
+            name=symbol.name,
+            kind=self.kinds.get((symbol.processor, symbol.name), Kind.CODE),
+            owner=self.script.core_of_processor[symbol.processor] if symbol.processor else SHARED,
+            section=symbol.section,
+            nbytes=symbol.nbytes,
+            address=placed.address,
+            output_section=placed.output_section,
+            line=placed.line,
+            banks=tuple(range(placed.address // bank_bytes, last // bank_bytes + 1)) if in_sdram else (),
+        )
+
+    def sections(self, segment: Segment, placements: Sequence[Placement]) -> Iterator[MapSection]:
+        """Yield the output sections that fill a segment, in the order in which they do."""
+        for block in self.script.blocks:
+            for output in block.output_sections:
+                if output.segment != segment.name:
+                    continue
+                statements = [each for each in output.statements if isinstance(each, InputSections)]
+                lines = {each.line for each in statements}
+                inside = [p for p in placements if p.output_section == output.name and p.line in lines]
+                yield MapSection(
+                    name=output.name,
+                    block=block.title,
+                    line=output.line,
+                    takes=tuple(_takes(statements)),
+                    symbols=len(inside),
+                    nbytes=sum(each.symbol.nbytes for each in inside),
+                )
+
+    def reserves(self, segment: Segment) -> Iterator[Piece]:
+        """Yield the reserves in a segment; without a link only those that have an address."""
+        found = self.link_map.reserves if self.link_map else self.script.reserves
+        inside = {each.start: each for each in found if segment.start <= each.start <= segment.end}
+        for each in inside.values():
+            yield Piece(
+                name=each.name, kind=Kind.RESERVED, owner=SHARED, start=each.start, nbytes=each.nbytes
+            )
+
+
+def _takes(statements: Sequence[InputSections]) -> Iterator[str]:
+    """Yield each input section once, where it is first asked for; those of one list in the order of their names."""
+    names = [name for each in statements for part in each.inputs for name in sorted(part.sections)]
+    yield from dict.fromkeys(names)
+
+
+def _pieces(
+    segment: Segment, used_bytes: int, symbols: Sequence[MapSymbol], reserves: Sequence[Piece]
+) -> Iterator[Piece]:
+    """Yield what fills a segment. What is used and has no name is a gap before a symbol, or after the last one."""
+    placed = [_piece(each) for each in symbols if each.nbytes]
+    named = _merged([*placed, *(each for each in reserves if each.nbytes)])
+    last = max((each.start + each.nbytes for each in placed), default=segment.start)
+    gaps = max(0, used_bytes - sum(each.nbytes for each in named))
+    here = segment.start
+    for piece in [*named, _unnamed(Kind.FREE, segment.end + 1, 0)]:
+        space = piece.start - here
+        gap = space if here < last else min(space, gaps)
+        gaps -= gap
+        if gap:
+            yield _unnamed(Kind.RESERVED, here, gap)
+        if space > gap:
+            yield _unnamed(Kind.FREE, here + gap, space - gap)
+        if piece.nbytes:
+            yield piece
+        here = max(here, piece.start + piece.nbytes)
+
+
+def _unnamed(kind: Kind, start: int, nbytes: int) -> Piece:
+    return Piece(
+        name="free" if kind is Kind.FREE else "gap", kind=kind, owner=SHARED, start=start, nbytes=nbytes
+    )
+
+
+def _piece(symbol: MapSymbol) -> Piece:
+    return Piece(
+        name=symbol.name, kind=symbol.kind, owner=symbol.owner, start=symbol.address, nbytes=symbol.nbytes
+    )
+
+
+def _merged(pieces: Iterable[Piece]) -> list[Piece]:
+    """Return the pieces by address, one core's code that lies side by side as one."""
+    merged: list[Piece] = []
+    ordered = sorted(pieces, key=lambda piece: piece.start)
+    for (kind, _), group in groupby(ordered, key=lambda piece: (piece.kind, piece.owner)):
+        run = list(group)
+        if kind is Kind.CODE and len(run) > 1:
+            nbytes = run[-1].start + run[-1].nbytes - run[0].start
+            run = [replace(run[0], name=f"{len(run)} kernels", nbytes=nbytes)]
+        merged.extend(run)
+    return merged
+
+
+def _caches(script: LinkerScript, regions: Sequence[Region]) -> Iterator[CacheRange]:
+    """Yield what the LDF's switches turn into cache, core by core."""
+    for block in script.blocks:
+        for name, memory in CACHE_SWITCHES.items():
+            if not block.assignments.get(name):
+                continue
+            for region in regions:
+                cores = {script.core_of_processor.get(each) for each in block.processors}
+                if region.memory == memory and region.owner in cores:
+                    yield CacheRange(
+                        memory=region.name,
+                        owner=region.owner,
+                        start=region.start + region.nbytes - CACHE_BYTES,
+                        nbytes=CACHE_BYTES,
+                    )

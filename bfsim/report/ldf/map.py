@@ -1,0 +1,130 @@
+"""The memory map of one link as records: what lies where in each segment of an LDF, and what is still free.
+
+`layout.memory_map` makes it. Tables, picture and lint read nothing but these records.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+SHARED = "shared"
+"""Owner of what every core reaches."""
+
+
+class Kind(StrEnum):
+    """What is in a stretch of memory, as far as it can be told without a run."""
+
+    CODE = "code"
+    CAMERA = "camera"  # the PPI fills it
+    LINES = "lines"  # a buffer of more than one row: an image, or a ring
+    ROW = "row"
+    TABLE = "table"  # contents that travel with the firmware
+    RESERVED = "reserved"  # RESERVE, and the gaps that alignment leaves
+    FREE = "free"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapSymbol:
+    """A symbol in its place. `banks` are the internal banks of the SDRAM that it lies in, none elsewhere.
+
+    `line` of the LDF took it there. `owner` is a core, or "shared".
+    """
+
+    name: str
+    kind: Kind
+    owner: str
+    section: str
+    nbytes: int
+    address: int
+    output_section: str
+    line: int
+    banks: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Piece:
+    """A stretch of a segment: one buffer, one core's code that lies side by side, a reserve, or what is free."""
+
+    name: str
+    kind: Kind
+    owner: str
+    start: int
+    nbytes: int
+
+    @property
+    def is_named(self) -> bool:
+        """Say whether there is a symbol in it."""
+        return self.kind not in (Kind.FREE, Kind.RESERVED)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapSection:
+    """An output section: the input sections that it takes, in the order in which it asks for them."""
+
+    name: str
+    block: str
+    line: int
+    takes: tuple[str, ...]
+    symbols: int
+    nbytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapSegment:
+    """A memory segment of the LDF, in the board's `memory`. `used_bytes` counts symbols, reserves and gaps.
+
+    `pieces` fill it from its start to its end. Of a reserve that expands into what is free only the least is used.
+    """
+
+    name: str
+    memory: str
+    owner: str
+    start: int
+    nbytes: int
+    used_bytes: int
+    sections: tuple[MapSection, ...]
+    symbols: tuple[MapSymbol, ...]
+    pieces: tuple[Piece, ...]
+
+    @property
+    def free_bytes(self) -> int:
+        """Bytes that are still free."""
+        return self.nbytes - self.used_bytes
+
+    def label(self, piece: Piece) -> str:
+        """Return the name of one of the pieces; where both cores have theirs, with its core."""
+        return piece.name if piece.owner in (SHARED, self.owner) else f"{piece.name} ({piece.owner})"
+
+    @property
+    def used_share(self) -> float:
+        """Used part of the segment, 0..1."""
+        return self.used_bytes / self.nbytes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CacheRange:
+    """A stretch of L1 that the LDF turns into cache; nothing else can be there."""
+
+    memory: str
+    owner: str
+    start: int
+    nbytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MemoryMap:
+    """An LDF with the symbols of a firmware in it; without a `firmware` only what the LDF itself says."""
+
+    ldf: str
+    firmware: str
+    board: str
+    width_px: int
+    height_px: int
+    segments: tuple[MapSegment, ...]
+    caches: tuple[CacheRange, ...]
+
+    @property
+    def symbols(self) -> tuple[MapSymbol, ...]:
+        """All symbols, segment by segment."""
+        return tuple(symbol for segment in self.segments for symbol in segment.symbols)

@@ -1,0 +1,88 @@
+"""The drawing of a memory map as a file: PNG by pillow, or SVG."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from io import BytesIO
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+from PIL import Image, ImageDraw, ImageFont
+
+from bfsim.errors import ConfigError
+from bfsim.report.ldf.drawing import PAPER, Box, Sheet, Words, drawing_of
+from bfsim.report.ldf.map import MemoryMap
+
+PIXELS = 2
+"""PNG pixels per px of the drawing: small letters stay readable."""
+
+
+def picture_bytes(memory_map: MemoryMap, path: Path) -> bytes:
+    """Return the picture of a map in the format that the suffix of `path` asks for.
+
+    Raises ConfigError for any other suffix than .png and .svg.
+    """
+    return format_of(path)(drawing_of(memory_map))
+
+
+def format_of(path: Path) -> Callable[[Sheet], bytes]:
+    """Return what makes a file of that name out of a drawing; raise ConfigError if nothing does."""
+    try:
+        return FORMATS[path.suffix.lower()]
+    except KeyError:
+        raise ConfigError(f"--picture must be a file *{' or *'.join(FORMATS)}, not {path}") from None
+
+
+def png_of(sheet: Sheet) -> bytes:
+    """Return a drawing as a PNG file."""
+    image = Image.new("RGB", (round(sheet.width * PIXELS), round(sheet.height * PIXELS)), PAPER)
+    pen = ImageDraw.Draw(image)
+    for box in sheet.boxes:
+        left, top = round(box.x * PIXELS), round(box.y * PIXELS)
+        # pillow paints the corner, too; a piece too small to see is a line of one pixel
+        right = max(left, round((box.x + box.width) * PIXELS) - 1)
+        bottom = max(top, round((box.y + box.height) * PIXELS) - 1)
+        pen.rectangle((left, top, right, bottom), fill=box.fill or None, outline=box.outline or None)
+    for words in sheet.words:
+        font = ImageFont.load_default(words.font_px * PIXELS)
+        place = (words.x * PIXELS, words.y * PIXELS)
+        pen.text(place, words.text, fill=words.colour, font=font, anchor="rm" if words.is_right else "lm")
+    file = BytesIO()
+    image.save(file, "PNG")
+    return file.getvalue()
+
+
+def svg_of(sheet: Sheet) -> bytes:
+    """Return a drawing as an SVG file."""
+    view = f"{sheet.width:g} {sheet.height:g}"
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {view}" font-family="sans-serif">',
+        f'<rect width="100%" height="100%" fill="{PAPER}"/>',
+        *_svg_lines(sheet),
+        "</svg>",
+    ]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _svg_lines(sheet: Sheet) -> Iterator[str]:
+    yield from (_svg_box(each) for each in sheet.boxes)
+    yield from (_svg_words(each) for each in sheet.words)
+
+
+def _svg_box(box: Box) -> str:
+    outline = f' stroke="{box.outline}"' if box.outline else ""
+    return (
+        f'<rect x="{box.x:.2f}" y="{box.y:.2f}" width="{box.width:.2f}" height="{box.height:.2f}" '
+        f'fill="{box.fill or "none"}"{outline}/>'
+    )
+
+
+def _svg_words(words: Words) -> str:
+    anchor = ' text-anchor="end"' if words.is_right else ""
+    return (
+        f'<text x="{words.x:.2f}" y="{words.y:.2f}" font-size="{words.font_px}" fill="{words.colour}" '
+        f'dominant-baseline="central"{anchor}>{escape(words.text)}</text>'
+    )
+
+
+FORMATS: dict[str, Callable[[Sheet], bytes]] = {".png": png_of, ".svg": svg_of}
