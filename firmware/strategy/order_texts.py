@@ -54,8 +54,13 @@ def refusal_text(
         return f"refused a message: {_frame_text(reason, message, nbytes)}"
     kind, sequence = TYPES[int(message[1])], int(message[2])
     words = mode if kind == "MODE" else model
-    values = message[PAYLOAD : PAYLOAD + int(message[3]) // 2].view(np.int32).tolist()
-    return f"refused {kind} {sequence}: {_order_text(reason, which, words, values, full)}"
+    payload_bytes = int(message[3])
+    if reason == LENGTH:
+        text = _length_text(words, payload_bytes)
+    else:
+        values = message[PAYLOAD : PAYLOAD + payload_bytes // 2].view(np.int32).tolist()
+        text = _order_text(reason, which, words, values, full)
+    return f"refused {kind} {sequence}: {text}"
 
 
 def _frame_text(reason: int, message: NDArray[np.uint16], nbytes: int) -> str:
@@ -72,12 +77,14 @@ def _frame_text(reason: int, message: NDArray[np.uint16], nbytes: int) -> str:
     }[reason]
 
 
+def _length_text(words: Sequence[Word], payload_bytes: int) -> str:
+    records = "" if any(each.name.startswith("area") for each in words) else " for each of 1 to 8 models"
+    return f"it must have {4 * len(words)} bytes{records}, not {payload_bytes}"
+
+
 def _order_text(
     reason: int, which: int, words: Sequence[Word], values: Sequence[int], full: FrameSize
 ) -> str:
-    if reason == LENGTH:
-        records = "" if any(each.name.startswith("area") for each in words) else " for each of 1 to 8 models"
-        return f"it must have {4 * len(words)} bytes{records}, not {4 * len(values)}"
     names = [each.name for each in words]
     if reason in (RANGE, ABOVE):
         record, number = divmod(which, len(words))

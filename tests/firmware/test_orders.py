@@ -399,6 +399,8 @@ def test_mistakes_in_models(models: object, message: str) -> None:
          "a message: its type must be 2 (MODE) or 3 (MODELS), not 1"),
         (encode(Message(MessageType.MODE, 5, bytes(8))), checks.LENGTH,
          f"MODE 5: it must have {4 * len(GOOD)} bytes, not 8"),
+        (encode(Message(MessageType.MODE, 5, bytes(7))), checks.LENGTH,
+         f"MODE 5: it must have {4 * len(GOOD)} bytes, not 7"),
         (encode(Message(MessageType.MODELS, 5, payload(model(1)[:7]))), checks.LENGTH,
          "MODELS 5: it must have 32 bytes for each of 1 to 8 models, not 28"),
         (encode(Message(MessageType.MODELS, 5, payload([*model(1), *model(2, width_mm=0)]))),
