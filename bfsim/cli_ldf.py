@@ -45,7 +45,14 @@ class _Size(click.ParamType[tuple[int, int]]):
     show_default=True,
     help="Compiler whose code is placed: vdsp-O2, gcc-O2 or gcc-O0.",
 )
-@click.option("--size", type=_Size(), default="320x240", show_default=True, help="Pictures to make room for.")
+@click.option(
+    "--size",
+    type=_Size(),
+    metavar="WxH",
+    default="320x240",
+    show_default=True,
+    help="Pictures to make room for.",
+)
 @click.option("--symbols/--no-symbols", default=True, show_default=True, help="List every symbol.")
 @click.option(
     "--picture",

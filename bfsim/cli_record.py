@@ -43,7 +43,7 @@ def record() -> None:
     """Make recordings of stereo frames, and look at them."""
 
 
-@record.command(name="import")
+@record.command(name="import", short_help="Make a recording from pictures.")
 @click.argument("output", type=click.Path(path_type=Path))
 @click.argument("sources", nargs=-1, required=True, metavar="SOURCE [SOURCE2]")
 @click.option(
@@ -98,10 +98,12 @@ def import_command(
     (.uyvy, .yuv or .i420), a .y4m file or a video. Two sources are the left and the right camera.
 
     \b
-    bfsim record import run.mcap left/ right/ --fps 25
-    bfsim record import run.mcap frames/ --side-by-side
-    bfsim record import run.mcap left.uyvy right.uyvy --size 320x240 --geometry 386 30 60 20
-    bfsim record import run.mcap phone.mp4 --mono --resize 320x240
+    Examples:
+      bfsim record import run.mcap left/ right/ --fps 25
+      bfsim record import run.mcap frames/ --side-by-side
+      bfsim record import run.mcap left/ right/ --geometry 386 30.47 120 10
+      bfsim record import run.mcap left.uyvy right.uyvy --size 320x240
+      bfsim record import run.mcap phone.mp4 --mono --resize 320x240
     """
     with progress_bar("Importing") as progress:
         summary = recording.import_recording(
@@ -125,15 +127,16 @@ def import_command(
     )
 
 
-@record.command(name="info")
+@record.command(name="info", short_help="Say what is in a recording.")
 @click.argument("path", metavar="RECORDING", type=click.Path(path_type=Path))
 @click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
 def info_command(path: Path, as_json: bool) -> None:
     """Describe RECORDING. Reads all of it, so an answer also says that it is whole.
 
     \b
-    bfsim record info run.mcap
-    bfsim record info run.mcap --json
+    Examples:
+      bfsim record info run.mcap
+      bfsim record info run.mcap --json
     """
     with recording.RecordingReader(path) as reader, progress_bar("Reading") as progress:
         info = recording.describe_recording(reader, progress)
@@ -143,12 +146,13 @@ def info_command(path: Path, as_json: bool) -> None:
         print_report(_info_table(info))
 
 
-@record.command(name="calibrate")
+@record.command(name="calibrate", short_help="Make rectification tables from chessboards.")
 @click.argument("chessboards", metavar="CHESSBOARDS", type=click.Path(path_type=Path))
 @click.argument("path", metavar="RECORDING", type=click.Path(path_type=Path))
 @click.option(
     "--corners",
     type=_Size(),
+    metavar="WxH",
     default="9x6",
     show_default=True,
     help="Inner corners of the chessboard, across and down.",
@@ -164,8 +168,9 @@ def calibrate_command(
     with the first right, by name. Needs OpenCV: pip install "bfsim[opencv]".
 
     \b
-    bfsim record calibrate boards/ run.mcap
-    bfsim record calibrate boards/ run.mcap --corners 8x5 --square 25 --output rectified.mcap
+    Examples:
+      bfsim record calibrate boards/ run.mcap
+      bfsim record calibrate boards/ run.mcap --corners 8x5 --square 25
     """
     found = recording.calibrate_recording(chessboards, path, output, corners=corners, square_mm=square)
     click.echo(
@@ -177,7 +182,7 @@ def calibrate_command(
     )
 
 
-@record.command(name="render")
+@record.command(name="render", short_help="Render a scene with exact ground truth.")
 @click.argument("name", metavar="SCENE", type=click.Choice(scenes.SCENE_NAMES))
 @click.argument("output", type=click.Path(path_type=Path))
 @click.option("--frames", type=click.IntRange(min=1), help="Render only so many frames.")
@@ -238,16 +243,20 @@ def render_command(
 ) -> None:
     """Render SCENE with exact ground truth to the recording OUTPUT.
 
-    SCENE is soccer (the built-in recording); field-of-circles, ball-beside-goal, camera-initialised, robot-marker,
-    hidden-ball, ball-with-seam, ball-too-close or goal-sharp-angle (figures of the thesis), or thesis for all of
-    these in the folder OUTPUT; box-distances or ball-distances (its Tables 6.2 and 6.3). Needs mitsuba:
-    pip install "bfsim[scenes]".
+    \b
+    SCENE is soccer (the built-in recording); a figure of the thesis, one of
+    field-of-circles, ball-beside-goal, camera-initialised, robot-marker,
+    hidden-ball, ball-with-seam, ball-too-close and goal-sharp-angle, or thesis
+    for all of these in the folder OUTPUT; box-distances or ball-distances (its
+    Tables 6.2 and 6.3). Needs mitsuba: pip install "bfsim[scenes]".
 
     \b
-    bfsim record render ball-with-seam ball.mcap
-    bfsim record render thesis scenes/
-    bfsim record render box-distances box.mcap --distances 250,500
-    bfsim record render soccer bent.mcap --distort -0.25 0.08 0 0 --turn-right 1 -1 0.5 --chessboards boards/
+    Examples:
+      bfsim record render ball-with-seam ball.mcap
+      bfsim record render thesis scenes/
+      bfsim record render box-distances box.mcap --distances 250,500
+      bfsim record render soccer bent.mcap --distort -0.25 0.08 0 0 \\
+          --turn-right 1 -1 0.5 --chessboards boards/
     """
     misfit = None
     if distort or turn_right or shift_right:
