@@ -179,6 +179,7 @@ def _frame_table(run: RunRecord) -> Table:
     names = [row.stage for row in rows if row.within is None]
     table = new_table("Frames: ms", "Frame", "Core", *names, FRAME, "Latency")
     table.columns[1].min_width = None
+    table.columns[-1].no_wrap = True
     long = len(run.frames) > 2 * SHOWN_AT_EACH_END + 1
     head = run.frames[:SHOWN_AT_EACH_END] if long else run.frames
     tail = run.frames[-SHOWN_AT_EACH_END:] if long else ()

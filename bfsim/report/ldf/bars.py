@@ -13,7 +13,8 @@ from bfsim.report.ldf.colours import colours_of
 from bfsim.report.ldf.map import Kind, MapSegment, MemoryMap, Piece
 from bfsim.report.units import size
 
-CELLS = 80
+CELLS = 64
+LEGEND_COLUMNS = 80
 FREE, RESERVED, MANY = "·", "░", "*"
 
 
@@ -35,7 +36,7 @@ def _segment(segment: MapSegment, colours: dict[str, str]) -> Iterator[Text]:
     legend = Text("  ")
     for piece, letter in letters.items():
         entry = f"{letter} {segment.label(piece)} {size(piece.nbytes)}"
-        if len(legend) + len(entry) > CELLS + 16:
+        if len(legend) + len(entry) > LEGEND_COLUMNS:
             yield legend
             legend = Text("  ")
         legend.append(letter, _style(piece, colours)).append(f"{entry[1:]}  ")

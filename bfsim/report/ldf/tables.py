@@ -1,4 +1,4 @@
-"""The memory map as rich tables that fit 100 columns: segments, output sections, symbols, findings."""
+"""The memory map as rich tables that fit 80 columns: segments, output sections, symbols, findings."""
 
 from __future__ import annotations
 
@@ -13,12 +13,11 @@ from rich.text import Text
 
 from bfsim.report.ldf.bars import bars
 from bfsim.report.ldf.lint import Finding
-from bfsim.report.ldf.map import MapSegment, MemoryMap
+from bfsim.report.ldf.map import MemoryMap
 from bfsim.report.tables import new_table, percent, stacked
 from bfsim.report.units import size
 
 SCHEMA = "bfsim.ldf/1"
-BAR_CELLS = 12
 
 
 def ldf_report(memory_map: MemoryMap, findings: Sequence[Finding], *, symbols: bool) -> RenderableType:
@@ -56,10 +55,10 @@ def _headline(memory_map: MemoryMap) -> Text:
 
 
 def _segment_table(memory_map: MemoryMap) -> Table:
-    table = new_table("Segments", "Segment", "Memory", "Start", "", "Used", "%", "Free", "Size")
+    table = new_table("Segments", "Segment", "Memory", "Start", "Used", "%", "Free")
     for column in table.columns:
         column.no_wrap = True
-    for column in table.columns[1:4]:
+    for column in table.columns[1:3]:
         column.justify = "left"
     previous = ""
     for each in memory_map.segments:
@@ -70,19 +69,11 @@ def _segment_table(memory_map: MemoryMap) -> Table:
             each.name,
             each.memory,
             f"0x{each.start:08X}",
-            _bar(each),
             size(each.used_bytes),
             percent(each.used_bytes, each.nbytes),
             size(each.free_bytes),
-            size(each.nbytes),
         )
     return table
-
-
-def _bar(segment: MapSegment) -> str:
-    """Return how full a segment is; what is used at all shows at least one cell."""
-    cells = -(-segment.used_bytes * BAR_CELLS // segment.nbytes)
-    return "█" * cells + "░" * (BAR_CELLS - cells)
 
 
 def _section_table(memory_map: MemoryMap) -> Table:
@@ -111,7 +102,8 @@ def _section_table(memory_map: MemoryMap) -> Table:
 def _symbol_table(memory_map: MemoryMap) -> Iterator[Table]:
     """Yield the symbols by address, if there are any, under the output section that each is in."""
     table = new_table("Symbols", "Symbol", "Address", "Size", "Owner", "Section", "Line")
-    for column in table.columns[1:5]:
+    table.columns[0].no_wrap, table.columns[0].overflow = False, "fold"
+    for column in table.columns[1:]:
         column.no_wrap = True
     table.columns[4].justify = "left"
     for segment in memory_map.segments:
