@@ -45,17 +45,11 @@ class PeriodicEdges:
     offset_ticks: Fraction = Fraction(0)
 
     @classmethod
-    def of(
-        cls, clocks: Clocks, hz: Fraction, every: int = 1, offset_cycles: Fraction = Fraction(0)
-    ) -> PeriodicEdges:
-        """Edges at every `every`-th cycle of a clock of `hz`, the first one after `offset_cycles` of it."""
+    def of(cls, clocks: Clocks, hz: Fraction, offset_cycles: Fraction = Fraction(0)) -> PeriodicEdges:
+        """Edges at every cycle of a clock of `hz`, the first one after `offset_cycles` of it."""
         cycle_ticks = clocks.tick_hz / hz
-        return cls(cycle_ticks * every, cycle_ticks * offset_cycles)
+        return cls(cycle_ticks, cycle_ticks * offset_cycles)
 
     def after(self, count: int) -> int:
         """Return the ticks from the start to edge `count`."""
         return -int(-(self.offset_ticks + count * self.period_ticks) // 1)
-
-    def first_from(self, tick: int) -> int:
-        """Return the number of the first edge at or after `tick`; edge 0 is the first there is."""
-        return max(0, int((tick - 1 - self.offset_ticks) // self.period_ticks) + 1)

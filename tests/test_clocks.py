@@ -53,29 +53,18 @@ def test_time_stamp_is_never_early_and_less_than_a_tick_late(
     assert exact <= clocks.ticks_of_ns(time_ns) < exact + 1
 
 
-@given(st.integers(0, 10**9), RATES_HZ, st.integers(1, 2000))
-def test_edges_never_drift(count: int, hz: Fraction, every: int) -> None:
+@given(st.integers(0, 10**12), RATES_HZ)
+def test_edges_never_drift(count: int, hz: Fraction) -> None:
     """Edge n is less than a tick late however many edges were before it: roundings do not add up."""
     clocks = Clocks(Fraction(600 * MHZ), Fraction(120 * MHZ))
-    exact = count * every * clocks.tick_hz / hz
-    assert PeriodicEdges.of(clocks, hz, every).after(count) == ceil(exact)
+    assert PeriodicEdges.of(clocks, hz).after(count) == ceil(count * clocks.tick_hz / hz)
 
 
 def test_a_thousand_lines_of_a_camera() -> None:
     """800 cycles of 12 MHz are 40 000 ticks of 600 MHz; at 7 MHz a line is no whole number, a thousand are rounded once."""
     clocks = Clocks(Fraction(600 * MHZ), Fraction(120 * MHZ))
-    assert PeriodicEdges.of(clocks, Fraction(12 * MHZ), every=800).after(1000) == 40_000_000
-    assert PeriodicEdges.of(clocks, Fraction(7 * MHZ), every=800).after(1000) == 68_571_429
-
-
-@given(st.integers(0, 10**12), RATES_HZ, st.fractions(0, 10**6, max_denominator=1000))
-def test_first_edge_from_a_tick_is_the_first(tick: int, hz: Fraction, offset_cycles: Fraction) -> None:
-    """The edge found is not before the tick, and the one before it is, unless there is none."""
-    clocks = Clocks(Fraction(600 * MHZ), Fraction(120 * MHZ))
-    edges = PeriodicEdges.of(clocks, hz, offset_cycles=offset_cycles)
-    number = edges.first_from(tick)
-    assert edges.after(number) >= tick
-    assert number == 0 or edges.after(number - 1) < tick
+    assert PeriodicEdges.of(clocks, Fraction(12 * MHZ, 800)).after(1000) == 40_000_000
+    assert PeriodicEdges.of(clocks, Fraction(7 * MHZ, 800)).after(1000) == 68_571_429
 
 
 def test_edges_start_where_the_offset_says() -> None:
@@ -83,4 +72,3 @@ def test_edges_start_where_the_offset_says() -> None:
     clocks = Clocks(Fraction(600 * MHZ), Fraction(120 * MHZ))
     edges = PeriodicEdges.of(clocks, Fraction(MHZ), offset_cycles=Fraction(1, 3))
     assert [edges.after(number) for number in range(3)] == [200, 800, 1400]
-    assert [edges.first_from(tick) for tick in (0, 200, 201, 800, 801)] == [0, 0, 1, 1, 2]

@@ -44,6 +44,27 @@ MAY_IMPORT = {
     | {"cli_boards", "cli_ldf", "cli_record", "cli_seen"},
     "__main__": {"cli"},
 }
+MACHINE = {
+    "firmware_lines": set(),
+    "simulation": set(),
+    "program": {"core"},  # the type of what a main loop gets
+    "memories": {"program"},
+    "code": {"memories", "program"},
+    "bus": {"memories", "simulation"},
+    "calls": {"bus", "memories"},
+    "detailed": {"bus", "memories", "simulation"},
+    "cameras": {"bus", "memories", "program", "simulation"},
+    "spi": {"bus", "memories", "simulation"},
+    "dma": {
+        "bus",
+        "firmware_lines",
+        "memories",
+        "simulation",
+        "core",
+    },  # core: the type of what a ring waits for
+    "core": {"bus", "calls", "cameras", "dma", "firmware_lines", "memories", "program", "simulation", "spi"},
+}
+"""Each block of the machine and what it may import of the others. The board wires them: it imports them all."""
 READ_VERSION = {"recording", "run", "cli"}  # these also read `bfsim.__version__`
 
 
@@ -89,6 +110,18 @@ def test_a_file_imports_only_the_rooms_below_it(path: Path) -> None:
             assert room in READ_VERSION, f"{path} imports {module}"
         elif parts[0] == "bfsim":
             assert parts[1] == room or parts[1] in MAY_IMPORT[room], f"{path} imports {module}"
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "bfsim/machine").rglob("*.py")), ids=lambda path: path.stem)
+def test_a_block_of_the_machine_imports_only_what_it_is_wired_to(path: Path) -> None:
+    """The buses know no device, no device knows a core, and nobody knows the board."""
+    block = path.relative_to(ROOT / "bfsim/machine").parts[0].removesuffix(".py")
+    if block in {"board", "__init__"}:
+        return
+    for module in imported_modules(path):
+        if module.startswith("bfsim.machine."):
+            other = module.split(".")[2]
+            assert other == block or other in MACHINE[block], f"{path} imports {module}"
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))

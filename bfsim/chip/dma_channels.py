@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from enum import Enum
 
 from bfsim.chip.dma_registers import REGISTERS
-from bfsim.errors import MmrError
 
 
 class Direction(Enum):
@@ -27,7 +26,7 @@ class DmaController:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChannelSpec:
-    """One channel: its registers start at `base`, and `serves` is its peripheral, or memory where it is half of a stream.
+    """One channel. `serves`: its peripheral, or memory where it is half of a stream.
 
     `widest_bytes`: its widest word. `direction`: EITHER where the peripheral decides (PPI_CONTROL, SPI_CTL).
     `peripheral_map`: what PERIPHERAL_MAP reads after reset.
@@ -35,7 +34,6 @@ class ChannelSpec:
 
     name: str
     controller: DmaController
-    base: int
     serves: str
     direction: Direction
     widest_bytes: int
@@ -57,8 +55,6 @@ DMA1 = DmaController(name="DMA1", reaches=L1_AND_L2 | EXTERNAL)
 DMA2 = DmaController(name="DMA2", reaches=L1_AND_L2 | EXTERNAL)
 IMDMA = DmaController(name="IMDMA", reaches=L1_AND_L2)
 
-TC_PER_ADDRESSES = {DMA1: 0xFFC0_1B0C, DMA2: 0xFFC0_0B0C}  # defBF561.h; the IMDMA has none
-CHANNEL_BYTES = 0x40  # from one channel's registers to the next one's, defBF561.h
 MDMA_CTYPE = 0x0040  # PERIPHERAL_MAP of a memory channel, defBF561.h and GNU sim/bfin/dv-bfin_dmac.c
 
 # Who is on which channel: Linux mach-bf561 dma.h and GNU sim dv-bfin_dmac.c; a channel without a peripheral is spare
@@ -80,13 +76,12 @@ DMA2_SERVES = (
 
 
 def _peripheral_channels(
-    controller: DmaController, base: int, serves: tuple[tuple[str, Direction], ...], widest_bytes: int
+    controller: DmaController, serves: tuple[tuple[str, Direction], ...], widest_bytes: int
 ) -> tuple[ChannelSpec, ...]:
     return tuple(
         ChannelSpec(
             name=f"{controller.name}_{number}",
             controller=controller,
-            base=base + number * CHANNEL_BYTES,
             serves=peripheral,
             direction=direction,
             widest_bytes=widest_bytes,
@@ -97,7 +92,7 @@ def _peripheral_channels(
 
 
 def _memory_channels(
-    controller: DmaController, prefix: str, base: int, lacks: frozenset[str] = frozenset()
+    controller: DmaController, prefix: str, lacks: frozenset[str] = frozenset()
 ) -> tuple[ChannelSpec, ...]:
     """Two streams; stream 0 goes first, and each is a destination and a source channel."""
     halves = (("D", Direction.TO_MEMORY), ("S", Direction.FROM_MEMORY))
@@ -105,7 +100,6 @@ def _memory_channels(
         ChannelSpec(
             name=f"{prefix}_{half}{stream}",
             controller=controller,
-            base=base + (2 * stream + number) * CHANNEL_BYTES,
             serves="memory",
             direction=direction,
             widest_bytes=4,  # [assumed] for MDMA2; the BF561 HRM, chapter 9, for the others
@@ -117,25 +111,16 @@ def _memory_channels(
     )
 
 
-# Base addresses: defBF561.h. Order: within a controller the lower channel goes first, and all memory streams after
+# Order: within a controller the lower channel goes first, and all memory streams after
 # the peripherals (HRM of the ADSP-BF537, 5-50); DMA1 before DMA2 on the external bus [assumed]. Widths: DMA1 32 and
 # DMA2 16 bits (BF561 HRM chapter 9). The IMDMA has no PERIPHERAL_MAP (Linux mach-bf561 dma.h).
 BF561_CHANNELS = {
     each.name: each
     for each in (
-        *_peripheral_channels(DMA1, 0xFFC0_1C00, DMA1_SERVES, widest_bytes=4),
-        *_memory_channels(DMA1, "MDMA1", 0xFFC0_1F00),
-        *_peripheral_channels(DMA2, 0xFFC0_0C00, DMA2_SERVES, widest_bytes=2),
-        *_memory_channels(DMA2, "MDMA2", 0xFFC0_0F00),
-        *_memory_channels(IMDMA, "IMDMA", 0xFFC0_1800, lacks=frozenset({"PERIPHERAL_MAP"})),
+        *_peripheral_channels(DMA1, DMA1_SERVES, widest_bytes=4),
+        *_memory_channels(DMA1, "MDMA1"),
+        *_peripheral_channels(DMA2, DMA2_SERVES, widest_bytes=2),
+        *_memory_channels(DMA2, "MDMA2"),
+        *_memory_channels(IMDMA, "IMDMA", lacks=frozenset({"PERIPHERAL_MAP"})),
     )
 }
-
-
-def register_address(channel: ChannelSpec, register: str) -> int:
-    """Return where `register` of `channel` lies; raise MmrError if the channel has no such register."""
-    if register not in channel.registers:
-        raise MmrError(
-            f"a register of {channel.name} must be one of {', '.join(channel.registers)}, not {register}"
-        )
-    return channel.base + REGISTERS[register].offset

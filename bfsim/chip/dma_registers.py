@@ -1,7 +1,7 @@
-"""Registers of a DMA channel of the Blackfin: where they lie, what their bits say, and how a descriptor fills them.
+"""Registers of a DMA channel of the Blackfin: how wide they are, what their bits say, and how a descriptor fills them.
 
 Names are the manual's. Which channels a chip has is in `dma_channels`.
-Sources: Linux arch/blackfin/mach-bf561/include/mach/defBF561.h for offsets and bits; GNU sim/bfin/dv-bfin_dma.c
+Sources: Linux arch/blackfin/mach-bf561/include/mach/defBF561.h for the bits; GNU sim/bfin/dv-bfin_dma.c
 for the order of a descriptor's elements and the NDSIZE that each FLOW allows; the rest is said where it stands.
 """
 
@@ -13,9 +13,8 @@ from enum import IntEnum, IntFlag
 
 @dataclass(frozen=True, slots=True)
 class Register:
-    """One register of a channel: `offset` bytes from the channel's first, `bits` wide, two's complement if `signed`."""
+    """One register of a channel: `bits` wide, two's complement if `signed`."""
 
-    offset: int
     bits: int
     signed: bool = False
 
@@ -31,19 +30,19 @@ class Register:
 
 
 REGISTERS = {
-    "NEXT_DESC_PTR": Register(0x00, 32),
-    "START_ADDR": Register(0x04, 32),
-    "CONFIG": Register(0x08, 16),
-    "X_COUNT": Register(0x10, 16),
-    "X_MODIFY": Register(0x14, 16, signed=True),
-    "Y_COUNT": Register(0x18, 16),
-    "Y_MODIFY": Register(0x1C, 16, signed=True),
-    "CURR_DESC_PTR": Register(0x20, 32),
-    "CURR_ADDR": Register(0x24, 32),
-    "IRQ_STATUS": Register(0x28, 16),
-    "PERIPHERAL_MAP": Register(0x2C, 16),
-    "CURR_X_COUNT": Register(0x30, 16),
-    "CURR_Y_COUNT": Register(0x38, 16),
+    "NEXT_DESC_PTR": Register(32),
+    "START_ADDR": Register(32),
+    "CONFIG": Register(16),
+    "X_COUNT": Register(16),
+    "X_MODIFY": Register(16, signed=True),
+    "Y_COUNT": Register(16),
+    "Y_MODIFY": Register(16, signed=True),
+    "CURR_DESC_PTR": Register(32),
+    "CURR_ADDR": Register(32),
+    "IRQ_STATUS": Register(16),
+    "PERIPHERAL_MAP": Register(16),
+    "CURR_X_COUNT": Register(16),
+    "CURR_Y_COUNT": Register(16),
 }
 
 COUNT_OF_ZERO = 0x1_0000

@@ -224,19 +224,9 @@ class SensorMode:
         return 2 * self.width_px
 
     @property
-    def blank_clocks(self) -> int:
-        """PPI_CLK cycles from a line's last pixel to the next line: the horizontal blanking."""
-        return self.line_clocks - self.active_clocks
-
-    @property
     def blank_lines(self) -> int:
         """Lines of a frame without a picture: the vertical blanking."""
         return self.frame_lines - self.height_px
-
-    @property
-    def lines_after(self) -> int:
-        """Blank lines behind the picture, up to the next frame sync."""
-        return self.blank_lines - self.lines_before
 
     @property
     def frame_clocks(self) -> int:

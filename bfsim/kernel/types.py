@@ -105,8 +105,6 @@ u32 = IntType("u32", 32, signed=False)
 f32 = FloatType("f32", 32)
 BOOL = BoolType()
 
-INT_TYPES = {each.name: each for each in (i8, u8, i16, u16, i32, u32)}
-
 Number = IntType | FloatType
 Value = Number | BoolType
 

@@ -176,9 +176,10 @@ def line_refinement(
     yield core.run(begin_sums, lines, count, sums)
     first = yield core.run(first_row, sums, count, frame.height)
     last = yield core.run(last_row, sums, count)
-    if first <= last:
-        camera = core.input_ring(frame.rows[first : last + 1], "camera_ring")
-        for y in range(first, last + 1):
+    crossed = range(frame.height)[max(first, 0) : last + 1]  # lines may end beyond the picture
+    if crossed:
+        camera = core.input_ring(frame.rows[crossed.start : crossed.stop], "camera_ring")
+        for y in crossed:
             line = yield from camera.line()
             limits = thresholds.reach, thresholds.min_step
             yield core.run(look_at_row, line, y, lines, count, sums, *limits)

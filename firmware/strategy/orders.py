@@ -174,7 +174,7 @@ def models_payload(models: object) -> bytes:
 def _words_of_model(wanted: object, at: str) -> list[int]:
     changes = {"name": wanted} if isinstance(wanted, str) else wanted
     known = {each.name: each for each in MODELS}
-    if not isinstance(changes, Mapping) or changes.get("name") not in known:
+    if not isinstance(changes, Mapping) or changes.get("name") not in [*known]:
         raise FirmwareError(f"{at} must be or have the name of one of {', '.join(known)}, not be {wanted!r}")
     return named_words(
         known[changes["name"]], {key: value for key, value in changes.items() if key != "name"}, at

@@ -33,11 +33,8 @@ each_camera = pytest.mark.parametrize("camera", [LEFT_CAMERA, RIGHT_CAMERA], ids
 def test_lines_and_frames_add_up(mode: SensorMode) -> None:
     """Pixels and blanking fill a line, picture and blanking fill a frame, and there is some of each."""
     assert mode.active_clocks == 2 * mode.width_px
-    assert mode.active_clocks + mode.blank_clocks == mode.line_clocks
-    assert mode.lines_before + mode.height_px + mode.lines_after == mode.frame_lines
-    assert mode.blank_clocks > 0
-    assert mode.lines_before > 0
-    assert mode.lines_after > 0
+    assert mode.active_clocks < mode.line_clocks
+    assert 0 < mode.lines_before < mode.blank_lines == mode.frame_lines - mode.height_px
     assert mode.frame_clocks * mode.frame_hz == mode.ppi_clk_hz
 
 

@@ -2,40 +2,60 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from firmware.stages.line_refinement import begin_sums, look_at_row, refine_lines
+from bfsim.api import Frame
+from firmware.stages.line_refinement import RefinementThresholds, line_refinement
 from firmware.stages.line_segments import SEGMENT_WORDS
 from firmware.stores.lines import LINE_WORDS
 from firmware.strategy.modes import INDOOR_FIELD
 from firmware.tables import arctangent_table
 from tests.firmware import refinement_references as references
-from tests.firmware.line_rig import edges_of, find_lines
+from tests.firmware.line_rig import BareCore, edges_of, find_lines, play
 
 GARBAGE = 77
 REACH, MIN_STEP = INDOOR_FIELD.refinement.reach, INDOOR_FIELD.refinement.min_step
 
 
+class PictureCore(BareCore):
+    """Has the lines of a picture for a ring, too."""
+
+    def input_ring(self, rows: np.ndarray, name: str) -> PictureCore:
+        """The ring of these lines, of which there is at least one."""
+        assert len(rows)
+        self.coming = iter(rows)
+        return self
+
+    def line(self) -> Generator[Any, Any, np.ndarray]:
+        """The next line; there must be one."""
+        return next(self.coming)
+        yield
+
+
 def refined(
     lines: Sequence[Sequence[int]], picture: np.ndarray, reach: int = REACH, min_step: int = MIN_STEP
 ) -> tuple[list[list[int]], int]:
-    """What the kernels make of lines in a grey picture."""
+    """What the stage makes of lines in a grey picture."""
     height, width = picture.shape
-    table = np.array(lines, np.int16).reshape(-1)
-    sums = np.full(max(len(lines), 1) * SEGMENT_WORDS, GARBAGE, np.int32)
-    table = table if len(lines) else np.zeros(LINE_WORDS, np.int16)
-    begin_sums(table, len(lines), sums)
     uyvy = np.full((height, 2 * width), GARBAGE, np.uint8)
     uyvy[:, 1::2] = picture
-    for y, row in enumerate(uyvy):
-        look_at_row(row, y, table, len(lines), sums, reach, min_step)
-    moved = refine_lines(table, len(lines), sums, arctangent_table(), width, height)
-    return table[: len(lines) * LINE_WORDS].reshape(-1, LINE_WORDS).tolist(), moved
+    core = PictureCore(
+        {
+            "lines": [np.array(lines or [[0] * LINE_WORDS], np.int16).reshape(-1)],
+            "segments": [np.full(max(len(lines), 1) * SEGMENT_WORDS, GARBAGE, np.int32)],
+            "atan": [arctangent_table()],
+        }
+    )
+    thresholds = RefinementThresholds(reach=reach, min_step=min_step)
+    play(line_refinement(core, Frame(0, uyvy, width, height), len(lines), thresholds))
+    table = core.array("lines").reshape(-1, LINE_WORDS)
+    return table[: len(lines)].tolist(), core.published["lines_refined"]
 
 
 @settings(max_examples=60, deadline=None)
@@ -53,7 +73,7 @@ def test_any_lines_in_any_picture(
     """Steps here and there, lines anywhere, also beyond the border."""
     rng = np.random.default_rng(seed)
     picture = np.cumsum(rng.integers(-40, 41, (height, width)), axis=1).clip(0, 255).astype(np.uint8)
-    xs, ys = st.integers(-40, 16 * width + 20), st.integers(-40, 16 * height + 20)
+    xs, ys = st.integers(-40, 16 * width + 20), st.integers(-160, 16 * height + 160)
     lines = data.draw(st.lists(st.tuples(xs, ys, xs, ys, *[st.integers(0, 255)] * 5), max_size=4))
     assert refined(lines, picture, reach, min_step) == references.refined(lines, picture, reach, min_step)
 

@@ -373,6 +373,7 @@ def test_models_by_name() -> None:
         ("ball", "models must be a list of them, not 'ball'"),
         ([], "models must be a list of them"),
         (["bal"], "models.0 must be or have the name of one of ball, blue goal, .*, not be 'bal'"),
+        ([{"name": ["ball"]}], "models.0 must be or have the name of one of ball, .*, not be {'name': "),
         (["ball", {"number": 3}], "models.1 must be or have the name of one of ball"),
         ([{"name": "ball", "with_mm": 3}], "models.0.with_mm must be one of number, shape"),
     ],

@@ -15,7 +15,7 @@ from random import Random
 
 from bfsim.chip.boards import board_named
 from bfsim.kernel.followers import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
-from bfsim.machine.bus import core_requests, dma_requests
+from bfsim.machine.bus import bursts, core_requests, dma_requests
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Pace, Plan, Transfer, Walk
 from tests.machine.rig import Bench, Call, Play
@@ -171,7 +171,7 @@ def record_grants() -> list[tuple[int, int]]:
         grants.append((before, int(state[w.COMMAND_FREE])))
         return through
 
-    for module in (dma_requests, core_requests):
+    for module in (bursts, dma_requests, core_requests):
         module.access, module.stream = watched, watched_stream
     return grants
 

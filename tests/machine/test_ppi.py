@@ -82,7 +82,7 @@ def test_a_picture_is_shorter_than_a_frame_by_its_blanking() -> None:
     ppi, mode = new_ppi(bench), bench.spec.sensor.mode(WIDTH, HEIGHT)
     assert mode.frame_lines == 9
     assert ppi.frame_ticks == bench.spec.clocks.tick_hz / 30
-    blank_ticks = Fraction(mode.blank_clocks, mode.frame_clocks) * ppi.frame_ticks
+    blank_ticks = Fraction(mode.line_clocks - mode.active_clocks, mode.frame_clocks) * ppi.frame_ticks
     assert ppi.picture_ticks == ceil(Fraction(8, 9) * ppi.frame_ticks - blank_ticks)
 
 

@@ -190,7 +190,23 @@ def test_files_that_are_no_scripts(tmp_path: Path) -> None:
         read_script(written(tmp_path, "script.yaml", TOML), {})
     with pytest.raises(ConfigError, match="must be JSON"):
         read_script(written(tmp_path, "script.json", TOML), {})
-    with pytest.raises(ConfigError, match=r"the script must be a valid dictionary or .*, not \[\]"):
+    with pytest.raises(ConfigError, match=r"the script must be a table with the key send, not \[\]"):
         read_script(written(tmp_path, "list.json", "[]"), {})
     with pytest.raises(ConfigError, match="must be a readable file: No such file"):
         read_script(tmp_path / "none.toml", {})
+    for suffix, start in (("json", ""), ("toml", "send = ")):
+        deep = start + 50_000 * "[" + 50_000 * "]"
+        with pytest.raises(ConfigError, match="must not be nested so deep"):
+            read_script(written(tmp_path, f"deep.{suffix}", deep), {})
+
+
+def test_what_does_not_fit_into_a_message(tmp_path: Path) -> None:
+    """The message says how much there is, not what all of it is."""
+    path = written(tmp_path, "long.json", json.dumps({"send": [{"after_frames": 0, "bytes": [0] * 100_000}]}))
+    with pytest.raises(ConfigError, match=r"send\.0\.bytes must have at most 4096 items, not 100000$"):
+        read_script(path, {})
+    path = written(tmp_path, "order.json", json.dumps({"send": [{"after_frames": 0, "mode": {}}]}))
+    with pytest.raises(
+        ConfigError, match=r"order\.json: send\.0\.mode must be at most 65535 bytes, not 70000"
+    ):
+        read_script(path, {"mode": lambda _: bytes(70_000)})

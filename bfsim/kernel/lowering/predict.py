@@ -15,7 +15,7 @@ from bfsim.kernel.loops import Flow, Loop
 EVEN = 0.5
 # hit rates [predict.def]
 LOOP_EXIT, EXTRA_EXIT, LOOP_GUARD = 0.89, 0.67, 0.73
-POSITIVE, NOT_EQUAL, CALL, EARLY_RETURN = 0.59, 0.66, 0.67, 0.66
+POSITIVE, NOT_EQUAL, CALL = 0.59, 0.66, 0.67
 MOST_TURNS = 100  # a loop is guessed to turn at most so often where its count is a constant
 
 BELOW_ZERO = {("slt", 0), ("slt", 1), ("sle", 0), ("sle", -1), ("slt", -1), ("sle", 1)}

@@ -9,9 +9,10 @@ from __future__ import annotations
 from bfsim.kernel import followers as log
 from bfsim.kernel.compiled import compiled
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.dma_requests import aligned, count_access, count_traffic
+from bfsim.machine.bus.pacing import aligned
 from bfsim.machine.bus.sdram import access, stream
 from bfsim.machine.bus.state import State
+from bfsim.machine.bus.traffic import count_access, count_traffic
 
 
 @compiled

@@ -1,10 +1,12 @@
-"""Who moved how much to and from which memory, from the counters of the bus."""
+"""Who moved how much to and from which memory: counted in compiled code, read at the end of a run."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+from bfsim.kernel.compiled import compiled
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.state import State
 from bfsim.trace import TrafficRecord
 
 MASTERS = {
@@ -48,3 +50,34 @@ def traffic_records(words: Sequence[int], cclk_ticks: int) -> tuple[TrafficRecor
                     )
                 )
     return tuple(records)
+
+
+@compiled
+def count_traffic(state: State, master: int, memory: int, write: bool, nbytes: int) -> None:
+    """Count bytes that a master moved to or from a memory."""
+    at = w.TRAFFIC_AT + (master * w.MEMORIES + memory) * w.TRAFFIC_WORDS
+    state[at + (w.WRITTEN_BYTES if write else w.READ_BYTES)] += nbytes
+
+
+@compiled
+def count_access(state: State, master: int, elements: int) -> None:
+    """Count `elements` accesses of SDRAM, the first of which was the controller's last one, and the time they took."""
+    at = w.TRAFFIC_AT + (master * w.MEMORIES + w.IN_SDRAM) * w.TRAFFIC_WORDS
+    state[at + w.HITS + state[w.PAGE_CLASS]] += 1
+    state[at + w.HITS] += elements - 1
+    state[at + w.BUSY] += state[w.COMMAND_FREE] - state[w.BEGAN] - state[w.REFRESH_WAIT]
+
+
+@compiled
+def count_subbanks(state: State, side: int, count: int) -> None:
+    """Count what the next `count` elements of a side move to or from each sub-bank of L1."""
+    first, bits = state[w.L1_FIRST], state[w.SUBBANK_BITS]
+    at = state[side + w.POSITION] - first
+    if at < 0:
+        return
+    if (at + (count - 1) * state[side + w.X_MODIFY]) >> bits == at >> bits:
+        state[w.SUBBANKS_AT + (at >> bits)] += count
+        return
+    for _ in range(count):
+        state[w.SUBBANKS_AT + (at >> bits)] += 1
+        at += state[side + w.X_MODIFY]

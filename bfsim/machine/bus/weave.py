@@ -9,8 +9,10 @@ from __future__ import annotations
 from bfsim.kernel.compiled import compiled, entry
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_requests import serve_core, serve_stores, start_jobs
-from bfsim.machine.bus.dma_requests import accept, arrival, serve_dma
+from bfsim.machine.bus.dma_requests import serve_dma
+from bfsim.machine.bus.pacing import arrival
 from bfsim.machine.bus.state import Memory, State
+from bfsim.machine.bus.transfers import accept
 
 # What changes a rank (HRM of the BF537, 5-50 to 5-54): an urgent request comes before everything else, one against the
 # direction of the traffic behind all of its kind. A request that needs no bus cannot keep anybody waiting.

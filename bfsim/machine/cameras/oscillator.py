@@ -31,7 +31,7 @@ class Oscillator:
 
     @property
     def frames(self) -> PeriodicEdges:
-        """The frame syncs: `frames.first_from(tick)` is the number of the next frame."""
+        """The frame syncs."""
         period_ticks = self.mode.frame_clocks * self._cycles.period_ticks
         return PeriodicEdges(period_ticks, self._cycles.offset_ticks)
 

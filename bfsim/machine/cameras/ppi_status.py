@@ -60,12 +60,6 @@ class PpiStatus:
             f"the FIFO must be emptied in time, but {lost_samples} samples found no room in it",
         )
 
-    def underrun(self) -> None:
-        """Set UNDR: the FIFO of a transmitting PPI was empty."""
-        self._set(
-            PpiStatusBit.UNDR, "the FIFO must be filled in time, but it was empty when a sample was due"
-        )
-
     def read(self) -> int:
         """Return the register; the read clears it."""
         word = int(sum(self._causes))

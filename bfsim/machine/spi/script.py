@@ -21,6 +21,7 @@ wire as they are, to see what the firmware does with a damaged message:
 from __future__ import annotations
 
 import json
+import reprlib
 import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -119,9 +120,10 @@ def _scripted_order(entry: dict[str, Any], name: str, orders: Orders) -> Scripte
     if name not in orders:
         known = ", ".join(orders) or "none"
         raise FirmwareError(f"{name} must be an order that the firmware takes, which are {known}")
-    return ScriptedMessage(
-        after_frames=when.after_frames, type=MessageType[name.upper()], payload=orders[name](wanted)
-    )
+    payload = orders[name](wanted)
+    if len(payload) > LARGEST_PAYLOAD_BYTES:
+        raise FirmwareError(f"{name} must be at most {LARGEST_PAYLOAD_BYTES} bytes, not {len(payload)}")
+    return ScriptedMessage(after_frames=when.after_frames, type=MessageType[name.upper()], payload=payload)
 
 
 def _mistake(error: ValidationError, at: str = "") -> str:
@@ -133,8 +135,13 @@ def _mistake(error: ValidationError, at: str = "") -> str:
             return f"the key {key} must be there"
         case "extra_forbidden":
             return f"{key} must be a key of a script, and is none"
+        case "too_long":
+            most, length = (first["ctx"][each] for each in ("max_length", "actual_length"))
+            return f"{key} must have at most {most} items, not {length}"
+        case "model_type":
+            return f"{key} must be a table with the key send, not {reprlib.repr(first['input'])}"
     must_be = first["msg"].replace("Input should", "must").removesuffix(" instance")
-    return f"{key} {must_be}, not {first['input']!r}"
+    return f"{key} {must_be}, not {reprlib.repr(first['input'])}"
 
 
 def _parsed(path: Path) -> Any:
@@ -145,5 +152,7 @@ def _parsed(path: Path) -> Any:
         return loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise ConfigError(f"{path} must be a readable file: {error.strerror}") from error
+    except RecursionError as error:
+        raise ConfigError(f"{path} must not be nested so deep") from error
     except ValueError as error:  # of either parser, and of the text's encoding
         raise ConfigError(f"{path} must be {path.suffix[1:].upper()}: {error}") from error

@@ -1,0 +1,117 @@
+"""Memory DMA between SDRAM and a memory on the chip: elements that nobody can come between move at once."""
+
+from __future__ import annotations
+
+from bfsim.kernel.compiled import compiled
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.sdram import access, hits_ahead, stream
+from bfsim.machine.bus.state import Memory, State
+from bfsim.machine.bus.traffic import count_access, count_traffic
+from bfsim.machine.bus.transfers import after_move, moved
+
+
+@compiled
+def alone_until(state: State, number: int, until: int) -> int:
+    """Until when a master has the bus to itself: nobody else asks for it before, or does anything that needs none of it."""
+    limit = min(until, state[w.NEXT_REFRESH])
+    for other in range(w.MASTERS):
+        if other != number:
+            limit = min(limit, state[w.MASTERS_AT + other + w.READY])
+    return limit
+
+
+@compiled
+def preferred_until(state: State, number: int, until: int) -> int:
+    """Until when a master that just had the bus has it again whenever it asks, if it leaves no gap."""
+    limit = min(until, state[w.NEXT_REFRESH])
+    rank = state[w.MASTERS_AT + number + w.RANK]
+    for other in range(w.MASTERS):
+        at = w.MASTERS_AT + other
+        ready = state[at + w.READY]
+        if other != number and ready < limit:
+            waits = ready <= state[w.BEGAN] and state[at + w.USES_BUS] and state[at + w.RANK] > rank
+            waits = waits and other > w.SPI  # a device that waits gets urgent
+            if not waits:
+                limit = ready
+    return limit
+
+
+@compiled
+def run_ahead(state: State, number: int, slot: int, ahead: int, ticks: int, until: int) -> int:
+    """How many of `ahead` more elements of `ticks` each, all page hits, nobody can come between.
+
+    Where nobody else wants the bus the pauses of a memory DMA that reads are part of the run; else a run ends with the first.
+    """
+    master = w.MASTERS_AT + number
+    if state[w.DEB_PERIOD] or state[w.MDMA_PERIOD]:
+        return 0
+    ahead = min(ahead, min(state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT]) - 1)
+    reads = state[slot + w.MODE] == w.READ and state[master + w.GAP_NUMERATOR] > 0
+    if not reads:
+        room = preferred_until(state, number, until) - state[w.COMMAND_FREE]
+        return max(0, min(ahead, (room + ticks - 1) // ticks))
+    parts = state[master + w.GAP_DENOMINATOR]
+    room = alone_until(state, number, until) - state[w.COMMAND_FREE]
+    longest = ticks * parts + state[w.LOT] * state[w.SCLK] * state[master + w.GAP_NUMERATOR]
+    alone = max(0, min(ahead, (room - state[w.LOT] * state[w.SCLK]) * parts // longest))
+    if alone:
+        return alone
+    room = preferred_until(state, number, until) - state[w.COMMAND_FREE]
+    to_gap = (parts - 1 - state[master + w.GAP]) // state[master + w.GAP_NUMERATOR] - 1
+    return max(0, min(ahead, to_gap, (room + ticks - 1) // ticks))
+
+
+@compiled
+def pause(state: State, master: int, elements: int) -> int:
+    """Add up what a memory DMA pauses for `elements` that it reads; return the ticks that are due.
+
+    It pauses for as long as another stream moves a FIFO of words ([assumed]; the sum of the pauses is data of the chip).
+    """
+    state[master + w.GAP] += elements * state[master + w.GAP_NUMERATOR]
+    lots = state[master + w.GAP] // state[master + w.GAP_DENOMINATOR]
+    state[master + w.GAP] -= lots * state[master + w.GAP_DENOMINATOR]
+    return lots * state[w.LOT] * state[w.SCLK]
+
+
+@compiled
+def take_turn(state: State, master: int, count: int) -> None:
+    """Count what a stream moved; when it and its partner have had their periods, both begin anew."""
+    state[master + w.SERVED] += count
+    partner, period = state[master + w.PARTNER], state[w.MDMA_PERIOD]
+    if partner != w.NONE and state[master + w.SERVED] >= period <= state[w.MASTERS_AT + partner + w.SERVED]:
+        state[master + w.SERVED] = 0
+        state[w.MASTERS_AT + partner + w.SERVED] = 0
+
+
+@compiled
+def burst(state: State, memory: Memory, number: int, at: int, until: int) -> int:
+    """Move the next elements of a memory DMA with one side in SDRAM; return who is woken."""
+    master = w.MASTERS_AT + number
+    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
+    write = state[slot + w.MODE] == w.WRITE
+    offset, step = state[slot + w.FROM], state[slot + w.FROM_X_MODIFY]
+    if write:
+        offset, step = state[slot + w.TO], state[slot + w.TO_X_MODIFY]
+    beats = max(1, 1 << state[slot + w.ELEMENT_BITS] >> state[w.WORD_BITS])
+    through = access(state, at, offset, write)
+    if beats > 1:
+        through = stream(state, beats - 1, write, offset)
+    ahead = hits_ahead(state, offset + step, step)
+    more = run_ahead(state, number, slot, ahead, beats * state[w.SCLK], until)
+    paused = 0
+    if more:
+        paused = 0 if write else pause(state, master, more)
+        state[w.COMMAND_FREE] += paused
+        state[w.DATA_FREE] += paused
+        through = stream(state, more * beats, write, offset)
+    state[master + w.READY] = state[w.COMMAND_FREE] + (0 if write else pause(state, master, 1))
+    count_access(state, number, 1 + more)
+    state[w.TRAFFIC_AT + (number * w.MEMORIES + w.IN_SDRAM) * w.TRAFFIC_WORDS + w.BUSY] -= paused
+    nbytes = (1 + more) << state[slot + w.ELEMENT_BITS]
+    count_traffic(state, number, w.IN_SDRAM, write, nbytes)
+    on_chip = state[slot + w.FROM] if write else state[slot + w.TO]
+    if state[w.L2_FIRST] <= on_chip < state[w.L2_END]:
+        count_traffic(state, number, w.IN_L2, not write, nbytes)
+    moved(state, memory, slot, 1 + more)
+    take_turn(state, master, 1 + more)
+    return after_move(state, master, slot, through)
