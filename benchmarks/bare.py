@@ -6,18 +6,24 @@ A `BareCore` answers firmware as a `Core` does, but copies lines at once and nev
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
-from bfsim.api import Firmware, Frame, FrameSize, Kernel, Row, Work
+from bfsim.api import CameraSettings, Firmware, Frame, FrameSize, Kernel, Row, Work
 from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import VDSP_O2, PreparedCall
-from bfsim.kernel.types import Number
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import PROCESSORS, symbols_of
+from bfsim.machine.core.layouts import Layouts
 from bfsim.machine.memories import Memories
 from bfsim.recording import StereoFrame
 from bfsim.run import THESIS_LDF
+
+
+class Turn:
+    """What a core yields before it takes a frame: the other core has its turn."""
+
+    value = None
 
 
 class BareInput:
@@ -63,50 +69,45 @@ class BareOutput:
 class BareCore:
     """A core without time."""
 
-    def __init__(self, name: str, firmware: Firmware, frames: Sequence[StereoFrame]) -> None:
+    def __init__(
+        self, name: str, firmware: Firmware, frames: Sequence[StereoFrame], memories: Memories
+    ) -> None:
         self.name = name
         height, double_width = frames[0].left.shape
         size = FrameSize(double_width // 2, height)
         places = link(parse_ldf(THESIS_LDF), symbols_of(firmware, size))
-        self._memories = memories = Memories(CM_BF561)
         buffers = firmware.buffers(size)
-        self._rows = {
+        rows = {
             each.name: memories.place(each, places.find(PROCESSORS[name], each.name))
             for owner in ("shared", name)
             for each in buffers.get(owner, ())
         }
-        self._camera = self._rows[firmware.camera][:height]
+        self._layouts = Layouts(name, memories, rows, size, lambda _: {})
+        self.rows, self.overlay, self.part = self._layouts.rows, self._layouts.overlay, self._layouts.part
+        self.use_size = self._layouts.use
+        self._camera = rows[firmware.camera][:height]
         self._frames = iter(frames)
         self._size = size
         self._calls: dict[tuple[object, ...], PreparedCall] = {}
-        self._overlays: dict[tuple[object, ...], tuple[Row, ...]] = {}
-
-    def rows(self, name: str) -> tuple[Row, ...]:
-        """Return the rows of a buffer."""
-        return self._rows[name]
 
     def array(self, name: str) -> Row:
         """Return the only row of a buffer."""
-        return self._rows[name][0]
+        return self.rows(name)[0]
 
     def has_buffer(self, name: str) -> bool:
         """Return whether there is a buffer called `name`."""
-        return name in self._rows
+        return name in self._layouts
 
-    def overlay(self, name: str, element: Number, columns: int) -> tuple[Row, ...]:
-        """Return the memory of a buffer as rows of another kind."""
-        kind = (name, element, columns)
-        if kind not in self._overlays:
-            self._overlays[kind] = self._memories.overlay(self._rows[name], element, columns)
-        return self._overlays[kind]
-
-    def input_ring(self, image: Sequence[Row], ring: str) -> BareInput:
+    def input_ring(self, image: Sequence[Row], ring: str | Sequence[Row]) -> BareInput:
         """Return an input ring without DMA."""
-        return BareInput(image, self._rows[ring])
+        return BareInput(image, self._ring(ring))
 
-    def output_ring(self, ring: str, image: Sequence[Row]) -> BareOutput:
+    def output_ring(self, ring: str | Sequence[Row], image: Sequence[Row]) -> BareOutput:
         """Return an output ring without DMA."""
-        return BareOutput(self._rows[ring], image)
+        return BareOutput(self._ring(ring), image)
+
+    def _ring(self, ring: str | Sequence[Row]) -> Sequence[Row]:
+        return self.rows(ring) if isinstance(ring, str) else ring
 
     def run(self, kernel: Kernel, *arguments: Any) -> Work:
         """Run the build of `kernel` that has no counters."""
@@ -125,13 +126,19 @@ class BareCore:
 
     def next_frame(self) -> Generator[Any, Any, Frame | None]:
         """Copy the next picture into the camera's buffer."""
+        yield Turn
         frame = next(self._frames, None)
         if frame is None:
             return None
         for row, line in zip(self._camera, frame.left if self.name == "A" else frame.right, strict=True):
             row.octets[:] = line
         return Frame(frame.index, self._camera, self._size.width_px, self._size.height_px)
-        yield
+
+    def set_camera(self, settings: CameraSettings) -> None:
+        """Leave the camera as it is."""
+
+    def set_picture_size(self, size: FrameSize) -> None:
+        """Leave the pictures as large as they are."""
 
     def publish(self, **results: int) -> None:
         """Publish nothing."""
@@ -155,12 +162,18 @@ class BareCore:
 
 
 def run_bare(firmware: Firmware, frames: Sequence[StereoFrame]) -> None:
-    """Run both main loops over `frames`, one core after the other."""
-    for name, main in firmware.mains.items():
-        task: Any = main(BareCore(name, firmware, frames))  # type: ignore[arg-type]
-        value = None
-        try:
-            while True:
-                value = task.send(value).value
-        except StopIteration:
-            pass
+    """Run both main loops over `frames`, frame by frame; the last core first, since core A reads what core B left."""
+    memories = Memories(CM_BF561)
+    cores = reversed(firmware.mains.items())
+    tasks: list[Any] = [main(BareCore(name, firmware, frames, memories)) for name, main in cores]  # type: ignore[arg-type]
+    for _ in range(len(frames) + 1):  # up to the first frame, and every frame
+        for task in tasks:
+            _play_frame(task)
+
+
+def _play_frame(task: Any) -> None:
+    """Play a core until it takes the next frame, or has none left."""
+    value = None
+    with suppress(StopIteration):
+        while (work := task.send(value)) is not Turn:
+            value = work.value
