@@ -59,3 +59,20 @@ def test_the_commands_of_the_readme_exist() -> None:
     of_others = {"--help", "--recording"}  # the latter is an option of the tests
     for option in set(re.findall(r"--[a-z]+", README)) - of_others:
         assert any(option in text for text in helps.values()), option
+
+
+def test_the_files_of_the_readme_exist() -> None:
+    """Every file and folder of the repository that the README names in code is there."""
+    root = Path(__file__).parent.parent
+    in_code = " ".join(re.findall(r"`([^`\n]+)`", README)).split()
+    named = {word for word in in_code if re.match(r"(bfsim|firmware|benchmarks|tests|ldf)/", word)}
+    named |= {f"benchmarks/{word}" for word in in_code if re.fullmatch(r"\w+_\w+\.py", word)}
+    assert len(named) > 20
+    assert not [each for each in named if each != "benchmarks/..." and not (root / each).exists()]
+
+
+def test_the_readme_is_short() -> None:
+    """Lines fit 120 columns, and there are not many of them."""
+    lines = README.splitlines()
+    assert max(map(len, lines)) <= 120
+    assert len(lines) <= 290
