@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -131,7 +132,7 @@ class _DigestedFrames:
     """The frames of a recording as they are read, and the digest of those that were."""
 
     def __init__(self, reader: RecordingReader, total: int) -> None:
-        self.name = Path(reader.path).name
+        self.name = _name(Path(reader.path))
         self._reader = reader
         self._total = total
         self._digest = hashlib.sha256()
@@ -155,6 +156,11 @@ class _DigestedFrames:
         return self._digest.hexdigest()
 
 
+def _name(path: Path) -> str:
+    """Return the name of a file as text that can be written, also where it is none."""
+    return os.fsencode(path.name).decode(errors="replace")
+
+
 def _record(
     outcome: Outcome,
     spec: BoardSpec,
@@ -174,7 +180,7 @@ def _record(
         firmware_digest=loaded.digest,
         board=spec.name,
         board_digest=hashlib.sha256(repr(spec).encode()).hexdigest(),
-        ldf=placement.path.name,
+        ldf=_name(placement.path),
         ldf_digest=hashlib.sha256(placement.source.expanded.encode()).hexdigest(),
         compiler=compiler.name,
         feed=feed.value,
