@@ -17,7 +17,7 @@ from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
 from bfsim.linker import LinkerScript, link, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.ahead import compiled_ahead
-from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
+from bfsim.machine.board import Board, Fidelity, Outcome, require_cores, symbols_of
 from bfsim.machine.capture import Feed
 from bfsim.machine.program import Calibration, FrameSize, SourcePixels
 from bfsim.machine.strategy import Script
@@ -59,6 +59,7 @@ def simulate(
         raise ConfigError(f"frames must be at least 1, not {frames}")
     spec, compiler = board_named(board), profile_named(profile)
     loaded = load_firmware(firmware)
+    require_cores(loaded.firmware, spec)
     script = _read_strategy(strategy, loaded)
     placement = read_placement(ldf, spec)
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader, compiled_ahead() as wait_for_compiler:

@@ -214,6 +214,11 @@ def test_memory_does_not_grow_with_the_pictures(home: Path) -> None:
     ("how", "kind", "message"),
     [
         ({"board": "cm-bf562"}, ConfigError, "--board must be one of"),
+        (
+            {"board": "cm-bf533"},
+            FirmwareError,
+            r"must have main loops for A, not for A, B \(board cm-bf533\)",
+        ),
         ({"firmware": "fw_missing:fw"}, FirmwareError, "'fw_missing' must be installed or in the folder"),
         ({"recording": Path("missing.mcap")}, RecordingError, "missing.mcap"),
         ({"recording": Path("fw_eyes.py")}, RecordingError, "fw_eyes.py"),
