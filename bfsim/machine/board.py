@@ -77,6 +77,13 @@ class Outcome:
     events: int
 
 
+def require_cores(firmware: Firmware, spec: BoardSpec) -> None:
+    """Raise FirmwareError unless the firmware is for the cores of the board's chip."""
+    if set(firmware.mains) != set(spec.chip.cores):
+        cores, known = ", ".join(spec.chip.cores), ", ".join(sorted(firmware.mains))
+        raise FirmwareError(f"firmware must have main loops for {cores}, not for {known} (board {spec.name})")
+
+
 def symbols_of(firmware: Firmware, size: FrameSize, profile: CompilerProfile = VDSP_O2) -> list[Symbol]:
     """Return what the linker must place for pictures of `size`: buffers, and code as `profile` compiles it."""
     found = [
@@ -149,11 +156,7 @@ class Board:
 
     def _load(self) -> dict[str, dict[str, tuple[Row, ...]]]:
         """Place every buffer in memory; return the rows that each core knows by name."""
-        if set(self.firmware.mains) != set(self.spec.chip.cores):
-            known = ", ".join(sorted(self.firmware.mains))
-            raise FirmwareError(
-                f"firmware must have main loops for {', '.join(self.spec.chip.cores)}, not for {known}"
-            )
+        require_cores(self.firmware, self.spec)
         placed: dict[str, dict[str, tuple[Row, ...]]] = {}
         for owner, buffers in self.firmware.buffers(self.size).items():
             placed[owner] = {each.name: self._place(each, PROCESSORS[owner]) for each in buffers}
