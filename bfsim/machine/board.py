@@ -44,10 +44,8 @@ from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, MessageRecord, Tr
 
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
 
-MDMA_MASTERS = (
-    (w.MDMA1_0, w.MDMA1_1),
-    (w.MDMA2_0, w.MDMA2_1),
-)  # of each core: for its input and its output rings
+MDMA_MASTERS = ((w.MDMA1_0, w.MDMA1_1), (w.MDMA2_0, w.MDMA2_1))
+"""Of each core: for its input and its output rings."""
 
 
 class Fidelity(StrEnum):
@@ -138,14 +136,14 @@ class Board:
             self._bus,
             self._memories,
             StrategyUnit(self.script),
-            self._spi_done,
+            partial(self._interrupt, "SPI_DMA"),
             self._outside[-1],
         )
 
-    def _spi_done(self) -> None:
+    def _interrupt(self, source: str) -> None:
         """Interrupt every core whose firmware asked for it: each has a SIC of its own."""
         for each in self._shared.interrupts.values():
-            each.request("SPI_DMA")
+            each.request(source)
 
     def _load(self) -> dict[str, dict[str, tuple[Row, ...]]]:
         """Place every buffer in memory; return the rows that each core knows by name."""
@@ -224,6 +222,7 @@ class Board:
                 self._memories,
                 number=number,
                 outside=self._outside[number],
+                interrupt=self._interrupt,
             )
             for number, (name, camera) in enumerate(zip(self.spec.chip.cores, self.spec.cameras, strict=True))
         }

@@ -223,6 +223,12 @@ class Core(SynchronisedCore):
         """
         self._capture.change_camera(self.name, settings)
 
+    def ppi_status(self) -> Generator[Any, Any, int]:
+        """Read PPI_STATUS of this core's PPI, which clears it: the bits of `PpiStatusBit` that were set since the last time."""
+        self.program_device(writes=0, reads=1)
+        yield from self._sync()
+        return self._capture.read_status(self.name)
+
     def set_picture_size(self, size: FrameSize) -> None:
         """Have this core's camera send pictures of `size`: the recorded one, half or a quarter of it.
 
