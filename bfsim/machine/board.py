@@ -18,7 +18,7 @@ from bfsim.linker import LinkMap, Symbol
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.traffic import traffic_records
-from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches
+from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches, written_through
 from bfsim.machine.calls.calls import CallBook
 from bfsim.machine.calls.conflicts import SubBanks
 from bfsim.machine.calls.fetch import CodeCache, CodeOutside
@@ -255,7 +255,7 @@ class Board:
             memories.arena,
             memories.l2_end,
             self._bus.room_of(index),
-            caches.regions(memories),
+            caches.regions(memories, written_through(self.firmware.write_through, self.link_map, memories)),
             caches.data_size(chip.cache),
         )
         places = code_outside_l1(self.link_map, PROCESSORS[name], chip.regions, memories)
