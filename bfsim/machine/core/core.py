@@ -87,7 +87,7 @@ class Core(SynchronisedCore):
         shared: SharedObjects,
         stages: tuple[str, ...],
         on_finished: Callable[[], None],
-        view: Callable[[Readout], Seen] | None,
+        view: Callable[[Readout], Seen | None] | None,
     ) -> None:
         """`streams`: the MDMA streams of its input and of its output rings. `on_finished`: called at a frame's end.
 
