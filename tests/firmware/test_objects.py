@@ -19,9 +19,9 @@ from firmware.stores.objects import (
     SEEN_RIGHT,
     VERIFIED,
 )
+from firmware.strategy.decoding import SeenObject
 from firmware.strategy.models import MODELS, Shape
 from firmware.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES
-from firmware.strategy.results import SeenObject
 
 NUMBERS = {each.shape: each.number for each in MODELS if each.name != "yellow goal"}
 THESIS_MS = 1.0  # T Table 6.4
