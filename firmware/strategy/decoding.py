@@ -23,7 +23,7 @@ class Side(IntEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SeenObject:
+class ReportedObject:
     """An object as the strategy unit is told of it.
 
     `tests`, `cameras`, `measures`: the bits of `object_store`. `towards`: its place in mm in the left camera's frame, or
@@ -60,7 +60,7 @@ class Results:
 
     frame: int
     refusal: int
-    objects: tuple[SeenObject, ...]
+    objects: tuple[ReportedObject, ...]
     lines: tuple[GoalLine, ...]
 
 
@@ -90,13 +90,13 @@ def _records(words: Sequence[int], size: int) -> list[Sequence[int]]:
     return [words[at : at + size] for at in range(0, len(words), size)]
 
 
-def _object(words: Sequence[int], left: int, top: int) -> SeenObject:
+def _object(words: Sequence[int], left: int, top: int) -> ReportedObject:
     (model, accuracy), (tests, cameras), (measures, age) = (
         divmod(each & 0xFFFF, 256)[::-1] for each in words[:3]
     )
     x, y, z, *image = words[3:]
     image_x, image_y, width, height = (each / SUBPIXELS for each in image)
-    return SeenObject(
+    return ReportedObject(
         model=model,
         accuracy=accuracy,
         tests=tests,

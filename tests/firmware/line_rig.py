@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -47,6 +47,16 @@ class BareCore:
         """Keep results."""
         self.published |= results
 
+    @staticmethod
+    def play(task: Generator[Any, Any, Any]) -> Any:
+        """Play a stage to its end, and return what it returns."""
+        value = None
+        try:
+            while True:
+                value = task.send(value)
+        except StopIteration as end:
+            return end.value
+
 
 @dataclass(frozen=True, slots=True)
 class Found:
@@ -83,13 +93,7 @@ def find_lines(
     core.arrays["edge_counts"] = [np.array(counts, np.uint16)]
     core.arrays["edge_index"] = [np.cumsum([0, *counts])[:-1].astype(np.uint32)]
     core.arrays["atan"] = [arctangent_table()]
-    task = line_detection(core, size_of(size), mode)
-    value = None
-    try:
-        while True:
-            value = task.send(value)
-    except StopIteration as end:
-        count = end.value
+    count = core.play(line_detection(core, size_of(size), mode))
     assert core.published == {"lines": count, "line_edges_lost": core.published["line_edges_lost"]}
     return Found(
         core.array("lines")[: count * LINE_WORDS].reshape(count, LINE_WORDS),

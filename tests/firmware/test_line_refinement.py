@@ -38,7 +38,7 @@ def refined(
     return table[: len(lines) * LINE_WORDS].reshape(-1, LINE_WORDS).tolist(), moved
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.integers(2, 40),
     st.integers(2, 60),

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.api import FirmwareError, FrameSize
@@ -106,7 +106,6 @@ def modes(draw: st.DrawFn) -> Mode:
 # ---- modes
 
 
-@settings(deadline=None)  # making a mode takes its time
 @given(modes())
 def test_a_mode_there_and_back(mode: Mode) -> None:
     """Encoded, sent, checked, stored and read: the same mode."""

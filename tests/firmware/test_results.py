@@ -16,7 +16,7 @@ from firmware.exchange import load_word, store_word
 from firmware.stores.objects import BY_FLOOR, NO_OUTLINE, OBJECT_CAPACITY
 from firmware.stores.rectangles import NO_LINE
 from firmware.strategy import framing
-from firmware.strategy.decoding import GoalLine, Results, SeenObject, Side, decode_results
+from firmware.strategy.decoding import GoalLine, ReportedObject, Results, Side, decode_results
 from firmware.strategy.framing import crc16_byte
 from firmware.strategy.models import MODELS
 from firmware.strategy.results import (
@@ -79,7 +79,7 @@ def test_an_empty_frame() -> None:
 def test_objects_leave_as_they_are() -> None:
     """Every word, free records left out."""
     found = read(packed([A_BALL, {}, A_GOAL]))
-    assert found.objects[0] == SeenObject(
+    assert found.objects[0] == ReportedObject(
         model=1,
         accuracy=255,
         tests=63,
