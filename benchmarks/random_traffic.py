@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from random import Random
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bfsim.api import BudgetRow, Buffer, Core, Firmware, Frame, FrameSize, i32, kernel, u8
+from bfsim.recording import StereoFrame
 
 SIZE = FrameSize(160, 120)
 STAGES = ("Kernels", "Rings", "Both")
@@ -22,17 +21,6 @@ STRIDES = (1, 1, 1, 3, 8, 512)  # words: in a row, within a page, and a page apa
 ACCESSES = (16, 100, 400)
 
 Play = Generator[Any, Any, None]
-
-
-@dataclass(frozen=True, slots=True)
-class Picture:
-    """A stereo frame."""
-
-    index: int
-    left: NDArray[np.uint8]
-    right: NDArray[np.uint8]
-    left_ns: int = 0
-    right_ns: int = 0
 
 
 @kernel
@@ -80,12 +68,12 @@ def invert(source: u8[:], out: u8[:]) -> None:
         out[x] = 255 - source[x]
 
 
-def pictures(count: int, seed: int) -> Iterator[Picture]:
+def pictures(count: int, seed: int) -> Iterator[StereoFrame]:
     """Return stereo frames of noise."""
     rng = np.random.default_rng(seed)
     for index in range(count):
         left, right = rng.integers(0, 256, (2, SIZE.height_px, 2 * SIZE.width_px), np.uint8)
-        yield Picture(index, left, right)
+        yield StereoFrame(index, left, right, left_ns=0, right_ns=0, truth=None)
 
 
 def hammer(seed: int) -> Firmware:

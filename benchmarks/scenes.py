@@ -23,8 +23,8 @@ from benchmarks.seen_objects import Seen, see
 from bfsim.report.tables import new_table
 from bfsim.terminal import print_report, progress_bar
 from firmware.stores.objects import DIMENSION_TEST
+from firmware.strategy.decoding import ReportedObject
 from firmware.strategy.models import MODELS, Shape
-from firmware.strategy.results import SeenObject
 
 PLACED_BY = {Shape.GOAL: "mouth_mm", Shape.MARKER: "mark_corners_mm", Shape.BALL: "centre_mm"}
 """What of the ground truth tells where a thing is, and with it what it is."""
@@ -119,7 +119,7 @@ def compare(seen: Sequence[Seen]) -> tuple[dict[str, Tally], int]:
     return tallies, false
 
 
-def _add(tally: Tally, found: SeenObject, place: Vector) -> None:
+def _add(tally: Tally, found: ReportedObject, place: Vector) -> None:
     towards = np.array(found.towards, float)
     tally.accuracies.append(found.accuracy)
     tally.directions_deg.append(angle_deg(towards, place))

@@ -20,10 +20,10 @@ from firmware.buffers import buffers, calibration_buffers
 from firmware.features import features
 from firmware.stages.object_detection import left_sight, object_detection, right_sight
 from firmware.stores.objects import NO_MODEL, OBJECT_MODEL, OBJECT_WORDS
+from firmware.strategy.decoding import Results, decode_results
 from firmware.strategy.models import model_words
 from firmware.strategy.modes import INDOOR_FIELD, Mode
 from firmware.strategy.report import report
-from firmware.strategy.results import Results, decode_results
 
 Records = NDArray[np.int16]
 """Rows of t_Object."""

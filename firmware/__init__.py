@@ -7,7 +7,7 @@ from firmware.buffers import buffers, calibration_buffers, one_core_buffers
 from firmware.core_a import core_a
 from firmware.core_b import core_b
 from firmware.one_core import one_core
-from firmware.strategy.orders import BY_NAME
+from firmware.strategy.payloads import BY_NAME
 from firmware.view.view import view
 
 ROWS = (

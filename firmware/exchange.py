@@ -14,7 +14,6 @@ from bfsim.api import Buffer, Core, FrameSize, Row, i16, i32, kernel, u16, u32
 from firmware.stages.line_segments import SEGMENT_CAPACITY
 from firmware.stores.edges import EDGE_CAPACITY
 from firmware.stores.lines import LINE_WORDS
-from firmware.strategy.results import load_word, store_word
 
 SHARED = "l2_shared"
 
@@ -40,13 +39,25 @@ def copy_words(source: u32[:], target: u32[:], count: i32) -> None:
 
 
 @kernel
+def store_word(words: u32[:], value: i32) -> None:
+    """Store a number in a variable that the other core reads."""
+    words[0] = value
+
+
+@kernel
+def load_word(words: u32[:]) -> i32:
+    """Read a number that the other core has stored."""
+    return i32(words[0])
+
+
+@kernel
 def pack_edge_rows(edge_index: u32[:], edge_counts: u16[:], edge_rows: u32[:]) -> None:
     """Put first edge and count of each row into one word, so that core A waits for L2 once a row."""
     for y in range(len(edge_rows)):
         edge_rows[y] = edge_index[y] | u32(edge_counts[y]) << 16
 
 
-def words_of(core: Core, name: str) -> Row:
+def as_words(core: Core, name: str) -> Row:
     """Return a buffer, all its rows as one, as 32-bit words."""
     return core.overlay(name, u32, sum(each.nbytes for each in core.rows(name)) // 4)[0]
 
@@ -59,7 +70,7 @@ def share(
     The buffer has a whole number of 32-bit words.
     """
     words = (count * record_nbytes + 3) // 4
-    yield core.run(copy_words, words_of(core, name), words_of(core, f"right_{name}"), words)
+    yield core.run(copy_words, as_words(core, name), as_words(core, f"right_{name}"), words)
     yield core.run(store_word, core.array(count_name), count)
 
 

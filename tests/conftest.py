@@ -10,6 +10,10 @@ import signal
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("bfsim", deadline=None)  # the first example compiles kernels, and machines are busy
+settings.load_profile("bfsim")
 
 
 @pytest.fixture(scope="session", autouse=True)

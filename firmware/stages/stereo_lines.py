@@ -12,7 +12,7 @@ from enum import IntEnum
 from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel, u32
-from firmware.exchange import copy_words, shared_count, words_of
+from firmware.exchange import as_words, copy_words, shared_count
 from firmware.fields import allowed
 from firmware.geometry import store_point
 from firmware.stages.line_correspondence import LEVEL, best_line, column_at, line_slopes, nearest_line
@@ -182,7 +182,7 @@ def stereo_lines(
     work, lines = _Workspace.of(core), core.array("lines")
     right_count = yield from shared_count(core, "right_line_count")
     words = (right_count * LINE_WORDS + 1) // 2
-    yield core.run(copy_words, words_of(core, "right_lines"), work.right_words, words)
+    yield core.run(copy_words, as_words(core, "right_lines"), work.right_words, words)
     yield core.run(line_slopes, lines, left_count, work.left_slopes, thresholds.min_rise)
     yield core.run(line_slopes, work.right_lines, right_count, work.right_slopes, thresholds.min_rise)
     pictures = lines, work.left_slopes, left_count, work.right_lines, work.right_slopes, right_count

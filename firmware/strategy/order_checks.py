@@ -1,12 +1,13 @@
 """Is a message of the strategy unit one that can be obeyed? Kernels that look at every word of it, and why they refuse.
 
 A refusal is a number: the reason in bits 0..7, and above them which word, or which model, is meant. `order_texts.py`
-has it in words. Orders are words of 32 bits, low half first, in the frame of `results.py`.
+has it in words. Orders are words of 32 bits, low half first, in the frame of `framing.py`.
 """
 
 from __future__ import annotations
 
 from bfsim.api import i32, kernel, u16
+from firmware.strategy.framing import FRAME_BYTES, HEADER_WORDS, MODE, MODELS, SYNC, checksum
 from firmware.strategy.models import (
     MODEL_COLOURS,
     MODEL_HEIGHT,
@@ -14,15 +15,8 @@ from firmware.strategy.models import (
     MODEL_SHAPE,
     MODEL_WIDTH,
     MODEL_WORDS,
+    Shape,
 )
-from firmware.strategy.results import SYNC, crc16_byte
-
-MODE = 2
-MODELS = 3
-
-HEADER_BYTES = 8
-FRAME_BYTES = HEADER_BYTES + 2  # and the checksum
-PAYLOAD = HEADER_BYTES // 2
 
 # Reasons.
 CUT_SHORT = 1
@@ -50,17 +44,7 @@ LIMIT_AT_MOST = 3  # the word of the same record that this one must not exceed; 
 LIMIT_TOTAL = 4  # what the words with one may be together; 0 for none
 LIMIT_WORDS = 5
 
-BALL = 1  # firmware.strategy.models.Shape.BALL
-
-
-@kernel
-def checksum(message: u16[:], words: i32) -> i32:
-    """Return the CRC-16 of a message of so many words, its last one not included."""
-    crc: i32 = 0xFFFF
-    for word in range(1, words - 1):
-        crc = crc16_byte(crc, message[word] & 255)
-        crc = crc16_byte(crc, message[word] >> 8)
-    return crc
+BALL = int(Shape.BALL)
 
 
 @kernel
@@ -81,15 +65,9 @@ def frame_refusal(message: u16[:], nbytes: i32) -> i32:
 
 
 @kernel
-def message_type(message: u16[:]) -> i32:
-    """Return the type of a message."""
-    return i32(message[1])
-
-
-@kernel
 def order_word(message: u16[:], number: i32) -> i32:
     """Return word `number` of an order."""
-    at = PAYLOAD + 2 * number
+    at = HEADER_WORDS + 2 * number
     return i32(message[at]) | i32(message[at + 1]) << 16
 
 
@@ -173,20 +151,3 @@ def models_refusal(message: u16[:]) -> i32:
             if colours == others and shape == order_word(message, other + MODEL_SHAPE):
                 return SAME_MODEL | model << WHICH_BIT
     return 0
-
-
-@kernel
-def store_order(message: u16[:], words: i32[:]) -> None:
-    """Store the words of an order that is obeyed; the rest of `words` is 0."""
-    count = i32(message[3]) >> 2
-    for word in range(count):
-        words[word] = order_word(message, word)
-    for word in range(count, len(words)):
-        words[word] = 0
-
-
-@kernel
-def copy_words(words: i32[:], copy: i32[:]) -> None:
-    """Copy words that both cores share to a core's own."""
-    for word in range(len(words)):
-        copy[word] = words[word]

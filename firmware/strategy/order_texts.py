@@ -10,18 +10,15 @@ from numpy.typing import NDArray
 from bfsim.api import FrameSize
 from firmware.areas import LEAST_AREA_PX
 from firmware.fields import Word
+from firmware.strategy.framing import FRAME_BYTES, HEADER_WORDS, MODE, MODELS, SYNC
 from firmware.strategy.order_checks import (
     ABOVE,
     AREA,
     BALL_SIZE,
     CHECKSUM,
     CUT_SHORT,
-    FRAME_BYTES,
     LENGTH,
-    MODE,
-    MODELS,
     NO_SYNC,
-    PAYLOAD,
     RANGE,
     SAME_MODEL,
     SAME_NUMBER,
@@ -32,7 +29,6 @@ from firmware.strategy.order_checks import (
     TYPE,
     WHICH_BIT,
 )
-from firmware.strategy.results import SYNC
 
 TYPES = {MODE: "MODE", MODELS: "MODELS"}
 
@@ -58,7 +54,7 @@ def refusal_text(
     if reason == LENGTH:
         text = _length_text(words, payload_bytes)
     else:
-        values = message[PAYLOAD : PAYLOAD + payload_bytes // 2].view(np.int32).tolist()
+        values = message[HEADER_WORDS : HEADER_WORDS + payload_bytes // 2].view(np.int32).tolist()
         text = _order_text(reason, which, words, values, full)
     return f"refused {kind} {sequence}: {text}"
 

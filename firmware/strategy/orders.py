@@ -7,17 +7,18 @@ its words, and a table of models all its models; how many words those are is the
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.api import Buffer, Core, FirmwareError, Frame, FrameSize, Row, i32, u16
+from bfsim.api import Buffer, Core, Frame, FrameSize, Row, i32, kernel, u16
 from firmware.areas import LEAST_AREA_PX, Area, principal_shift, see
-from firmware.fields import Word, from_words, named_words, to_words, words_of
+from firmware.fields import Word, from_words, to_words, words_of
 from firmware.geometry import look_at
+from firmware.strategy.framing import FRAME_BYTES, MODE, message_type
 from firmware.strategy.models import (
     MODEL_CAPACITY,
     MODEL_NUMBER,
@@ -29,24 +30,21 @@ from firmware.strategy.models import (
 )
 from firmware.strategy.modes import INDOOR_FIELD, Mode
 from firmware.strategy.order_checks import (
-    HEADER_BYTES,
     LIMIT_WORDS,
-    MODE,
-    copy_words,
     frame_refusal,
-    message_type,
     models_refusal,
+    order_word,
     picture_refusal,
-    store_order,
     words_refusal,
 )
 from firmware.strategy.order_texts import refusal_text
 
-MESSAGE_WORDS = 256  # of 16 bits: room for a message of the strategy unit
+ORDER_WORDS = 256  # of 16 bits: room for a message of the strategy unit
 HALVINGS = 2  # of the pictures' size, as sensors do: VGA to QQVGA
 
 MODE_WORDS = words_of(Mode)
 MODEL_FIELDS = words_of(ObjectModel)
+assert FRAME_BYTES + 4 * max(len(MODE_WORDS), MODEL_CAPACITY * MODEL_WORDS) <= 2 * ORDER_WORDS
 _NAMES = [each.name for each in MODE_WORDS]
 CAMERA, AREA = _NAMES.index("camera.width"), _NAMES.index("area.x")
 
@@ -54,7 +52,7 @@ CAMERA, AREA = _NAMES.index("camera.width"), _NAMES.index("area.x")
 def shared_order_buffers(size: FrameSize, section: str) -> Sequence[Buffer]:
     """Return the buffers of the orders in force, which both cores read, of what may be ordered, and of what comes in."""
     return (
-        Buffer("orders", u16, MESSAGE_WORDS, section),
+        Buffer("orders", u16, ORDER_WORDS, section),
         Buffer("ordered_mode", i32, len(MODE_WORDS), section, values=np.array(to_words(INDOOR_FIELD))),
         Buffer("ordered_models", i32, MODEL_CAPACITY * MODEL_WORDS, section, values=model_words(MODELS)),
         _limits("mode_limits", MODE_WORDS),
@@ -73,6 +71,23 @@ def _limits(name: str, words: Sequence[Word]) -> Buffer:
     names = [each.name for each in words]
     limits = [(each.lowest, each.highest, each.step, names.index(each.at_most), each.total) for each in words]
     return Buffer(name, i32, LIMIT_WORDS * len(words), "sdram_bank2", values=np.ravel(limits))
+
+
+@kernel
+def store_order(message: u16[:], words: i32[:]) -> None:
+    """Store the words of an order that is obeyed; the rest of `words` is 0."""
+    count = i32(message[3]) >> 2
+    for word in range(count):
+        words[word] = order_word(message, word)
+    for word in range(count, len(words)):
+        words[word] = 0
+
+
+@kernel
+def copy_order(words: i32[:], copy: i32[:]) -> None:
+    """Copy words that both cores share to a core's own."""
+    for word in range(len(words)):
+        copy[word] = words[word]
 
 
 def take_orders(core: Core) -> Generator[Any, Any, int]:
@@ -133,7 +148,7 @@ def read_mode(core: Core) -> Generator[Any, Any, Mode]:
     """Copy the orders in force into the core's own memory, for this frame, and return them."""
     own = core.array("mode"), core.array("models")
     for name, copy in zip(("ordered_mode", "ordered_models"), own, strict=True):
-        yield core.run(copy_words, core.array(name), copy)
+        yield core.run(copy_order, core.array(name), copy)
     return mode_in(*(each.array for each in own))
 
 
@@ -150,39 +165,3 @@ def _model(words: NDArray[np.int32]) -> ObjectModel:
     names = {each.number: each.name for each in MODELS}
     named = replace(MODELS[0], name=names.get(number, f"model {number}"))
     return from_words(named, words.tolist())
-
-
-def payload(words: Sequence[int]) -> bytes:
-    """Return words as they go over the SPI."""
-    return np.array(words, np.int64).astype("<i4").tobytes()
-
-
-def mode_payload(names: object) -> bytes:
-    """Return the payload of the mode that differs from `INDOOR_FIELD` by `names`: fields, or fields of fields."""
-    return payload(named_words(INDOOR_FIELD, names, "mode"))
-
-
-def models_payload(models: object) -> bytes:
-    """Return the payload of models: each the name of one of `MODELS`, or its fields; those not given are as in that one."""
-    if not isinstance(models, list) or not models:
-        raise FirmwareError(f"models must be a list of them, not {models!r}")
-    return payload(
-        [word for number, each in enumerate(models) for word in _words_of_model(each, f"models.{number}")]
-    )
-
-
-def _words_of_model(wanted: object, at: str) -> list[int]:
-    changes = {"name": wanted} if isinstance(wanted, str) else wanted
-    known = {each.name: each for each in MODELS}
-    if not isinstance(changes, Mapping) or changes.get("name") not in [*known]:
-        raise FirmwareError(f"{at} must be or have the name of one of {', '.join(known)}, not be {wanted!r}")
-    return named_words(
-        known[changes["name"]], {key: value for key, value in changes.items() if key != "name"}, at
-    )
-
-
-BY_NAME = {"mode": mode_payload, "models": models_payload}
-"""What the strategy unit may order by name."""
-
-LARGEST_BYTES = 2 * MESSAGE_WORDS
-assert HEADER_BYTES + 2 + 4 * max(len(MODE_WORDS), MODEL_CAPACITY * MODEL_WORDS) <= LARGEST_BYTES

@@ -1,23 +1,14 @@
 """What leaves for the strategy unit after every frame: the object history, and the border lines of goals (T §5.2.6, §6.4).
 
-The framing is bfsim's own ([ours], `bfsim/machine/spi/protocol.py`): sync word, type, sequence number, bytes of the payload,
-the payload, and the CRC-16 of CCITT over all but the sync word, byte by byte in the order of memory.
-
-The payload is 16-bit words: the frame's number, low half first; how many objects and how many lines follow; why an order
+The payload of a message (`framing.py`) is 16-bit words: the frame's number, low half first; how many objects and how many lines follow; why an order
 was refused (`order_checks.py`), or 0; the corner of the area, in pixels, that the places in the picture count from; then
 objects and lines.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from enum import IntEnum
-
-import numpy as np
-
-from bfsim.api import FirmwareError, i16, i32, kernel, u16, u32
-from firmware.stores.lines import LINE_WORDS, LINE_X0, SUBPIXELS
+from bfsim.api import i16, i32, kernel, u16
+from firmware.stores.lines import LINE_WORDS, LINE_X0
 from firmware.stores.objects import (
     NO_MODEL,
     NO_OUTLINE,
@@ -40,15 +31,11 @@ from firmware.stores.rectangles import (
     RECTANGLE_RIGHT,
     RECTANGLE_WORDS,
 )
+from firmware.strategy.framing import HEADER_WORDS, RESULTS, SYNC, crc16_byte
 from firmware.strategy.models import MODEL_NUMBER, MODEL_SHAPE, MODEL_WORDS, Shape
-
-SYNC = 0xB5F1
-RESULTS = 1
-POLYNOMIAL = 0x1021  # CCITT
 
 GOAL = int(Shape.GOAL)
 
-HEADER_WORDS = 4
 COUNTS_WORDS = 7  # of the payload: frame number, objects, lines, refusal, corner of the area
 PLACE_WORDS = OBJECT_HEIGHT - OBJECT_X + 1  # position, image, size: as they are in t_Object
 REPORT_WORDS = 3 + PLACE_WORDS
@@ -57,18 +44,6 @@ LINE_CAPACITY = 12  # of four goals
 PAYLOAD_WORDS = COUNTS_WORDS + OBJECT_CAPACITY * REPORT_WORDS + LINE_CAPACITY * LINE_REPORT_WORDS
 MESSAGE_WORDS = HEADER_WORDS + PAYLOAD_WORDS + 1
 """The largest message."""
-
-
-@kernel
-def crc16_byte(crc: i32, byte: i32) -> i32:
-    """Return the CRC-16 with one byte more."""
-    crc = crc ^ byte << 8
-    for _ in range(8):
-        if crc & 0x8000:
-            crc = (crc << 1 ^ POLYNOMIAL) & 0xFFFF
-        else:
-            crc = crc << 1 & 0xFFFF
-    return crc
 
 
 @kernel
@@ -153,118 +128,3 @@ def close_message(
         crc = crc16_byte(crc, message[word] >> 8)
     message[HEADER_WORDS + words] = crc
     return 2 * (HEADER_WORDS + words + 1)
-
-
-@kernel
-def store_word(words: u32[:], value: i32) -> None:
-    """Store a number in a variable that the other core reads."""
-    words[0] = value
-
-
-@kernel
-def load_word(words: u32[:]) -> i32:
-    """Read a number that the other core has stored."""
-    return i32(words[0])
-
-
-class Side(IntEnum):
-    """Which border of a goal a line is."""
-
-    LEFT = RECTANGLE_LEFT
-    RIGHT = RECTANGLE_RIGHT
-    BOTTOM = RECTANGLE_BOTTOM
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SeenObject:
-    """An object as the strategy unit is told of it.
-
-    `tests`, `cameras`, `measures`: the bits of `object_store`. `towards`: its place in mm in the left camera's frame, or
-    without `measures` a vector that points there. `image_px`: middle, width and height in the picture.
-    """
-
-    model: int
-    accuracy: int
-    tests: int
-    cameras: int
-    measures: int
-    age: int
-    towards: tuple[int, int, int]
-    image_px: tuple[float, float, float, float]
-
-    @property
-    def has_place(self) -> bool:
-        """Whether `towards` is a place, and not only a direction."""
-        return self.measures != 0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GoalLine:
-    """A border line of a goal in the left picture: x and y of its start and of its end."""
-
-    model: int
-    side: Side
-    ends_px: tuple[float, float, float, float]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Results:
-    """What the strategy unit is told after a frame. `refusal`: why it refused an order, or 0."""
-
-    frame: int
-    refusal: int
-    objects: tuple[SeenObject, ...]
-    lines: tuple[GoalLine, ...]
-
-
-def decode_results(payload: bytes) -> Results:
-    """Read the payload of a message of results. Raises FirmwareError if it is none."""
-    words = np.frombuffer(payload[: len(payload) // 2 * 2], "<i2").tolist()
-    if len(payload) < 2 * COUNTS_WORDS:
-        raise FirmwareError(f"results must have at least {2 * COUNTS_WORDS} bytes, not {len(payload)}")
-    low, high, objects, lines, refusal, *corner = words[:COUNTS_WORDS]
-    expected = 2 * (COUNTS_WORDS + objects * REPORT_WORDS + lines * LINE_REPORT_WORDS)
-    if min(objects, lines) < 0 or len(payload) != expected:
-        raise FirmwareError(
-            f"results of {objects} objects and {lines} lines must have {expected} bytes, not {len(payload)}"
-        )
-    first_line = COUNTS_WORDS + objects * REPORT_WORDS
-    return Results(
-        frame=low & 0xFFFF | high << 16,
-        refusal=refusal & 0xFFFF,
-        objects=tuple(
-            _object(each, *corner) for each in _records(words[COUNTS_WORDS:first_line], REPORT_WORDS)
-        ),
-        lines=tuple(_line(each, *corner) for each in _records(words[first_line:], LINE_REPORT_WORDS)),
-    )
-
-
-def _records(words: Sequence[int], size: int) -> list[Sequence[int]]:
-    return [words[at : at + size] for at in range(0, len(words), size)]
-
-
-def _object(words: Sequence[int], left: int, top: int) -> SeenObject:
-    (model, accuracy), (tests, cameras), (measures, age) = (
-        divmod(each & 0xFFFF, 256)[::-1] for each in words[:3]
-    )
-    x, y, z, *image = words[3:]
-    image_x, image_y, width, height = (each / SUBPIXELS for each in image)
-    return SeenObject(
-        model=model,
-        accuracy=accuracy,
-        tests=tests,
-        cameras=cameras,
-        measures=measures,
-        age=age,
-        towards=(x, y, z),
-        image_px=(left + image_x, top + image_y, width, height),
-    )
-
-
-def _line(words: Sequence[int], left: int, top: int) -> GoalLine:
-    x0, y0, x1, y1 = (each / SUBPIXELS for each in words[1:])
-    side = words[0] >> 8 & 0xFF
-    if side not in set(Side):
-        raise FirmwareError(f"the side of a line must be 0, 1 or 3, not {side}")
-    ends = left + x0, top + y0, left + x1, top + y1
-    return GoalLine(model=words[0] & 0xFF, side=Side(side), ends_px=ends)

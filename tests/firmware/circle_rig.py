@@ -206,13 +206,9 @@ def circles_of(picture: Seen, thresholds: CircleThresholds, colours: int = YELLO
     for each in circle_buffers():
         values = np.full(each.columns, GARBAGE, each.element.dtype) if each.values is None else each.values
         core.arrays[each.name] = [np.array(values, each.element.dtype)]
-    task = circle_detection(
-        core, CircleFrame(width, height, list(picture.uyvy)), len(picture.blobs), colours, thresholds
+    count = core.play(
+        circle_detection(
+            core, CircleFrame(width, height, list(picture.uyvy)), len(picture.blobs), colours, thresholds
+        )
     )
-    value = None
-    try:
-        while True:
-            value = task.send(value)
-    except StopIteration as end:
-        count = end.value
     return Circles(core.array("circles")[: count * CIRCLE_WORDS].reshape(count, CIRCLE_WORDS), core.published)

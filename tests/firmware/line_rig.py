@@ -47,18 +47,8 @@ class BareCore:
         """Keep results."""
         self.published |= results
 
-
-def play(task: Generator[Any, Any, Any]) -> Any:
-    """Play a stage whose yields have their answers in them; returns what it returns."""
-    value = None
-    try:
-        while True:
-            value = task.send(value)
-    except StopIteration as end:
-        return end.value
-
-
-@dataclass(frozen=True, slots=True)
+    @staticmethod
+    @dataclass(frozen=True, slots=True)
 class Found:
     """Words of the lines, one row each, and the edges that found the table full."""
 
@@ -93,7 +83,7 @@ def find_lines(
     core.arrays["edge_counts"] = [np.array(counts, np.uint16)]
     core.arrays["edge_index"] = [np.cumsum([0, *counts])[:-1].astype(np.uint32)]
     core.arrays["atan"] = [arctangent_table()]
-    count = play(line_detection(core, size_of(size), mode))
+    count = core.play(line_detection(core, size_of(size), mode))
     assert core.published == {"lines": count, "line_edges_lost": core.published["line_edges_lost"]}
     return Found(
         core.array("lines")[: count * LINE_WORDS].reshape(count, LINE_WORDS),

@@ -21,7 +21,7 @@ from bfsim.recording import StereoFrame
 from bfsim.run import PLACEMENTS, THESIS_LDF
 from firmware import tinyphoon
 from firmware.areas import Area, area_in, principal_shift
-from firmware.strategy.orders import mode_payload
+from firmware.strategy.payloads import mode_payload
 from tests.firmware.lenses import rectified
 from tests.firmware.pictures import Bytes
 from tests.firmware.test_rectification import tables

@@ -9,7 +9,7 @@ from operator import or_
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -50,7 +50,6 @@ GARBAGE = 170
 ANY_SIZE = 10**6
 NEVER = LABELS
 
-COMPILES = settings(deadline=None)
 """The first example of a test may compile kernels."""
 
 ANY_PICTURE = st.tuples(st.integers(1, 9), st.integers(1, 12)).flatmap(
@@ -122,14 +121,12 @@ def test_blobs_of_hard_pictures(name: str) -> None:
     assert blobs(whole(HARD_PICTURES[name])) == words(segments(HARD_PICTURES[name], GROUPS))
 
 
-@COMPILES
 @given(ANY_PICTURE)
 def test_blobs_of_any_picture(picture: Words) -> None:
     """So does any small picture, down to one pixel: records, order and number."""
     assert blobs(whole(picture)) == words(segments(picture, GROUPS))
 
 
-@COMPILES
 @given(ANY_PICTURE)
 def test_labels_of_a_row_are_those_of_the_picture_so_far(picture: Words) -> None:
     """After each row, two of its pixels are of one segment exactly if they are connected in the rows so far."""
@@ -145,7 +142,6 @@ def test_labels_of_a_row_are_those_of_the_picture_so_far(picture: Words) -> None
         assert len(set(zip(found, expected, strict=True))) == len(set(found)) == len(set(expected))
 
 
-@COMPILES
 @given(ANY_PICTURE, st.integers(0, 6))
 @example(dots(3, 15), 3)
 @example(words_of("r.b.r ..... rrrrr"), 1)
@@ -156,7 +152,6 @@ def test_runs_without_a_label_are_left_out_and_counted(picture: Words, labels: i
     assert blobs(tables) == words(segments(expected.picture, GROUPS))
 
 
-@COMPILES
 @given(ANY_PICTURE, st.integers(0, 9), st.integers(0, 9), st.integers(1, 5))
 @example(MET_IN_THE_ROW, 4, 4, 2)
 def test_recycled_labels_serve_again(picture: Words, labels: int, recycle_at: int, smallest: int) -> None:
@@ -185,7 +180,6 @@ def test_dots_that_are_too_small_need_the_labels_of_one_row() -> None:
     assert whole(picture).lost == 20 * 31 - (LABELS - 1)
 
 
-@COMPILES
 @given(ANY_PICTURE, st.integers(0, 8), st.integers(0, 8), st.integers(0, 4))
 def test_size_thresholds_and_room(picture: Words, smallest: int, biggest: int, most: int) -> None:
     """Both limits belong to the sizes of blobs; what has no room is counted, and the first ones are kept."""
@@ -212,7 +206,6 @@ def test_a_slope_takes_one_label() -> None:
     assert whole(HARD_PICTURES["slope to the left"]).used == 1
 
 
-@COMPILES
 @given(st.lists(st.integers(0, 2**16), min_size=1, max_size=LABELS - 1))
 def test_root_is_the_smallest_of_its_segment_and_the_way_to_it_halves(choices: list[int]) -> None:
     """In any table whose parents are no larger than their labels; no label changes its segment."""
@@ -251,7 +244,6 @@ def test_joining_a_label_above(label: int, above: int, result: int, parents: lis
     assert table.tolist() == parents
 
 
-@COMPILES
 @given(st.integers(0, 31))
 def test_group_of_a_colour(bit: int) -> None:
     """It is the first group that has the colour; the last one here has all."""
@@ -267,7 +259,6 @@ ROWS_OF_PIXELS = st.lists(
 )
 
 
-@COMPILES
 @given(ROWS_OF_PIXELS, ROWS_OF_PIXELS)
 def test_records_sum_up_runs_and_segments(ours: list[tuple[int, ...]], others: list[tuple[int, ...]]) -> None:
     """Runs anywhere in a picture of 640x480 give the record of their pixels, added run by run or as a segment."""
@@ -306,7 +297,6 @@ def test_blob_lies_in_memory_as_its_struct() -> None:
     assert record.tolist() == (RED | PINK, 3, 7, 4, 2, 3, 1, 2, 2, 1, 2, 1)
 
 
-@COMPILES
 @given(ANY_PICTURE.filter(lambda picture: picture.shape[1] > 1))
 def test_opened_pixels_have_one_colour_at_most(picture: Words) -> None:
     """What the segmentation takes for granted: opening pixels of one colour adds no colour to any of them."""

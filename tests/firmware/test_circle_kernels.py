@@ -46,7 +46,6 @@ def area_of(box: tuple[int, int, int, int], mass: tuple[int, int], reach: int) -
     return np.array([*box, *mass, reach], np.int32)
 
 
-@settings(deadline=None)
 @given(st.integers(0, 255), st.integers(-SIZE, SIZE), st.integers(-SIZE, SIZE), st.integers(0, 64))
 def test_a_gradient_looks_at_a_place_within_the_range(direction: int, dx: int, dy: int, limit: int) -> None:
     """All quadrants and the wrap of angles; the other way round only where dark balls count."""
@@ -56,7 +55,7 @@ def test_a_gradient_looks_at_a_place_within_the_range(direction: int, dx: int, d
     assert looks_at(direction, dx, dy, limit, 1, ATAN) == (off <= limit or off >= 128 - limit)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(edges_in_picture, st.integers(0, 2**32 - 1), places, places, st.booleans(), st.integers(0, 60))
 def test_selected_edges(edges: list[Edge], seed: int, x: int, y: int, dark_too: bool, room: int) -> None:
     """Every row of a picture of chance: the first ones are stored, all are counted."""
@@ -87,7 +86,7 @@ def test_slopes_of_all_directions() -> None:
     ]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(edges_in_picture, places, places, st.integers(0, 32), st.integers(0, 2))
 def test_votes_and_their_peak(edges: list[Edge], x: int, y: int, reach: int, around: int) -> None:
     """Patches of all sizes, edges inside and outside, the patch beyond the picture."""
@@ -110,7 +109,6 @@ def test_votes_and_their_peak(edges: list[Edge], x: int, y: int, reach: int, aro
     assert mean_offset(votes, place, side, 1, around) == expected.mean_offset(square.sum(axis=1).tolist())
 
 
-@settings(deadline=None)
 @given(edges_in_picture, st.integers(-500, 4600), st.integers(-500, 4600), st.integers(0, 2))
 def test_radius_histogram_and_its_peak(edges: list[Edge], x: int, y: int, around: int) -> None:
     """Centres in 1/64 px, also outside the picture; edges beyond the last bin are left out."""
@@ -126,7 +124,7 @@ def test_radius_histogram_and_its_peak(edges: list[Edge], x: int, y: int, around
         assert mean_radius(histogram, radius, around) == mean
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(edges_in_picture, st.integers(0, 99), places, places, st.integers(0, 40))
 def test_points_on_the_outline(edges: list[Edge], seed: int, x: int, y: int, radius: int) -> None:
     """Edges at the border of the picture too; what lies further than 3 px from the circle becomes no point."""
@@ -149,7 +147,6 @@ def test_points_on_the_outline(edges: list[Edge], seed: int, x: int, y: int, rad
 points_near = st.lists(st.tuples(st.floats(0, 6.28), st.integers(-250, 250)), min_size=0, max_size=80)
 
 
-@settings(deadline=None)
 @given(points_near, st.integers(1, 100), st.integers(0, 4))
 def test_rounds_of_the_fit(around: list[tuple[float, int]], radius: int, rounds: int) -> None:
     """Scattered points, arcs, a single point and none."""
@@ -168,7 +165,7 @@ def test_rounds_of_the_fit(around: list[tuple[float, int]], radius: int, rounds:
     assert tuple(fit[:3].tolist()) == circle
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.floats(300, 340), st.floats(200, 240), st.floats(5, 200), st.floats(0, 6.28), st.floats(2.0, 6.28))
 def test_the_fit_goes_to_the_circle(x: float, y: float, radius: float, start: float, arc: float) -> None:
     """From 1.5 px off, exact points on more than a third of the circle lead to centre and radius; most words of a sum."""
@@ -199,7 +196,6 @@ def test_shares(part: int, whole: int, share: int) -> None:
     assert share_of(part, whole) == share
 
 
-@settings(deadline=None)
 @given(st.integers(1, 307_200), st.floats(0, 639))
 def test_mean_of_a_blob_in_sixteenths(pixels: int, mean: float) -> None:
     """The sum of a picture of 640 x 480 is near to 32 bits already."""

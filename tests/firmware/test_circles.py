@@ -35,7 +35,7 @@ def errors(found: Circles, *truth: tuple[float, float, float]) -> tuple[float, f
     return float(np.hypot(off[:, 0], off[:, 1]).max()), float(off[:, 2].max())
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(st.floats(36, 60), st.floats(36, 60), st.floats(5, 30), st.integers(0, 99))
 def test_discs_anywhere(x: float, y: float, radius: float, seed: int) -> None:
     """To a tenth of a pixel with the fit, to 1.5 px as in the thesis; luma has the noise of a camera."""

@@ -94,7 +94,7 @@ def check(edges: Bytes, *, capacity: int = 4096, labels: int = 1024) -> None:
     assert (lost, sharing) == (expected.lost, expected.sharing)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.data())
 def test_any_edges(data: st.DataObject) -> None:
     """Few and many edges, weak and strong ones, with stores and tables that may be too small."""
@@ -150,7 +150,6 @@ def test_lone_edges_beyond_the_last_label_share_it_and_are_counted() -> None:
     assert (lost, sharing) == (0, 5)
 
 
-@settings(deadline=None)
 @given(st.lists(st.tuples(st.integers(1, 30), st.integers(1, 30)), max_size=40))
 def test_groups_are_the_connected_labels_and_ways_to_them_get_short(pairs: list[tuple[int, int]]) -> None:
     """Joining labels in any order gives the same groups as joining sets; a way that was gone has one step left."""
@@ -166,7 +165,6 @@ def test_groups_are_the_connected_labels_and_ways_to_them_get_short(pairs: list[
         assert strongest[group] == max(sets[each])
 
 
-@settings(deadline=None)
 @given(st.integers(2, 40).flatmap(lambda width: arrays(np.uint8, (5, width))))
 def test_larger_gauss(rows: Bytes) -> None:
     """The middle row of any five comes out as in numpy, down to two pixels."""

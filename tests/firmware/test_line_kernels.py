@@ -40,7 +40,7 @@ def edge_rows(draw: st.DrawFn) -> tuple[list[Row], int]:
     return rows, width
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(edge_rows(), st.sampled_from([1, 2, 3, 20]), st.integers(1, 6), st.integers(1, 9))
 def test_any_edges(picture: tuple[list[Row], int], capacity: int, min_length: int, mean_edges: int) -> None:
     """Any edges at all, in tables that overflow and in one that does not."""
@@ -48,7 +48,7 @@ def test_any_edges(picture: tuple[list[Row], int], capacity: int, min_length: in
     check(rows, width, capacity=capacity, min_length=min_length, mean_edges=mean_edges, muff_range=12)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.lists(st.tuples(*[st.integers(0, 47)] * 4, st.integers(0, 255)), max_size=8))
 def test_any_triangles(triangles: list[tuple[int, int, int, int, int]]) -> None:
     """Triangles over each other, through the edge detection."""

@@ -17,7 +17,7 @@ from firmware.stores.lines import LINE_WORDS
 from firmware.strategy.modes import INDOOR_FIELD
 from firmware.tables import arctangent_table
 from tests.firmware import refinement_references as references
-from tests.firmware.line_rig import BareCore, edges_of, find_lines, play
+from tests.firmware.line_rig import BareCore, edges_of, find_lines
 
 GARBAGE = 77
 REACH, MIN_STEP = INDOOR_FIELD.refinement.reach, INDOOR_FIELD.refinement.min_step
@@ -53,12 +53,12 @@ def refined(
         }
     )
     thresholds = RefinementThresholds(reach=reach, min_step=min_step)
-    play(line_refinement(core, Frame(0, uyvy, width, height), len(lines), thresholds))
+    core.play(line_refinement(core, Frame(0, uyvy, width, height), len(lines), thresholds))
     table = core.array("lines").reshape(-1, LINE_WORDS)
     return table[: len(lines)].tolist(), core.published["lines_refined"]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.integers(2, 40),
     st.integers(2, 60),

@@ -19,9 +19,9 @@ from firmware.stores.objects import (
     SEEN_RIGHT,
     VERIFIED,
 )
+from firmware.strategy.decoding import ReportedObject
 from firmware.strategy.models import MODELS, Shape
 from firmware.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES
-from firmware.strategy.results import SeenObject
 
 NUMBERS = {each.shape: each.number for each in MODELS if each.name != "yellow goal"}
 THESIS_MS = 1.0  # T Table 6.4
@@ -33,7 +33,7 @@ def frames() -> list[Seen]:
     return see(BUILT_IN_RECORDING, frames=2)
 
 
-def best(seen: Seen, shape: Shape) -> SeenObject:
+def best(seen: Seen, shape: Shape) -> ReportedObject:
     """The most accurate object of a shape."""
     return max(
         (each for each in seen.results.objects if each.model == NUMBERS[shape]),
@@ -41,7 +41,7 @@ def best(seen: Seen, shape: Shape) -> SeenObject:
     )
 
 
-def off(seen: Seen, name: str, found: SeenObject) -> tuple[float, float]:
+def off(seen: Seen, name: str, found: ReportedObject) -> tuple[float, float]:
     """How far an object is from a thing in mm, and how far away that is."""
     place = place_of(seen.truth[name], seen.truth["cameras"]["left"])
     return float(np.linalg.norm(np.array(found.towards) - place)), float(np.linalg.norm(place))

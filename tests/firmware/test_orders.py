@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.api import FirmwareError, FrameSize
@@ -21,6 +21,7 @@ from bfsim.run import THESIS_LDF
 from firmware import tinyphoon
 from firmware.fields import from_words, to_words
 from firmware.strategy import order_checks as checks
+from firmware.strategy.decoding import decode_results
 from firmware.strategy.models import MODELS, ObjectModel, Shape, check_models, model_words
 from firmware.strategy.modes import INDOOR_FIELD, Mode
 from firmware.strategy.order_checks import (
@@ -28,23 +29,20 @@ from firmware.strategy.order_checks import (
     frame_refusal,
     models_refusal,
     picture_refusal,
-    store_order,
     words_refusal,
 )
 from firmware.strategy.order_texts import refusal_text
 from firmware.strategy.orders import (
     AREA,
     CAMERA,
-    MESSAGE_WORDS,
     MODE_WORDS,
     MODEL_FIELDS,
+    ORDER_WORDS,
     mode_in,
-    mode_payload,
-    models_payload,
-    payload,
     shared_order_buffers,
+    store_order,
 )
-from firmware.strategy.results import decode_results
+from firmware.strategy.payloads import mode_payload, models_payload, payload
 from tests.firmware.whole_pictures import buffer, random_frames
 
 FULL = FrameSize(320, 240)
@@ -55,7 +53,7 @@ GOOD = to_words(INDOOR_FIELD)
 
 def received(octets: bytes) -> tuple[np.ndarray, int]:
     """The buffer of messages, with what was in it before, and the bytes that came."""
-    message = np.full(MESSAGE_WORDS, 0xA5A5, np.uint16)
+    message = np.full(ORDER_WORDS, 0xA5A5, np.uint16)
     taken = octets[: message.nbytes]
     message.view(np.uint8)[: len(taken)] = np.frombuffer(taken, np.uint8)
     return message, len(taken)
@@ -108,7 +106,6 @@ def modes(draw: st.DrawFn) -> Mode:
 # ---- modes
 
 
-@settings(deadline=None)  # making a mode takes its time
 @given(modes())
 def test_a_mode_there_and_back(mode: Mode) -> None:
     """Encoded, sent, checked, stored and read: the same mode."""
@@ -501,10 +498,10 @@ def test_models_reach_both_cores() -> None:
 def test_orders_cost_cycles() -> None:
     """Copying them every frame little, checking one that comes more; all outside of the stages."""
     _, outcome = run([mode(1, {})], 4)
-    checked = [each for each in outcome.kernels if each.kernel in ("words_refusal", "checksum", "copy_words")]
+    checked = [each for each in outcome.kernels if each.kernel in ("words_refusal", "checksum", "copy_order")]
     assert {(each.core, each.kernel) for each in checked} == {
-        ("A", "copy_words"), ("B", "copy_words"), ("A", "words_refusal"), ("A", "checksum"),
+        ("A", "copy_order"), ("B", "copy_order"), ("A", "words_refusal"), ("A", "checksum"),
     }  # fmt: skip
-    copies = [each for each in checked if each.kernel == "copy_words" and each.stage == "(the rest)"]
+    copies = [each for each in checked if each.kernel == "copy_order" and each.stage == "(the rest)"]
     assert {each.core for each in copies} == {"A", "B"}
     assert all(0 < each.issue_cclk < 4 * 3000 for each in copies)

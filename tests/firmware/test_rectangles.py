@@ -38,13 +38,7 @@ def find(lines: Sequence[Sequence[int]], *boxes: dict[str, int], colours: int = 
     """What the stage leaves: left, right, top, bottom, blob of each rectangle."""
     core = BareCore({"rectangles": [np.full(RECTANGLE_CAPACITY * RECTANGLE_WORDS, 77, np.int16)]})
     core.arrays |= {"blob_data": [blob_words(*boxes)], "lines": [line_words(lines)]}
-    task = rectangle_detection(core, len(boxes), len(lines), colours, LIMITS)
-    value = None
-    try:
-        while True:
-            value = task.send(value)
-    except StopIteration as end:
-        count = end.value
+    count = core.play(rectangle_detection(core, len(boxes), len(lines), colours, LIMITS))
     assert core.published["rectangles"] == count
     lost = core.published["rectangles_lost"]
     assert lost == sum(each["colours"] & colours != 0 for each in boxes) - count

@@ -47,7 +47,7 @@ def play(uyvy: np.ndarray, sources: SourcePixels) -> np.ndarray:
     return result
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(st.data())
 def test_any_table(data: st.DataObject) -> None:
     """Pixels from anywhere and from nowhere, in any order."""

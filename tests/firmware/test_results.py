@@ -12,26 +12,21 @@ from hypothesis import strategies as st
 
 from bfsim.api import FirmwareError
 from bfsim.machine.spi.protocol import SYNC, Message, MessageType, decode, encode, message_nbytes
+from firmware.exchange import load_word, store_word
 from firmware.stores.objects import BY_FLOOR, NO_OUTLINE, OBJECT_CAPACITY
 from firmware.stores.rectangles import NO_LINE
-from firmware.strategy import results
+from firmware.strategy import framing
+from firmware.strategy.decoding import GoalLine, ReportedObject, Results, Side, decode_results
+from firmware.strategy.framing import crc16_byte
 from firmware.strategy.models import MODELS
 from firmware.strategy.results import (
     COUNTS_WORDS,
     LINE_CAPACITY,
     MESSAGE_WORDS,
     PAYLOAD_WORDS,
-    GoalLine,
-    Results,
-    SeenObject,
-    Side,
     close_message,
-    crc16_byte,
-    decode_results,
-    load_word,
     pack_goal_lines,
     pack_objects,
-    store_word,
 )
 from tests.firmware.object_rig import models_of, object_words, rectangle_words
 from tests.firmware.test_rectangles import line_words
@@ -70,7 +65,8 @@ def read(octets: bytes) -> Results:
 
 def test_the_numbers_of_the_protocol_are_the_same_on_both_sides() -> None:
     """The firmware knows nothing of bfsim but its api."""
-    assert (results.SYNC, results.RESULTS) == (SYNC, MessageType.RESULTS)
+    assert framing.SYNC == SYNC
+    assert {name: getattr(framing, name) for name in MessageType.__members__} == MessageType.__members__
     assert message_nbytes(2 * PAYLOAD_WORDS) == 2 * MESSAGE_WORDS
 
 
@@ -83,7 +79,7 @@ def test_an_empty_frame() -> None:
 def test_objects_leave_as_they_are() -> None:
     """Every word, free records left out."""
     found = read(packed([A_BALL, {}, A_GOAL]))
-    assert found.objects[0] == SeenObject(
+    assert found.objects[0] == ReportedObject(
         model=1,
         accuracy=255,
         tests=63,

@@ -78,7 +78,7 @@ edges = st.dictionaries(
 ).map(lambda row: [(x, *rest) for x, rest in sorted(row.items())])
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.lists(st.tuples(edges, edges), min_size=1, max_size=4), st.data())
 def test_any_edges(pairs: list[tuple[Row, Row]], data: st.DataObject) -> None:
     """Any rows, limits and cameras."""

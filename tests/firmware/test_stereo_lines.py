@@ -105,7 +105,7 @@ def seen_from_the_right(draw: st.DrawFn, left: Sequence[Words]) -> list[Words]:
     return [*draw(st.permutations(lines)), *draw(st.lists(any_line, max_size=3))]
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.data(), st.sampled_from(Correspondence))
 def test_any_lines(data: st.DataObject, correspondence: Correspondence) -> None:
     """Both ways of choosing, over pictures of 640x480 and all thresholds."""

@@ -69,7 +69,7 @@ def simple_statements(text: str) -> tuple[int, list[int]]:
     return definition.decorator_list[0].lineno, lines
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, suppress_health_check=list(HealthCheck))
 @given(
     text=programs(),
     seed=st.integers(0, 1000),

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -217,7 +217,6 @@ walks = st.lists(
 )
 
 
-@settings(deadline=None)
 @given(first=regions, second=regions, size=sizes, walked=walks)
 def test_any_walk_asks_for_what_the_naive_cache_says(
     first: CachedRegion, second: CachedRegion, size: CacheSize, walked: list[tuple[int, int, int, int]]

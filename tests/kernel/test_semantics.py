@@ -33,7 +33,7 @@ def _plain_run(text: str, arrays: dict[str, NDArray[Any]], x: int, y: int) -> in
     return int(names["program"](*rows, Word(x, signed=True), Word(y, signed=False)))
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, suppress_health_check=list(HealthCheck))
 @given(
     text=programs(),
     seed=st.integers(0, 1000),

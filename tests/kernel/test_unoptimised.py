@@ -154,7 +154,7 @@ def test_a_value_that_waits_for_a_call_is_saved_by_the_function(import_kernels: 
     assert cclk_of(lower(routine_of(kernel), by_register)["entry"].charges[:1]) == 1
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(text=programs())
 def test_every_block_of_any_program_has_a_cost(import_kernels: ImportText, text: str) -> None:
     """No program is refused, no block is free to be forgotten, and no side of a branch costs less than nothing."""

@@ -76,7 +76,7 @@ def mangled(draw: st.DrawFn) -> str:
     return "".join(parts[: draw(st.sampled_from([len(parts), draw(st.integers(0, len(parts)))]))])
 
 
-@settings(max_examples=200, deadline=1000)
+@settings(max_examples=200)
 @given(text=mangled())
 def test_a_mangled_ldf_is_an_error_and_no_crash(tmp_path_factory: pytest.TempPathFactory, text: str) -> None:
     """Every mistake ends in one LinkError, quickly."""

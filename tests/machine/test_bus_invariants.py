@@ -29,7 +29,6 @@ def look(stops: Iterable[int], note: Callable[[], None]) -> Iterator[int]:
 chances = st.integers(0, 2**32 - 1)
 
 
-@settings(deadline=None)
 @given(seed=chances, stops=st.lists(st.integers(0, 8000), max_size=40))
 def test_it_does_not_matter_when_the_bus_is_played(seed: int, stops: list[int]) -> None:
     """In many steps or in one, every end, every stall, every byte and every counter is the same."""
@@ -37,7 +36,7 @@ def test_it_does_not_matter_when_the_bus_is_played(seed: int, stops: list[int]) 
     assert Scene(Random(seed)).play(sorted(stops)) == at_once
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(seed=chances)
 def test_runs_of_words_are_a_short_cut_only(seed: int) -> None:
     """Stopped at every single cycle no run is longer than a word."""
@@ -46,7 +45,6 @@ def test_runs_of_words_are_a_short_cut_only(seed: int) -> None:
     assert scene.play(stops) == Scene(Random(seed)).play()
 
 
-@settings(deadline=None)
 @given(seed=chances)
 def test_the_bus_is_busy_for_its_words_and_never_for_longer_than_it_is(seed: int) -> None:
     """All words and openings fit between the words' own time and the time that passed; refresh comes on top."""
@@ -62,7 +60,6 @@ def test_the_bus_is_busy_for_its_words_and_never_for_longer_than_it_is(seed: int
     assert bound <= busy <= bench.bus.words[w.COMMAND_FREE]
 
 
-@settings(deadline=None)
 @given(seed=chances)
 def test_everything_comes_to_an_end(seed: int) -> None:
     """Nobody is forgotten, no slot is lost, no store stays in a buffer, and no end is before its begin."""

@@ -98,7 +98,7 @@ PLACES = st.builds(
 )  # fmt: skip
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.lists(st.lists(PLACES, max_size=40), min_size=1, max_size=3))
 def test_fills_and_write_backs_are_those_of_a_plain_cache(streams: list[list[int]]) -> None:
     """Whatever is loaded and stored: the same lines come, and the same changed ones go, also between calls."""
@@ -337,7 +337,7 @@ def test_each_cache_has_a_symbol_of_its_own(
         assert (size.nbytes if size else None) == nbytes
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(st.integers(0, 2**31 - 2000))
 def test_values_do_not_depend_on_the_cache(value: int) -> None:
     """What is stored through the cache is loaded again, by this core at least."""

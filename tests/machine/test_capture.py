@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from bfsim.chip.spec import SensorMode, SensorSpec
@@ -233,7 +233,6 @@ rising = st.lists(st.integers(1, 900), min_size=1, max_size=25)
 works = st.lists(st.integers(0, 1500), min_size=1, max_size=5)
 
 
-@settings(deadline=None)
 @example(gaps=[1, 200], skews=[0], work_a=[0], work_b=[0], frame_buffers=2, feed=Feed.RECORDED)
 @given(
     gaps=rising,

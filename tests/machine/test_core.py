@@ -218,7 +218,7 @@ def scheduled(steps: list[tuple[str, int]]) -> Any:
     return every_frame(play)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(SCHEDULES, SCHEDULES, st.sampled_from(["cm-bf561", "cm-bf561-ratings"]), st.sampled_from(Feed))
 def test_no_schedule_loses_a_cycle(
     steps_a: list[tuple[str, int]], steps_b: list[tuple[str, int]], board: str, feed: Feed

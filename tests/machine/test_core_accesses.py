@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import ceil
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS
@@ -301,7 +301,6 @@ def in_order(drawn: Sequence[tuple[int, int, int, int]]) -> list[Access]:
     return found
 
 
-@settings(deadline=None)
 @given(
     name=st.sampled_from([name for name in BOARDS if name != "cm-bf533"]),
     of_a=accesses,
@@ -328,7 +327,6 @@ def test_every_cycle_of_a_call_is_issued_or_stalled(
         assert sum(call.stalls.values()) >= least
 
 
-@settings(deadline=None)
 @given(drawn=accesses)
 def test_a_core_moves_what_it_asks_for(drawn: list[tuple[int, int, int, int]]) -> None:
     """Every byte of its log is counted once, read or written, in the memory where it lies."""

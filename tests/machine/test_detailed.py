@@ -376,7 +376,7 @@ def accesses_by_chance(seed: int, core: int, bench: Bench) -> list[CoreAccess]:
 
 
 @given(seed=st.integers(0, 1000), words=st.sampled_from((160, 500, 2000)), word_sclk=st.integers(2, 120))
-@settings(max_examples=12, deadline=None, derandomize=True, phases=[Phase.generate])
+@settings(max_examples=12, derandomize=True, phases=[Phase.generate])
 def test_random_traffic_is_within_the_aims(seed: int, words: int, word_sclk: int) -> None:
     """Two cores in all memories, a stream to SDRAM and a camera: 5 % of each core's call, 2 % of the whole.
 

@@ -80,7 +80,7 @@ def test_a_handler_yields_kernels_as_a_main_loop_does() -> None:
     assert_accounted(outcome)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(SOURCES)
 def test_levels_decide_the_order_and_then_the_numbers(sources: list[Bf561Interrupt]) -> None:
     """However they were asked for: IVG7 first, and of one level the source with the lowest number."""
@@ -271,7 +271,7 @@ def disturbed(steps: list[tuple[str, int]]) -> Any:
     return in_work(work)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(STEPS, STEPS)
 def test_no_interrupt_loses_a_cycle(steps_a: list[tuple[str, int]], steps_b: list[tuple[str, int]]) -> None:
     """issue + stall + idle = elapsed, whatever the cores do to each other."""

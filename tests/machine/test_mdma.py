@@ -6,7 +6,7 @@ from math import ceil
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS
@@ -307,7 +307,6 @@ def test_round_robin_gives_both_streams_a_period(period: int) -> None:
 # ---- Whatever is copied
 
 
-@settings(deadline=None)
 @given(
     st.lists(
         st.tuples(st.sampled_from([SDRAM, OTHER_BANK, L1, L2]), st.integers(1, 700), st.integers(0, 5000)),

@@ -142,7 +142,7 @@ def walks(draw: Any) -> tuple[int, int, int, int, int, int]:
     return nbytes, rows, columns, across, down, first
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(walks(), st.sampled_from(PATHS))
 def test_any_walk_reads_what_plain_python_reads(walk: tuple[int, ...], path: tuple[str, str]) -> None:
     """Gathered by the source in two dimensions, written one after the other."""

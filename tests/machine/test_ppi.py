@@ -7,7 +7,7 @@ from math import ceil
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS
@@ -217,7 +217,6 @@ def test_a_picture_can_come_into_l1() -> None:
     assert lost(bench, transfer) == 0
 
 
-@settings(deadline=None)
 @given(
     blocked=st.integers(0, 12_000),
     word_ticks=st.fractions(Fraction(10), Fraction(150), max_denominator=9),

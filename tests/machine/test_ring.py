@@ -295,7 +295,7 @@ def test_lines_of_a_frame_are_never_mixed_with_the_next_one() -> None:
     assert len(run(every_frame(look), frames=flat).frames) == 6
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 @given(turns=st.lists(st.integers(0, 300), min_size=1, max_size=5))
 def test_rings_never_hold_more_than_they_have_rows(turns: list[int]) -> None:
     """However fast the core is, a line that it may use is whole, one at most is on its way in, and none is lost."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.chip.boards import CM_BF561, CM_BF561_RATINGS
@@ -277,7 +277,6 @@ requests = st.lists(
 )
 
 
-@settings(deadline=None)
 @given(part=parts, asked=requests)
 def test_words_meet_what_the_naive_model_says(
     part: SdramSpec, asked: list[tuple[int, int, int, int, bool]]
@@ -295,7 +294,6 @@ def test_words_meet_what_the_naive_model_says(
     assert chip.state[w.REFRESHES] == naive.refreshes
 
 
-@settings(deadline=None)
 @given(offset=st.integers(0, 4095).map(lambda n: 4 * n), count=st.integers(1, 600), write=st.booleans())
 def test_a_stream_of_hits_is_what_its_words_are(offset: int, count: int, write: bool) -> None:
     """Done at once or word by word, the state afterwards is the same, and `hits_ahead` says how many there are."""

@@ -101,7 +101,7 @@ def test_words_and_gaps_make_the_time_on_the_wire(payload: int, board: BoardSpec
     )
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.lists(PAYLOADS, min_size=1, max_size=4), st.sampled_from(["message", "far"]))
 def test_every_message_arrives_as_it_was_sent(payloads: list[bytes], buffer: str) -> None:
     """Of any content and size, from L1 and from SDRAM, in order."""

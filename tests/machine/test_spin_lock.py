@@ -70,7 +70,7 @@ def test_whole_turns_of_the_spin_loop_are_waited(turns: int) -> None:
     assert_accounted(outcome)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.lists(st.integers(0, 60), max_size=8), st.lists(st.integers(0, 60), max_size=8))
 def test_no_increment_is_lost(pauses_a: list[int], pauses_b: list[int]) -> None:
     """Both cores load a word of L2, wait and store it back greater by one: under the lock all of them count."""

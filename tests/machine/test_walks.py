@@ -64,7 +64,7 @@ def copies(draw: st.DrawFn) -> tuple[Side, Side, int]:
     return source, target, count
 
 
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 @given(
     walks=copies(), size=st.sampled_from([1, 2, 4]), master=st.sampled_from([w.MDMA1_0, w.MDMA2_1, w.IMDMA_0])
 )

@@ -97,7 +97,7 @@ def test_milliseconds_follow_the_core_clock() -> None:
 
 
 @given(runs())
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 def test_rows_sum_to_the_frame_and_the_split_to_the_row(run: RunRecord) -> None:
     """Nothing is lost or counted twice: to the cycle, per row and per core, on any run."""
     for core in budget_of(run).cores:

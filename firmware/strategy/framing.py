@@ -1,0 +1,49 @@
+"""Messages as they go over the SPI, both ways: 16-bit words around a payload.
+
+The framing is bfsim's own ([ours], `bfsim/machine/spi/protocol.py`): sync word, type, sequence number, bytes of the payload,
+the payload, and the CRC-16 of CCITT over all but the sync word, byte by byte in the order of memory.
+"""
+
+from __future__ import annotations
+
+from bfsim.api import i32, kernel, u16
+
+SYNC = 0xB5F1
+POLYNOMIAL = 0x1021  # CCITT
+
+# Types
+RESULTS = 1
+MODE = 2
+MODELS = 3
+
+HEADER_WORDS = 4
+FRAME_BYTES = 2 * HEADER_WORDS + 2
+"""Of a message without payload: header and checksum."""
+
+
+@kernel
+def crc16_byte(crc: i32, byte: i32) -> i32:
+    """Return the CRC-16 with one byte more."""
+    crc = crc ^ byte << 8
+    for _ in range(8):
+        if crc & 0x8000:
+            crc = (crc << 1 ^ POLYNOMIAL) & 0xFFFF
+        else:
+            crc = crc << 1 & 0xFFFF
+    return crc
+
+
+@kernel
+def checksum(message: u16[:], words: i32) -> i32:
+    """Return the CRC-16 of a message of so many words, its last one not included."""
+    crc: i32 = 0xFFFF
+    for word in range(1, words - 1):
+        crc = crc16_byte(crc, message[word] & 255)
+        crc = crc16_byte(crc, message[word] >> 8)
+    return crc
+
+
+@kernel
+def message_type(message: u16[:]) -> i32:
+    """Return the type of a message."""
+    return i32(message[1])
