@@ -10,13 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.api import Core, Firmware, FrameSize
-from bfsim.chip.boards import CM_BF561
-from bfsim.linker import link, parse_ldf
-from bfsim.machine.board import Board, symbols_of
+from benchmarks.playing import play
+from bfsim.api import Core, Firmware, Readout
 from bfsim.machine.spi.protocol import decode, message_nbytes
 from bfsim.recording import RecordingReader
-from bfsim.run import THESIS_LDF, calibration_of
+from bfsim.run import calibration_of
 from firmware import ROWS
 from firmware.buffers import buffers, calibration_buffers
 from firmware.features import features
@@ -44,7 +42,6 @@ class Seen:
 def see(path: Path, mode: Mode = INDOOR_FIELD, frames: int | None = None) -> list[Seen]:
     """Return what the firmware sees in the frames of a recording, the first `frames` of them."""
     alone: dict[str, list[Records]] = {"A": [], "B": []}
-    payloads: list[bytes] = []
 
     def keep(core: Core, name: str) -> None:
         records = core.array(name).array.reshape(-1, OBJECT_WORDS)
@@ -60,8 +57,6 @@ def see(path: Path, mode: Mode = INDOOR_FIELD, frames: int | None = None) -> lis
             yield from core.wait("core B is done")
             yield from object_detection(core, mode.objects)
             yield from report(core, frame)
-            message = core.array("results").array
-            payloads.append(decode(message.tobytes()[: message_nbytes(int(message[3]))]).payload)
 
     def right_main(core: Core) -> Generator[Any, Any, None]:
         core.array("models").array[:] = model_words(mode.models)
@@ -80,11 +75,16 @@ def see(path: Path, mode: Mode = INDOOR_FIELD, frames: int | None = None) -> lis
         calibration=calibration_buffers,
     )
     with RecordingReader(path) as reader:
-        size = FrameSize(reader.width, reader.height)
-        firmware = plain.calibrated(calibration_of(reader))
-        link_map = link(parse_ldf(THESIS_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
         pictures = list(reader.frames(min(frames or reader.frame_count, reader.frame_count)))
-        Board(CM_BF561, firmware, size, link_map).run(iter(pictures))
-    results = [decode_results(each) for each in payloads]
+        played = play(pictures, plain.calibrated(calibration_of(reader)), _payload)
     truths = [each.truth or {} for each in pictures]
+    results = [decode_results(each.taken["A"]) for each in played]
     return [Seen(*each) for each in zip(alone["A"], alone["B"], results, truths, strict=True)]
+
+
+def _payload(readout: Readout) -> bytes:
+    """The message of core A that has just left; core B sends none."""
+    if readout.core != "A":
+        return b""
+    message = readout.values("results")
+    return decode(message.tobytes()[: message_nbytes(int(message[3]))]).payload

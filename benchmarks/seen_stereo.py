@@ -9,12 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.api import BudgetRow, Calibration, Core, Firmware, Frame, FrameSize
-from bfsim.chip.boards import CM_BF561
-from bfsim.linker import link, parse_ldf
-from bfsim.machine.board import Board, symbols_of
+from benchmarks.playing import play
+from bfsim.api import BudgetRow, Calibration, Core, Firmware, Frame, Readout
 from bfsim.recording import StereoFrame
-from bfsim.run import THESIS_LDF
 from firmware.buffers import buffers, calibration_buffers
 from firmware.exchange import share_lines
 from firmware.stages.edge_detection import edge_detection
@@ -42,9 +39,6 @@ def see_stereo(
     mode: Mode,
 ) -> list[SeenStereo]:
     """Return what the firmware finds in each of `frames`."""
-    height, width2 = frames[0].left.shape
-    size = FrameSize(width2 // 2, height)
-    found: list[NDArray[np.float64]] = []
 
     def features(core: Core, frame: Frame) -> Generator[Any, Any, int]:
         with core.stage("Edge detection"):
@@ -60,9 +54,7 @@ def see_stereo(
             count = yield from features(core, frame)
             yield from core.wait("core B is done")
             with core.stage("3-D lines"):
-                number = yield from stereo_lines(core, frame, count, mode.stereo_lines)
-            records = core.array("lines_3d").array[: number * LINE3D_WORDS].reshape(number, LINE3D_WORDS)
-            found.append(records[:, LINE3D_X0 : LINE3D_Z1 + 1].reshape(number, 2, 3).astype(float))
+                yield from stereo_lines(core, frame, count, mode.stereo_lines)
             yield from core.post("core A is done")
 
     def core_b(core: Core) -> Generator[Any, Any, None]:
@@ -79,7 +71,13 @@ def see_stereo(
         rows=tuple(BudgetRow(stage=name, thesis_ms=None) for name in STAGES),
         calibration=calibration_buffers,
     ).calibrated(calibration)
-    link_map = link(parse_ldf(THESIS_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
-    outcome = Board(CM_BF561, firmware, size, link_map).run(iter(frames))
-    costs = [{each.stage: each.elapsed_cclk for each in frame.cores[0].stages} for frame in outcome.frames]
-    return [SeenStereo(*each) for each in zip(found, costs, strict=True)]
+    played = play(frames, firmware, _lines_mm)
+    return [SeenStereo(each.taken["A"], each.stages_cclk("A")) for each in played]
+
+
+def _lines_mm(readout: Readout) -> NDArray[np.float64]:
+    """The 3-D lines of core A; core B publishes none."""
+    if readout.core != "A":
+        return np.empty((0, 2, 3))
+    records = readout.records("lines_3d", LINE3D_WORDS, readout.published("lines_3d"))
+    return records[:, LINE3D_X0 : LINE3D_Z1 + 1].reshape(-1, 2, 3).astype(float)

@@ -14,7 +14,7 @@ from bfsim.cli_ldf import ldf
 from bfsim.cli_record import record
 from bfsim.cli_seen import Watchers, require_view, takes_views, watching
 from bfsim.errors import BfsimError, ConfigError
-from bfsim.terminal import print_report, progress_bar
+from bfsim.terminal import print_report, progress_bar, replace_what_has_no_code, writing_output
 
 if TYPE_CHECKING:
     from bfsim.seen import SeenFrame
@@ -32,8 +32,10 @@ class _Bfsim(click.Group):
     """Ends every command that goes wrong for a known reason with one paragraph and an exit code."""
 
     def invoke(self, ctx: click.Context) -> Any:
+        replace_what_has_no_code()
         try:
-            return super().invoke(ctx)
+            with writing_output():
+                return super().invoke(ctx)
         except BfsimError as error:
             click.echo(f"bfsim: error: {error}", err=True)
             ctx.exit(MISTAKE)
@@ -148,12 +150,13 @@ def run(
       bfsim run drive.mcap --overlay drive-seen --mcap drive-seen.mcap
     """
     from bfsim.report.as_json import json_text
-    from bfsim.report.save import require_place, write_text
+    from bfsim.report.save import require_apart, require_place, write_text
     from bfsim.report.seen_json import seen_json
     from bfsim.report.tables import run_report
 
     if json_path and json_path != STDOUT:
         require_place(json_path)
+        require_apart(json_path, (what["recording"], what["ldf"], what["strategy"], mcap, overlay))
     if features and not json_path:
         raise ConfigError("--features must come with --json FILE, which it adds to")
     seen: dict[int, dict[str, Any]] = {}

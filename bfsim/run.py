@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from bfsim.errors import ConfigError, RecordingError
 from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
 from bfsim.linker import LinkerScript, link, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
-from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
+from bfsim.machine.board import Board, Fidelity, Outcome, require_cores, symbols_of
 from bfsim.machine.bus.ahead import compiled_ahead
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.program import Calibration, FrameSize, SourcePixels
@@ -58,6 +59,7 @@ def simulate(
         raise ConfigError(f"frames must be at least 1, not {frames}")
     spec, compiler = board_named(board), profile_named(profile)
     loaded = load_firmware(firmware)
+    require_cores(loaded.firmware, spec)
     script = _read_strategy(strategy, loaded)
     placement = read_placement(ldf, spec)
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader, compiled_ahead() as wait_for_compiler:
@@ -131,7 +133,7 @@ class _DigestedFrames:
     """The frames of a recording as they are read, and the digest of those that were."""
 
     def __init__(self, reader: RecordingReader, total: int) -> None:
-        self.name = Path(reader.path).name
+        self.name = _name(Path(reader.path))
         self._reader = reader
         self._total = total
         self._digest = hashlib.sha256()
@@ -155,6 +157,11 @@ class _DigestedFrames:
         return self._digest.hexdigest()
 
 
+def _name(path: Path) -> str:
+    """Return the name of a file as text that can be written, also where it is none."""
+    return os.fsencode(path.name).decode(errors="replace")
+
+
 def _record(
     outcome: Outcome,
     spec: BoardSpec,
@@ -174,7 +181,7 @@ def _record(
         firmware_digest=loaded.digest,
         board=spec.name,
         board_digest=hashlib.sha256(repr(spec).encode()).hexdigest(),
-        ldf=placement.path.name,
+        ldf=_name(placement.path),
         ldf_digest=hashlib.sha256(placement.source.expanded.encode()).hexdigest(),
         compiler=compiler.name,
         feed=feed.value,

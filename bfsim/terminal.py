@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from io import TextIOWrapper
 from threading import Timer
 
 from rich.console import Console, RenderableType
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from bfsim.errors import ConfigError
+
 WIDTH_WITHOUT_TERMINAL = 100
+LEAST_WIDTH = 20
+"""Narrower than this, tables have no room for their borders."""
 PATIENCE_S = 1.0
 """What is done sooner shows no bar."""
 
@@ -36,4 +42,31 @@ def progress_bar(title: str) -> Iterator[Callable[[int, int | None], None]]:
 def print_report(report: RenderableType) -> None:
     """Print a report as wide as the terminal; elsewhere at a fixed width and without escape codes."""
     fixed = None if sys.stdout.isatty() or "COLUMNS" in os.environ else WIDTH_WITHOUT_TERMINAL
-    Console(width=fixed, markup=False, emoji=False, highlight=False).print(report)
+    console = Console(width=fixed, markup=False, emoji=False, highlight=False)
+    console.width = max(console.width, LEAST_WIDTH)
+    console.print(report)
+
+
+def replace_what_has_no_code() -> None:
+    """Let a question mark stand for what the encoding of the output cannot say, rather than end the command."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+@contextmanager
+def writing_output() -> Iterator[None]:
+    """Raise ConfigError where standard output takes no more; a closed pipe is left to click, which ends in silence."""
+    try:
+        yield
+        sys.stdout.flush()
+    except OSError as error:
+        if error.errno == errno.EPIPE:
+            raise
+        try:
+            sys.stdout.flush()
+        except OSError:  # what is left is written once more when Python ends, and must go somewhere
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise ConfigError(
+            f"{error.filename or 'standard output'} must be accessible: {error.strerror}"
+        ) from error

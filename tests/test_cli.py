@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -79,3 +80,43 @@ def test_place_of_the_json_is_tried_before_the_run(tmp_path: Path) -> None:
     result = call("run", "--json", str(tmp_path / "missing" / "run.json"))
     assert result.exit_code == 2
     assert "missing must exist to write a file there" in result.stderr
+
+
+@pytest.mark.parametrize("command", [["boards"], ["explain", "isqrt32", "--json"], ["ldf"]])
+def test_a_full_disk_behind_standard_output(command: list[str]) -> None:
+    """One sentence, and the exit code of a mistake: 1 is for broken limits."""
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "bfsim", *command],
+            stdout=full,
+            check=False,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+    assert done.returncode == 2
+    assert done.stderr == "bfsim: error: standard output must be accessible: No space left on device\n"
+
+
+def test_a_terminal_with_no_room_and_few_letters() -> None:
+    """Tables need some columns, and letters that the encoding lacks become question marks."""
+    surroundings = {**os.environ, "COLUMNS": "1", "PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(
+        [sys.executable, "-m", "bfsim", "boards", "cm-bf561"],
+        capture_output=True,
+        check=False,
+        env=surroundings,
+        text=True,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.isascii()
+
+
+@pytest.mark.parametrize("other", ["--mcap", "--strategy", "--ldf", "recording"])
+def test_the_json_takes_the_place_of_nothing_else(tmp_path: Path, other: str) -> None:
+    """A recording that is given twice by a slip is still there afterwards."""
+    file = tmp_path / "drive.mcap"
+    file.touch()
+    option = [] if other == "recording" else [other]
+    result = call("run", *option, str(file), "--json", str(tmp_path / "." / "drive.mcap"))
+    assert result.exit_code == 2
+    assert "drive.mcap must be a file of its own to be written" in result.output

@@ -35,7 +35,7 @@ MAY_IMPORT = {
     "explain": {"errors", "kernel", "loading", "trace"},
     "run": {"errors", "seen", "trace", "chip", "kernel", "linker", "machine", "recording", "loading"},
     "mapping": {"chip", "kernel", "linker", "loading", "machine", "report", "run"},
-    "terminal": set(),
+    "terminal": {"errors"},
     "cli_boards": {"chip", "report", "terminal"},
     "cli_ldf": {"mapping", "report", "terminal"},
     "cli_record": {"recording", "terminal"},

@@ -176,6 +176,13 @@ def test_results_and_identity_say_what_ran(home: Path) -> None:
     )
 
 
+def test_a_name_that_is_no_text_becomes_one(home: Path) -> None:
+    """Reports, JSON and baselines are UTF-8, and names of files need not be."""
+    recording = record(home / "drive.mcap", 1)
+    identity = run_eyes(recording.rename(home / os.fsdecode(b"\xff.mcap"))).identity
+    assert identity.recording == "\N{REPLACEMENT CHARACTER}.mcap"
+
+
 def test_progress_counts_frames_up_to_the_total(home: Path) -> None:
     """As many calls as frames, each with the number that will be done in all."""
     calls: list[tuple[int, int]] = []
@@ -207,6 +214,11 @@ def test_memory_does_not_grow_with_the_pictures(home: Path) -> None:
     ("how", "kind", "message"),
     [
         ({"board": "cm-bf562"}, ConfigError, "--board must be one of"),
+        (
+            {"board": "cm-bf533"},
+            FirmwareError,
+            r"must have main loops for A, not for A, B \(board cm-bf533\)",
+        ),
         ({"firmware": "fw_missing:fw"}, FirmwareError, "'fw_missing' must be installed or in the folder"),
         ({"recording": Path("missing.mcap")}, RecordingError, "missing.mcap"),
         ({"recording": Path("fw_eyes.py")}, RecordingError, "fw_eyes.py"),

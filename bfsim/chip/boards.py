@@ -26,7 +26,7 @@ def _board(
     sdram: SdramSpec,
     *,
     dma_over_core: bool,
-    deb_period: int = 0,
+    deb_period_transfers: int = 0,
 ) -> BoardSpec:
     """Put the SDRAM into the chip's memory map, a camera on every PPI, and take the clocks from the PLL."""
     return BoardSpec(
@@ -39,7 +39,7 @@ def _board(
         sensor=OV9650,
         cameras=(LEFT_CAMERA, RIGHT_CAMERA)[: chip.ppis],
         dma_over_core=dma_over_core,
-        deb_period=deb_period,
+        deb_period_transfers=deb_period_transfers,
         spi_clk_hz=Fraction(10 * MHZ),  # [assumed] practical range 10..20 MHz; the chip's limit is SCLK/4
     )
 
@@ -81,7 +81,7 @@ CM_BF561_500_125 = _board(
     Pll(clkin_hz=CM_CLKIN_HZ, vco_multiplier=20, csel=1, ssel=4),  # Linux commit 407d3cce1a
     CM_BF561_32_MB,
     dma_over_core=True,  # Linux CM-BF561_defconfig: C_CDPRIO
-    deb_period=1,  # Linux writes 0x0111 to DMA_TC_PER
+    deb_period_transfers=1,  # Linux writes 0x0111 to DMA_TC_PER
 )
 
 CM_BF561_550_110 = _board(
@@ -109,7 +109,7 @@ BF561_EZKIT = _board(
     Pll(clkin_hz=EZKIT_CLKIN_HZ, vco_multiplier=20, csel=1, ssel=5),  # u-boot's bf561-ezkit.h
     BF561_EZKIT_64_MB,
     dma_over_core=False,  # the same: EBIU_AMGCTL 0x3F has no CDPRIO
-    deb_period=7,  # DMA1_TC_PER 0x0770 of the project that sdram_parts.py names
+    deb_period_transfers=7,  # DMA1_TC_PER 0x0770 of the project that sdram_parts.py names
 )
 
 CM_BF533 = _board(

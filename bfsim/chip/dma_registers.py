@@ -120,3 +120,6 @@ class IrqStatus(IntFlag):
 
 
 IRQ_WRITE_1_TO_CLEAR = IrqStatus.DMA_DONE | IrqStatus.DMA_ERR
+
+COPY_READS, COPY_WRITES = 1, 5
+"""[ours] For a line that a ring copies: IRQ_STATUS is read and cleared, START_ADDR and CONFIG of both channels are written."""

@@ -292,7 +292,7 @@ class BoardSpec:
     """A board: the chip with the board's memories, how it is clocked, its SDRAM and its cameras.
 
     `pll` is None where no setting of it makes these `clocks`. `cameras`: what PPI0, PPI1 and so on look at.
-    `dma_over_core`: CDPRIO of EBIU_AMGCTL, DMA before the cores at the EBIU. `deb_period` and `mdma_period`: fields
+    `dma_over_core`: CDPRIO of EBIU_AMGCTL, DMA before the cores at the EBIU. `deb_period_transfers` and `mdma_period_transfers`: fields
     of DMA_TC_PER, transfers in one direction, and of one MDMA stream, before the other has its turn; 0 switches the
     rule off.
     """
@@ -306,6 +306,6 @@ class BoardSpec:
     sensor: SensorSpec
     cameras: tuple[CameraSpec, ...]
     dma_over_core: bool
-    deb_period: int = 0
-    mdma_period: int = 0
+    deb_period_transfers: int = 0
+    mdma_period_transfers: int = 0
     spi_clk_hz: Fraction

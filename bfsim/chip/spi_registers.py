@@ -1,4 +1,4 @@
-"""The rate of the SPI that its BAUD register sets."""
+"""What is to be known of the SPI's registers: the rate that BAUD sets, and how many a transfer by DMA needs."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from bfsim.errors import ConfigError
 
 BAUD_LEAST = 2  # Linux bfin5xx_spi.h MIN_SPI_BAUD_VAL: at most SCLK / 4
 BAUD_MOST = 0xFFFF  # SPI_BAUD has 16 bits
+TRANSFER_WRITES = 5  # [ours] SPI_CTL, and START_ADDR, X_COUNT, X_MODIFY and CONFIG of the channel
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import StrEnum
+from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,14 +40,16 @@ TAGS = (
 MAX_LINES = 2048
 LOG = TAGS + MAX_LINES
 EMPTY = -1
-WRITE_THROUGH, WRITE_BACK_POLICY = 0, 1
 
 
-class Policy(StrEnum):
+class Policy(IntEnum):
     """How a cached region is written: at once and without allocation, or when a changed line leaves the cache."""
 
-    WRITE_THROUGH = "write-through"
-    WRITE_BACK = "write-back"
+    WRITE_THROUGH = 0
+    WRITE_BACK = 1
+
+
+WRITE_BACK_POLICY = int(Policy.WRITE_BACK)  # as compiled code knows it
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,9 +103,8 @@ class Follower:
             )
             self._state[REGIONS] = len(cached)
             for number, each in enumerate(cached):
-                policy = WRITE_BACK_POLICY if each.policy is Policy.WRITE_BACK else WRITE_THROUGH
                 at = FIRST_REGION + 3 * number
-                self._state[at : at + 3] = each.first, each.end, policy
+                self._state[at : at + 3] = each.first, each.end, each.policy
 
     def address(self) -> int:
         """Return the host address of the state, ready to be followed."""

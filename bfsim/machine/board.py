@@ -18,7 +18,7 @@ from bfsim.linker import LinkMap, Symbol
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.traffic import traffic_records
-from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches
+from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches, written_through
 from bfsim.machine.calls.calls import CallBook
 from bfsim.machine.calls.conflicts import SubBanks
 from bfsim.machine.calls.fetch import CodeCache, CodeOutside
@@ -44,10 +44,8 @@ from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, MessageRecord, Tr
 
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
 
-MDMA_MASTERS = (
-    (w.MDMA1_0, w.MDMA1_1),
-    (w.MDMA2_0, w.MDMA2_1),
-)  # of each core: for its input and its output rings
+MDMA_MASTERS = ((w.MDMA1_0, w.MDMA1_1), (w.MDMA2_0, w.MDMA2_1))
+"""Of each core: for its input and its output rings."""
 
 
 class Fidelity(StrEnum):
@@ -75,6 +73,13 @@ class Outcome:
     messages: tuple[MessageRecord, ...]
     interrupts: Mapping[str, int]
     events: int
+
+
+def require_cores(firmware: Firmware, spec: BoardSpec) -> None:
+    """Raise FirmwareError unless the firmware is for the cores of the board's chip."""
+    if set(firmware.mains) != set(spec.chip.cores):
+        cores, known = ", ".join(spec.chip.cores), ", ".join(sorted(firmware.mains))
+        raise FirmwareError(f"firmware must have main loops for {cores}, not for {known} (board {spec.name})")
 
 
 def symbols_of(firmware: Firmware, size: FrameSize, profile: CompilerProfile = VDSP_O2) -> list[Symbol]:
@@ -138,22 +143,18 @@ class Board:
             self._bus,
             self._memories,
             StrategyUnit(self.script),
-            self._spi_done,
+            partial(self._interrupt, "SPI_DMA"),
             self._outside[-1],
         )
 
-    def _spi_done(self) -> None:
+    def _interrupt(self, source: str) -> None:
         """Interrupt every core whose firmware asked for it: each has a SIC of its own."""
         for each in self._shared.interrupts.values():
-            each.request("SPI_DMA")
+            each.request(source)
 
     def _load(self) -> dict[str, dict[str, tuple[Row, ...]]]:
         """Place every buffer in memory; return the rows that each core knows by name."""
-        if set(self.firmware.mains) != set(self.spec.chip.cores):
-            known = ", ".join(sorted(self.firmware.mains))
-            raise FirmwareError(
-                f"firmware must have main loops for {', '.join(self.spec.chip.cores)}, not for {known}"
-            )
+        require_cores(self.firmware, self.spec)
         placed: dict[str, dict[str, tuple[Row, ...]]] = {}
         for owner, buffers in self.firmware.buffers(self.size).items():
             placed[owner] = {each.name: self._place(each, PROCESSORS[owner]) for each in buffers}
@@ -224,6 +225,7 @@ class Board:
                 self._memories,
                 number=number,
                 outside=self._outside[number],
+                interrupt=self._interrupt,
             )
             for number, (name, camera) in enumerate(zip(self.spec.chip.cores, self.spec.cameras, strict=True))
         }
@@ -256,7 +258,7 @@ class Board:
             memories.arena,
             memories.l2_end,
             self._bus.room_of(index),
-            caches.regions(memories),
+            caches.regions(memories, written_through(self.firmware.write_through, self.link_map, memories)),
             caches.data_size(chip.cache),
         )
         places = code_outside_l1(self.link_map, PROCESSORS[name], chip.regions, memories)

@@ -129,7 +129,9 @@ class Firmware:
     recording knows of its cameras → the buffers that it takes, beside the others or in place of those of the same name.
     `orders`: what the strategy unit may order by name ("mode", "models") → the payload of that message; raises a
     FirmwareError that names the field and what it must be.
-    `view`: what a core has in memory at the end of a frame → what it saw, for people and files; it is not simulated.
+    `view`: what a core has in memory at the end of a frame → what it saw, for people and files, if there is anything to
+    show; it is not simulated.
+    `write_through`: memory segments of the LDF in SDRAM that the data caches write through; the rest is written back.
     """
 
     mains: Mapping[str, Main]
@@ -138,7 +140,8 @@ class Firmware:
     rows: tuple[BudgetRow, ...]
     calibration: Callable[[Calibration], Buffers] | None = None
     orders: Mapping[str, Callable[[Any], bytes]] = field(default_factory=dict)
-    view: Callable[[Readout], Seen] | None = None
+    view: Callable[[Readout], Seen | None] | None = None
+    write_through: tuple[str, ...] = ()
 
     def calibrated(self, calibration: Calibration) -> Firmware:
         """Return this firmware for the cameras of a recording."""

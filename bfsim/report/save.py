@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
+from collections.abc import Iterable
 from pathlib import Path
 
 from bfsim.errors import ConfigError
@@ -15,6 +16,14 @@ def require_place(path: Path) -> None:
         raise ConfigError(f"{path}: the folder {path.parent} must exist to write a file there")
     if path.exists() and not path.is_file():
         raise ConfigError(f"{path} must be an ordinary file to be written, not a folder or a device")
+
+
+def require_apart(path: Path, others: Iterable[Path | None]) -> None:
+    """Raise ConfigError if one of the `others`, which a command reads or writes too, is the file at `path`."""
+    if path.resolve() in {each.resolve() for each in others if each}:
+        raise ConfigError(
+            f"{path} must be a file of its own to be written, not one that is read or written, too"
+        )
 
 
 def write_text(path: Path, text: str) -> None:

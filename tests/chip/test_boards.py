@@ -49,7 +49,7 @@ def test_boards_are_found_by_their_own_name(name: str) -> None:
     assert board_named(name).name == name
 
 
-ZERO_MEANS_OFF = {".deb_period", ".mdma_period", ".chip.dma.imdma_word_cclk"}
+ZERO_MEANS_OFF = {".deb_period_transfers", ".mdma_period_transfers", ".chip.dma.imdma_word_cclk"}
 
 
 @each_board

@@ -39,6 +39,7 @@ def made_board(
     size: FrameSize = SIZE,
     more: Sequence[Buffer] = (),
     camera_frames: int = 3,
+    write_through: tuple[str, ...] = (),
     **how: Any,
 ) -> Board:
     """Put firmware with these main loops on a board.
@@ -58,6 +59,7 @@ def made_board(
         buffers=all_buffers,
         camera="camera",
         rows=tuple(BudgetRow(stage=each, thesis_ms=None) for each in STAGES),
+        write_through=write_through,
     )
     link_map = link(ldf or thesis_ldf(), symbols_of(firmware, size), spec.chip.regions)
     return Board(spec, firmware, size, link_map, **how)

@@ -41,8 +41,8 @@ class Scene:
             replace(spec, sdram=replace(spec.sdram, rows_refreshed=chance.choice([4096, 120_000]))),
             outside_nbytes=OUTSIDE,
             dma_over_core=chance.choice([True, False]),
-            deb_period=chance.choice([0, 0, 0, 4, 15]),
-            mdma_period=chance.choice([0, 0, 0, 1, 8]),
+            deb_period_transfers=chance.choice([0, 0, 0, 4, 15]),
+            mdma_period_transfers=chance.choice([0, 0, 0, 1, 8]),
         )
         for place in PLACES:
             self.bench.row(place, NOISE)

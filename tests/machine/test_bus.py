@@ -151,7 +151,7 @@ def test_a_request_against_the_direction_waits_until_it_is_urgent() -> None:
 
     Then writes are preferred: all that waits goes at once.
     """
-    bench = Bench(without_pauses(), deb_period=LONG, outside_nbytes=4096)
+    bench = Bench(without_pauses(), deb_period_transfers=LONG, outside_nbytes=4096)
     bench.bus.words[w.LAST_WRITE] = 1  # the copy's first word begins a period
     bench.stream.copy(bench.row(SDRAM, 32 * 1024), bench.row(L1, 32 * 1024), 0)
     transfer = receive(bench)
@@ -166,7 +166,7 @@ def test_a_request_against_the_direction_waits_until_it_is_urgent() -> None:
 
 def test_a_period_ends() -> None:
     """After so many words of a direction the camera has its turn, as it would without the rule: five words wait."""
-    bench = Bench(without_pauses(), deb_period=85, outside_nbytes=4096)
+    bench = Bench(without_pauses(), deb_period_transfers=85, outside_nbytes=4096)
     bench.bus.words[w.LAST_WRITE] = 1
     sdram = bench.spec.sdram
     bench.stream.copy(bench.row(SDRAM, 32 * 1024), bench.row(L1, 32 * 1024), 0)
@@ -192,15 +192,15 @@ def opposite_streams(bench: Bench, nbytes: int = 4096) -> tuple[int, int]:
 @pytest.mark.parametrize("period", [1, 4, 15])
 def test_traffic_control_keeps_the_bus_in_its_direction(period: int) -> None:
     """The stream that writes has the bus when the other one pauses, every 40 words, and keeps it for a period."""
-    plain, controlled = opposite_streams(Bench()), opposite_streams(Bench(deb_period=period))
+    plain, controlled = opposite_streams(Bench()), opposite_streams(Bench(deb_period_transfers=period))
     pauses = (1024 - 1) // 40
     assert controlled == (plain[0] + pauses * period, plain[1])
 
 
 def test_what_needs_no_bus_has_no_part_in_traffic_control() -> None:
     """A core that reads L2 changes nothing at the bus."""
-    alone = opposite_streams(Bench(deb_period=15))
-    bench = Bench(deb_period=15)
+    alone = opposite_streams(Bench(deb_period_transfers=15))
+    bench = Bench(deb_period_transfers=15)
     bench.call(A, [(8 * cycle, LOAD, L2) for cycle in range(1500)], cclk=12_000)
     assert opposite_streams(bench) == alone
 
@@ -234,7 +234,7 @@ def test_a_link_takes_its_words_in_time() -> None:
 
 def test_a_link_is_urgent_before_it_runs_dry() -> None:
     """Against the direction that DEB_TRAFFIC_PERIOD prefers, it has the bus by the time its fifth word is due."""
-    bench = Bench(deb_period=LONG, outside_nbytes=4096)
+    bench = Bench(deb_period_transfers=LONG, outside_nbytes=4096)
     write_all(bench)
     send(bench)
     bench.bus.play_until(5 * WORD_TICKS)

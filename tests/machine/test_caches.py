@@ -75,7 +75,7 @@ def moved(outcome: Outcome, *, stored: bool) -> int:
     return sum(each.written_bytes if stored else each.read_bytes for each in of)
 
 
-def visits(streams: Sequence[Sequence[int]], ldf: LinkerScript) -> tuple[Outcome, PlainCache]:
+def visits(streams: Sequence[Sequence[int]], ldf: LinkerScript, **made: Any) -> tuple[Outcome, PlainCache]:
     """Visit words of SDRAM by kernels, a call for each stream; and let the plain cache do the same."""
     plain = PlainCache()
 
@@ -89,7 +89,7 @@ def visits(streams: Sequence[Sequence[int]], ldf: LinkerScript) -> tuple[Outcome
         yield core.run(spin, 100)  # the store buffer is emptied meanwhile
         yield from core.post("through")
 
-    return play(every_frame(work), ldf=ldf, more=(FAR, ORDER)), plain
+    return play(every_frame(work), ldf=ldf, more=(FAR, ORDER), **made), plain
 
 
 PLACES = st.builds(
@@ -137,6 +137,23 @@ def test_without_a_cache_every_word_is_an_access() -> None:
     outcome, _ = visits([[0, 1, 1, ~1]], shipped("thesis.ldf"))
     assert moved(outcome, stored=False) == 3 * 4
     assert moved(outcome, stored=True) == 4
+
+
+@pytest.mark.parametrize(("bank", "written_nbytes"), [(2, 3 * 4), (1, 0)])
+def test_a_segment_that_is_written_through(bank: int, written_nbytes: int) -> None:
+    """Every store to it goes to SDRAM as a word, and brings no line in; elsewhere the changed lines stay in the cache."""
+    outcome, _ = visits([[~0, ~1, ~0]], shipped("cache.ldf"), write_through=(f"MEM_SDRAM_BANK{bank}",))
+    assert moved(outcome, stored=True) == written_nbytes
+    assert moved(outcome, stored=False) == (0 if written_nbytes else LINE)
+
+
+@pytest.mark.parametrize("name", ["MEM_SDRAM_BANK9", "MEM_L2"])
+def test_only_sdram_is_written_through(name: str) -> None:
+    """What is not cached, or not there, is refused by name."""
+    with pytest.raises(
+        FirmwareError, match=rf"^write_through must name .* MEM_SDRAM_BANK2, .*, not '{name}'$"
+    ):
+        play(see_all, ldf=shipped("cache.ldf"), write_through=(name,))
 
 
 def test_l2_is_not_cached() -> None:

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from bfsim.api import Buffer, Core, FirmwareError, Frame, FrameSize, i32
+from bfsim.api import Buffer, Core, FirmwareError, Frame, FrameSize, PpiStatusBit, i32
 from bfsim.chip.boards import CM_BF561, board_named
 from bfsim.chip.sensors import LEFT_CAMERA, MHZ, RIGHT_CAMERA
 from bfsim.chip.spec import BoardSpec, SensorMode, SensorSpec
@@ -312,6 +312,11 @@ def blocked(spec: BoardSpec, *, by: str) -> tuple[Any, list[list[int]], list[Pic
     pictures = list(noise(3, QUICK_SIZE))
 
     def work(core: Core, frame: Frame) -> Play:
+        for source in ("PPI0_DMA", "PPI0_ERROR"):
+            core.on_interrupt(source, lambda core: None)
+        status = yield from core.ppi_status()
+        again = yield from core.ppi_status()
+        core.publish(ppi_status=status, ppi_status_again=again)
         got.append(np.concatenate([row.array for row in frame.rows]).view(np.uint32).tolist())
         wide = core.array("wide")
         if by == "mdma":
@@ -354,6 +359,11 @@ def test_a_small_fifo_overruns_when_memory_dma_holds_the_bus() -> None:
         assert all(word in sent for word in words[:kept]), (
             "what is kept is what was sent, without the lost words"
         )
+    read = [(each.results["ppi_status_A"], each.results["ppi_status_again_A"]) for each in outcome.frames]
+    assert read == [(0, 0), (PpiStatusBit.OVR, 0), (0, 0)], (
+        "both later pictures come in the first frame; a read clears"
+    )
+    assert outcome.interrupts == {"A PPI0_DMA": 2, "A PPI0_ERROR": 2}
 
 
 @pytest.mark.parametrize(
@@ -364,5 +374,8 @@ def test_nothing_is_lost_otherwise(fifo_words: int, by: str) -> None:
     outcome, got, pictures = blocked(quick(fifo_words), by=by)
     assert lost_of(outcome) == lost_of(outcome, "B") == [0, 0, 0]
     assert all("ppi_words_lost" not in name for each in outcome.frames for name in each.results)
+    assert all(each.results["ppi_status_A"] == 0 for each in outcome.frames)
+    # the first picture came before the core asked; the others while it waited for DMA, or in one kernel call
+    assert outcome.interrupts == {"A PPI0_DMA": 1 if by == "core" else 2}
     for words, picture in zip(got, pictures, strict=True):
         assert words == picture.left.view(np.uint32).ravel().tolist()

@@ -71,6 +71,7 @@ class Studio:
                 bench.memories,
                 number=number,
                 outside=bench.memories.outside + number * 2 * PICTURE_NBYTES,
+                interrupt=lambda source: None,
             )
             for number, core in enumerate("AB")
         }

@@ -282,7 +282,7 @@ def test_a_stream_that_reads_leaves_its_pauses_to_the_other() -> None:
 @pytest.mark.parametrize(("target", "word_sclk"), [(OTHER_BANK, 1), (OTHER_PAGE, 9)])
 def test_two_streams_in_one_bank_close_each_other_s_page(target: int, word_sclk: int) -> None:
     """Word by word in turn: a cycle each in two banks; in one bank tRC, which is tRAS + tRP, for each."""
-    bench = Bench(mdma_period=1)
+    bench = Bench(mdma_period_transfers=1)
     sdram = bench.spec.sdram
     if target == OTHER_PAGE:
         assert word_sclk == sdram.nRAS + sdram.nRP
@@ -293,14 +293,14 @@ def test_two_streams_in_one_bank_close_each_other_s_page(target: int, word_sclk:
 
 def test_round_robin_of_one_word() -> None:
     """With MDMA_ROUND_ROBIN_PERIOD 1 both streams are done at about the same time."""
-    first, second = outward(Bench(mdma_period=1), (SDRAM, OTHER_BANK))
+    first, second = outward(Bench(mdma_period_transfers=1), (SDRAM, OTHER_BANK))
     assert abs(first - second) <= 1
 
 
 @pytest.mark.parametrize("period", [2, 8, 31])
 def test_round_robin_gives_both_streams_a_period(period: int) -> None:
     """Each moves so many words before the other has its turn, so they are done a period apart (HRM, 5-54)."""
-    first, second = outward(Bench(mdma_period=period), (SDRAM, OTHER_BANK))
+    first, second = outward(Bench(mdma_period_transfers=period), (SDRAM, OTHER_BANK))
     assert abs(first - second) <= period + 1
 
 

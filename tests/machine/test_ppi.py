@@ -36,6 +36,7 @@ def new_ppi(bench: Bench) -> Ppi:
         bench.memories,
         number=0,
         outside=bench.memories.outside,
+        interrupt=lambda source: None,
     )
 
 

@@ -1,7 +1,8 @@
 """The caches that an LDF switches on: what they hold, and what they take from L1.
 
-VisualDSP++ asks for them through symbols of the LDF; the start-up code does the rest. Here the data caches hold SDRAM, written
-back, as its default protection table has it; the code cache holds whatever code lies outside L1. There is no coherence.
+VisualDSP++ asks for them through symbols of the LDF; the start-up code does the rest. The data caches hold SDRAM, written
+back as its default protection table has it, or written through where the firmware's own table says so; the code cache holds
+whatever code lies outside L1. There is no coherence.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ from dataclasses import dataclass, replace
 
 from bfsim.chip.memory_map import Region
 from bfsim.chip.spec import CacheSpec
-from bfsim.errors import LinkError
-from bfsim.kernel.followers import CachedRegion, CacheSize, Policy
+from bfsim.errors import FirmwareError, LinkError
+from bfsim.kernel.followers import MAX_REGIONS, CachedRegion, CacheSize, Policy
 from bfsim.linker import LinkMap
 from bfsim.machine.memories import Memories
 
@@ -33,9 +34,9 @@ class Caches:
             return None
         return CacheSize(spec.data_bytes_per_bank * len(self.data), spec.line_bytes, spec.data_ways)
 
-    def regions(self, memories: Memories, policy: Policy = Policy.WRITE_BACK) -> tuple[CachedRegion, ...]:
-        """Return what the data cache holds lines of: SDRAM."""
-        return (CachedRegion(0, memories.sdram_end, policy),) if self.data else ()
+    def regions(self, memories: Memories, write_through: Sequence[CachedRegion]) -> tuple[CachedRegion, ...]:
+        """Return what the data cache holds lines of: SDRAM, some of it written through."""
+        return (*write_through, CachedRegion(0, memories.sdram_end, Policy.WRITE_BACK)) if self.data else ()
 
 
 def caches_of(link_map: LinkMap, processor: str | None) -> Caches:
@@ -47,6 +48,23 @@ def caches_of(link_map: LinkMap, processor: str | None) -> Caches:
 
     data = tuple(memory for symbol, memory in DATA_SYMBOLS.items() if is_on(symbol))
     return Caches(data, is_on(CODE_SYMBOL))
+
+
+def written_through(names: Sequence[str], link_map: LinkMap, memories: Memories) -> tuple[CachedRegion, ...]:
+    """Return the memory segments `names` of the LDF as regions that are written through.
+
+    Raises FirmwareError for a segment that is not in SDRAM, or for more than the protection table of a core can hold.
+    """
+    segments = {each.name: each for each in link_map.segments if each.start < memories.sdram_end}
+    if len(names) >= MAX_REGIONS:
+        raise FirmwareError(f"write_through must name at most {MAX_REGIONS - 1} segments, not {len(names)}")
+    for name in names:
+        if name not in segments:
+            raise FirmwareError(
+                f"write_through must name segments of the LDF in SDRAM, {', '.join(segments)}, not {name!r}"
+            )
+    found = (segments[name] for name in names)
+    return tuple(CachedRegion(each.start, each.start + each.nbytes, Policy.WRITE_THROUGH) for each in found)
 
 
 def cached_parts(core: str, caches: Caches, regions: Sequence[Region]) -> Iterator[Region]:

@@ -81,7 +81,7 @@ class Pair:
     index: int = -1
     full_at_ticks: int = 0
     users: int = 0
-    lost: Mapping[str, int] = field(default_factory=dict)
+    lost: dict[str, int] = field(default_factory=dict)
 
 
 class Capture:
@@ -133,6 +133,10 @@ class Capture:
     def change_camera(self, core: str, settings: CameraSettings) -> None:
         """Give the camera of a core new settings."""
         self._ppis[core].change(settings)
+
+    def read_status(self, core: str) -> int:
+        """Return PPI_STATUS of the PPI of a core; the read clears it."""
+        return self._ppis[core].status.read()
 
     def change_size(self, core: str, size: FrameSize) -> None:
         """Tell the camera of a core what size to send; the cameras change together, when all are told the same."""
@@ -234,25 +238,23 @@ class Capture:
         self, pair: Pair, images: Mapping[str, NDArray[np.uint8]], starts: Mapping[str, int]
     ) -> Generator[simpy.Event, Any, None]:
         yield self._env.all_of(
-            [
-                self._env.process(self._receive(ppi, images[core], pair.picture[core], starts[core]))
-                for core, ppi in self._ppis.items()
-            ]
+            [self._env.process(self._receive(pair, core, images[core], starts[core])) for core in self._ppis]
         )
-        pair.lost = {core: ppi.take_lost() for core, ppi in self._ppis.items()}
         pair.state = State.FULL
         pair.full_at_ticks = self._env.tick
         self._notify()
 
     def _receive(
-        self, ppi: Ppi, image: NDArray[np.uint8], rows: Sequence[Row], start: int
+        self, pair: Pair, core: str, image: NDArray[np.uint8], start: int
     ) -> Generator[simpy.Event, Any, None]:
         """Let a PPI receive a picture that begins at tick `start`; until then it may still be at the one before.
 
         The last words of that one may be in its FIFO even longer.
         """
+        ppi = self._ppis[core]
         if start > self._env.tick:
             yield self._env.after(start - self._env.tick)
         if ppi.through is not None and not ppi.through.processed:
             yield ppi.through
-        yield ppi.receive(image, rows, start)
+        yield ppi.receive(image, pair.picture[core], start)
+        pair.lost[core] = ppi.end_picture()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -37,10 +37,12 @@ class Ppi:
         *,
         number: int,
         outside: int,
+        interrupt: Callable[[str], None],
     ) -> None:
         """`size`: of the recorded pictures. `number`: 0 or 1. `outside`: where in the arena two pictures stand while they come in.
 
-        Two, since the next one may begin before the bus has taken the last words of the one before.
+        Two, since the next one may begin before the bus has taken the last words of the one before. `interrupt`: called with
+        PPI0_DMA at the end of each picture of PPI0, and with PPI0_ERROR while a bit of its status is set.
         """
         self._bus = bus
         self._memories = memories
@@ -50,10 +52,10 @@ class Ppi:
         self._recorded = size
         self._camera = camera
         self._name = f"PPI{number}"
+        self._interrupt = interrupt
         self._outside = outside, outside + 2 * size.width_px * size.height_px
-        self._word_bytes = (
-            board.chip.dma.word_bytes
-        )  # PPI_CONTROL with PACK_EN, and DMA32 where DMA has 32 bits
+        # PPI_CONTROL with PACK_EN, and DMA32 where DMA has 32 bits
+        self._word_bytes = board.chip.dma.word_bytes
         self._lines: dict[tuple[int, FrameSize], tuple[Row, ...]] = {}
         self._first_frame, self._origin_ticks = 0, 0
         self._send(size)
@@ -110,9 +112,7 @@ class Ppi:
         if self.size == self._recorded:
             return rows
         key = (rows[0].offset, self.size)
-        if (
-            key not in self._lines
-        ):  # the same rows every time, so that calls and copies with them are prepared once
+        if key not in self._lines:  # the same rows every time: calls and copies with them are prepared once
             lines = self._memories.overlay(rows, u8, 2 * self.size.width_px)
             self._lines[key] = lines[: self.size.height_px]
         return self._lines[key]
@@ -149,10 +149,13 @@ class Ppi:
         self.through = self._bus.when_done(self._bus.post(plan))
         return self.through
 
-    def take_lost(self) -> int:
-        """Return how many words found the FIFO full since the last time; any of them sets OVR."""
+    def end_picture(self) -> int:
+        """Ask for the interrupts of a picture's end; return how many of its words found the FIFO full: any of them sets OVR."""
         total = self._bus.lost_by(self._master)
         lost, self._lost = total - self._lost, total
         if lost:
             self.status.overrun(lost * self._word_bytes)
+        self._interrupt(f"{self._name}_DMA")
+        if self.status.causes:
+            self._interrupt(f"{self._name}_ERROR")
         return lost

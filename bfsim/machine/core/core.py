@@ -12,6 +12,7 @@ from typing import Any
 import simpy
 
 from bfsim.chip.spec import BoardSpec
+from bfsim.chip.spi_registers import TRANSFER_WRITES
 from bfsim.errors import BfsimError, FirmwareError
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel.followers import Follower
@@ -31,7 +32,7 @@ from bfsim.machine.firmware_lines import NOT_FIRMWARE
 from bfsim.machine.memories import Row
 from bfsim.machine.program import FrameSize, Main
 from bfsim.machine.simulation import Simulation
-from bfsim.machine.spi.spi import SPI_WRITES, Spi
+from bfsim.machine.spi.spi import Spi
 from bfsim.seen import Seen
 from bfsim.trace import REST, CoreFrame, StallReason
 
@@ -86,7 +87,7 @@ class Core(SynchronisedCore):
         shared: SharedObjects,
         stages: tuple[str, ...],
         on_finished: Callable[[], None],
-        view: Callable[[Readout], Seen] | None,
+        view: Callable[[Readout], Seen | None] | None,
     ) -> None:
         """`streams`: the MDMA streams of its input and of its output rings. `on_finished`: called at a frame's end.
 
@@ -223,6 +224,12 @@ class Core(SynchronisedCore):
         """
         self._capture.change_camera(self.name, settings)
 
+    def ppi_status(self) -> Generator[Any, Any, int]:
+        """Read PPI_STATUS of this core's PPI, which clears it: the bits of `PpiStatusBit` that were set since the last time."""
+        self.program_device(writes=0, reads=1)
+        yield from self._sync()
+        return self._capture.read_status(self.name)
+
     def set_picture_size(self, size: FrameSize) -> None:
         """Have this core's camera send pictures of `size`: the recorded one, half or a quarter of it.
 
@@ -244,7 +251,7 @@ class Core(SynchronisedCore):
         if self._spi.busy is not None:
             yield from self._blocked(iter([self._spi.busy]), "the SPI")
             self._wake(StallReason.RING_FULL)
-        self.program_device(writes=SPI_WRITES)
+        self.program_device(writes=TRANSFER_WRITES)
         yield from self._sync()
         self._spi.send(row, nbytes)
 
@@ -253,7 +260,7 @@ class Core(SynchronisedCore):
         yield from self._sync()
         if not self._spi.has_message:
             return 0
-        self.program_device(writes=SPI_WRITES)
+        self.program_device(writes=TRANSFER_WRITES)
         yield from self._sync()
         if not self._spi.has_message:  # the other core was faster
             return 0

@@ -144,7 +144,7 @@ class SdramArbiter(Arbiter):
         self._banks = SdramBanks(board.sdram, board.clocks)
         self._refresh_wait = 0
         self._direction, self._direction_left = False, 0
-        self._streams = MdmaTurns(board.mdma_period)
+        self._streams = MdmaTurns(board.mdma_period_transfers)
 
     def _free_at(self) -> int:
         return self._banks.command_from
@@ -185,7 +185,7 @@ class SdramArbiter(Arbiter):
     def _go_on(self, request: Request) -> None:
         """Count a transfer of a DMA to the periods of traffic control."""
         if request.write != self._direction:
-            self._direction, self._direction_left = request.write, self._board.deb_period
+            self._direction, self._direction_left = request.write, self._board.deb_period_transfers
         elif self._direction_left:
             self._direction_left -= 1
         self._streams.count(request.master)

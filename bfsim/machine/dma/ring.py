@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Generator, Sequence
 from typing import TYPE_CHECKING, Any
 
+from bfsim.chip.dma_registers import COPY_READS, COPY_WRITES
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus.bus import Transfer
 from bfsim.machine.dma.mdma import MdmaStream
@@ -16,8 +17,6 @@ from bfsim.trace import StallReason
 
 if TYPE_CHECKING:
     from bfsim.machine.core.core import Core
-
-COPY_WRITES = 5  # START_ADDR and CONFIG of source and destination; IRQ_STATUS is read before and cleared
 
 
 def _check(rows: Sequence[Row], image: Sequence[Row]) -> None:
@@ -59,7 +58,7 @@ class InputRing:
                 f"the ring of {self._rows[0].buffer} has no line {number}: the picture has {self._height}"
             )
         self._taken = number + 1
-        core.program_device(writes=COPY_WRITES, reads=1)
+        core.program_device(writes=COPY_WRITES, reads=COPY_READS)
         transfer = self._coming or self._fetch(number)
         # one line ahead: its row is the one that the core gave up with this call
         self._coming = self._fetch(number + 1) if number + 1 < self._height else None
@@ -107,7 +106,7 @@ class OutputRing:
             raise FirmwareError(
                 f"the picture {self._image[0].buffer} has {self._height} lines; one more was sent"
             )
-        self._core.program_device(writes=COPY_WRITES, reads=1)
+        self._core.program_device(writes=COPY_WRITES, reads=COPY_READS)
         row = self._rows[number % self._depth]
         self._transfers.append(self._stream.copy(row, self._image[number], self._core.now_ticks))
 

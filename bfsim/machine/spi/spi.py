@@ -23,7 +23,6 @@ from bfsim.machine.spi.strategy import StrategyUnit
 from bfsim.trace import MessageRecord
 
 WORD_BYTES, WORD_BITS = 2, 16  # SPI_CTL with SIZE
-SPI_WRITES = 5  # SPI_CTL, and START_ADDR, X_COUNT, X_MODIFY and CONFIG of the channel
 DAMAGED = "damaged"  # the type, in the records, of what came in and is no message
 OUTSIDE_BYTES = 4096
 """Room for a message on its way, in the arena."""
