@@ -283,7 +283,11 @@ def _simulate(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
     """Run the simulation behind a progress bar and return at least one frame; `watchers` get what is seen."""
     from bfsim.run import Feed, Fidelity, simulate
 
+    told = 0
+
     def tell(frame: SeenFrame) -> None:
+        nonlocal told
+        told += 1
         for each in watchers or ():
             each(frame)
 
@@ -292,9 +296,9 @@ def _simulate(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
         done = simulate(
             feed=Feed(feed), fidelity=Fidelity(fidelity), progress=progress, on_seen=on_seen, **what
         )
+    if done.interrupted and not (told if watchers else done.frames):
+        raise KeyboardInterrupt
     if not done.frames:
-        if done.interrupted:
-            raise KeyboardInterrupt
         raise ConfigError("a run must have at least one frame to report on, and this one finished none")
     return done
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -12,6 +13,7 @@ from mcap.reader import make_reader
 from PIL import Image
 
 from bfsim.cli import main
+from tests.report.records import edge_run
 
 BLIND = """
 from dataclasses import replace
@@ -112,3 +114,12 @@ def test_a_view_that_fails_is_told_with_its_line(tmp_path: Path, monkeypatch: py
     assert "no such buffer" in message
     assert "dazed_firmware.py:6" in message
     assert not (tmp_path / "seen").exists()
+
+
+def test_ctrl_c_before_the_first_frame_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A frame may be done and not yet looked at: there is nothing to draw, and nothing is left."""
+    interrupted = replace(edge_run(100), interrupted=True)
+    monkeypatch.setattr("bfsim.run.simulate", lambda **_: interrupted)
+    result = run("--overlay", tmp_path / "seen.gif", "--mcap", tmp_path / "seen.mcap")
+    assert (result.exit_code, result.stderr) == (130, "bfsim: interrupted\n")
+    assert not list(tmp_path.iterdir())

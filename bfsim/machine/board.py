@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -11,7 +12,7 @@ from functools import partial
 import simpy
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.errors import DeadlockError, FirmwareError
+from bfsim.errors import BfsimError, DeadlockError, FirmwareError
 from bfsim.kernel import VDSP_O2, CompilerProfile
 from bfsim.kernel.followers import Follower
 from bfsim.linker import LinkMap, Symbol
@@ -35,7 +36,7 @@ from bfsim.machine.dma.checks import DmaSpace
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.memory_dma import Dma
 from bfsim.machine.memories import Memories, Row
-from bfsim.machine.program import Buffer, Firmware, FrameSize
+from bfsim.machine.program import Buffer, Buffers, Firmware, FrameSize
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi.spi import OUTSIDE_BYTES, Spi
 from bfsim.machine.spi.strategy import Script, StrategyUnit
@@ -89,14 +90,31 @@ def symbols_of(firmware: Firmware, size: FrameSize, profile: CompilerProfile = V
         for owner, main in firmware.mains.items()
         for symbol in code_symbols(main, PROCESSORS[owner], profile)
     ]
-    for owner, buffers in firmware.buffers(size).items():
+    for owner, buffers in _called(firmware, size).items():
         if owner not in PROCESSORS:
             raise FirmwareError(f"buffers must belong to {', '.join(PROCESSORS)}, not {owner!r}")
         for each in buffers:
+            if not isinstance(each, Buffer):
+                raise FirmwareError(f"buffers of {owner} must be of bfsim.api.Buffer, not {each!r}")
             found.append(
                 Symbol(name=each.name, section=each.section, nbytes=each.nbytes, processor=PROCESSORS[owner])
             )
     return found
+
+
+def _called(firmware: Firmware, size: FrameSize) -> Buffers:
+    """Return the buffers of firmware whose code may have mistakes; a mistake is a FirmwareError with its line."""
+    try:
+        buffers = firmware.buffers(size)
+    except BfsimError:
+        raise
+    except Exception as error:
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        what = f"{type(error).__name__}: {error} ({last.filename}:{last.lineno})"
+        raise FirmwareError(f"buffers for pictures of {size} failed with {what}") from error
+    if not isinstance(buffers, Mapping):
+        raise FirmwareError(f"buffers must come as a dict of those of each core, not as {buffers!r}")
+    return buffers
 
 
 @dataclass

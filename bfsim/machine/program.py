@@ -87,6 +87,14 @@ class Buffer:
     values: NDArray[Any] | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.element, Number):
+            raise FirmwareError(
+                f"buffer {self.name} must have elements of i8 to u32 or f32, not {self.element!r}"
+            )
+        if not all(isinstance(each, int | np.integer) for each in (self.rows, self.columns)):
+            raise FirmwareError(
+                f"buffer {self.name} must have whole rows and columns, not {self.rows!r} and {self.columns!r}"
+            )
         if self.rows < 1 or self.columns < 1:
             raise FirmwareError(
                 f"buffer {self.name} must have at least one row and one column, not {self.rows} and {self.columns}"

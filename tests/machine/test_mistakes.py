@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bfsim.api import Buffer, Core, Frame, i8, u8
+from bfsim.api import Buffer, Core, Frame, FrameSize, i8, u8
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, KernelError
+from bfsim.machine.board import symbols_of
 from bfsim.run import simulate
+from firmware import tinyphoon
 from tests.machine.kernels import first, spin
 from tests.machine.rig import Play, board_of, every_frame, load, noise, run, see_all
 
@@ -73,9 +75,15 @@ def float_result(core: Core, frame: Frame) -> Play:
     yield core.run(spin, 1)
 
 
+def no_kernel(core: Core, frame: Frame) -> Play:
+    """Forget the decorator."""
+    yield core.run(division, frame)  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize(
     ("body", "kind", "message", "line"),
     [
+        (no_kernel, FirmwareError, "core.run must get a function with @kernel before it, not division", 2),
         (
             work_in_the_dark,
             FirmwareError,
@@ -173,6 +181,8 @@ def test_a_camera_in_the_scratchpad_is_refused() -> None:
 @pytest.mark.parametrize(
     ("what", "message"),
     [
+        ({"element": int}, "buffer table must have elements of i8 to u32 or f32, not <class 'int'>"),
+        ({"rows": 2.0}, r"buffer table must have whole rows and columns, not 2\.0 and 3"),
         ({"columns": 0}, "buffer table must have at least one row and one column, not 1 and 0"),
         ({"rows": -1}, "buffer table must have at least one row and one column, not -1 and 3"),
         ({"values": np.arange(4)}, "buffer table must have 3 values, not 4"),
@@ -195,3 +205,20 @@ def test_a_run_of_no_frames_is_refused(frames: int) -> None:
     """Nothing to run is a slip, not a wish for everything."""
     with pytest.raises(ConfigError, match=f"frames must be at least 1, not {frames}"):
         simulate(Path("any.mcap"), frames=frames)
+
+
+@pytest.mark.parametrize(
+    ("buffers", "message"),
+    [
+        (
+            lambda size: size.depth_px,
+            r"buffers for pictures of 64x48 failed with AttributeError: .*\.py:\d+\)$",
+        ),
+        (lambda _: [], r"buffers must come as a dict of those of each core, not as \[\]"),
+        (lambda _: {"A": ["camera"]}, r"buffers of A must be of bfsim\.api\.Buffer, not 'camera'"),
+    ],
+)
+def test_mistakes_in_the_function_of_the_buffers(buffers: Any, message: str) -> None:
+    """It is the firmware's, too: no traceback."""
+    with pytest.raises(FirmwareError, match=message):
+        symbols_of(replace(tinyphoon, buffers=buffers), FrameSize(64, 48))

@@ -97,6 +97,9 @@ class CallBook:
 
     def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> Call:
         """Prepare a call for the first time, and know it from now on. Rows outside of L1 are followed."""
+        if not isinstance(kernel, Kernel):
+            name = getattr(kernel, "__name__", repr(kernel))
+            raise FirmwareError(f"core.run must get a function with @kernel before it, not {name}")
         call = self.known[kernel, kernel.arrays_of(arguments)] = self._prepared(kernel, arguments)
         return call
 

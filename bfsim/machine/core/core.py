@@ -175,7 +175,7 @@ class Core(SynchronisedCore):
             self._check_claimed()
         try:
             call = self._calls.known[kernel, kernel.arrays_of(arguments)]
-        except (LookupError, TypeError):  # the first time, or something is wrong with the arguments
+        except (LookupError, TypeError, AttributeError):  # the first time, or something is wrong
             call = self._calls.prepare(kernel, arguments)
         # what reaches outside L1 may meet what others do: it runs when the simulated time is there
         work = self._unclaimed = call.run(arguments) if call.stays_in_l1 else DeferredWork(call, arguments)
