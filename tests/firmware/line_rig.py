@@ -48,7 +48,17 @@ class BareCore:
         self.published |= results
 
     @staticmethod
-    @dataclass(frozen=True, slots=True)
+    def play(task: Generator[Any, Any, Any]) -> Any:
+        """Play a stage to its end, and return what it returns."""
+        value = None
+        try:
+            while True:
+                value = task.send(value)
+        except StopIteration as end:
+            return end.value
+
+
+@dataclass(frozen=True, slots=True)
 class Found:
     """Words of the lines, one row each, and the edges that found the table full."""
 
