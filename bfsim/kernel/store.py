@@ -56,7 +56,7 @@ def key(function: tree.Function, profile: CompilerProfile, variant: str) -> str:
 def _tools() -> str:
     """The compiler's own sources, LLVM and the host's processor."""
     digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.glob("*.py")):
+    for path in sorted(Path(__file__).parent.rglob("*.py")):
         digest.update(path.read_bytes())
     host = (
         llvm.get_host_cpu_name(),

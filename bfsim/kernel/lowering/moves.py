@@ -22,7 +22,8 @@ class Moves:
         self._constants()
 
     def _copies(self) -> None:
-        """What phis need at the ends of the blocks before them."""
+        """What phis need at the ends of the blocks before them; values that swap places take a third register."""
+        onto: dict[tuple[str, str], dict[str, str]] = {}
         for phi, arms in self.webs.phis.items():
             home = self.flow.defined[phi][0]
             line = self.flow.defined[phi][1].line
@@ -31,6 +32,11 @@ class Moves:
                     self._on_edge(label, home, load_constant(value, line, phi, self.bank[self.find(phi)]))
                 elif self.find(value) != self.find(phi):
                     self._on_edge(label, home, Step(Op.MOVE, line, phi, Bank.ANY, ((value, Bank.ANY),)))
+                    onto.setdefault((label, home), {})[self.find(phi)] = self.find(value)
+        for (label, home), copies in onto.items():
+            if _is_circular(copies):
+                line = self.flow.blocks[home].instructions[0].line
+                self._on_edge(label, home, Step(Op.MOVE, line, None, Bank.ANY))
 
     def _on_edge(self, label: str, home: str, step: Step) -> None:
         if len(set(self.flow.blocks[label].successors)) == 1:
@@ -140,3 +146,16 @@ class Moves:
                         self.steps.add(place, load_constant(name, step.line))
                 block.append(step)
             self.steps.of[label] = block
+
+
+def _is_circular(copies: dict[str, str]) -> bool:
+    """Whether a value that is copied ends up where another one came from, all the way round."""
+    for start in copies:
+        name = copies[start]
+        while name in copies and name != start:
+            name, seen = copies[name], name
+            if name == seen:
+                break
+        if name == start:
+            return True
+    return False

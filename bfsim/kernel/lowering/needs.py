@@ -127,10 +127,10 @@ class Needs(Folding):
         label = self.flow.defined[each.result or ""][0]
         loop = self.flow.innermost(label)
         if loop is None or not any(group.loop is loop and not group.stride for group in self.groups.all):
-            return each.operands
+            return self.compared(each)
         gains = [self.walks.advance(operand, loop) for operand in each.operands[:2]]
         if None in gains or sum(gain.moves for gain in gains if gain) != 1:
-            return each.operands
+            return self.compared(each)
         return tuple(
             operand for operand, gain in zip(each.operands[:2], gains, strict=True) if gain and not gain.moves
         )

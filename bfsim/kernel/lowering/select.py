@@ -238,7 +238,7 @@ class _Selector(Calls):
             masked = self.context.needs.bit_tested(each) or ""
             self.step(Op.BIT_TEST, each, None, DATA, (masked, DATA))
             return
-        left, right = each.operands[:2]
+        left, right = self.context.needs.compared(each)
         if right.lstrip("-").isdigit() and _is_near(predicate(each), int(right)):
             self.step(Op.COMPARE, each, None, DATA, (left, ANY))
         elif right.lstrip("-").isdigit() and self.context.profile.applies(Learnt.COMPARED):
