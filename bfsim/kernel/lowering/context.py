@@ -8,7 +8,7 @@ from bfsim.kernel.ir_text import PHI_ARM, Instruction, Routine
 from bfsim.kernel.loops import Flow
 from bfsim.kernel.lowering.flags import Flags
 from bfsim.kernel.lowering.groups import Groups
-from bfsim.kernel.lowering.idioms import bit_counting_loops
+from bfsim.kernel.lowering.idioms import bit_counting_loops, filling_loops
 from bfsim.kernel.lowering.needs import Needs
 from bfsim.kernel.lowering.places import Places
 from bfsim.kernel.lowering.predict import Likelihood
@@ -34,7 +34,12 @@ class Context:
         self.shapes = Shapes(self.flow, profile)
         self.groups = Groups(self.flow, self.walks, profile)
         self.bit_counts = bit_counting_loops(self.flow, self.walks)
-        self.needs = Needs(self.flow, self.walks, self.shapes, self.groups, self.flags, profile)
+        self.fills = filling_loops(self.flow, self.walks) if profile.library.fill else {}
+        self.needs = Needs(
+            self.flow, self.walks, self.shapes, self.groups, self.flags, frozenset(self.fills), profile
+        )
+        self.replaced = self.bit_counts | self.fills
+        """Loops of one block that are an operation or a call."""
 
     @cached_property
     def _shape_by_phi(self) -> dict[str, Shape]:

@@ -35,10 +35,19 @@ class Needs(Folding):
     """Which instructions of one routine are emitted, and which are part of others."""
 
     def __init__(
-        self, flow: Flow, walks: Walks, shapes: Shapes, groups: Groups, flags: Flags, profile: CompilerProfile
+        self,
+        flow: Flow,
+        walks: Walks,
+        shapes: Shapes,
+        groups: Groups,
+        flags: Flags,
+        calling: frozenset[str],
+        profile: CompilerProfile,
     ) -> None:
+        """`calling`: blocks that become calls of the library."""
         super().__init__(flow, profile)
         self.walks, self.shapes, self.groups, self.flags = walks, shapes, groups, flags
+        self.calling = calling
         self.counted = {loop.header for loop in flow.loops if self._turns_by_counter(loop)}
 
     def _turns_by_counter(self, loop: Loop) -> bool:
@@ -47,7 +56,7 @@ class Needs(Folding):
         library = any(
             each.is_call or each.is_soft_float or (each.is_division and self.divides_by_call(each))
             for each in inside
-        )
+        ) or not self.calling.isdisjoint(loop.blocks)
         turns = self.walks.turns(loop)
         many = turns is None or turns > FEWEST_TURNS
         return not library and many and self.walks.is_counted(loop) and not self._may_be_endless(loop)

@@ -31,7 +31,7 @@ class _Lowering:
         self.flow, self.profile = self.context.flow, profile
         self.steps = select(self.context)
         self.allocation = allocate(self.context, self.steps)
-        empty = set(self.context.bit_counts) | {label for label in self.flow.blocks if self._is_empty(label)}
+        empty = set(self.context.replaced) | {label for label in self.flow.blocks if self._is_empty(label)}
         copies = {
             edge: [self._charge(step) for step in steps] for edge, steps in self.allocation.on_edges.items()
         }
@@ -125,7 +125,7 @@ class _Lowering:
 
     def _loops(self, block: Block, cost: BlockCost) -> None:
         for loop in self.flow.loops:
-            if loop.header not in self.context.needs.counted or loop.header in self.context.bit_counts:
+            if loop.header not in self.context.needs.counted or loop.header in self.context.replaced:
                 continue
             line = self.flow.blocks[loop.header].instructions[-1].line
             line = self.flow.blocks[loop.latch].terminator.line or line
@@ -141,7 +141,7 @@ class _Lowering:
 
     def _leave_block(self, block: Block, cost: BlockCost) -> None:
         terminator, label = block.terminator, block.label
-        if label in self.context.bit_counts:
+        if label in self.context.replaced:
             return
         if terminator.opcode == "ret":
             self._return(cost, terminator.line)

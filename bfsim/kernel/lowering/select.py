@@ -32,8 +32,10 @@ def select(context: Context) -> Steps:
     for loop in context.bit_counts.values():
         line = context.flow.blocks[loop.header].instructions[-1].line
         selector.steps.add(context.flow.entering(loop), Step(Op.ALU, line, None, DATA))
+    for loop in context.fills.values():
+        selector.fill(loop)
     for label in context.flow.order:
-        if label in context.bit_counts:
+        if label in context.replaced:
             continue
         for each in context.flow.blocks[label].instructions:
             if context.needs.emits(each):
@@ -105,6 +107,8 @@ class _Selector(Calls):
     def pointers(self) -> None:
         """Set up the pointers that walk, and step those for which no post-increment does."""
         for group in self.context.groups.all:
+            if group.loop.header in self.context.fills:
+                continue
             line = group.line
             entering, latch = self.flow.entering(group.loop), group.loop.latch
             start = Step(Op.MOVE, line, group.name, POINTER, ((group.root, ANY),))

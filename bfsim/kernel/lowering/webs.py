@@ -30,7 +30,7 @@ class Webs:
     def _phis(self) -> dict[str, list[tuple[str, str]]]:
         found: dict[str, list[tuple[str, str]]] = {}
         for block in self.flow.routine.blocks:
-            if block.label in self.context.bit_counts:
+            if block.label in self.context.replaced:
                 continue
             for each in block.instructions:
                 if (
