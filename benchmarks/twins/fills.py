@@ -78,6 +78,31 @@ def span_fill(image: u8[:], w: i32, h: i32, x: i32, y: i32, stack: i16[:]) -> i3
 
 
 @kernel
+def paint_runs(image: u8[:], w: i32, h: i32, ends: i16[:]) -> i32:
+    painted = 0
+    for y in range(1, h):
+        row = y * w
+        x = 0
+        n = 0
+        while x < w:
+            start = x
+            while x < w and image[row + x] == 0:
+                x += 1
+            touched = 0
+            for i in range(start, x):
+                if image[row - w + i] == 2:
+                    touched = 1
+            if touched != 0:
+                for i in range(start, x):
+                    image[row + i] = 2
+                ends[n] = x
+                n += 1
+                painted += x - start
+            x += 1
+    return painted
+
+
+@kernel
 def union_by_size(a: u8[:], b: u8[:], n: i32, parent: i32[:], size: i32[:], nodes: i32) -> i32:
     largest = 1
     for i in range(nodes):
@@ -117,6 +142,13 @@ def play_span(lcg: Lcg, run: Run) -> tuple[Array, ...]:
     return image, word(deepest)
 
 
+def play_runs(lcg: Lcg, run: Run) -> tuple[Array, ...]:
+    image = np.array([lcg.u8() < 80 for _ in range(48 * 24)], np.uint8)
+    image[:48] = 2
+    painted = run(image, 48, 24, np.zeros(48, np.int16))
+    return image, word(painted)
+
+
 def play_union(lcg: Lcg, run: Run) -> tuple[Array, ...]:
     a, b = lcg.bytes(200), lcg.bytes(200)
     parent, size = np.zeros(256, np.int32), np.zeros(256, np.int32)
@@ -127,5 +159,6 @@ def play_union(lcg: Lcg, run: Run) -> tuple[Array, ...]:
 CASES = (
     Case(fill_stack, 1206, play_fill),
     Case(span_fill, 1226, play_span),
+    Case(paint_runs, 1244, play_runs),
     Case(union_by_size, 1209, play_union),
 )

@@ -107,6 +107,35 @@ def window_sums(src: u8[:], column: u16[:], dst: u16[:], w: i32, h: i32, size: i
                 dst[y * w + x] = total
 
 
+@kernel
+def laplace_abs(src: u8[:], dst: u8[:], w: i32, h: i32, gain: i32) -> i32:
+    cut = 0
+    for y in range(1, h - 1):
+        for x in range(1, w - 1):
+            p = y * w + x
+            d = 4 * src[p] - src[p - 1] - src[p + 1] - src[p - w] - src[p + w]
+            if d < 0:
+                d = -d
+            d = d * gain
+            if d > 255:
+                dst[p] = 255
+                cut += 1
+            else:
+                dst[p] = d
+    return cut
+
+
+@kernel
+def column_means(src: u8[:], sums: u16[:], dst: u8[:], w: i32, h: i32, shift: i32) -> None:
+    rows = 1 << shift
+    for y in range(h):
+        for x in range(w):
+            sums[x] += src[y * w + x]
+            if y >= rows:
+                sums[x] -= src[(y - rows) * w + x]
+                dst[y * w + x] = sums[x] >> shift
+
+
 def play_transpose(lcg: Lcg, run: Run) -> tuple[Array, ...]:
     dst = np.zeros(48 * 32, np.uint8)
     run(lcg.bytes(48 * 32), dst, 48, 32)
@@ -131,6 +160,18 @@ def play_stretch(lcg: Lcg, run: Run) -> tuple[Array, ...]:
     return (image,)
 
 
+def play_laplace(lcg: Lcg, run: Run) -> tuple[Array, ...]:
+    dst = np.zeros(40 * 20, np.uint8)
+    cut = run(lcg.bytes(40 * 20), dst, 40, 20, 1)
+    return dst, word(cut)
+
+
+def play_columns(lcg: Lcg, run: Run) -> tuple[Array, ...]:
+    dst = np.zeros(50 * 16, np.uint8)
+    run(lcg.bytes(50 * 16), np.zeros(50, np.uint16), dst, 50, 16, 2)
+    return (dst,)
+
+
 def play_windows(lcg: Lcg, run: Run) -> tuple[Array, ...]:
     dst = np.zeros(60 * 16, np.uint16)
     run(lcg.bytes(60 * 16), np.zeros(60, np.uint16), dst, 60, 16, 5)
@@ -141,6 +182,8 @@ CASES = (
     Case(transpose_u8, 1203, play_transpose),
     Case(box3x3, 1205, play_box),
     Case(sobel_binary, 1225, play_sobel),
+    Case(laplace_abs, 1245, play_laplace),
+    Case(column_means, 1242, play_columns),
     Case(stretch, 1227, play_stretch),
     Case(window_sums, 1228, play_windows),
 )

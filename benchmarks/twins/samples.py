@@ -42,6 +42,20 @@ def goertzel(samples: i16[:], n: i32, coefficient: i16[:], power: i32[:], m: i32
 
 
 @kernel
+def resonators(samples: i16[:], n: i32, a1: i16[:], a2: i16[:], out: i32[:], m: i32) -> None:
+    for k in range(m):
+        y1 = 0
+        y2 = 0
+        total = 0
+        for i in range(n):
+            y = samples[i] + ((a1[k] * y1 - a2[k] * y2) >> 12)
+            total += -y if y < 0 else y
+            y2 = y1
+            y1 = y
+        out[k] = total
+
+
+@kernel
 def sine_lerp(angle: u16[:], quarter: i16[:], out: i16[:], n: i32) -> None:
     for i in range(n):
         a = angle[i]
@@ -102,6 +116,13 @@ def play_goertzel(lcg: Lcg, run: Run) -> tuple[Array, ...]:
     return (power,)
 
 
+def play_resonators(lcg: Lcg, run: Run) -> tuple[Array, ...]:
+    samples, a1, a2 = lcg.scaled(60, 2000, -1000), lcg.scaled(6, 6000, -3000), lcg.scaled(6, 3000)
+    out = np.zeros(6, np.int32)
+    run(samples, 60, a1, a2, out, 6)
+    return (out,)
+
+
 def play_sine(lcg: Lcg, run: Run) -> tuple[Array, ...]:
     angle = np.array([lcg.u16() for _ in range(500)], np.uint16)
     out = np.zeros(500, np.int16)
@@ -127,6 +148,7 @@ def play_affine(lcg: Lcg, run: Run) -> tuple[Array, ...]:
 CASES = (
     Case(iir_lowpass, 1204, play_iir),
     Case(goertzel, 1224, play_goertzel),
+    Case(resonators, 1241, play_resonators),
     Case(sine_lerp, 1208, play_sine),
     Case(atan2_table, 1229, play_atan),
     Case(affine_points, 1223, play_affine),

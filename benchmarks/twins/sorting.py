@@ -76,6 +76,20 @@ def find_pattern(text: u8[:], n: i32, pattern: u8[:], m: i32, place: u16[:]) -> 
     return found
 
 
+@kernel
+def count_words(text: u8[:], n: i32, words: u8[:], m: i32, length: i32, count: i32[:]) -> None:
+    for k in range(m):
+        hits = 0
+        for i in range(n - length + 1):
+            same = 1
+            for j in range(length):
+                if text[i + j] != words[k * length + j]:
+                    same = 0
+                    break
+            hits += same
+        count[k] = hits
+
+
 def play_selection(lcg: Lcg, run: Run) -> tuple[Array, ...]:
     a = np.array([lcg.u16() - 32768 for _ in range(120)], np.int32)
     run(a, 120)
@@ -102,7 +116,15 @@ def play_pattern(lcg: Lcg, run: Run) -> tuple[Array, ...]:
     return place, word(found)
 
 
+def play_words(lcg: Lcg, run: Run) -> tuple[Array, ...]:
+    text, words = lcg.scaled(300, 4, 97, "u1"), lcg.scaled(8, 4, 97, "u1")
+    count = np.zeros(4, np.int32)
+    run(text, 300, words, 4, 2, count)
+    return (count,)
+
+
 CASES = (
+    Case(count_words, 1243, play_words),
     Case(selection_sort, 1201, play_selection),
     Case(merge_sort, 1221, play_merge),
     Case(lower_bound, 1210, play_bound),
