@@ -49,6 +49,16 @@ class Context:
         """The branchless `if` that computes a phi."""
         return self._shape_by_phi.get(phi.result or "")
 
+    def others(self, phi: Instruction) -> list[tuple[str, str]]:
+        """Arms of a phi that come from elsewhere than from the branchless `if` that computes it."""
+        shape = self.shape_of(phi)
+        own = {shape.label, *shape.arms} if shape else set()
+        return [(value, label) for value, label in self.arms(phi) if label not in own]
+
+    def shaped(self, phi: Instruction) -> str:
+        """Name of what a branchless `if` computes: a value of its own where other ways lead to the phi as well."""
+        return f"{phi.result}.shaped" if self.others(phi) else phi.result or ""
+
     def is_alias(self, each: Instruction) -> bool:
         """Whether an instruction only renames a register: widening what a load has extended already, or narrowing."""
         if each.opcode in ("trunc", "freeze"):

@@ -51,6 +51,8 @@ class _Lowering:
         """A counted loop, at most two deep, with an operation before its end [GCC: hwloop_optimize in bfin.cc]."""
         if loop.header not in self.context.needs.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
             return False
+        if (loop.latch, loop.header) in self.allocation.on_edges:
+            return False  # values move from turn to turn in a block of its own: the last one jumps
         before = [
             each
             for each in self.flow.predecessors[loop.latch]
@@ -202,7 +204,8 @@ class _Lowering:
         ways = self.flow.blocks[label].successors
         out = ways[0] if ways[0] not in loop.blocks else ways[1]
         leaving = leaving + self.layout.on(label, out, line)
-        again = again + self.layout.copies.get((label, loop.header), [])
+        if moves := self.layout.copies.get((label, loop.header), []):
+            again = [*again, *moves, charge(Op.JUMP, line)]
         return (again, leaving) if ways[0] == loop.header else (leaving, again)
 
     def _switch(self, block: Block, cost: BlockCost) -> None:

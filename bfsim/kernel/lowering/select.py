@@ -271,17 +271,18 @@ class _Selector(Calls):
         """An `if` without a branch: its operation stands in the block that tests."""
         shape = self.context.shape_of(each)
         assert shape is not None
+        result = self.context.shaped(each)
         if shape.kind is Kind.ABSOLUTE:
-            self.step(Op.DSP_ALU, each, each.result, DATA, (shape.operands[0], DATA))
+            self.step(Op.DSP_ALU, each, result, DATA, (shape.operands[0], DATA))
             if self.context.needs.is_short(shape.operands[0]):
-                self.step(Op.EXTEND, each, each.result, DATA, (each.result or "", DATA))
+                self.step(Op.EXTEND, each, result, DATA, (result, DATA))
         elif shape.kind is Kind.EXTREME:
-            self.step(Op.DSP_ALU, each, each.result, DATA, *((value, DATA) for value in shape.operands))
+            self.step(Op.DSP_ALU, each, result, DATA, *((value, DATA) for value in shape.operands))
         elif shape.kind is Kind.FLAG:
-            self.step(Op.CC_MOVE, each, each.result, DATA)
+            self.step(Op.CC_MOVE, each, result, DATA)
         else:
             uses = tuple((value, ANY) for value in shape.operands)
-            self.step(Op.COND_MOVE, each, each.result, ANY, *uses, overwrites=shape.operands[1:])
+            self.step(Op.COND_MOVE, each, result, ANY, *uses, overwrites=shape.operands[1:])
 
 
 def _is_single_bit(opcode: str, mask: int) -> bool:

@@ -33,17 +33,19 @@ class Webs:
             if block.label in self.context.replaced:
                 continue
             for each in block.instructions:
+                shape = self.context.shape_of(each)
                 if (
                     each.opcode == "phi"
                     and not is_merged_pointer(each)
                     and self.context.needs.emits(each)
-                    and self.context.shape_of(each) is None
+                    and (shape is None or self.context.others(each))
                 ):
+                    arms = self.context.others(each)
                     found[each.result or ""] = [
-                        (self.context.name(value), label)
-                        for value, label in self.context.arms(each)
-                        if value != "poison"
+                        (self.context.name(value), label) for value, label in arms if value != "poison"
                     ]
+                    if shape is not None:
+                        found[each.result or ""].append((self.context.shaped(each), shape.label))
         return found
 
     def analyse(self) -> None:
