@@ -109,6 +109,8 @@ class Needs(Folding):
             return () if self.flags.decides(each) or self._is_guard(each) else self._of_branch(each)
         if each.opcode == "icmp":
             return self._of_compare(each)
+        if (other := self.added_flag(each)) is not None:
+            return (other,)
         if each.opcode in ("select", "and", "or") and each.bits == 1:
             counting = {self.walks.exit_test(loop) for loop in self.flow.loops if loop.header in self.counted}
             return tuple(operand for operand in each.operands if operand not in counting)

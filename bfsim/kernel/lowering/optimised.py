@@ -58,10 +58,17 @@ class _Lowering:
             for each in self.flow.predecessors[loop.latch]
             if not self.flow.is_overflow_guard(self.flow.blocks[each])
         ]
-        copied = any(len(inner.blocks & set(before)) > 1 for inner in loop.inner)
+        copied = any(self._ends_apart(inner, before) for inner in loop.inner)
         if copied and self.profile.applies(Learnt.COPIED_END):
             return False  # the end of the loop is copied behind each exit of the inner one, so there are two ends
         return bool(self.steps.of[loop.latch]) or len(before) == 1
+
+    def _ends_apart(self, inner: Loop, before: list[str]) -> bool:
+        """Whether the exits of an inner loop do not meet at once: one of them has a move to make."""
+        ends = inner.blocks & set(before)
+        return len(ends) > 1 and any(
+            label in ends and way not in inner.blocks for label, way in self.allocation.on_edges
+        )
 
     def _counted_depth(self, loop: Loop) -> int:
         own = int(loop.header in self.context.needs.counted)
