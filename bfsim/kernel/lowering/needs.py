@@ -65,12 +65,20 @@ class Needs(Folding):
         """With several exits, the pointer that walks is compared for equality with its end.
 
         GCC counts such turns only if the pointer is sure to meet the end: steps of one byte, or a fixed start
-        ["possible infinite iteration case" in loop-doloop.cc of GCC 12].
+        ["possible infinite iteration case" in loop-doloop.cc of GCC 12]. Nor does it count `i <= n`, which may always hold.
         """
         if len(self.flow.exits(loop)) < 2:
             return False
+        if self._is_inclusive(loop):
+            return True
         wide = any(group.loop is loop and abs(group.advance.constant) > 1 for group in self.groups.all)
         return wide and not self.walks.starts_fixed(loop)
+
+    def _is_inclusive(self, loop: Loop) -> bool:
+        """Whether a loop runs up to `stop + 1`, which C writes as `<= stop`."""
+        test = self.flow.instruction(self.walks.exit_test(loop) or "")
+        bound = self.flow.instruction(test.operands[1]) if test is not None else None
+        return bound is not None and bound.opcode == "add" and bound.operands[1] == "1"
 
     def emits(self, each: Instruction) -> bool:
         """Whether `each` becomes operations."""
