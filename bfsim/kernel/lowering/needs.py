@@ -71,6 +71,8 @@ class Needs(Folding):
             return False
         if self._is_inclusive(loop):
             return True
+        if self.flow.is_split(loop):
+            return not self._steps_by_one(loop)
         wide = any(group.loop is loop and abs(group.advance.constant) > 1 for group in self.groups.all)
         return wide and not self.walks.starts_fixed(loop)
 
@@ -79,6 +81,11 @@ class Needs(Folding):
         test = self.flow.instruction(self.walks.exit_test(loop) or "")
         bound = self.flow.instruction(test.operands[1]) if test is not None else None
         return bound is not None and bound.opcode == "add" and bound.operands[1] == "1"
+
+    def _steps_by_one(self, loop: Loop) -> bool:
+        test = self.flow.instruction(self.walks.exit_test(loop) or "")
+        gain = self.walks.advance(test.operands[0], loop) if test is not None else None
+        return gain is not None and abs(gain.constant) == 1 and not gain.symbolic
 
     def emits(self, each: Instruction) -> bool:
         """Whether `each` becomes operations."""
@@ -134,7 +141,7 @@ class Needs(Folding):
         """The test of a loop that a counter ends is not made, nor that of a minimum or an absolute value."""
         label = next(block.label for block in self.flow.routine.blocks if block.terminator is each)
         for loop in self.flow.loops:
-            if loop.latch == label and loop.header in self.counted:
+            if self.flow.ending(loop) == label and loop.header in self.counted:
                 return tuple(operand for operand in each.operands if operand != self.walks.exit_test(loop))
         shape = self.shapes.by_label.get(label)
         if shape is not None and shape.kind in (Kind.ABSOLUTE, Kind.EXTREME):

@@ -51,7 +51,7 @@ class _Lowering:
         """A counted loop, at most two deep, with an operation before its end [GCC: hwloop_optimize in bfin.cc]."""
         if loop.header not in self.context.needs.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
             return False
-        if (loop.latch, loop.header) in self.allocation.on_edges:
+        if self.flow.is_split(loop) or (loop.latch, loop.header) in self.allocation.on_edges:
             return False  # values move from turn to turn in a block of its own: the last one jumps
         before = [
             each
@@ -197,7 +197,7 @@ class _Lowering:
             (
                 each
                 for each in self.flow.loops
-                if each.latch == label and each.header in self.context.needs.counted
+                if self.flow.ending(each) == label and each.header in self.context.needs.counted
             ),
             None,
         )
@@ -211,9 +211,10 @@ class _Lowering:
         ways = self.flow.blocks[label].successors
         out = ways[0] if ways[0] not in loop.blocks else ways[1]
         leaving = leaving + self.layout.on(label, out, line)
-        if moves := self.layout.copies.get((label, loop.header), []):
+        stays = ways[0] if out == ways[1] else ways[1]
+        if moves := self.layout.copies.get((label, stays), []):
             again = [*again, *moves, charge(Op.JUMP, line)]
-        return (again, leaving) if ways[0] == loop.header else (leaving, again)
+        return (again, leaving) if ways[0] == stays else (leaving, again)
 
     def _switch(self, block: Block, cost: BlockCost) -> None:
         """A chain of comparisons and branches, in the order of the cases."""

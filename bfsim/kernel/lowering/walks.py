@@ -176,9 +176,9 @@ class Walks:
         return all(value.lstrip("-").isdigit() for value in starts)
 
     def exit_test(self, loop: Loop) -> str | None:
-        """Return the condition at the end of `loop`, if that is where it leaves; of two joined ones, the one that counts."""
-        terminator = self.flow.blocks[loop.latch].terminator
-        leaves = set(self.flow.blocks[loop.latch].successors) - loop.blocks
+        """Return the condition that ends `loop`, if its last block has it; of two joined ones, the one that counts."""
+        ending = self.flow.blocks[self.flow.ending(loop)]
+        terminator, leaves = ending.terminator, set(ending.successors) - loop.blocks
         if not leaves or terminator.opcode != "br":
             return None
         test = self.flow.instruction(terminator.operands[0])
