@@ -105,7 +105,7 @@ LIBGCC = Library(
     remainder_signed=Routine(
         216, (*DIV_MIX, (Op.PUSH, 3), (Op.POP, 3), (Op.MUL32, 1), (Op.ALU, 1), (Op.CALL, 1), (Op.RETURN, 1))
     ),
-    fill=Fill(110, 3),  # [libgcc] memset of newlib, by length: 16 bytes 114, 256 bytes 189, 2000 bytes 734 cycles; up to 15 more unaligned
+    fill=Fill(90, 3),   # [libgcc] memset of newlib, by length: 1 byte 59, 16 bytes 114, 256 bytes 189, 2000 bytes 734 cycles; up to 15 more unaligned
 )  # fmt: skip
 ADI = Library(
     divide_signed=Routine(47),       # [VLIB] ___div32: 25 to 91 cycles with the call, 52 on average

@@ -11,6 +11,7 @@ from bfsim.kernel.lowering.charges import BlockCost, Charge, Test, charge, inste
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.interlocks import Issue, issues
 from bfsim.kernel.lowering.layout import Layout
+from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.registers import Allocation, allocate
 from bfsim.kernel.lowering.select import select
 from bfsim.kernel.lowering.steps import Step
@@ -21,6 +22,7 @@ ALONE = Issue()
 
 def lower(routine: Routine, profile: CompilerProfile) -> dict[str, BlockCost]:
     """Return what each block of `routine` costs, by label."""
+    routine = without_redundant_loads(routine)
     lowering = _Lowering(routine, profile)
     return {block.label: lowering.block(block) for block in routine.blocks}
 
