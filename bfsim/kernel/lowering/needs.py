@@ -15,6 +15,7 @@ from bfsim.kernel.loops import Flow, Loop
 from bfsim.kernel.lowering.flags import Flags
 from bfsim.kernel.lowering.folding import NARROW, Folding
 from bfsim.kernel.lowering.groups import Groups
+from bfsim.kernel.lowering.redundant import AGAIN
 from bfsim.kernel.lowering.shapes import Kind, Shapes
 from bfsim.kernel.lowering.walks import Walks
 from bfsim.kernel.profile import CompilerProfile
@@ -115,7 +116,8 @@ class Needs(Folding):
         return needed
 
     def _is_root(self, each: Instruction) -> bool:
-        return each.opcode in ("store", "br", "switch", "ret") or each.is_call
+        along = (each.result or "").endswith(AGAIN)
+        return each.opcode in ("store", "br", "switch", "ret") or each.is_call or along
 
     def _really_used(self, each: Instruction) -> tuple[str, ...]:
         if each.opcode in ("load", "store") and id(each) in self.groups.of:

@@ -12,6 +12,8 @@ from dataclasses import dataclass, replace
 from bfsim.kernel.ir_text import PHI_ARM, Block, Instruction, Routine
 from bfsim.kernel.loops import Flow, Loop
 
+AGAIN = ".again"  # ending of the name of an address that is only computed to go along
+
 
 @dataclass(frozen=True, slots=True)
 class Carried:
@@ -101,7 +103,33 @@ def _moved(flow: Flow, routine: Routine, carried: Carried) -> Routine:
         if block.label == loop.header:
             rows.insert(0, here)
         blocks.append(Block(block.label, tuple(rows)))
+    return _with_addresses(flow, replace(routine, blocks=tuple(blocks)), carried)
+
+
+def _with_addresses(flow: Flow, routine: Routine, carried: Carried) -> Routine:
+    """Where the element is wanted behind the loop, its address goes along: computed again on the ways that keep it."""
+    kept = {label for label, value in carried.values.items() if value == carried.load.result}
+    alone = all(len(set(flow.blocks[label].successors)) == 1 for label in kept)
+    if not alone or not _is_wanted_behind(flow, carried):
+        return routine
+    again = replace(carried.address, result=f"{carried.load.result}{AGAIN}")
+    blocks = [
+        Block(block.label, (again, *block.instructions)) if block.label in kept else block
+        for block in routine.blocks
+    ]
     return replace(routine, blocks=tuple(blocks))
+
+
+def _is_wanted_behind(flow: Flow, carried: Carried) -> bool:
+    """Whether the element that was chosen last is accessed behind the loop."""
+    array = carried.address.operands[:-1]
+    chosen = [
+        user.result
+        for user in flow.users.get(carried.merged.result or "", [])
+        if user.opcode == "phi" and flow.defined[user.result or ""][0] not in carried.loop.blocks
+    ]
+    users = (each for name in chosen for each in flow.users.get(name or "", []))
+    return any(each.opcode == "getelementptr" and each.operands[:-1] == array for each in users)
 
 
 def _phi(load: Instruction, result: str, kind: str, arms: dict[str, str]) -> Instruction:
