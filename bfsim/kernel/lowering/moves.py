@@ -10,7 +10,6 @@ from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.steps import Bank, Step
 from bfsim.kernel.lowering.webs import Webs
 
-
 DECLARED = re.compile(r"\.v(\d+)")
 LAST = 1 << 16
 
@@ -179,12 +178,11 @@ def _declared(phi: str) -> int:
 
 def _is_circular(copies: dict[str, str]) -> bool:
     """Whether a value that is copied ends up where another one came from, all the way round."""
-    for start in copies:
-        name = copies[start]
-        while name in copies and name != start:
-            name, seen = copies[name], name
-            if name == seen:
-                break
+    for start, source in copies.items():
+        name, seen = source, {start}
+        while name in copies and name not in seen:
+            seen.add(name)
+            name = copies[name]
         if name == start:
             return True
     return False

@@ -76,7 +76,7 @@ def _moved(flow: Flow, routine: Routine, carried: Carried) -> Routine:
     load, loop = carried.load, carried.loop
     first, following, address = (f"{load.result}.{name}" for name in ("first", "following", "address"))
     entering = flow.entering(loop)
-    arms = dict((label[1:], value) for value, label in PHI_ARM.findall(carried.index.text))
+    arms = {label[1:]: value for value, label in PHI_ARM.findall(carried.index.text)}
     kind = f"i{load.bits}"
     start = replace(
         carried.address,

@@ -141,8 +141,8 @@ class _Selector(Calls):
             self.step(Op.ADD_SHIFT, each, each.result, POINTER, (other, POINTER), (shifted, POINTER))
             return
         left, right = each.operands[:2]
-        if (other := self.context.needs.added_flag(each)) is not None:
-            self.step(Op.ALU, each, each.result, ANY, (other, ANY))
+        if (total := self.context.needs.added_flag(each)) is not None:
+            self.step(Op.ALU, each, each.result, ANY, (total, ANY))
             return
         if self.context.needs.narrowed(each):
             self.step(Op.MOVE, each, None, DATA)
