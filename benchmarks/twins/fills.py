@@ -103,6 +103,22 @@ def paint_runs(image: u8[:], w: i32, h: i32, ends: i16[:]) -> i32:
 
 
 @kernel
+def left_edges(
+    image: u8[:], w: i32, px: u8[:], py: u8[:], n: i32, level: i32, left: u8[:], width: u8[:]
+) -> None:
+    for i in range(n):
+        row = py[i] * w
+        a = px[i]
+        b = a
+        while a > 0 and image[row + a - 1] < level:
+            a -= 1
+        while b < w - 1 and image[row + b + 1] < level:
+            b += 1
+        left[i] = a
+        width[i] = b - a + 1
+
+
+@kernel
 def union_by_size(a: u8[:], b: u8[:], n: i32, parent: i32[:], size: i32[:], nodes: i32) -> i32:
     largest = 1
     for i in range(nodes):
@@ -149,6 +165,13 @@ def play_runs(lcg: Lcg, run: Run) -> tuple[Array, ...]:
     return image, word(painted)
 
 
+def play_edges(lcg: Lcg, run: Run) -> tuple[Array, ...]:
+    image, px, py = lcg.bytes(64 * 16), lcg.scaled(100, 64, kind="u1"), lcg.scaled(100, 16, kind="u1")
+    left, width = np.zeros(100, np.uint8), np.zeros(100, np.uint8)
+    run(image, 64, px, py, 100, 220, left, width)
+    return left, width
+
+
 def play_union(lcg: Lcg, run: Run) -> tuple[Array, ...]:
     a, b = lcg.bytes(200), lcg.bytes(200)
     parent, size = np.zeros(256, np.int32), np.zeros(256, np.int32)
@@ -160,5 +183,6 @@ CASES = (
     Case(fill_stack, 1206, play_fill),
     Case(span_fill, 1226, play_span),
     Case(paint_runs, 1244, play_runs),
+    Case(left_edges, 1247, play_edges),
     Case(union_by_size, 1209, play_union),
 )

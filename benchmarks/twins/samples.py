@@ -56,6 +56,17 @@ def resonators(samples: i16[:], n: i32, a1: i16[:], a2: i16[:], out: i32[:], m: 
 
 
 @kernel
+def moving_sum(src: i16[:], dst: i32[:], w: i32, h: i32, size: i32) -> None:
+    for y in range(h):
+        total = 0
+        for x in range(w):
+            total += src[y * w + x]
+            if x >= size:
+                total -= src[y * w + x - size]
+            dst[y * w + x] = total
+
+
+@kernel
 def sine_lerp(angle: u16[:], quarter: i16[:], out: i16[:], n: i32) -> None:
     for i in range(n):
         a = angle[i]
@@ -123,6 +134,12 @@ def play_resonators(lcg: Lcg, run: Run) -> tuple[Array, ...]:
     return (out,)
 
 
+def play_moving(lcg: Lcg, run: Run) -> tuple[Array, ...]:
+    dst = np.zeros(600, np.int32)
+    run(lcg.scaled(600, 2000, -1000), dst, 60, 10, 7)
+    return (dst,)
+
+
 def play_sine(lcg: Lcg, run: Run) -> tuple[Array, ...]:
     angle = np.array([lcg.u16() for _ in range(500)], np.uint16)
     out = np.zeros(500, np.int16)
@@ -149,6 +166,7 @@ CASES = (
     Case(iir_lowpass, 1204, play_iir),
     Case(goertzel, 1224, play_goertzel),
     Case(resonators, 1241, play_resonators),
+    Case(moving_sum, 1246, play_moving),
     Case(sine_lerp, 1208, play_sine),
     Case(atan2_table, 1229, play_atan),
     Case(affine_points, 1223, play_affine),
