@@ -113,6 +113,10 @@ class _Selector(Calls):
             entering, latch = self.flow.entering(group.loop), group.loop.latch
             start = Step(Op.MOVE, line, group.name, POINTER, ((group.root, ANY),))
             self.steps.add(entering, start)
+            for name, times in group.start:
+                op = Op.ALU if abs(times) == 1 else Op.ADD_SHIFT
+                uses = ((group.name, POINTER), (self.context.name(name), POINTER))
+                self.steps.add(entering, Step(op, line, group.name, POINTER, uses))
             if group.offset_apart:
                 self.steps.add(entering, Step(Op.ALU, line, group.name, POINTER, ((group.name, POINTER),)))
             if not group.steps_free:
