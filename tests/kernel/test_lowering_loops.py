@@ -138,6 +138,28 @@ def test_what_is_reloaded_for_a_product_is_not_copied_first(tmp_path: Path) -> N
     assert many[Op.MOVE] < few[Op.MOVE] + 9  # nine products more, and not a move for each
 
 
+@pytest.mark.parametrize(
+    ("other", "operations"), [("elif x > 255:\n        x = 255", 2), ("elif x > 255:\n        x = y", 0)]
+)
+def test_cutting_to_a_range_is_a_minimum_and_a_maximum(other: str, operations: int, tmp_path: Path) -> None:
+    """`if x < 0: x = 0`, `elif x > 255: x = 255` has no branch; with another value than the bound it has."""
+    found = lowered(
+        f"def f(x: i32, y: i32) -> i32:\n    if x < 0:\n        x = 0\n    {other}\n    return x\n", tmp_path
+    )
+    assert found[Op.DSP_ALU] == operations
+    assert (Op.COMPARE in found) is (operations == 0)
+
+
+@pytest.mark.parametrize(("first", "products"), [("rows[i] * n", 1), ("i * n", 0)])
+def test_a_first_address_that_depends_on_data_is_computed(first: str, products: int, tmp_path: Path) -> None:
+    """A counter of the loop around steps the address along; what is loaded has to be multiplied."""
+    text = (
+        "def f(a: u8[:], rows: u8[:], n: i32) -> i32:\n    s = 0\n    for i in range(n):\n"
+        f"        row = {first}\n        for j in range(n):\n            s += a[row + j]\n    return s\n"
+    )
+    assert lowered(text, tmp_path)[Op.MUL32] == products
+
+
 def test_the_cache_depends_on_the_lowering() -> None:
     """A rule of the lowering that changes must not meet kernels that were costed without it."""
     assert {"select.py", "store.py"} <= {path.name for path in store.sources()}

@@ -87,11 +87,7 @@ class Groups:
         if around is None:
             return ()
         terms = [(self._entering_value(name, loop), times) for name, times in form.terms if name != root]
-        return tuple(
-            (name, times)
-            for name, times in terms
-            if self._is_loaded(name, around)
-        )
+        return tuple((name, times) for name, times in terms if self._is_loaded(name, around))
 
     def _is_loaded(self, name: str, around: Loop, depth: int = 4) -> bool:
         """Whether a value is computed from one that the loop around loads in each turn."""
@@ -100,7 +96,9 @@ class Groups:
             return False
         if each.opcode == "load":
             return not self.walks.places.is_invariant(name, around)
-        return each.opcode != "phi" and any(self._is_loaded(value, around, depth - 1) for value in each.operands)
+        return each.opcode != "phi" and any(
+            self._is_loaded(value, around, depth - 1) for value in each.operands
+        )
 
     def _entering_value(self, name: str, loop: Loop) -> str:
         """What a term is in the first turn of `loop`."""

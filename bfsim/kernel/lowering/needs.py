@@ -146,7 +146,7 @@ class Needs(Folding):
             if self.flow.ending(loop) == label and loop.header in self.counted:
                 return tuple(operand for operand in each.operands if operand != self.walks.exit_test(loop))
         shape = self.shapes.by_label.get(label)
-        if shape is not None and shape.kind in (Kind.ABSOLUTE, Kind.EXTREME):
+        if shape is not None and shape.kind in (Kind.ABSOLUTE, Kind.EXTREME, Kind.CLAMP):
             return ()
         return each.operands
 

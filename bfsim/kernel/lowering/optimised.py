@@ -152,7 +152,9 @@ class _Lowering:
 
     def _leave_block(self, block: Block, cost: BlockCost) -> None:
         terminator, label = block.terminator, block.label
-        if label in self.context.replaced:
+        if label in self.context.replaced or (
+            label in self.context.shapes.gone and len(set(block.successors)) > 1
+        ):
             return
         if terminator.opcode == "ret":
             self._return(cost, terminator.line)
@@ -163,7 +165,7 @@ class _Lowering:
                 cost.charges += self.layout.on(label, block.successors[0], terminator.line)
         elif terminator.opcode == "br" and label in self.context.shapes.by_label:
             arms = self.context.shapes.by_label[label].arms
-            join = self.flow.blocks[next(iter(arms))].successors[0]
+            join = next(way for arm in arms for way in self.flow.blocks[arm].successors if way not in arms)
             cost.charges += self.layout.jump(label, self.layout.landing(join), terminator.line)
         elif terminator.opcode == "br":
             self._conditional(block, cost)

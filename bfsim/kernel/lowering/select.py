@@ -285,6 +285,10 @@ class _Selector(Calls):
                 self.step(Op.EXTEND, each, result, DATA, (result, DATA))
         elif shape.kind is Kind.EXTREME:
             self.step(Op.DSP_ALU, each, result, DATA, *((value, DATA) for value in shape.operands))
+        elif shape.kind is Kind.CLAMP:
+            *inner, bound = shape.operands
+            self.step(Op.DSP_ALU, each, f"{result}.inner", DATA, *((value, DATA) for value in inner))
+            self.step(Op.DSP_ALU, each, result, DATA, (f"{result}.inner", DATA), (bound, DATA))
         elif shape.kind is Kind.FLAG:
             self.step(Op.CC_MOVE, each, result, DATA)
         else:
