@@ -7,7 +7,7 @@ from functools import cached_property
 from bfsim.kernel.ir_text import PHI_ARM, Instruction, Routine
 from bfsim.kernel.loops import Flow
 from bfsim.kernel.lowering.flags import Flags
-from bfsim.kernel.lowering.groups import Groups
+from bfsim.kernel.lowering.groups import HIDDEN, Groups
 from bfsim.kernel.lowering.idioms import bit_counting_loops, filling_loops
 from bfsim.kernel.lowering.needs import Needs
 from bfsim.kernel.lowering.places import Places
@@ -15,8 +15,6 @@ from bfsim.kernel.lowering.predict import Likelihood
 from bfsim.kernel.lowering.shapes import Shape, Shapes
 from bfsim.kernel.lowering.walks import Walks
 from bfsim.kernel.profile import CompilerProfile
-
-HIDDEN = ".len"  # every array comes with its length, which C code would not pass
 
 
 class Context:

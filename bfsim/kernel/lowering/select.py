@@ -115,8 +115,8 @@ class _Selector(Calls):
             self.steps.add(entering, start)
             for name, times in group.start:
                 op = Op.ALU if abs(times) == 1 else Op.ADD_SHIFT
-                uses = ((group.name, POINTER), (self.context.name(name), POINTER))
-                self.steps.add(entering, Step(op, line, group.name, POINTER, uses))
+                terms = ((group.name, POINTER), (self.context.name(name), POINTER))
+                self.steps.add(entering, Step(op, line, group.name, POINTER, terms))
             if group.offset_apart:
                 self.steps.add(entering, Step(Op.ALU, line, group.name, POINTER, ((group.name, POINTER),)))
             if not group.steps_free:
