@@ -5,7 +5,9 @@ from __future__ import annotations
 from benchmarks.twins import (
     angles,
     bits,
+    codes,
     drawing,
+    fills,
     filters,
     grids,
     heaps,
@@ -15,17 +17,20 @@ from benchmarks.twins import (
     lookups,
     ordering,
     patches,
+    pictures,
     pixels,
     regions,
     rows,
+    samples,
     signals,
+    sorting,
     tables,
     text,
     words,
 )
 
 SUBJECTS = (
-    *(angles, bits, drawing, filters, grids, heaps, integers, labels, lines, lookups),
-    *(ordering, patches, pixels, regions, rows, signals, tables, text, words),
+    *(angles, bits, codes, drawing, fills, filters, grids, heaps, integers, labels, lines, lookups),
+    *(ordering, patches, pictures, pixels, regions, rows, samples, signals, sorting, tables, text, words),
 )
 CASES = tuple(case for subject in SUBJECTS for case in subject.CASES)

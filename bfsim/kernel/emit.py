@@ -96,8 +96,9 @@ class _Emitter:
         scalars = self._name_arguments(target)
         self.builder = ir.IRBuilder(target.append_basic_block("entry"))
         self._at(1)
-        for name, kind in self.function.locals:
-            self.slots[name] = self.builder.alloca(register_type(kind), name=name)
+        for number, (name, kind) in enumerate(self.function.locals):
+            # the number outlives all passes: in which order variables are declared matters to a compiler
+            self.slots[name] = self.builder.alloca(register_type(kind), name=f"{name}.v{number}")
         for name, value in scalars.items():
             self.builder.store(value, self.slots[name])
         self._block(self.function.body)

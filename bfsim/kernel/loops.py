@@ -15,6 +15,7 @@ from bfsim.kernel.ir_text import Block, Instruction, Routine
 NEAR_OVERFLOW = (1 << 31) - (
     1 << 16
 )  # who compares with so large a number asks whether an i32 is about to wrap
+OUTER = ".outer"  # ending of the label that LLVM gives the outer of two loops which it has made of one
 
 
 @dataclass(slots=True)
@@ -159,6 +160,14 @@ class Flow:
     def around(self, loop: Loop) -> Loop | None:
         """The loop directly around `loop`."""
         return next((each for each in self.loops if loop in each.inner), None)
+
+    def is_split(self, loop: Loop) -> bool:
+        """Whether LLVM has made two loops of one with a `continue`: this is the inner one, its test is at the top."""
+        return f"{loop.header}{OUTER}" in self.blocks
+
+    def ending(self, loop: Loop) -> str:
+        """The block whose test ends `loop`."""
+        return loop.header if self.is_split(loop) else loop.latch
 
     def loops_of(self, label: str) -> list[Loop]:
         """Loops around a block, the innermost first."""

@@ -30,13 +30,22 @@ class Routine:
 
 
 @dataclass(frozen=True, slots=True)
+class Fill:
+    """The routine that fills memory with one byte: cycles for an empty piece, and bytes that each further one fills."""
+
+    cclk: int
+    bytes_per_cclk: int
+
+
+@dataclass(frozen=True, slots=True)
 class Library:
-    """Integer division. Remainders come from routines of their own."""
+    """Integer division. Remainders come from routines of their own. `fill` is None where loops that fill stay loops."""
 
     divide_signed: Routine
     divide_unsigned: Routine
     remainder_signed: Routine
     remainder_unsigned: Routine
+    fill: Fill | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,12 +105,14 @@ LIBGCC = Library(
     remainder_signed=Routine(
         216, (*DIV_MIX, (Op.PUSH, 3), (Op.POP, 3), (Op.MUL32, 1), (Op.ALU, 1), (Op.CALL, 1), (Op.RETURN, 1))
     ),
+    fill=Fill(90, 3),   # [libgcc] memset of newlib, by length: 1 byte 59, 16 bytes 114, 256 bytes 189, 2000 bytes 734 cycles; up to 15 more unaligned
 )  # fmt: skip
 ADI = Library(
     divide_signed=Routine(47),       # [VLIB] ___div32: 25 to 91 cycles with the call, 52 on average
     divide_unsigned=Routine(47),     # [assumed] as signed
     remainder_signed=Routine(51),    # [assumed] a division, a multiplication and a subtraction
     remainder_unsigned=Routine(51),  # [assumed] the same
+    fill=None,                       # [assumed] no word of such a call in ADI's compiler manual
 )  # fmt: skip
 
 LIBGCC_FLOATS = FloatLibrary(  # [libgcc] means of 2000 operands of magnitudes 2**-8 to 2**12, both signs; (least, most)

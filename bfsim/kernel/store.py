@@ -52,11 +52,16 @@ def key(function: tree.Function, profile: CompilerProfile, variant: str) -> str:
     return digest.hexdigest()
 
 
+def sources() -> list[Path]:
+    """Files that decide what a kernel becomes: all of this package."""
+    return sorted(Path(__file__).parent.rglob("*.py"))
+
+
 @cache
 def _tools() -> str:
     """The compiler's own sources, LLVM and the host's processor."""
     digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.glob("*.py")):
+    for path in sources():
         digest.update(path.read_bytes())
     host = (
         llvm.get_host_cpu_name(),

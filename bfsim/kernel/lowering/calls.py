@@ -6,7 +6,9 @@ from bfsim.kernel import isa
 from bfsim.kernel.divisions import FLOOR
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.isa import Op
+from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.idioms import fills_of
 from bfsim.kernel.lowering.multiples import multiple
 from bfsim.kernel.lowering.steps import Bank, Step, Steps
 from bfsim.kernel.profile import Routine
@@ -90,6 +92,25 @@ class Calls:
                 Op.ALU, each, each.result, DATA, (f"{each.result}.up", DATA), (f"{each.result}.down", DATA)
             )
         self.step(Op.ALU, each, each.result, DATA, (each.result or "", DATA))
+
+    def fill(self, loop: Loop) -> None:
+        """Call memset instead of turning; what its time depends on the length is charged per turn."""
+        fill = self.context.profile.library.fill
+        assert fill is not None
+        turns = self.context.walks.turns(loop)
+        for each in fills_of(self.context.flow, loop):
+            self.label = self.context.flow.entering(loop)
+            root = self.context.flow.root(each.operands[1])
+            for argument in (root, each.operands[0], ""):
+                used = ((argument, ANY),) if argument.startswith("%") else ()
+                self.step(Op.MOVE if used else Op.IMM, each, None, DATA, *used)
+            self.step(Op.CALL, each, None, DATA)
+            nbytes = each.bits // isa.BYTE_BITS
+            known = 0 if turns is None else turns * nbytes // fill.bytes_per_cclk
+            self.step(Op.LIBRARY, each, None, DATA, cclk=fill.cclk + known, nbytes=0)
+            if turns is None and nbytes > 1:
+                self.label = loop.header
+                self.step(Op.LIBRARY, each, None, DATA, cclk=1, nbytes=0)
 
     def _library(self, each: Instruction, routine: Routine) -> None:
         if routine.mix:

@@ -7,16 +7,14 @@ from functools import cached_property
 from bfsim.kernel.ir_text import PHI_ARM, Instruction, Routine
 from bfsim.kernel.loops import Flow
 from bfsim.kernel.lowering.flags import Flags
-from bfsim.kernel.lowering.groups import Groups
-from bfsim.kernel.lowering.idioms import bit_counting_loops
+from bfsim.kernel.lowering.groups import HIDDEN, Groups
+from bfsim.kernel.lowering.idioms import bit_counting_loops, filling_loops
 from bfsim.kernel.lowering.needs import Needs
 from bfsim.kernel.lowering.places import Places
 from bfsim.kernel.lowering.predict import Likelihood
 from bfsim.kernel.lowering.shapes import Shape, Shapes
 from bfsim.kernel.lowering.walks import Walks
 from bfsim.kernel.profile import CompilerProfile
-
-HIDDEN = ".len"  # every array comes with its length, which C code would not pass
 
 
 class Context:
@@ -34,7 +32,12 @@ class Context:
         self.shapes = Shapes(self.flow, profile)
         self.groups = Groups(self.flow, self.walks, profile)
         self.bit_counts = bit_counting_loops(self.flow, self.walks)
-        self.needs = Needs(self.flow, self.walks, self.shapes, self.groups, self.flags, profile)
+        self.fills = filling_loops(self.flow, self.walks) if profile.library.fill else {}
+        self.needs = Needs(
+            self.flow, self.walks, self.shapes, self.groups, self.flags, frozenset(self.fills), profile
+        )
+        self.replaced = self.bit_counts | self.fills
+        """Loops of one block that are an operation or a call."""
 
     @cached_property
     def _shape_by_phi(self) -> dict[str, Shape]:
@@ -43,6 +46,16 @@ class Context:
     def shape_of(self, phi: Instruction) -> Shape | None:
         """The branchless `if` that computes a phi."""
         return self._shape_by_phi.get(phi.result or "")
+
+    def others(self, phi: Instruction) -> list[tuple[str, str]]:
+        """Arms of a phi that come from elsewhere than from the branchless `if` that computes it."""
+        shape = self.shape_of(phi)
+        own = {shape.label, *shape.arms} if shape else set()
+        return [(value, label) for value, label in self.arms(phi) if label not in own]
+
+    def shaped(self, phi: Instruction) -> str:
+        """Name of what a branchless `if` computes: a value of its own where other ways lead to the phi as well."""
+        return f"{phi.result}.shaped" if self.others(phi) else phi.result or ""
 
     def is_alias(self, each: Instruction) -> bool:
         """Whether an instruction only renames a register: widening what a load has extended already, or narrowing."""

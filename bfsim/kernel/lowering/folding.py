@@ -145,6 +145,39 @@ class Folding:
         ]
         return {id(self._masked(value)) for each in phis for value in each.operands}
 
+    def compared(self, compare: Instruction) -> tuple[str, str]:
+        """What a comparison compares: with `x + k` at hand and `x` stepped by it, LLVM's `x > 0` is C's `x + k > k`."""
+        left, right = compare.operands[:2]
+        carried = self.flow.instruction(left)
+        if carried is None or carried.opcode != "phi" or not right.lstrip("-").isdigit():
+            return left, right
+        here = self.flow.blocks[self.flow.defined[compare.result or ""][0]].instructions
+        for each in here[: here.index(compare)]:
+            steps = each.opcode == "add" and each.operands[0] == left and each.result in carried.operands
+            if steps and each.operands[1].lstrip("-").isdigit():
+                return each.result or "", str(int(right) + int(each.operands[1]))
+        return left, right
+
+    def added_flag(self, each: Instruction) -> str | None:
+        """The other operand of a sum with 0 or another constant, by the way: only the ways that do not bring 0 add.
+
+        [partial redundancy elimination, tree-ssa-pre.cc of GCC 12]
+        """
+        if each.opcode != "add":
+            return None
+        for operand, other in (each.operands[:2], each.operands[1::-1]):
+            flag = self.flow.instruction(operand)
+            if (
+                flag is not None
+                and flag.opcode == "phi"
+                and self.users(operand) == [each]
+                and self.flow.defined[operand][0] == self.flow.defined[each.result or ""][0]
+                and "0" in flag.operands
+                and all(value.lstrip("-").isdigit() for value in flag.operands)
+            ):
+                return other
+        return None
+
     def is_short(self, operand: str) -> bool:
         """Whether a compiler sees that a factor has 16 bits: a constant, or a narrow value that was extended."""
         if operand.lstrip("-").isdigit():

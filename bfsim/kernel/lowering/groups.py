@@ -10,6 +10,8 @@ from bfsim.kernel.loops import Flow, Loop
 from bfsim.kernel.lowering.walks import Advance, Form, Walks
 from bfsim.kernel.profile import CompilerProfile
 
+HIDDEN = ".len"  # every array comes with its length, which C code would not pass
+
 
 @dataclass(slots=True)
 class Group:
@@ -22,6 +24,8 @@ class Group:
     line: int
     accesses: list[tuple[str, Instruction, int]] = field(default_factory=list)
     """(block, access, offset in bytes)"""
+    start: tuple[tuple[str, int], ...] = ()
+    """What is added to the array's address where the loop starts, with factors: values computed from data."""
     steps_free: bool = False
     offset_apart: bool = False
 
@@ -71,12 +75,46 @@ class Groups:
                 key = (loop.header, form.terms)
                 group = found.get(key)
                 if group is None:
-                    root = _root(form)
+                    root = self._root(form)
                     group = found[key] = Group(f"%walk.{len(self.all)}", loop, root, advance, each.line)
+                    group.start = self._start(form, root, loop)
                     self.all.append(group)
                 group.accesses.append((label, each, form.constant))
                 self.of[id(each)] = group
                 return
+
+    def _root(self, form: Form) -> str:
+        """The array that an address points into: a parameter with a length, or else a term that counts once."""
+        once = [name for name, times in form.terms if times == 1]
+        arrays = [name for name in once if f"{name}{HIDDEN}" in self.flow.routine.parameters]
+        return next(iter((*arrays, *once)), form.terms[0][0])
+
+    def _start(self, form: Form, root: str, loop: Loop) -> tuple[tuple[str, int], ...]:
+        """The terms of a first address that are computed from data: a counter of the loop around would step them along."""
+        around = self.flow.around(loop)
+        if around is None:
+            return ()
+        terms = [(self._entering_value(name, loop), times) for name, times in form.terms if name != root]
+        return tuple((name, times) for name, times in terms if self._is_loaded(name, around))
+
+    def _is_loaded(self, name: str, around: Loop, depth: int = 4) -> bool:
+        """Whether a value is computed from one that the loop around loads in each turn."""
+        each = self.flow.instruction(name)
+        if each is None or depth == 0 or self.flow.defined[name][0] not in around.blocks:
+            return False
+        if each.opcode == "load":
+            return not self.walks.places.is_invariant(name, around)
+        return each.opcode != "phi" and any(
+            self._is_loaded(value, around, depth - 1) for value in each.operands
+        )
+
+    def _entering_value(self, name: str, loop: Loop) -> str:
+        """What a term is in the first turn of `loop`."""
+        each = self.flow.instruction(name)
+        if each is None or each.opcode != "phi" or self.flow.defined[name][0] != loop.header:
+            return name
+        arms: dict[str, str] = {label[1:]: value for value, label in PHI_ARM.findall(each.text)}
+        return arms[self.flow.entering(loop)]
 
     def _hoisted(self, label: str, group: Group) -> str:
         """The block of a test, when both its sides load the same element first thing: it is loaded before the test."""
@@ -111,8 +149,3 @@ class Groups:
 def is_merged_pointer(each: Instruction) -> bool:
     """Whether a phi merges addresses, not a pointer that the loop carries."""
     return each.opcode == "phi" and each.text.startswith("phi ptr") and each.result not in each.operands
-
-
-def _root(form: Form) -> str:
-    """The array that an address points into: the term that counts once and is a pointer."""
-    return next((name for name, times in form.terms if times == 1), form.terms[0][0])

@@ -1,15 +1,21 @@
-"""Loops that compilers replace by an instruction: counting the bits of a word is ONES on the Blackfin.
+"""Loops that compilers replace by an instruction or a call.
 
-GCC knows the number of turns of `while x: x &= x - 1` [number_of_iterations_popcount in tree-ssa-loop-niter.cc].
+Counting the bits of a word is ONES on the Blackfin: GCC knows the number of turns of `while x: x &= x - 1`
+[number_of_iterations_popcount in tree-ssa-loop-niter.cc]. Filling an array with one byte is a call of memset
+[classify_builtin_st in tree-loop-distribution.cc of GCC 12, part of -O2].
 """
 
 from __future__ import annotations
 
-from bfsim.kernel.ir_text import PHI_ARM
+from bfsim.kernel.ir_text import PHI_ARM, Instruction
 from bfsim.kernel.loops import Flow, Loop
 from bfsim.kernel.lowering.walks import Walks
 
 ALLOWED = {"phi", "add", "and", "icmp", "br"}
+FILLING = {"phi", "add", "getelementptr", "trunc", "store", "icmp", "br"}
+BYTE = 8
+MOST_STORES = 15  # fewer words than that are stored one by one [CLEAR_RATIO in GCC's defaults.h]
+WORD_BYTES = 4
 
 
 def bit_counting_loops(flow: Flow, walks: Walks) -> dict[str, Loop]:
@@ -35,3 +41,29 @@ def _counts_bits(flow: Flow, walks: Walks, loop: Loop) -> bool:
         if not clears and walks.gain(phi.result or "", loop) is None:
             return False
     return words == 1
+
+
+def filling_loops(flow: Flow, walks: Walks) -> dict[str, Loop]:
+    """Return the loops, by their only block, that do nothing but fill arrays with one byte."""
+    return {loop.header: loop for loop in flow.loops if len(loop.blocks) == 1 and _fills(flow, walks, loop)}
+
+
+def fills_of(flow: Flow, loop: Loop) -> list[Instruction]:
+    """Return the stores of a loop that fills: each is a call."""
+    return [each for each in flow.blocks[loop.header].instructions if each.opcode == "store"]
+
+
+def _fills(flow: Flow, walks: Walks, loop: Loop) -> bool:
+    rows = flow.blocks[loop.header].instructions
+    if any(each.opcode not in FILLING for each in rows) or not walks.is_counted(loop):
+        return False
+    stores, turns = fills_of(flow, loop), walks.turns(loop)
+    for each in stores:
+        value, nbytes = each.operands[0], each.bits // BYTE
+        advance = walks.advance(each.operands[1], loop)
+        few = turns is not None and turns * nbytes < MOST_STORES * WORD_BYTES
+        if few or advance is None or advance.symbolic or abs(advance.constant) != nbytes:
+            return False
+        if not (value in ("0", "-1") or (nbytes == 1 and walks.places.is_invariant(value, loop))):
+            return False
+    return bool(stores)

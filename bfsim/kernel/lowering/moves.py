@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.steps import Bank, Step
 from bfsim.kernel.lowering.webs import Webs
+
+DECLARED = re.compile(r"\.v(\d+)")
+LAST = 1 << 16
 
 
 class Moves:
@@ -22,15 +27,38 @@ class Moves:
         self._constants()
 
     def _copies(self) -> None:
-        """What phis need at the ends of the blocks before them."""
-        for phi, arms in self.webs.phis.items():
+        """What phis need at the ends of the blocks before them; values that swap places take a third register."""
+        onto: dict[tuple[str, str], dict[str, str]] = {}
+        for phi, arms in sorted(self.webs.phis.items(), key=lambda each: _declared(each[0])):
             home = self.flow.defined[phi][0]
             line = self.flow.defined[phi][1].line
             for value, label in arms:
                 if value.startswith("#"):
                     self._on_edge(label, home, load_constant(value, line, phi, self.bank[self.find(phi)]))
                 elif self.find(value) != self.find(phi):
-                    self._on_edge(label, home, Step(Op.MOVE, line, phi, Bank.ANY, ((value, Bank.ANY),)))
+                    move = Step(Op.MOVE, line, phi, Bank.ANY, ((value, Bank.ANY),))
+                    if self._is_before_the_test(phi, label, home):
+                        self.steps.add(label, move)
+                        continue
+                    self._on_edge(label, home, move)
+                    onto.setdefault((label, home), {})[self.find(phi)] = self.find(value)
+        for (label, home), copies in onto.items():
+            if _is_circular(copies):
+                line = self.flow.blocks[home].instructions[0].line
+                self._on_edge(label, home, Step(Op.MOVE, line, None, Bank.ANY))
+
+    def _is_before_the_test(self, phi: str, label: str, home: str) -> bool:
+        """Whether a copy that goes with a back edge is made before the test there [insert_backedge_copies, tree-outof-ssa.cc].
+
+        So it is unless a variable that was declared later takes over the old value in turn, or the old value is still wanted
+        behind the loop.
+        """
+        if label not in self.flow.blocks or home not in self.flow.dominators[label]:
+            return False
+        later = (other for other in self.webs.phis if _declared(other) > _declared(phi))
+        taken_over = any((phi, label) in self.webs.phis[other] for other in later)
+        outside = (way for way in self.flow.blocks[label].successors if way != home)
+        return not taken_over and not any(phi in self.webs.live.into[way] for way in outside)
 
     def _on_edge(self, label: str, home: str, step: Step) -> None:
         if len(set(self.flow.blocks[label].successors)) == 1:
@@ -140,3 +168,21 @@ class Moves:
                         self.steps.add(place, load_constant(name, step.line))
                 block.append(step)
             self.steps.of[label] = block
+
+
+def _declared(phi: str) -> int:
+    """In which place the variable of a phi was declared, behind those that have no name in the source."""
+    found = DECLARED.search(phi)
+    return int(found.group(1)) if found else LAST
+
+
+def _is_circular(copies: dict[str, str]) -> bool:
+    """Whether a value that is copied ends up where another one came from, all the way round."""
+    for start, source in copies.items():
+        name, seen = source, {start}
+        while name in copies and name not in seen:
+            seen.add(name)
+            name = copies[name]
+        if name == start:
+            return True
+    return False

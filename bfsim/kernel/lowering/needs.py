@@ -15,6 +15,7 @@ from bfsim.kernel.loops import Flow, Loop
 from bfsim.kernel.lowering.flags import Flags
 from bfsim.kernel.lowering.folding import NARROW, Folding
 from bfsim.kernel.lowering.groups import Groups
+from bfsim.kernel.lowering.redundant import AGAIN
 from bfsim.kernel.lowering.shapes import Kind, Shapes
 from bfsim.kernel.lowering.walks import Walks
 from bfsim.kernel.profile import CompilerProfile
@@ -35,10 +36,19 @@ class Needs(Folding):
     """Which instructions of one routine are emitted, and which are part of others."""
 
     def __init__(
-        self, flow: Flow, walks: Walks, shapes: Shapes, groups: Groups, flags: Flags, profile: CompilerProfile
+        self,
+        flow: Flow,
+        walks: Walks,
+        shapes: Shapes,
+        groups: Groups,
+        flags: Flags,
+        calling: frozenset[str],
+        profile: CompilerProfile,
     ) -> None:
+        """`calling`: blocks that become calls of the library."""
         super().__init__(flow, profile)
         self.walks, self.shapes, self.groups, self.flags = walks, shapes, groups, flags
+        self.calling = calling
         self.counted = {loop.header for loop in flow.loops if self._turns_by_counter(loop)}
 
     def _turns_by_counter(self, loop: Loop) -> bool:
@@ -47,7 +57,7 @@ class Needs(Folding):
         library = any(
             each.is_call or each.is_soft_float or (each.is_division and self.divides_by_call(each))
             for each in inside
-        )
+        ) or not self.calling.isdisjoint(loop.blocks)
         turns = self.walks.turns(loop)
         many = turns is None or turns > FEWEST_TURNS
         return not library and many and self.walks.is_counted(loop) and not self._may_be_endless(loop)
@@ -56,12 +66,27 @@ class Needs(Folding):
         """With several exits, the pointer that walks is compared for equality with its end.
 
         GCC counts such turns only if the pointer is sure to meet the end: steps of one byte, or a fixed start
-        ["possible infinite iteration case" in loop-doloop.cc of GCC 12].
+        ["possible infinite iteration case" in loop-doloop.cc of GCC 12]. Nor does it count `i <= n`, which may always hold.
         """
         if len(self.flow.exits(loop)) < 2:
             return False
+        if self._is_inclusive(loop):
+            return True
+        if self.flow.is_split(loop):
+            return not self._steps_by_one(loop)
         wide = any(group.loop is loop and abs(group.advance.constant) > 1 for group in self.groups.all)
         return wide and not self.walks.starts_fixed(loop)
+
+    def _is_inclusive(self, loop: Loop) -> bool:
+        """Whether a loop runs up to `stop + 1`, which C writes as `<= stop`."""
+        test = self.flow.instruction(self.walks.exit_test(loop) or "")
+        bound = self.flow.instruction(test.operands[1]) if test is not None else None
+        return bound is not None and bound.opcode == "add" and bound.operands[1] == "1"
+
+    def _steps_by_one(self, loop: Loop) -> bool:
+        test = self.flow.instruction(self.walks.exit_test(loop) or "")
+        gain = self.walks.advance(test.operands[0], loop) if test is not None else None
+        return gain is not None and abs(gain.constant) == 1 and not gain.symbolic
 
     def emits(self, each: Instruction) -> bool:
         """Whether `each` becomes operations."""
@@ -91,15 +116,18 @@ class Needs(Folding):
         return needed
 
     def _is_root(self, each: Instruction) -> bool:
-        return each.opcode in ("store", "br", "switch", "ret") or each.is_call
+        along = (each.result or "").endswith(AGAIN)
+        return each.opcode in ("store", "br", "switch", "ret") or each.is_call or along
 
     def _really_used(self, each: Instruction) -> tuple[str, ...]:
         if each.opcode in ("load", "store") and id(each) in self.groups.of:
-            return each.operands[:-1]
+            return (*each.operands[:-1], *(name for name, _ in self.groups.of[id(each)].start))
         if each.opcode == "br":
             return () if self.flags.decides(each) or self._is_guard(each) else self._of_branch(each)
         if each.opcode == "icmp":
             return self._of_compare(each)
+        if (other := self.added_flag(each)) is not None:
+            return (other,)
         if each.opcode in ("select", "and", "or") and each.bits == 1:
             counting = {self.walks.exit_test(loop) for loop in self.flow.loops if loop.header in self.counted}
             return tuple(operand for operand in each.operands if operand not in counting)
@@ -115,10 +143,10 @@ class Needs(Folding):
         """The test of a loop that a counter ends is not made, nor that of a minimum or an absolute value."""
         label = next(block.label for block in self.flow.routine.blocks if block.terminator is each)
         for loop in self.flow.loops:
-            if loop.latch == label and loop.header in self.counted:
+            if self.flow.ending(loop) == label and loop.header in self.counted:
                 return tuple(operand for operand in each.operands if operand != self.walks.exit_test(loop))
         shape = self.shapes.by_label.get(label)
-        if shape is not None and shape.kind in (Kind.ABSOLUTE, Kind.EXTREME):
+        if shape is not None and shape.kind in (Kind.ABSOLUTE, Kind.EXTREME, Kind.CLAMP):
             return ()
         return each.operands
 
@@ -127,10 +155,10 @@ class Needs(Folding):
         label = self.flow.defined[each.result or ""][0]
         loop = self.flow.innermost(label)
         if loop is None or not any(group.loop is loop and not group.stride for group in self.groups.all):
-            return each.operands
+            return self.compared(each)
         gains = [self.walks.advance(operand, loop) for operand in each.operands[:2]]
         if None in gains or sum(gain.moves for gain in gains if gain) != 1:
-            return each.operands
+            return self.compared(each)
         return tuple(
             operand for operand, gain in zip(each.operands[:2], gains, strict=True) if gain and not gain.moves
         )

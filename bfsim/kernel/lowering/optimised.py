@@ -11,6 +11,7 @@ from bfsim.kernel.lowering.charges import BlockCost, Charge, Test, charge, inste
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.interlocks import Issue, issues
 from bfsim.kernel.lowering.layout import Layout
+from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.registers import Allocation, allocate
 from bfsim.kernel.lowering.select import select
 from bfsim.kernel.lowering.steps import Step
@@ -21,6 +22,7 @@ ALONE = Issue()
 
 def lower(routine: Routine, profile: CompilerProfile) -> dict[str, BlockCost]:
     """Return what each block of `routine` costs, by label."""
+    routine = without_redundant_loads(routine)
     lowering = _Lowering(routine, profile)
     return {block.label: lowering.block(block) for block in routine.blocks}
 
@@ -31,7 +33,7 @@ class _Lowering:
         self.flow, self.profile = self.context.flow, profile
         self.steps = select(self.context)
         self.allocation = allocate(self.context, self.steps)
-        empty = set(self.context.bit_counts) | {label for label in self.flow.blocks if self._is_empty(label)}
+        empty = set(self.context.replaced) | {label for label in self.flow.blocks if self._is_empty(label)}
         copies = {
             edge: [self._charge(step) for step in steps] for edge, steps in self.allocation.on_edges.items()
         }
@@ -51,15 +53,24 @@ class _Lowering:
         """A counted loop, at most two deep, with an operation before its end [GCC: hwloop_optimize in bfin.cc]."""
         if loop.header not in self.context.needs.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
             return False
+        if self.flow.is_split(loop) or (loop.latch, loop.header) in self.allocation.on_edges:
+            return False  # values move from turn to turn in a block of its own: the last one jumps
         before = [
             each
             for each in self.flow.predecessors[loop.latch]
             if not self.flow.is_overflow_guard(self.flow.blocks[each])
         ]
-        copied = any(len(inner.blocks & set(before)) > 1 for inner in loop.inner)
+        copied = any(self._ends_apart(inner, before) for inner in loop.inner)
         if copied and self.profile.applies(Learnt.COPIED_END):
             return False  # the end of the loop is copied behind each exit of the inner one, so there are two ends
         return bool(self.steps.of[loop.latch]) or len(before) == 1
+
+    def _ends_apart(self, inner: Loop, before: list[str]) -> bool:
+        """Whether the exits of an inner loop do not meet at once: one of them has a move to make."""
+        ends = inner.blocks & set(before)
+        return len(ends) > 1 and any(
+            label in ends and way not in inner.blocks for label, way in self.allocation.on_edges
+        )
 
     def _counted_depth(self, loop: Loop) -> int:
         own = int(loop.header in self.context.needs.counted)
@@ -125,7 +136,7 @@ class _Lowering:
 
     def _loops(self, block: Block, cost: BlockCost) -> None:
         for loop in self.flow.loops:
-            if loop.header not in self.context.needs.counted or loop.header in self.context.bit_counts:
+            if loop.header not in self.context.needs.counted or loop.header in self.context.replaced:
                 continue
             line = self.flow.blocks[loop.header].instructions[-1].line
             line = self.flow.blocks[loop.latch].terminator.line or line
@@ -141,7 +152,9 @@ class _Lowering:
 
     def _leave_block(self, block: Block, cost: BlockCost) -> None:
         terminator, label = block.terminator, block.label
-        if label in self.context.bit_counts:
+        if label in self.context.replaced or (
+            label in self.context.shapes.gone and len(set(block.successors)) > 1
+        ):
             return
         if terminator.opcode == "ret":
             self._return(cost, terminator.line)
@@ -152,7 +165,7 @@ class _Lowering:
                 cost.charges += self.layout.on(label, block.successors[0], terminator.line)
         elif terminator.opcode == "br" and label in self.context.shapes.by_label:
             arms = self.context.shapes.by_label[label].arms
-            join = self.flow.blocks[next(iter(arms))].successors[0]
+            join = next(way for arm in arms for way in self.flow.blocks[arm].successors if way not in arms)
             cost.charges += self.layout.jump(label, self.layout.landing(join), terminator.line)
         elif terminator.opcode == "br":
             self._conditional(block, cost)
@@ -188,7 +201,7 @@ class _Lowering:
             (
                 each
                 for each in self.flow.loops
-                if each.latch == label and each.header in self.context.needs.counted
+                if self.flow.ending(each) == label and each.header in self.context.needs.counted
             ),
             None,
         )
@@ -202,8 +215,10 @@ class _Lowering:
         ways = self.flow.blocks[label].successors
         out = ways[0] if ways[0] not in loop.blocks else ways[1]
         leaving = leaving + self.layout.on(label, out, line)
-        again = again + self.layout.copies.get((label, loop.header), [])
-        return (again, leaving) if ways[0] == loop.header else (leaving, again)
+        stays = ways[0] if out == ways[1] else ways[1]
+        if moves := self.layout.copies.get((label, stays), []):
+            again = [*again, *moves, charge(Op.JUMP, line)]
+        return (again, leaving) if ways[0] == stays else (leaving, again)
 
     def _switch(self, block: Block, cost: BlockCost) -> None:
         """A chain of comparisons and branches, in the order of the cases."""

@@ -69,7 +69,7 @@ class Likelihood:
         yes, no = block.successors
         if self.flow.is_overflow_guard(block):
             return float("icmp ne" in self._text_of_test(block))
-        loop = self.flow.innermost(block.label)
+        loop = self._whole(self.flow.innermost(block.label))
         if loop is not None:
             leaves = [way not in loop.blocks for way in (yes, no)]
             if leaves[0] != leaves[1]:
@@ -83,6 +83,10 @@ class Likelihood:
             *_by_hint(block),
         ]
         return combined(votes)
+
+    def _whole(self, loop: Loop | None) -> Loop | None:
+        """The loop of the source: GCC guesses before it splits any."""
+        return self.flow.around(loop) if loop is not None and self.flow.is_split(loop) else loop
 
     def _text_of_test(self, block: Block) -> str:
         test = self.flow.instruction(block.terminator.operands[0])

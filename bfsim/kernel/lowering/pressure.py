@@ -119,6 +119,8 @@ class Pressure:
             for step in self.steps.of[label]:
                 if any(self.find(name) == web for name, _ in step.uses) and step.op is not Op.IMM:
                     constant = web.startswith("#")
+                    if block and _is_copy_for(block[-1], step) and web in map(self.find, step.overwrites):
+                        block.pop()  # what was reloaded may be overwritten
                     block.append(
                         load_constant(web, step.line)
                         if constant
@@ -138,3 +140,8 @@ class Pressure:
                     block.append(Step(Op.MOVE, step.line, None, Bank.ANY))
                 block.append(step)
             self.steps.of[label] = block
+
+
+def _is_copy_for(before: Step, step: Step) -> bool:
+    """Whether the step before only saves an operand that this one overwrites."""
+    return bool(step.overwrites) and before.op is Op.MOVE and before.result is None and not before.uses

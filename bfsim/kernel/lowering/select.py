@@ -32,8 +32,10 @@ def select(context: Context) -> Steps:
     for loop in context.bit_counts.values():
         line = context.flow.blocks[loop.header].instructions[-1].line
         selector.steps.add(context.flow.entering(loop), Step(Op.ALU, line, None, DATA))
+    for loop in context.fills.values():
+        selector.fill(loop)
     for label in context.flow.order:
-        if label in context.bit_counts:
+        if label in context.replaced:
             continue
         for each in context.flow.blocks[label].instructions:
             if context.needs.emits(each):
@@ -105,10 +107,16 @@ class _Selector(Calls):
     def pointers(self) -> None:
         """Set up the pointers that walk, and step those for which no post-increment does."""
         for group in self.context.groups.all:
+            if group.loop.header in self.context.fills:
+                continue
             line = group.line
             entering, latch = self.flow.entering(group.loop), group.loop.latch
             start = Step(Op.MOVE, line, group.name, POINTER, ((group.root, ANY),))
             self.steps.add(entering, start)
+            for name, times in group.start:
+                op = Op.ALU if abs(times) == 1 else Op.ADD_SHIFT
+                terms = ((group.name, POINTER), (self.context.name(name), POINTER))
+                self.steps.add(entering, Step(op, line, group.name, POINTER, terms))
             if group.offset_apart:
                 self.steps.add(entering, Step(Op.ALU, line, group.name, POINTER, ((group.name, POINTER),)))
             if not group.steps_free:
@@ -137,6 +145,9 @@ class _Selector(Calls):
             self.step(Op.ADD_SHIFT, each, each.result, POINTER, (other, POINTER), (shifted, POINTER))
             return
         left, right = each.operands[:2]
+        if (total := self.context.needs.added_flag(each)) is not None:
+            self.step(Op.ALU, each, each.result, ANY, (total, ANY))
+            return
         if self.context.needs.narrowed(each):
             self.step(Op.MOVE, each, None, DATA)
             self.step(Op.ALU, each, None, DATA, (left, DATA))
@@ -238,7 +249,7 @@ class _Selector(Calls):
             masked = self.context.needs.bit_tested(each) or ""
             self.step(Op.BIT_TEST, each, None, DATA, (masked, DATA))
             return
-        left, right = each.operands[:2]
+        left, right = self.context.needs.compared(each)
         if right.lstrip("-").isdigit() and _is_near(predicate(each), int(right)):
             self.step(Op.COMPARE, each, None, DATA, (left, ANY))
         elif right.lstrip("-").isdigit() and self.context.profile.applies(Learnt.COMPARED):
@@ -267,17 +278,22 @@ class _Selector(Calls):
         """An `if` without a branch: its operation stands in the block that tests."""
         shape = self.context.shape_of(each)
         assert shape is not None
+        result = self.context.shaped(each)
         if shape.kind is Kind.ABSOLUTE:
-            self.step(Op.DSP_ALU, each, each.result, DATA, (shape.operands[0], DATA))
+            self.step(Op.DSP_ALU, each, result, DATA, (shape.operands[0], DATA))
             if self.context.needs.is_short(shape.operands[0]):
-                self.step(Op.EXTEND, each, each.result, DATA, (each.result or "", DATA))
+                self.step(Op.EXTEND, each, result, DATA, (result, DATA))
         elif shape.kind is Kind.EXTREME:
-            self.step(Op.DSP_ALU, each, each.result, DATA, *((value, DATA) for value in shape.operands))
+            self.step(Op.DSP_ALU, each, result, DATA, *((value, DATA) for value in shape.operands))
+        elif shape.kind is Kind.CLAMP:
+            *inner, bound = shape.operands
+            self.step(Op.DSP_ALU, each, f"{result}.inner", DATA, *((value, DATA) for value in inner))
+            self.step(Op.DSP_ALU, each, result, DATA, (f"{result}.inner", DATA), (bound, DATA))
         elif shape.kind is Kind.FLAG:
-            self.step(Op.CC_MOVE, each, each.result, DATA)
+            self.step(Op.CC_MOVE, each, result, DATA)
         else:
             uses = tuple((value, ANY) for value in shape.operands)
-            self.step(Op.COND_MOVE, each, each.result, ANY, *uses, overwrites=shape.operands[1:])
+            self.step(Op.COND_MOVE, each, result, ANY, *uses, overwrites=shape.operands[1:])
 
 
 def _is_single_bit(opcode: str, mask: int) -> bool:

@@ -25,6 +25,8 @@ class Kind(Enum):
     ABSOLUTE = auto()
     EXTREME = auto()
     """Minimum or maximum."""
+    CLAMP = auto()
+    """Minimum and maximum: `if x > most: x = most`, `elif x < least: x = least`."""
     CHOICE = auto()
     """A conditional move."""
     FLAG = auto()
@@ -38,7 +40,7 @@ class Shape:
     kind: Kind
     label: str
     phi: Instruction
-    operands: tuple[str, str]
+    operands: tuple[str, ...]
     arms: frozenset[str]
     """Blocks that vanish."""
 
@@ -53,6 +55,12 @@ class Shapes:
             shape = self._shape(label)
             if shape:
                 self.by_label[label] = shape
+        for label in flow.order:
+            clamp = self._clamp(label)
+            if clamp:
+                for arm in clamp.arms & self.by_label.keys():
+                    del self.by_label[arm]
+                self.by_label[label] = clamp
         self.gone = frozenset(arm for shape in self.by_label.values() for arm in shape.arms)
 
     def _shape(self, label: str) -> Shape | None:
@@ -75,6 +83,28 @@ class Shapes:
         if len(choices) != 1:
             return None
         return self._of_choice(label, frozenset(arms), *choices[0])
+
+    def _clamp(self, label: str) -> Shape | None:
+        """A minimum of a constant and of a maximum, or the other way round [minmax_replacement in tree-ssa-phiopt.cc]."""
+        block = self.flow.blocks[label]
+        inner = next((self.by_label[way] for way in block.successors if way in self.by_label), None)
+        if inner is None or inner.kind is not Kind.EXTREME or self.flow.predecessors[inner.label] != [label]:
+            return None
+        join = self.flow.defined[inner.phi.result or ""][0]
+        test = self.flow.instruction(block.terminator.operands[0])
+        if set(block.successors) != {inner.label, join} or test is None or test.opcode != "icmp":
+            return None
+        bound = self._plain(_arm_value(inner.phi, label), inner.phi)
+        value = self._plain(test.operands[0])
+        rest = [each for each in self._work(inner.label) if each.opcode != "icmp"]
+        if (
+            rest
+            or not bound.lstrip("-").isdigit()
+            or bound not in _bounds(test)
+            or value not in inner.operands
+        ):
+            return None
+        return Shape(Kind.CLAMP, label, inner.phi, (*inner.operands, bound), inner.arms | {inner.label})
 
     def _is_arm(self, way: str, label: str) -> bool:
         block = self.flow.blocks[way]

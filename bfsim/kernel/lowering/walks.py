@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from bfsim.kernel.ir_text import PHI_ARM
 from bfsim.kernel.loops import Flow, Loop, pointee_nbytes
+from bfsim.kernel.lowering.evaluated import evaluated_turns
 from bfsim.kernel.lowering.places import Places
 
 DEEPEST = 12  # operations that a form looks through
@@ -124,7 +125,9 @@ class Walks:
     def is_counted(self, loop: Loop) -> bool:
         """Whether the number of turns is known when the loop starts: its last test compares a stepping value."""
         test = self.exit_test(loop)
-        return test is not None and self._counts(test, loop)
+        return test is not None and (
+            self._counts(test, loop) or evaluated_turns(self.flow, loop, test) is not None
+        )
 
     def _counts(self, test: str, loop: Loop) -> bool:
         each = self.flow.instruction(test)
@@ -144,7 +147,7 @@ class Walks:
         gain = self.advance(test.operands[0], loop)
         start = self._start(test.operands[0], loop)
         if gain is None or start is None or not gain.constant or gain.symbolic:
-            return None
+            return evaluated_turns(self.flow, loop, test.result or "")
         return max(0, (int(test.operands[1]) - start) // gain.constant) + 1
 
     def _start(self, value: str, loop: Loop) -> int | None:
@@ -173,9 +176,9 @@ class Walks:
         return all(value.lstrip("-").isdigit() for value in starts)
 
     def exit_test(self, loop: Loop) -> str | None:
-        """Return the condition at the end of `loop`, if that is where it leaves; of two joined ones, the one that counts."""
-        terminator = self.flow.blocks[loop.latch].terminator
-        leaves = set(self.flow.blocks[loop.latch].successors) - loop.blocks
+        """Return the condition that ends `loop`, if its last block has it; of two joined ones, the one that counts."""
+        ending = self.flow.blocks[self.flow.ending(loop)]
+        terminator, leaves = ending.terminator, set(ending.successors) - loop.blocks
         if not leaves or terminator.opcode != "br":
             return None
         test = self.flow.instruction(terminator.operands[0])

@@ -14,7 +14,7 @@ ROUNDS = 3  # in which values settle in the bank of those they are computed with
 
 
 class Webs:
-    """The webs of one routine. A phi and its arms are one web, unless they are alive together."""
+    """The webs of one routine. A phi and its arms are one web, unless some of its values are alive together."""
 
     def __init__(self, context: Context, steps: Steps) -> None:
         self.context, self.flow, self.steps = context, context.flow, steps
@@ -30,20 +30,22 @@ class Webs:
     def _phis(self) -> dict[str, list[tuple[str, str]]]:
         found: dict[str, list[tuple[str, str]]] = {}
         for block in self.flow.routine.blocks:
-            if block.label in self.context.bit_counts:
+            if block.label in self.context.replaced:
                 continue
             for each in block.instructions:
+                shape = self.context.shape_of(each)
                 if (
                     each.opcode == "phi"
                     and not is_merged_pointer(each)
                     and self.context.needs.emits(each)
-                    and self.context.shape_of(each) is None
+                    and (shape is None or self.context.others(each))
                 ):
+                    arms = self.context.others(each)
                     found[each.result or ""] = [
-                        (self.context.name(value), label)
-                        for value, label in self.context.arms(each)
-                        if value != "poison"
+                        (self.context.name(value), label) for value, label in arms if value != "poison"
                     ]
+                    if shape is not None:
+                        found[each.result or ""].append((self.context.shaped(each), shape.label))
         return found
 
     def analyse(self) -> None:
@@ -61,33 +63,44 @@ class Webs:
         return name
 
     def _coalesce(self) -> None:
-        for phi, arms in self.phis.items():
-            for value, label in arms:
-                if not value.startswith("#") and not self._clash(phi, value, label):
-                    self.web[self.find(value)] = self.find(phi)
+        """Give a phi and its arms one register, the most frequent copies first, unless both are wanted at once."""
+        apart = self._interference()
+        members = {name: {name} for name in apart}
+        copies = [
+            (self.frequency[label], phi, value)
+            for phi, arms in self.phis.items()
+            for value, label in arms
+            if not value.startswith("#")
+        ]
+        for _, phi, value in sorted(copies, key=lambda copy: -copy[0]):
+            one, other = self.find(phi), self.find(value)
+            mine, theirs = members.setdefault(one, {one}), members.setdefault(other, {other})
+            if one == other or any(not apart[name].isdisjoint(theirs) for name in mine):
+                continue
+            self.web[other] = one
+            mine |= theirs
 
-    def _clash(self, phi: str, value: str, label: str) -> bool:
-        """Whether a phi and one of its arms are alive together, so that they need two registers."""
-        home = self.flow.defined[phi][0]
-        if value in self.live.into[home] or self.find(value) == self.find(phi):
-            return value in self.live.into[home]
-        place = self._place(value)
-        if place is None:
-            return phi in self.live.out[label] and phi not in self.live.into[home]
-        if phi in self.live.out[place]:
-            return True
-        behind = False
-        for step in self.steps.of[place]:
-            if behind and any(name == phi for name, _ in step.uses):
-                return True
-            behind |= step.result == value
-        return any(other == value for other_phi, other_arms in self.phis.items() if other_phi != phi
-                   and self.flow.defined[other_phi][0] == home for other, source in other_arms if source == label)  # fmt: skip
+    def _interference(self) -> defaultdict[str, set[str]]:
+        """Of each value: those that are alive where it is computed, or that are computed while it is alive."""
+        apart: defaultdict[str, set[str]] = defaultdict(set)
 
-    def _place(self, value: str) -> str | None:
-        if value in self.flow.defined:
-            return self.context.places.of.get(value)
-        return None
+        def keep_apart(name: str, alive: set[str]) -> None:
+            apart[name] |= alive - {name}
+            for other in alive - {name}:
+                apart[other].add(name)
+
+        entry = self.flow.routine.blocks[0].label
+        for label in self.flow.order:
+            alive = set(self.live.out[label])
+            for step in reversed(self.steps.of[label]):
+                if step.result:
+                    keep_apart(step.result, alive)
+                    alive.discard(step.result)
+                alive.update(name for name, _ in step.uses if not name.startswith("#"))
+            here = {phi for phi in self.phis if self.flow.defined[phi][0] == label}
+            for name in alive if label == entry else here:
+                keep_apart(name, alive | here)
+        return apart
 
     def _choose_banks(self) -> None:
         """Where a value's definition leaves the choice, the bank that needs fewer moves."""

@@ -1,0 +1,137 @@
+"""Loads of which the value is there already on every way: partial redundancy elimination [tree-ssa-pre.cc of GCC 12].
+
+`if a[j] < a[least]: least = j` in a loop: `a[least]` is `a[j]` where `least` was set just now, and what it was
+otherwise. The value goes along in a register of its own beside `least`, so that there are two to choose and the
+branch stays.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from bfsim.kernel.ir_text import PHI_ARM, Block, Instruction, Routine
+from bfsim.kernel.loops import Flow, Loop
+
+AGAIN = ".again"  # ending of the name of an address that is only computed to go along
+
+
+@dataclass(frozen=True, slots=True)
+class Carried:
+    """A load at `address` in the header of a loop, whose value follows that of `index` along the arms of `merged`."""
+
+    loop: Loop
+    load: Instruction
+    address: Instruction
+    index: Instruction
+    merged: Instruction
+    values: dict[str, str]
+    """Of each arm of `merged`, by the label it comes from: the value that the load would give."""
+
+
+def without_redundant_loads(routine: Routine) -> Routine:
+    """Return `routine` with such loads before their loops."""
+    flow = Flow(routine)
+    for loop in flow.loops:
+        for each in flow.blocks[loop.header].instructions:
+            carried = _carried(flow, loop, each)
+            if carried is not None:
+                return without_redundant_loads(_moved(flow, routine, carried))
+    return routine
+
+
+def _carried(flow: Flow, loop: Loop, load: Instruction) -> Carried | None:
+    address = flow.instruction(load.operands[0]) if load.opcode == "load" else None
+    if address is None or address.opcode != "getelementptr" or flow.users.get(address.result or "") != [load]:
+        return None
+    index = flow.instruction(address.operands[-1])
+    if index is None or index.opcode != "phi" or flow.defined[index.result or ""][0] != loop.header:
+        return None
+    arms = {label[1:]: value for value, label in PHI_ARM.findall(index.text)}
+    merged = flow.instruction(arms.get(loop.latch, ""))
+    if set(arms) != {flow.entering(loop), loop.latch} or merged is None or merged.opcode != "phi":
+        return None
+    inside = [each for label in loop.blocks for each in flow.blocks[label].instructions]
+    if any(each.opcode == "store" or each.is_call for each in inside):
+        return None
+    values = {
+        label[1:]: load.result if value == index.result else _loaded(flow, loop, address, value, label[1:])
+        for value, label in PHI_ARM.findall(merged.text)
+    }
+    known = {label: value for label, value in values.items() if value is not None}
+    return Carried(loop, load, address, index, merged, known) if len(known) == len(values) else None
+
+
+def _loaded(flow: Flow, loop: Loop, address: Instruction, index: str, label: str) -> str | None:
+    """The value at the same array's `index`, if it has been loaded on the way to the end of block `label`."""
+    for before in flow.dominators[label] & loop.blocks:
+        for each in flow.blocks[before].instructions:
+            other = flow.instruction(each.operands[0]) if each.opcode == "load" else None
+            if other is not None and other.operands == (*address.operands[:-1], index):
+                return each.result
+    return None
+
+
+def _moved(flow: Flow, routine: Routine, carried: Carried) -> Routine:
+    """Load before the loop; in it, a phi beside that of the index, and one beside each that merges it."""
+    load, loop = carried.load, carried.loop
+    first, following, address = (f"{load.result}.{name}" for name in ("first", "following", "address"))
+    entering = flow.entering(loop)
+    arms = {label[1:]: value for value, label in PHI_ARM.findall(carried.index.text)}
+    kind = f"i{load.bits}"
+    start = replace(
+        carried.address,
+        result=address,
+        text=carried.address.text.replace(f" {carried.index.result}", f" {arms[entering]}"),
+        operands=(*carried.address.operands[:-1], arms[entering]),
+    )
+    before = replace(
+        load,
+        result=first,
+        text=load.text.replace(f" {load.operands[0]},", f" {address},"),
+        operands=(address,),
+    )
+    here = _phi(load, load.result or "", kind, {entering: first, loop.latch: following})
+    merging = _phi(load, following, kind, carried.values)
+    home = flow.defined[carried.merged.result or ""][0]
+    blocks = []
+    for block in routine.blocks:
+        rows = [each for each in block.instructions if each is not load and each is not carried.address]
+        if block.label == entering:
+            rows[-1:-1] = [start, before]
+        if block.label == home:
+            rows.insert(0, merging)
+        if block.label == loop.header:
+            rows.insert(0, here)
+        blocks.append(Block(block.label, tuple(rows)))
+    return _with_addresses(flow, replace(routine, blocks=tuple(blocks)), carried)
+
+
+def _with_addresses(flow: Flow, routine: Routine, carried: Carried) -> Routine:
+    """Where the element is wanted behind the loop, its address goes along: computed again on the ways that keep it."""
+    kept = {label for label, value in carried.values.items() if value == carried.load.result}
+    alone = all(len(set(flow.blocks[label].successors)) == 1 for label in kept)
+    if not alone or not _is_wanted_behind(flow, carried):
+        return routine
+    again = replace(carried.address, result=f"{carried.load.result}{AGAIN}")
+    blocks = [
+        Block(block.label, (again, *block.instructions)) if block.label in kept else block
+        for block in routine.blocks
+    ]
+    return replace(routine, blocks=tuple(blocks))
+
+
+def _is_wanted_behind(flow: Flow, carried: Carried) -> bool:
+    """Whether the element that was chosen last is accessed behind the loop."""
+    array = carried.address.operands[:-1]
+    chosen = [
+        user.result
+        for user in flow.users.get(carried.merged.result or "", [])
+        if user.opcode == "phi" and flow.defined[user.result or ""][0] not in carried.loop.blocks
+    ]
+    users = (each for name in chosen for each in flow.users.get(name or "", []))
+    return any(each.opcode == "getelementptr" and each.operands[:-1] == array for each in users)
+
+
+def _phi(load: Instruction, result: str, kind: str, arms: dict[str, str]) -> Instruction:
+    text = ", ".join(f"[ {value}, %{label} ]" for label, value in arms.items())
+    return Instruction(result, "phi", f"phi {kind} {text}", tuple(arms.values()), load.line)

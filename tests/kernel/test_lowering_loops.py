@@ -1,0 +1,166 @@
+"""What a compiler for the Blackfin makes of loops: which are counted, what moves along with them, what becomes a call."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from bfsim.kernel import GCC_O2, VDSP_O2, store
+from bfsim.kernel.isa import Op
+from bfsim.kernel.lowering.moves import _is_circular
+from tests.kernel.test_lowering import context, lowered
+
+
+def loops(body: str, head: str = "a: i32[:], n: i32", before: str = "s = 0") -> str:
+    """Return a kernel that turns `body` for i in range(n)."""
+    rows = "\n        ".join(body.splitlines())
+    return f"def f({head}) -> i32:\n    {before}\n    for i in range(n):\n        {rows}\n    return s\n"
+
+
+@pytest.mark.parametrize(("start", "counted"), [("8", True), ("n", False)])
+def test_a_loop_that_follows_from_a_constant_is_played_through(
+    start: str, counted: bool, tmp_path: Path
+) -> None:
+    """8, 4, 2, 1: four turns of a hardware loop; from a parameter nobody knows."""
+    text = f"def f(b: u32, n: u32) -> u32:\n    k = u32({start})\n    while k > 0:\n        b = b ^ (b >> k)\n        k = k >> 1\n    return b\n"
+    assert (Op.LOOP_SETUP in lowered(text, tmp_path)) is counted
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "called"),
+    [("i32", "0", True), ("u16", "0", True), ("u8", "7", True), ("u8", "n", True), ("u16", "7", False), ("i32", "i", False)],
+)  # fmt: skip
+def test_filling_with_one_byte_is_a_call(kind: str, value: str, called: bool, tmp_path: Path) -> None:
+    """memset fills with a byte; other patterns stay loops."""
+    found = lowered(loops(f"a[i] = {value}", f"a: {kind}[:], n: i32"), tmp_path)
+    assert (Op.CALL in found, Op.LOOP_SETUP in found) == (called, not called)
+
+
+def test_a_short_fill_and_another_compiler_keep_the_loop(tmp_path: Path) -> None:
+    """Fifteen words are stored one by one; VisualDSP++ is not known to call."""
+    assert Op.CALL not in lowered("def f(a: i32[:]):\n    for i in range(14):\n        a[i] = 0\n", tmp_path)
+    assert Op.CALL in lowered("def f(a: i32[:]):\n    for i in range(15):\n        a[i] = 0\n", tmp_path)
+    assert Op.CALL not in lowered(loops("a[i] = 0"), tmp_path, VDSP_O2)
+
+
+@pytest.mark.parametrize(("order", "hardware"), [("p = 0\n    q = 0", False), ("q = 0\n    p = 0", True)])
+def test_a_value_that_a_later_variable_takes_over_ends_a_hardware_loop(
+    order: str, hardware: bool, tmp_path: Path
+) -> None:
+    """q = p; p = y: the copy of y must wait for that of p, unless q was declared, and is copied, first."""
+    text = loops("y = a[i] + (p ^ q)\na[i] = y\nq = p\np = y", before=f"s = 0\n    {order}")
+    assert (Op.LOOP_SETUP in lowered(text, tmp_path)) is hardware
+
+
+def test_one_value_that_is_kept_for_the_next_turn_needs_no_copy(tmp_path: Path) -> None:
+    """The difference of neighbours: nothing but the load, a move of the old value, the sum and the store."""
+    found = lowered(loops("y = a[i]\na[i] = y - p\np = y", before="s = 0\n    p = 0"), tmp_path)
+    assert Op.LOOP_SETUP in found
+
+
+def test_values_that_swap_places_take_a_third_register(tmp_path: Path) -> None:
+    """a, b = b, a is three moves; one value that follows another is one."""
+    text = "def f(a: i32, b: i32, out: i32[:]):\n    if a > b:\n        t = a\n        a = b\n        {}\n    out[0] = a\n    out[1] = b\n"
+    assert lowered(text.format("b = t"), tmp_path)[Op.MOVE] == 3 + 1  # and the pointer
+    assert _is_circular({"a": "b", "b": "c", "c": "a"})
+    assert not _is_circular({"a": "b", "b": "c"})
+
+
+@pytest.mark.parametrize(("stop", "counted"), [("n", True), ("n + 1", False)])
+def test_a_loop_up_to_and_with_its_bound_may_be_endless(stop: str, counted: bool, tmp_path: Path) -> None:
+    """`i <= n` always holds for the largest n: with another exit, no register counts."""
+    text = f"def f(a: u8[:], n: i32) -> i32:\n    s = 0\n    for i in range({stop}):\n        if a[i] == 3:\n            break\n        s += a[i]\n    return s\n"
+    assert (Op.LOOP_SETUP in lowered(text, tmp_path)) is counted
+
+
+@pytest.mark.parametrize(("step", "counted"), [(1, True), (2, False)])
+def test_a_stack_that_a_continue_skips_is_counted_down(step: int, counted: bool, tmp_path: Path) -> None:
+    """LLVM makes two loops of `while top: pop; if seen: continue; push`; the inner one counts by its first test."""
+    found = context(
+        "def f(stack: i32[:], seen: u8[:], top: i32) -> i32:\n    count = 0\n"
+        f"    while top > 0:\n        top -= {step}\n        p = stack[top]\n"
+        "        if seen[p] != 0:\n            continue\n        seen[p] = 1\n        count += 1\n"
+        "        if p > 5:\n            stack[top] = p - 1\n            top += 1\n    return count\n",
+        tmp_path,
+    )
+    (inner,) = (loop for loop in found.flow.loops if found.flow.is_split(loop))
+    assert found.flow.ending(inner) == inner.header
+    assert (inner.header in found.needs.counted) is counted
+    assert found.likelihood.taken[
+        inner.header, found.flow.blocks[inner.header].successors[0]
+    ] == pytest.approx(0.89)
+
+
+def test_the_least_element_goes_along_in_a_register(tmp_path: Path) -> None:
+    """a[least] is loaded before the loop; one load a turn is left, and the branch, since two values are chosen."""
+    least = "if a[i] < a[s]:\n    s = i\n"
+    found = lowered(loops(least), tmp_path)
+    assert Op.COND_MOVE not in found
+    stored = lowered(loops(least + "a[i] = n"), tmp_path)
+    assert stored[Op.COND_MOVE] == 1  # the store may change a[least], which is loaded again
+
+
+def test_a_flag_that_is_added_is_not_kept(tmp_path: Path) -> None:
+    """same = 1 or 0, then hits += same: only where it is 1, something is added; a flag with other uses is set."""
+    text = (
+        "def f(a: u8[:], b: u8[:], n: i32, m: i32) -> i32:\n    s = 0\n    last = 0\n    for i in range(n):\n"
+        "        same = 1\n        for j in range(m):\n            if a[i + j] != b[j]:\n                same = 0\n"
+        "                break\n        s += same\n        {}\n    return s + last\n"
+    )
+    assert (
+        lowered(text.format("last = 0"), tmp_path)[Op.IMM]
+        < lowered(text.format("last += same * n"), tmp_path)[Op.IMM]
+    )
+
+
+def test_a_stepped_value_is_compared_behind_its_step(tmp_path: Path) -> None:
+    """LLVM's `j > 0` before j - 1 is C's `j - 1 >= 0`; a value that is not stepped is compared as it is."""
+    found = context(
+        "def f(a: i32[:], n: i32, v: i32) -> i32:\n    j = n - 1\n    while j >= 0 and a[j] > v:\n"
+        "        a[j + 1] = a[j]\n        j = j - 1\n    return j\n",
+        tmp_path,
+    )
+    tests = [each for block in found.routine.blocks for each in block.instructions if each.opcode == "icmp"]
+    bounds = [(found.needs.compared(each)[1], each.operands[1]) for each in tests]
+    assert any(seen != written for seen, written in bounds)
+    assert any(seen == written for seen, written in bounds)
+
+
+def test_what_is_reloaded_for_a_product_is_not_copied_first(tmp_path: Path) -> None:
+    """R *= R destroys an operand: one that comes from the stack may be; the others are moved."""
+    names = [f"k{number}" for number in range(11)]
+    head = ", ".join(("a: i32[:]", "n: i32", *(f"{name}: i32" for name in names)))
+    body = "x = a[i]\na[i] = " + " ^ ".join(f"x * {name}" for name in names)
+    few = lowered(loops("x = a[i]\na[i] = x * k0 ^ x * k1", "a: i32[:], n: i32, k0: i32, k1: i32"), tmp_path)
+    many = lowered(loops(body, head), tmp_path)
+    assert many[Op.MUL32] == 11
+    assert many[Op.MOVE] < few[Op.MOVE] + 9  # nine products more, and not a move for each
+
+
+@pytest.mark.parametrize(
+    ("other", "operations"), [("elif x > 255:\n        x = 255", 2), ("elif x > 255:\n        x = y", 0)]
+)
+def test_cutting_to_a_range_is_a_minimum_and_a_maximum(other: str, operations: int, tmp_path: Path) -> None:
+    """`if x < 0: x = 0`, `elif x > 255: x = 255` has no branch; with another value than the bound it has."""
+    found = lowered(
+        f"def f(x: i32, y: i32) -> i32:\n    if x < 0:\n        x = 0\n    {other}\n    return x\n", tmp_path
+    )
+    assert found[Op.DSP_ALU] == operations
+    assert (Op.COMPARE in found) is (operations == 0)
+
+
+@pytest.mark.parametrize(("first", "products"), [("rows[i] * n", 1), ("i * n", 0)])
+def test_a_first_address_that_depends_on_data_is_computed(first: str, products: int, tmp_path: Path) -> None:
+    """A counter of the loop around steps the address along; what is loaded has to be multiplied."""
+    text = (
+        "def f(a: u8[:], rows: u8[:], n: i32) -> i32:\n    s = 0\n    for i in range(n):\n"
+        f"        row = {first}\n        for j in range(n):\n            s += a[row + j]\n    return s\n"
+    )
+    assert lowered(text, tmp_path)[Op.MUL32] == products
+
+
+def test_the_cache_depends_on_the_lowering() -> None:
+    """A rule of the lowering that changes must not meet kernels that were costed without it."""
+    assert {"select.py", "store.py"} <= {path.name for path in store.sources()}
+    assert GCC_O2.library.fill is not None
