@@ -13,9 +13,11 @@ from firmware.blob_store import (
     ACROSS,
     BLOB_WORDS,
     DOWN,
+    extent_of,
     is_cut,
     is_cut_before,
     is_cut_behind,
+    wider,
 )
 from firmware.geometry import (
     GEOMETRY_COSINE,
@@ -45,6 +47,7 @@ from firmware.stages.object_places import HALF_PIXEL, depth_by_floor, floor_exte
 from firmware.stages.object_tests import GOAL
 from firmware.stages.rectangle_detection import crossing
 
+NO_PART = -1
 FAR_APART = 4 * LARGEST_MM  # mm: farther than any goal is wide; three squares of it stay in 32 bits
 
 
@@ -65,26 +68,33 @@ def bottom_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], col
 
 
 @kernel
-def left_part(blob_data: u32[:], parents: u8[:], blob: i32) -> i32:
-    """Return the leftmost part of a merged blob, the first of them; a blob without parts is its own. Parts come before it."""
-    for part in range(blob):
-        if parents[part] == blob:
-            if (
-                blob_data[part * BLOB_WORDS + ACROSS] & 0xFFFF
-                == blob_data[blob * BLOB_WORDS + ACROSS] & 0xFFFF
-            ):
-                return part
-    return blob
+def is_above(across: u32, other: u32) -> i32:
+    """Return 1 if two blobs have half the columns of the narrower one in common: one stands above the other; else 0."""
+    common = min(i32(across >> 16), i32(other >> 16)) + 1 - max(i32(across & 0xFFFF), i32(other & 0xFFFF))
+    return 1 if 2 * common >= min(extent_of(across), extent_of(other)) else 0
 
 
 @kernel
-def right_part(blob_data: u32[:], parents: u8[:], blob: i32) -> i32:
-    """Return the rightmost part of a merged blob likewise."""
+def rows_at_end(blob_data: u32[:], parents: u8[:], blob: i32, is_right: i32) -> u32:
+    """Return the rows of the part of a blob that reaches farthest to the left or to the right, with those that it stands on.
+
+    A blob without parts has its own rows. Parts come before the blob.
+    """
+    across = blob_data[blob * BLOB_WORDS + ACROSS]
+    rows = blob_data[blob * BLOB_WORDS + DOWN]
+    end: i32 = NO_PART
     for part in range(blob):
-        if parents[part] == blob:
-            if blob_data[part * BLOB_WORDS + ACROSS] >> 16 == blob_data[blob * BLOB_WORDS + ACROSS] >> 16:
-                return part
-    return blob
+        apart = blob_data[part * BLOB_WORDS + ACROSS] ^ across
+        if parents[part] == blob and (apart >> 16 if is_right != 0 else apart & 0xFFFF) == 0:
+            end = part
+            rows = blob_data[part * BLOB_WORDS + DOWN]
+    if end != NO_PART:
+        across = blob_data[end * BLOB_WORDS + ACROSS]
+        for part in range(blob):
+            down = blob_data[part * BLOB_WORDS + DOWN]
+            if parents[part] == blob and is_above(across, blob_data[part * BLOB_WORDS + ACROSS]) != 0:
+                rows = wider(rows, i32(down & 0xFFFF), i32(down >> 16))
+    return rows
 
 
 @kernel
@@ -211,8 +221,8 @@ def see_rectangle(
     if refined != 0 and models[model + MODEL_SHAPE] == GOAL:
         left = SUBPIXELS * i32(across & 0xFFFF) - HALF_PIXEL
         right = SUBPIXELS * i32(across >> 16) + HALF_PIXEL
-        left_down = blob_data[left_part(blob_data, parents, blob) * BLOB_WORDS + DOWN]
-        right_down = blob_data[right_part(blob_data, parents, blob) * BLOB_WORDS + DOWN]
+        left_down = rows_at_end(blob_data, parents, blob, 0)
+        right_down = rows_at_end(blob_data, parents, blob, 1)
         left_row = bottom_row(left_down, rectangles, rectangle, lines, left) - middle_y
         right_row = bottom_row(right_down, rectangles, rectangle, lines, right) - middle_y
         cut_left = is_cut_before(across)
