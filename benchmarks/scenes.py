@@ -96,6 +96,19 @@ def things(truth: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
             yield name, thing
 
 
+def thing_of(found: SeenObject, truth: Mapping[str, Any], places: Mapping[str, Vector]) -> str | None:
+    """Return the thing of its shape that lies nearest to the way to an object; None if that is too far from it."""
+    off_deg = {
+        name: angle_deg(np.array(found.place_mm, float), place)
+        for name, place in places.items()
+        if shape_of(truth[name]) == SHAPE_OF[found.name]
+    }
+    nearest = min(off_deg, key=lambda name: off_deg[name], default=None)
+    if nearest is None or off_deg[nearest] > half_width_deg(truth[nearest], places[nearest]) + SLACK_DEG:
+        return None
+    return nearest
+
+
 def compare(frames: Iterable[tuple[SeenFrame, Mapping[str, Any]]]) -> tuple[dict[str, Tally], list[float]]:
     """Return what came out for each thing of frames with their ground truth, and how accurate what is no thing is said to be.
 
@@ -105,26 +118,20 @@ def compare(frames: Iterable[tuple[SeenFrame, Mapping[str, Any]]]) -> tuple[dict
     false: list[float] = []
     for seen, truth in frames:
         now = [found for found in seen.objects if found.age_frames == 0]
-        taken: set[int] = set()
-        for name, thing in things(truth):
-            place = place_of(thing, truth["cameras"]["left"])
+        left = truth["cameras"]["left"]
+        places = {name: place_of(thing, left) for name, thing in things(truth)}
+        meant: dict[str, list[SeenObject]] = {name: [] for name in places}
+        for found in now:
+            name = thing_of(found, truth, places)
+            if name is not None:
+                meant[name].append(found)
+            elif "dimension" in found.tests:
+                false.append(found.accuracy)
+        for name, candidates in meant.items():
             tally = tallies.setdefault(name, Tally())
             tally.frames += 1
-            reach_deg = half_width_deg(thing, place) + SLACK_DEG
-            near = [
-                index for index, found in enumerate(now)
-                if SHAPE_OF[found.name] == shape_of(thing)
-                and angle_deg(np.array(found.place_mm, float), place) <= reach_deg
-            ]  # fmt: skip
-            if near:
-                best = max(near, key=lambda index: now[index].accuracy)
-                taken.update(near)
-                _add(tally, now[best], place)
-        false += [
-            found.accuracy
-            for index, found in enumerate(now)
-            if index not in taken and "dimension" in found.tests
-        ]
+            if candidates:
+                _add(tally, max(candidates, key=lambda each: each.accuracy), places[name])
     return tallies, false
 
 

@@ -153,12 +153,16 @@ def object_detection(core: Core, thresholds: ObjectThresholds) -> Generator[Any,
 
     Publishes `verified`, how many objects both cameras see, and what `remember` does.
     """
-    left, right = core.array("left_seen"), core.array("right_seen")
-    lengths = SUBPIXELS * thresholds.row_range, SUBPIXELS * thresholds.disparity_max
-    weight, refined = thresholds.camera_weight, int(thresholds.refined)
-    verified = yield core.run(verify_objects, core.array("geometry"), left, right, *lengths, weight, refined)
+    tables = core.array("left_seen"), core.array("right_seen")
+    pixels = thresholds.row_range, thresholds.disparity_max, thresholds.disparity_range
+    verified = yield core.run(
+        verify_objects,
+        *(core.array("geometry"), core.array("models"), *tables),
+        *(SUBPIXELS * each for each in pixels),
+        *(thresholds.camera_weight, thresholds.size_weight, int(thresholds.refined)),
+    )
     core.publish(verified=verified)
-    yield from remember(core, (left, right), thresholds)
+    yield from remember(core, tables, thresholds)
 
 
 def remember(core: Core, tables: Sequence[Row], thresholds: ObjectThresholds) -> Generator[Any, Any, None]:

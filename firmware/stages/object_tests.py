@@ -141,14 +141,14 @@ def area_passes(blob_data: u32[:], blob: i32, shape: i32, ball_area: i32, rectan
 
 
 @kernel
-def circle_tests(circles: i16[:], circle: i32) -> i32:
-    """Return which tests of its shape a ball passes."""
+def circle_tests(blob_data: u32[:], blob: i32, circles: i16[:], circle: i32) -> i32:
+    """Return which tests of its shape a ball passes. A circle out of which its blob looks has not the size of the ball."""
     if circle == NO_OUTLINE:
         return 0
     passed = circles[circle * CIRCLE_WORDS + CIRCLE_TESTS]
     if passed & CENTRE_PASSED == 0:
         return 0
-    if passed & RADIUS_PASSED == 0:
+    if passed & RADIUS_PASSED == 0 or lies_within(blob_data, blob, circles, circle * CIRCLE_WORDS) == 0:
         return CENTRE_TEST
     return CENTRE_TEST | SIZE_TEST
 
@@ -167,13 +167,13 @@ def hidden_ball_tests(
 ) -> i32:
     """Return the tests of its shape if a blob is part of a ball whose circle is seen well enough to be trusted; else 0.
 
-    The circle has passed its own tests, has outline on a good part of it, holds the blob, and stands on the floor where a
-    ball of the model looks so large.
+    The circle has passed its own tests, has outline on a good part of it, and stands on the floor where a ball of the
+    model looks so large.
     """
     at = circle * CIRCLE_WORDS
-    if limits[HIDDEN_ARC] == 0 or circle_tests(circles, circle) & SIZE_TEST == 0:
+    if limits[HIDDEN_ARC] == 0 or circle_tests(blob_data, blob, circles, circle) & SIZE_TEST == 0:
         return 0
-    if circles[at + CIRCLE_ARC] < limits[HIDDEN_ARC] or lies_within(blob_data, blob, circles, at) == 0:
+    if circles[at + CIRCLE_ARC] < limits[HIDDEN_ARC]:
         return 0
     diameter = 2 * circles[at + CIRCLE_RADIUS]
     if diameter < SUBPIXELS * limits[SHORTEST_SIDE]:
@@ -229,7 +229,7 @@ def tests_passed(
             passed = COLOUR_TEST | DIMENSION_TEST | AREA_TEST
     if shape == BALL:
         if passed & AREA_TEST != 0:
-            return passed | circle_tests(circles, outline)
+            return passed | circle_tests(blob_data, blob, circles, outline)
         return passed | hidden_ball_tests(
             blob_data, blob, models, model, circles, outline, geometry, limits, height
         )
