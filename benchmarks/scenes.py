@@ -1,15 +1,17 @@
 """The scenes of T Figures 5.8 and 6.7 to 6.14: which objects the firmware finds, and how far off it has them.
 
-`python -m benchmarks.scenes FOLDER`: a folder of recordings of `bfsim record render thesis FOLDER`. What the thesis
+`python -m benchmarks.scenes [FOLDER] [--overlays FOLDER]`: a folder of recordings of `bfsim record render thesis FOLDER`;
+without one they are rendered here, which needs mitsuba (`pip install -e ".[scenes]"`) and some minutes. What the thesis
 reports as failing is reported here as it comes out. A thing is found if an object of its kind of model lies its way; its
 place is that of the ball's centre, of the middle of the goal's mouth, and of the middle of the mark's nearest face. The
-goal is open: what is seen is mostly its back, 150 mm behind the mouth. The balls of Figure 5.8 have many colours and sizes,
-and the model one of each.
+balls of Figure 5.8 have many colours and sizes, and the model one of each. What was seen is drawn over the pictures of each
+scene, in a folder of its own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -19,17 +21,19 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table
 
-from benchmarks.seen_objects import Seen, see
+from bfsim.errors import BfsimError
+from bfsim.recording import RecordingReader
+from bfsim.report.overlay.files import OverlayWriter
 from bfsim.report.tables import new_table
+from bfsim.run import simulate
+from bfsim.seen import SeenFrame, SeenObject
 from bfsim.terminal import print_report, progress_bar
-from firmware.stores.objects import DIMENSION_TEST
-from firmware.strategy.decoding import ReportedObject
 from firmware.strategy.models import MODELS, Shape
 
 PLACED_BY = {Shape.GOAL: "mouth_mm", Shape.MARKER: "mark_corners_mm", Shape.BALL: "centre_mm"}
 """What of the ground truth tells where a thing is, and with it what it is."""
 
-SHAPE_OF = {each.number: each.shape for each in MODELS}
+SHAPE_OF = {each.name: each.shape for each in MODELS}
 
 SLACK_DEG = 1.0
 """Objects no farther from the way to a thing than its own half width, and this, are taken for it."""
@@ -45,7 +49,7 @@ class Tally:
     directions_deg: list[float] = field(default_factory=list)
     places_mm: list[float] = field(default_factory=list)
     depths_mm: list[tuple[float, float]] = field(default_factory=list)
-    accuracies: list[int] = field(default_factory=list)
+    accuracies: list[float] = field(default_factory=list)
 
 
 def shape_of(thing: Any) -> Shape | None:
@@ -92,43 +96,55 @@ def things(truth: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any]]]:
             yield name, thing
 
 
-def compare(seen: Sequence[Seen]) -> tuple[dict[str, Tally], int]:
-    """Return what came out for each thing, and how many objects with the dimension of their model are no thing."""
+def thing_of(found: SeenObject, truth: Mapping[str, Any], places: Mapping[str, Vector]) -> str | None:
+    """Return the thing of its shape that lies nearest to the way to an object; None if that is too far from it."""
+    off_deg = {
+        name: angle_deg(np.array(found.place_mm, float), place)
+        for name, place in places.items()
+        if shape_of(truth[name]) == SHAPE_OF[found.name]
+    }
+    nearest = min(off_deg, key=lambda name: off_deg[name], default=None)
+    if nearest is None or off_deg[nearest] > half_width_deg(truth[nearest], places[nearest]) + SLACK_DEG:
+        return None
+    return nearest
+
+
+def compare(frames: Iterable[tuple[SeenFrame, Mapping[str, Any]]]) -> tuple[dict[str, Tally], list[float]]:
+    """Return what came out for each thing of frames with their ground truth, and how accurate what is no thing is said to be.
+
+    Of the latter those only that have the dimension of their model.
+    """
     tallies: dict[str, Tally] = {}
-    false = 0
-    for each in seen:
-        now = [found for found in each.results.objects if found.age == 0]
-        taken: set[int] = set()
-        for name, thing in things(each.truth):
-            place = place_of(thing, each.truth["cameras"]["left"])
+    false: list[float] = []
+    for seen, truth in frames:
+        now = [found for found in seen.objects if found.age_frames == 0]
+        left = truth["cameras"]["left"]
+        places = {name: place_of(thing, left) for name, thing in things(truth)}
+        meant: dict[str, list[SeenObject]] = {name: [] for name in places}
+        for found in now:
+            name = thing_of(found, truth, places)
+            if name is not None:
+                meant[name].append(found)
+            elif "dimension" in found.tests:
+                false.append(found.accuracy)
+        for name, candidates in meant.items():
             tally = tallies.setdefault(name, Tally())
             tally.frames += 1
-            reach_deg = half_width_deg(thing, place) + SLACK_DEG
-            near = [
-                index for index, found in enumerate(now)
-                if SHAPE_OF[found.model] == shape_of(thing)
-                and angle_deg(np.array(found.towards, float), place) <= reach_deg
-            ]  # fmt: skip
-            if near:
-                best = max(near, key=lambda index: now[index].accuracy)
-                taken.update(near)
-                _add(tally, now[best], place)
-        false += sum(
-            1 for index, found in enumerate(now) if index not in taken and found.tests & DIMENSION_TEST
-        )
+            if candidates:
+                _add(tally, max(candidates, key=lambda each: each.accuracy), places[name])
     return tallies, false
 
 
-def _add(tally: Tally, found: ReportedObject, place: Vector) -> None:
-    towards = np.array(found.towards, float)
+def _add(tally: Tally, found: SeenObject, place: Vector) -> None:
+    towards = np.array(found.place_mm, float)
     tally.accuracies.append(found.accuracy)
     tally.directions_deg.append(angle_deg(towards, place))
-    if found.has_place:
+    if not found.is_direction:
         tally.places_mm.append(float(np.linalg.norm(towards - place)))
         tally.depths_mm.append((place[2], towards[2]))
 
 
-def add_rows(table: Table, scene: str, tallies: Mapping[str, Tally], false: int) -> None:
+def add_rows(table: Table, scene: str, tallies: Mapping[str, Tally], false: Sequence[float]) -> None:
     """Add a scene to the table."""
     for name, tally in tallies.items():
         depths = np.array(tally.depths_mm)
@@ -136,10 +152,11 @@ def add_rows(table: Table, scene: str, tallies: Mapping[str, Tally], false: int)
         table.add_row(
             *(scene, name, f"{len(tally.accuracies)} of {tally.frames}", f"{len(tally.places_mm)}"),
             *(_mean(tally.directions_deg, ".1f"), _mean(tally.places_mm, ".0f"), _mean(100 * off, ".1f")),
-            _mean(tally.accuracies, ".0f"),
+            _mean(100 * np.array(tally.accuracies), ".0f"),
         )
         scene = ""
-    table.add_row("", "objects that are no thing", f"{false}")
+    best = f"{100 * max(false):.0f} at most" if false else ""
+    table.add_row("", "no thing", f"{len(false)}", "", "", "", "", best)
     table.add_section()
 
 
@@ -147,20 +164,57 @@ def _mean(values: Sequence[float] | NDArray[np.float64], form: str) -> str:
     return format(np.mean(values), form) if len(values) else "-"
 
 
-@click.command()
-@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
-def main(folder: Path) -> None:
-    """Print for each recording in FOLDER that has ground truth what the firmware finds of it."""
-    heads = ("Found", "with place", "direction, deg", "place, mm", "depth, %", "accuracy")
+def run_scene(recording: Path, overlays: Path) -> list[tuple[SeenFrame, Mapping[str, Any]]]:
+    """Run a recording through the firmware, draw each frame in the folder `overlays`, and return them with their truth."""
+    seen: list[SeenFrame] = []
+    with OverlayWriter(overlays) as writer:
+
+        def take(frame: SeenFrame) -> None:
+            writer.add(frame)
+            seen.append(frame)
+
+        simulate(recording, on_seen=take)
+    with RecordingReader(recording) as reader:
+        return [(each, picture.truth or {}) for each, picture in zip(seen, reader.frames(), strict=True)]
+
+
+def comparison(folder: Path, overlays: Path) -> Table:
+    """Return what is found of the things in each recording of a folder that has some."""
+    heads = ("Found", "with place", "direction, deg", "place, mm", "depth, %", "accuracy, %")
     table = new_table("Things found, and the mean error of those found", "Scene", "Thing", *heads)
     paths = sorted(folder.glob("*.mcap"))
+    overlays.mkdir(exist_ok=True)
     with progress_bar("Simulating") as progress:
         for done, path in enumerate(paths):
             progress(done, len(paths))
-            tallies, false = compare(see(path))
+            tallies, false = compare(run_scene(path, overlays / path.stem))
             if tallies:
                 add_rows(table, path.stem, tallies, false)
-    print_report(table)
+    return table
+
+
+@click.command()
+@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path), required=False)
+@click.option(
+    "--overlays",
+    type=click.Path(file_okay=False, path_type=Path),
+    default=Path("scenes-seen"),
+    help="Folder for the pictures of what was seen.",
+    show_default=True,
+)
+def main(folder: Path | None, overlays: Path) -> None:
+    """Print for each recording in FOLDER that has ground truth what the firmware finds of it, and draw it."""
+    try:
+        with tempfile.TemporaryDirectory() as rendered:
+            if folder is None:
+                from bfsim.recording.scenes.rendering import render
+
+                folder = Path(rendered)
+                with progress_bar("Rendering the scenes") as progress:
+                    render("thesis", folder, progress=progress)
+            print_report(comparison(folder, overlays))
+    except BfsimError as error:
+        raise click.ClickException(str(error)) from None
 
 
 if __name__ == "__main__":

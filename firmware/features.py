@@ -9,6 +9,7 @@ from typing import Any
 from bfsim.api import Core, Frame
 from firmware.areas import WHOLE_PICTURE, Area
 from firmware.stages.blob_detection import blob_detection
+from firmware.stages.blob_merging import blob_merging
 from firmware.stages.circle_detection import circle_detection
 from firmware.stages.edge_detection import edge_detection
 from firmware.stages.line_detection import line_detection
@@ -47,6 +48,7 @@ def features(
         yield from line_refinement(core, frame, lines, mode.refinement)
     with core.stage("Shape detection"):
         circles = yield from circle_detection(core, frame, blobs, mode.ball_colours, mode.circles)
+        blobs = yield from blob_merging(core, blobs, circles, mode.blobs.merged)
         rectangles = yield from rectangle_detection(
             core, blobs, lines, mode.rectangle_colours, mode.rectangles
         )

@@ -47,13 +47,14 @@ class BlobThresholds:
 
     `colour_groups`: the colours of interest as bits of the 32-colour image; the colours of a group count as one,
     and no colour is in two. `min_pixels`, `max_pixels`: smaller and bigger segments are no blobs.
-    `max_blobs`: how many are kept, 0..127.
+    `max_blobs`: how many are kept, 0..127. `merged`: whether those that are parts of one thing count as one [ours].
     """
 
     colour_groups: tuple[int, ...] = not_ordered()  # it follows from the models
     min_pixels: int = allowed(1, LARGEST_PIXELS, at_most="max_pixels")
     max_pixels: int = allowed(1, LARGEST_PIXELS)
     max_blobs: int = allowed(0, LABELS - 1)
+    merged: bool = True
 
     def __post_init__(self) -> None:
         if not 1 <= len(self.colour_groups) <= COLOUR_GROUPS:

@@ -25,13 +25,14 @@ from firmware.stages.circle_edges import (
     rows_of,
     select_edges_row,
 )
-from firmware.stages.circle_fit import CENTRE_X, CENTRE_Y, FIT_WORDS, RADIUS, fit_circle
+from firmware.stages.circle_fit import CENTRE_X, CENTRE_Y, FIT_WORDS, RADIUS, arc_of, fit_circle
 from firmware.stages.circle_outline import LUMA_LINES, REACH_LINES, clear_points, luma_row, refine_row
 from firmware.stages.circle_radius import edges_round, fill_histogram, find_radius, mean_radius
 from firmware.stages.circle_votes import clear_votes, draw_lines, find_peak, mean_offset, votes_round
 from firmware.stores.blobs import BLOB_WORDS, PIXELS, SUM_X, SUM_Y
 from firmware.stores.circles import (
     CENTRE_PASSED,
+    CIRCLE_ARC,
     CIRCLE_BLOB,
     CIRCLE_CENTRE,
     CIRCLE_EDGES,
@@ -123,6 +124,7 @@ def open_circle(blob_data: u32[:], blob: i32, edges: i32, circles: i16[:], numbe
     circles[at + CIRCLE_CENTRE] = 0
     circles[at + CIRCLE_RADIUS_SHARE] = 0
     circles[at + CIRCLE_TESTS] = 0
+    circles[at + CIRCLE_ARC] = 0
 
 
 @kernel
@@ -185,6 +187,12 @@ def judge_radius(
         return 0
     circles[at + CIRCLE_TESTS] = CENTRE_PASSED | RADIUS_PASSED
     return 1
+
+
+@kernel
+def judge_arc(points: u32[:], fit: i32[:], atan: u8[:], circles: i16[:], number: i32) -> None:
+    """Store how much of a circle has outline on it."""
+    circles[number * CIRCLE_WORDS + CIRCLE_ARC] = arc_of(points, fit, atan)
 
 
 @kernel
@@ -266,6 +274,7 @@ def _measure(
         passed = yield core.run(judge_radius, *judged, *result)
         if passed and thresholds.fit_rounds:
             yield from _refine(core, frame, selected, count, thresholds)
+            yield core.run(judge_arc, selected, fit, core.array("atan"), circles, number)
         yield core.run(close_circle, *result)
 
 

@@ -12,7 +12,16 @@ from __future__ import annotations
 from bfsim.api import i32, kernel, u8, u16, u32
 from firmware.arithmetic import angle8
 from firmware.stages.line_segments import turn_between
-from firmware.stores.blobs import ACROSS, BLOB_WORDS, CENTRE, COLOURS, DOWN
+from firmware.stores.blobs import (
+    ACROSS,
+    BLOB_WORDS,
+    CENTRE,
+    COLOURS,
+    DOWN,
+    extent_of,
+    is_cut_before,
+    is_cut_behind,
+)
 
 NONE = -1
 
@@ -24,9 +33,9 @@ LEFT = 0
 RIGHT = 1
 TOP = 2
 BOTTOM = 3
-MASS_X = 4  # blob.cc
+MASS_X = 4  # blob.cc, or where the middle is of a disc that the picture shows less than half of
 MASS_Y = 5
-REACH = 6  # the centre is looked for so far from blob.cc to each side
+REACH = 6  # the centre is looked for so far from there to each side
 AREA_WORDS = 7
 
 HALF_TURN = 128
@@ -61,6 +70,23 @@ def rows_of(area: i32[:]) -> i32:
 
 
 @kernel
+def middle_beyond(span: u32, chord: i32, pixels: i32, mass: i32) -> i32:
+    """Return where the middle of a disc is along an axis of which the picture has `pixels`, given its centre of mass.
+
+    Of a disc that the picture's border cuts, so that less than half of it is seen, the part seen and the chord at the border
+    tell the radius; of less than a seventh they hardly do.
+    """
+    seen = extent_of(span)
+    before = is_cut_before(span)
+    if before == is_cut_behind(span, pixels) or 2 * seen >= chord or 7 * seen < chord:
+        return mass
+    radius = (chord * chord + 4 * seen * seen) // (8 * seen)
+    if before != 0:
+        return i32(span >> 16) - radius
+    return i32(span & 0xFFFF) + radius
+
+
+@kernel
 def open_area(
     blob_data: u32[:], blob: i32, area: i32[:], border: i32, patch_reach: i32, width: i32, height: i32
 ) -> i32:
@@ -75,8 +101,9 @@ def open_area(
     area[RIGHT] = min(right + border, width - 1)
     area[TOP] = max(top - border, 0)
     area[BOTTOM] = min(bottom + border, height - 1)
-    area[MASS_X] = i32(blob_data[blob * BLOB_WORDS + CENTRE] & 0xFFFF)
-    area[MASS_Y] = i32(blob_data[blob * BLOB_WORDS + CENTRE] >> 16)
+    centre = blob_data[blob * BLOB_WORDS + CENTRE]
+    area[MASS_X] = middle_beyond(across, extent_of(down), width, i32(centre & 0xFFFF))
+    area[MASS_Y] = middle_beyond(down, extent_of(across), height, i32(centre >> 16))
     area[REACH] = min(max(right - left, bottom - top) + 1 >> 1, patch_reach)
     return rows_of(area)
 

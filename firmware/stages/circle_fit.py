@@ -8,8 +8,8 @@ settles on the outermost points that agree. On a disc of one colour, whose point
 
 from __future__ import annotations
 
-from bfsim.api import i32, kernel, u32
-from firmware.arithmetic import isqrt32
+from bfsim.api import i32, kernel, u8, u32
+from firmware.arithmetic import angle8, isqrt32
 from firmware.stages.circle_edges import FINE
 from firmware.stages.line_fit import spread
 
@@ -36,6 +36,9 @@ NORMAL_BITS = 8
 # The product of the variances of the unit vectors, along and across, is 1/4 on a whole circle and 1/1000 on an arc of
 # 80 degrees. A shorter one hardly tells a far centre from a near one: it moves the radius only.
 SHORTEST_ARC = 1 << 10  # in parts of 1 << 20
+
+
+SECTOR_BITS = 3  # of the 8 of an angle: a circle has 32 sectors of 8
 
 
 @kernel
@@ -111,3 +114,20 @@ def fit_circle(points: u32[:], fit: i32[:], fit_range: i32, rounds: i32) -> None
         sum_up(points, fit[REFINED], fit, near)
         move_circle(fit, near)
         near = max(near >> 1, FINE)
+
+
+@kernel
+def arc_of(points: u32[:], fit: i32[:], atan: u8[:]) -> i32:
+    """Return how much of the circle has outline on it, of 256: its sectors with a point not further than a pixel."""
+    sectors: u32 = 0
+    for number in range(fit[REFINED]):
+        x = i32(points[number] & 0xFFFF)
+        y = i32(points[number] >> 16)
+        if abs(distance(x, y, fit) - fit[RADIUS]) <= FINE:
+            angle = angle8(x - fit[CENTRE_X], y - fit[CENTRE_Y], atan)
+            sectors = sectors | u32(1) << (angle >> SECTOR_BITS)
+    arc: i32 = 0
+    while sectors != 0:
+        sectors = sectors & sectors - 1
+        arc = arc + (1 << SECTOR_BITS)
+    return arc

@@ -35,11 +35,13 @@ class ObjectThresholds:
     `*_weight`: what passing a test adds to the accuracy; together at most 255. `shortest_side`: of a blob in pixels, for
     the dimension test. `size_range`: by what factor, of 16, its height may be off that of the model where it stands.
     `ball_area`: how far the share of its square that a ball fills may be from pi/4, of 256.
-    `rectangle_area`: the least share of its rectangle that another object fills, of 256.
+    `rectangle_area`: the least share of its rectangle that another object fills, of 256. `hidden_arc`: the least share of its
+    circle that must be seen of a ball that is hidden in part, of 256; 0: its size is never taken from that.
 
     `row_range`: how many pixels the two images of an object may be apart in row. `disparity_max`: in column.
-    `refined`: whether the disparity helps to measure, and a ball is taken for the sphere that it is; without it the
-    distance is that of the thesis (T Eq. 4.1, the mean of both cameras).
+    `disparity_range`: by how many pixels its disparity may be off that of its place. `refined`: whether the disparity helps
+    to measure, a ball is taken for the sphere that it is, and a goal for the box; without it the distance is that of the
+    thesis (T Eq. 4.1, the mean of both cameras).
 
     `age_max`: for how many frames an object that is not seen stays in the history. `apart_max`: how far it may have moved
     in the picture since the last frame, of 256 for a focal length.
@@ -57,6 +59,8 @@ class ObjectThresholds:
     rectangle_area: int = allowed(0, 256)
     row_range: int = allowed(0, 255)
     disparity_max: int = allowed(1, 1023)
+    disparity_range: int = allowed(0, 255)
+    hidden_arc: int = allowed(0, 256)
     refined: bool
     age_max: int = allowed(0, 255)
     apart_max: int = allowed(0, 1024)
@@ -78,12 +82,12 @@ class ObjectThresholds:
     def limits(self) -> tuple[int, ...]:
         """What kernels read of them, in the order of `object_limits`."""
         areas = self.ball_area, self.rectangle_area
-        return *self.weights, self.shortest_side, self.size_range, *areas, int(self.refined)
+        return *self.weights, self.shortest_side, self.size_range, *areas, int(self.refined), self.hidden_arc
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outlines:
-    """How many blobs, circles and rectangles a picture has in their stores."""
+    """How many blobs, with merged ones, circles and rectangles a picture has in their stores."""
 
     blobs: int
     circles: int
@@ -136,7 +140,7 @@ def _sight(
         yield core.run(store_limit, limits, number, value)
     found = yield core.run(
         see_objects,
-        *(core.array("blob_data"), outlines.blobs, core.array("models")),
+        *(core.array("blob_data"), core.array("label_parents"), outlines.blobs, core.array("models")),
         *(core.array("circles"), outlines.circles, core.array("rectangles"), outlines.rectangles),
         *(core.array("lines"), core.array("geometry"), limits),
         *(seen, camera, frame.width, frame.height),
@@ -149,12 +153,16 @@ def object_detection(core: Core, thresholds: ObjectThresholds) -> Generator[Any,
 
     Publishes `verified`, how many objects both cameras see, and what `remember` does.
     """
-    left, right = core.array("left_seen"), core.array("right_seen")
-    lengths = SUBPIXELS * thresholds.row_range, SUBPIXELS * thresholds.disparity_max
-    weight, refined = thresholds.camera_weight, int(thresholds.refined)
-    verified = yield core.run(verify_objects, core.array("geometry"), left, right, *lengths, weight, refined)
+    tables = core.array("left_seen"), core.array("right_seen")
+    pixels = thresholds.row_range, thresholds.disparity_max, thresholds.disparity_range
+    verified = yield core.run(
+        verify_objects,
+        *(core.array("geometry"), core.array("models"), *tables),
+        *(SUBPIXELS * each for each in pixels),
+        *(thresholds.camera_weight, thresholds.size_weight, int(thresholds.refined)),
+    )
     core.publish(verified=verified)
-    yield from remember(core, (left, right), thresholds)
+    yield from remember(core, tables, thresholds)
 
 
 def remember(core: Core, tables: Sequence[Row], thresholds: ObjectThresholds) -> Generator[Any, Any, None]:

@@ -2,33 +2,26 @@
 
 from __future__ import annotations
 
-from bfsim.api import i16, i32, kernel, u32
-from firmware.geometry import GEOMETRY_COSINE, GEOMETRY_SHIFT_Y, GEOMETRY_SINE, SINE_BITS, beside_mm
+from bfsim.api import i16, i32, kernel, u8, u32
 from firmware.stages.object_places import (
     HALF_PIXEL,
-    depth_by_floor,
     depth_by_size,
     depth_of_sphere,
-    floor_extent,
     place_object,
-    principal,
 )
 from firmware.stages.object_tests import (
     BALL,
     REFINED,
     accuracy_of,
     extent_of,
-    is_cut,
     tests_passed,
 )
-from firmware.stages.rectangle_detection import crossing
+from firmware.stages.rectangle_places import see_rectangle
 from firmware.stores.blobs import ACROSS, BLOB_WORDS, DOWN
 from firmware.stores.circles import CIRCLE_BLOB, CIRCLE_RADIUS, CIRCLE_WORDS, CIRCLE_X, CIRCLE_Y
-from firmware.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
+from firmware.stores.lines import SUBPIXELS
 from firmware.stores.objects import (
-    BY_FLOOR,
     BY_SIZE,
-    DIMENSION_TEST,
     NO_MODEL,
     NO_OUTLINE,
     OBJECT_ACCURACY,
@@ -44,15 +37,11 @@ from firmware.stores.objects import (
     OBJECT_TESTS,
     OBJECT_WIDTH,
     OBJECT_WORDS,
-    OBJECT_Y,
-    OBJECT_Z,
     SIZE_TEST,
     free_objects,
 )
-from firmware.stores.rectangles import NO_LINE, RECTANGLE_BLOB, RECTANGLE_BOTTOM, RECTANGLE_WORDS
+from firmware.stores.rectangles import RECTANGLE_BLOB, RECTANGLE_WORDS
 from firmware.strategy.models import (
-    MODEL_FLOOR,
-    MODEL_HEIGHT,
     MODEL_NUMBER,
     MODEL_SHAPE,
     MODEL_WIDTH,
@@ -70,25 +59,6 @@ def outline_of(outlines: i16[:], count: i32, words: i32, blob_word: i32, blob: i
         if outlines[number * words + blob_word] == blob:
             return number
     return NO_OUTLINE
-
-
-@kernel
-def bottom_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], column: i32) -> i32:
-    """Return where a rectangle ends below at `column`, in 1/16 px: at its bottom line, or else at the end of its blob."""
-    if rectangle != NO_OUTLINE:
-        line = i32(rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_BOTTOM])
-        if line != NO_LINE:
-            at = line * LINE_WORDS
-            x = i32(lines[at + LINE_X0])
-            y = i32(lines[at + LINE_Y0])
-            return crossing(x, y, i32(lines[at + LINE_X1]), i32(lines[at + LINE_Y1]), column)
-    return SUBPIXELS * i32(down >> 16) + HALF_PIXEL
-
-
-@kernel
-def scaled(height_mm: i32, fraction: i32) -> i32:
-    """Return a fraction, with SINE_BITS, of half a height, rounded."""
-    return (height_mm * fraction >> SINE_BITS) + 1 >> 1
 
 
 @kernel
@@ -138,41 +108,6 @@ def see_ball(
                 seen[at + OBJECT_MEASURES] = BY_SIZE
                 seen[at + OBJECT_EXTENT] = size
     place_object(geometry, seen, place, depth, width, height)
-
-
-@kernel
-def see_rectangle(
-    down: u32,
-    models: i32[:],
-    model: i32,
-    rectangles: i16[:],
-    lines: i16[:],
-    tests: i32,
-    geometry: i32[:],
-    seen: i16[:],
-    place: i32,
-    width: i32,
-    height: i32,
-) -> None:
-    """Set where the centre of a rectangle is: by the floor below its bottom, or else the way to its blob's middle.
-
-    The floor tells only if the blob has the dimension of the model and is seen down to its bottom.
-    """
-    at = place * OBJECT_WORDS
-    depth: i32 = 0
-    column = i32(seen[at + OBJECT_IMAGE_X])
-    row: i32 = 0
-    if tests & DIMENSION_TEST != 0 and is_cut(down, height) == 0:
-        row = bottom_row(down, rectangles, i32(seen[at + OBJECT_OUTLINE]), lines, column)
-        row = row - principal(height) - geometry[GEOMETRY_SHIFT_Y]
-        depth = depth_by_floor(geometry, row, models[model + MODEL_FLOOR])
-    place_object(geometry, seen, place, depth, width, height)
-    if depth != 0:
-        up = models[model + MODEL_HEIGHT]
-        seen[at + OBJECT_Y] = beside_mm(geometry, depth, row) - scaled(up, geometry[GEOMETRY_COSINE])
-        seen[at + OBJECT_Z] = depth - scaled(up, geometry[GEOMETRY_SINE])
-        seen[at + OBJECT_MEASURES] = BY_FLOOR
-        seen[at + OBJECT_EXTENT] = abs(floor_extent(geometry, row))
 
 
 @kernel
@@ -229,6 +164,7 @@ def place_for(seen: i16[:], found: i32, accuracy: i32) -> i32:
 @kernel
 def see_objects(
     blob_data: u32[:],
+    parents: u8[:],
     blobs: i32,
     models: i32[:],
     circles: i16[:],
@@ -243,7 +179,7 @@ def see_objects(
     width: i32,
     height: i32,
 ) -> i32:
-    """Make an object of each blob that has a model, as one camera sees it; returns how many there are.
+    """Make an object of each blob that has a model and is no part of another, as one camera sees it; returns how many there are.
 
     When `seen` is full the least accurate ones make way.
     """
@@ -251,11 +187,25 @@ def see_objects(
     room = len(seen) // OBJECT_WORDS
     free_objects(seen, 0)
     for blob in range(blobs):
-        circle = outline_of(circles, circle_count, CIRCLE_WORDS, CIRCLE_BLOB, blob)
-        rectangle = outline_of(rectangles, rectangle_count, RECTANGLE_WORDS, RECTANGLE_BLOB, blob)
-        best = best_model(
-            blob_data, blob, models, circles, circle, rectangles, rectangle, geometry, limits, width, height
-        )
+        best: i32 = 0
+        circle: i32 = NO_OUTLINE
+        rectangle: i32 = NO_OUTLINE
+        if parents[blob] == blob:
+            circle = outline_of(circles, circle_count, CIRCLE_WORDS, CIRCLE_BLOB, blob)
+            rectangle = outline_of(rectangles, rectangle_count, RECTANGLE_WORDS, RECTANGLE_BLOB, blob)
+            best = best_model(
+                blob_data,
+                blob,
+                models,
+                circles,
+                circle,
+                rectangles,
+                rectangle,
+                geometry,
+                limits,
+                width,
+                height,
+            )
         if best != 0:
             tests = best & TESTS_MASK
             model = best >> MODEL_SHIFT
@@ -272,14 +222,26 @@ def see_objects(
                 seen[at + OBJECT_EXTENT] = 0
                 seen[at + OBJECT_AGE] = 0
                 see_blob(blob_data, blob, seen, place)
+                refined = limits[REFINED]
                 if models[model + MODEL_SHAPE] == BALL:
                     seen[at + OBJECT_OUTLINE] = circle
-                    refined = limits[REFINED]
                     see_ball(models, model, circles, tests, geometry, refined, seen, place, width, height)
                 else:
                     seen[at + OBJECT_OUTLINE] = rectangle
-                    down = blob_data[blob * BLOB_WORDS + DOWN]
                     see_rectangle(
-                        down, models, model, rectangles, lines, tests, geometry, seen, place, width, height
+                        blob_data,
+                        parents,
+                        blob,
+                        models,
+                        model,
+                        rectangles,
+                        lines,
+                        tests,
+                        geometry,
+                        refined,
+                        seen,
+                        place,
+                        width,
+                        height,
                     )
     return found

@@ -1,7 +1,8 @@
 """The tests that a blob goes through to become an object of a model (T §5.2.6, Figure 5.7).
 
 They come in order: colour, dimension, area, centre of the shape, size of the shape. The first one that fails is the last
-one that is tried. Each one passed adds its weight to the accuracy.
+one that is tried. Each one passed adds its weight to the accuracy. [ours] is what becomes of a ball that is hidden in part:
+its blob has not the form of a ball, but the circle of the outline that is left may tell its size all the same.
 """
 
 from __future__ import annotations
@@ -9,8 +10,17 @@ from __future__ import annotations
 from bfsim.api import i16, i32, kernel, u32
 from firmware.geometry import GEOMETRY_FOCAL, GEOMETRY_SHIFT_Y
 from firmware.stages.object_places import HALF_PIXEL, depth_by_floor, principal
-from firmware.stores.blobs import ACROSS, BLOB_WORDS, COLOURS, DOWN, PIXELS
-from firmware.stores.circles import CENTRE_PASSED, CIRCLE_TESTS, CIRCLE_WORDS, RADIUS_PASSED
+from firmware.stores.blobs import ACROSS, BLOB_WORDS, COLOURS, DOWN, PIXELS, extent_of, is_cut
+from firmware.stores.circles import (
+    CENTRE_PASSED,
+    CIRCLE_ARC,
+    CIRCLE_RADIUS,
+    CIRCLE_TESTS,
+    CIRCLE_WORDS,
+    CIRCLE_Y,
+    RADIUS_PASSED,
+    lies_within,
+)
 from firmware.stores.lines import SUBPIXELS
 from firmware.stores.objects import (
     AREA_TEST,
@@ -34,11 +44,14 @@ from firmware.strategy.models import (
     MODEL_COLOURS,
     MODEL_FLOOR,
     MODEL_HEIGHT,
+    MODEL_NUMBER,
     MODEL_SHAPE,
+    MODEL_WORDS,
     Shape,
 )
 
 BALL = int(Shape.BALL)  # kernels know integers
+GOAL = int(Shape.GOAL)
 
 # `object_limits`: the thresholds of the stage as kernels read them. The weights come in the order of the tests' bits.
 TESTS = 6
@@ -47,27 +60,13 @@ SIZE_RANGE = 7  # 1/16
 BALL_AREA = 8  # 1/256
 RECTANGLE_AREA = 9  # 1/256
 REFINED = 10
-LIMIT_WORDS = 11
+HIDDEN_ARC = 11  # 1/256
+LIMIT_WORDS = 12
 
 SIZE_UNITS = 16
 
 AREA_BITS = 8
 DISC_AREA = 201  # of its square: pi/4 (T §2.2.2)
-BORDER_PX = 1  # the opening leaves no colour in the outermost pixels
-
-
-@kernel
-def is_cut(span: u32, pixels: i32) -> i32:
-    """Return 1 if a blob that reaches from end to end of `span` leaves a picture of `pixels`; else 0."""
-    if i32(span & 0xFFFF) <= BORDER_PX or i32(span >> 16) >= pixels - 1 - BORDER_PX:
-        return 1
-    return 0
-
-
-@kernel
-def extent_of(span: u32) -> i32:
-    """Return how many pixels a span has."""
-    return i32(span >> 16) - i32(span & 0xFFFF) + 1
 
 
 @kernel
@@ -86,15 +85,13 @@ def has_form(across: u32, down: u32, aspect_min: i32, aspect_max: i32, width: i3
 
 
 @kernel
-def has_size(down: u32, geometry: i32[:], height_mm: i32, floor_mm: i32, size_range: i32, height: i32) -> i32:
-    """Return 1 if a blob is about as high as a model is where its lower border is over the floor; else 0.
+def has_size(extent: i32, row: i32, geometry: i32[:], height_mm: i32, floor_mm: i32, size_range: i32) -> i32:
+    """Return 1 if what looks `extent` high is about as high as a model is where its lower border is over the floor; else 0.
 
-    That is to a factor of `size_range` sixteenths. Of a blob that leaves the picture too little is known: 1.
+    That border is in `row`, counted from the principal point; both in 1/16 px. About is to a factor of `size_range`
+    sixteenths.
     """
-    if is_cut(down, height) != 0:
-        return 1
-    row = SUBPIXELS * i32(down >> 16) + HALF_PIXEL - principal(height) - geometry[GEOMETRY_SHIFT_Y]
-    looks = extent_of(down) * depth_by_floor(geometry, row, floor_mm)
+    looks = extent * depth_by_floor(geometry, row, floor_mm) // SUBPIXELS
     model = geometry[GEOMETRY_FOCAL] * height_mm // SUBPIXELS
     if SIZE_UNITS * looks > size_range * model or SIZE_UNITS * model > size_range * looks:
         return 0
@@ -121,9 +118,12 @@ def dimension_passes(
     aspect_max = models[model + MODEL_ASPECT_MAX]
     if has_form(across, down, aspect_min, aspect_max, width, height) == 0:
         return 0
+    if is_cut(down, height) != 0:  # too little is known of it
+        return 1
+    row = SUBPIXELS * i32(down >> 16) + HALF_PIXEL - principal(height) - geometry[GEOMETRY_SHIFT_Y]
     height_mm = models[model + MODEL_HEIGHT]
     floor_mm = models[model + MODEL_FLOOR]
-    return has_size(down, geometry, height_mm, floor_mm, limits[SIZE_RANGE], height)
+    return has_size(SUBPIXELS * extent_of(down), row, geometry, height_mm, floor_mm, limits[SIZE_RANGE])
 
 
 @kernel
@@ -141,15 +141,50 @@ def area_passes(blob_data: u32[:], blob: i32, shape: i32, ball_area: i32, rectan
 
 
 @kernel
-def circle_tests(circles: i16[:], circle: i32) -> i32:
-    """Return which tests of its shape a ball passes."""
+def circle_tests(blob_data: u32[:], blob: i32, circles: i16[:], circle: i32) -> i32:
+    """Return which tests of its shape a ball passes. A circle out of which its blob looks has not the size of the ball."""
     if circle == NO_OUTLINE:
         return 0
     passed = circles[circle * CIRCLE_WORDS + CIRCLE_TESTS]
     if passed & CENTRE_PASSED == 0:
         return 0
-    if passed & RADIUS_PASSED == 0:
+    if passed & RADIUS_PASSED == 0 or lies_within(blob_data, blob, circles, circle * CIRCLE_WORDS) == 0:
         return CENTRE_TEST
+    return CENTRE_TEST | SIZE_TEST
+
+
+@kernel
+def hidden_ball_tests(
+    blob_data: u32[:],
+    blob: i32,
+    models: i32[:],
+    model: i32,
+    circles: i16[:],
+    circle: i32,
+    geometry: i32[:],
+    limits: i32[:],
+    height: i32,
+) -> i32:
+    """Return the tests of its shape if a blob is part of a ball whose circle is seen well enough to be trusted; else 0.
+
+    The circle has passed its own tests, has outline on a good part of it, and stands on the floor where a ball of the
+    model looks so large.
+    """
+    at = circle * CIRCLE_WORDS
+    if limits[HIDDEN_ARC] == 0 or circle_tests(blob_data, blob, circles, circle) & SIZE_TEST == 0:
+        return 0
+    if circles[at + CIRCLE_ARC] < limits[HIDDEN_ARC]:
+        return 0
+    diameter = 2 * circles[at + CIRCLE_RADIUS]
+    if diameter < SUBPIXELS * limits[SHORTEST_SIDE]:
+        return 0
+    row = (
+        circles[at + CIRCLE_Y] + circles[at + CIRCLE_RADIUS] - principal(height) - geometry[GEOMETRY_SHIFT_Y]
+    )
+    height_mm = models[model + MODEL_HEIGHT]
+    floor_mm = models[model + MODEL_FLOOR]
+    if has_size(diameter, row, geometry, height_mm, floor_mm, limits[SIZE_RANGE]) == 0:
+        return 0
     return CENTRE_TEST | SIZE_TEST
 
 
@@ -186,15 +221,30 @@ def tests_passed(
     """
     if blob_data[blob * BLOB_WORDS + COLOURS] & u32(models[model + MODEL_COLOURS]) == 0:
         return 0
-    if dimension_passes(blob_data, blob, models, model, geometry, limits, width, height) == 0:
-        return COLOUR_TEST
     shape = models[model + MODEL_SHAPE]
-    if area_passes(blob_data, blob, shape, limits[BALL_AREA], limits[RECTANGLE_AREA]) == 0:
-        return COLOUR_TEST | DIMENSION_TEST
-    passed = COLOUR_TEST | DIMENSION_TEST | AREA_TEST
+    passed = COLOUR_TEST
+    if dimension_passes(blob_data, blob, models, model, geometry, limits, width, height) != 0:
+        passed = COLOUR_TEST | DIMENSION_TEST
+        if area_passes(blob_data, blob, shape, limits[BALL_AREA], limits[RECTANGLE_AREA]) != 0:
+            passed = COLOUR_TEST | DIMENSION_TEST | AREA_TEST
     if shape == BALL:
-        return passed | circle_tests(circles, outline)
-    return passed | rectangle_tests(rectangles, outline)
+        if passed & AREA_TEST != 0:
+            return passed | circle_tests(blob_data, blob, circles, outline)
+        return passed | hidden_ball_tests(
+            blob_data, blob, models, model, circles, outline, geometry, limits, height
+        )
+    if passed & AREA_TEST != 0:
+        return passed | rectangle_tests(rectangles, outline)
+    return passed
+
+
+@kernel
+def is_goal(models: i32[:], number: i32) -> i32:
+    """Return 1 if the model with a number is a goal; else 0."""
+    for at in range(0, len(models), MODEL_WORDS):
+        if models[at + MODEL_NUMBER] == number and models[at + MODEL_SHAPE] == GOAL:
+            return 1
+    return 0
 
 
 @kernel

@@ -2,14 +2,18 @@
 
 The thesis takes the mean of what the cameras measure. [ours] is `refined`: where both have found the shape, the disparity
 of its two images measures the depth once more. Of two depths the one counts more that is measured by more pixels: an error
-of a pixel is then a smaller part of it, so each has the weight of its pixels squared.
+of a pixel is then a smaller part of it, so each has the weight of its pixels squared. Where they disagree, the thing has not
+the size of its model; the disparity, which knows no model, places it then, and it is less certain.
+
+A goal is placed by its feet, which the middle of its image says nothing of: it has no disparity.
 """
 
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel
-from firmware.geometry import GEOMETRY_BASELINE, MICROMETRES, depth_mm
+from firmware.geometry import GEOMETRY_BASELINE, GEOMETRY_FOCAL, MICROMETRES, depth_mm
 from firmware.stages.object_places import HALF_PIXEL
+from firmware.stages.object_tests import is_goal
 from firmware.stores.lines import SUBPIXELS
 from firmware.stores.objects import (
     BY_DISPARITY,
@@ -118,59 +122,128 @@ def weighted(one: i32, weight: i32, other: i32, other_weight: i32) -> i32:
 
 
 @kernel
-def refine_place(geometry: i32[:], left: i16[:], one: i32, disparity: i32) -> None:
-    """Move an object along the way to it, to where its disparity in 1/16 px and its own measure together have it.
+def disparity_of(geometry: i32[:], depth: i32) -> i32:
+    """Return the disparity of what is at a positive depth in mm, in 1/16 px, rounded (T Eq. 3.16)."""
+    reach = geometry[GEOMETRY_FOCAL] * geometry[GEOMETRY_BASELINE]
+    return (reach // depth + MICROMETRES // 2) // MICROMETRES
 
-    Not if one of them says twice what the other does: then something else is wrong.
+
+@kernel
+def move_to(left: i16[:], one: i32, depth: i32) -> None:
+    """Move an object along the way to it to a depth; it must have one."""
+    at = one * OBJECT_WORDS
+    before = i32(left[at + OBJECT_Z])
+    left[at + OBJECT_X] = (left[at + OBJECT_X] * depth + (before >> 1)) // before
+    left[at + OBJECT_Y] = (left[at + OBJECT_Y] * depth + (before >> 1)) // before
+    left[at + OBJECT_Z] = depth
+
+
+@kernel
+def refine_place(geometry: i32[:], left: i16[:], one: i32, disparity: i32, disparity_range: i32) -> i32:
+    """Move a measured object to where its disparity and its own measure together have it; returns 1, or 0 if they disagree.
+
+    They do if the disparity is more than `disparity_range` off that of its depth. Then the disparity alone places it, if it
+    is one of any depth. Both in 1/16 px.
     """
     at = one * OBJECT_WORDS
     depth = i32(left[at + OBJECT_Z])
     by_disparity = depth_mm(geometry, disparity)
-    if left[at + OBJECT_MEASURES] == 0 or by_disparity == 0:
-        return
-    if depth > 2 * by_disparity or by_disparity > 2 * depth:
-        return
-    own = weight_of(i32(left[at + OBJECT_EXTENT]))
-    better = weighted(depth, own, by_disparity, weight_of(disparity))
-    left[at + OBJECT_X] = (left[at + OBJECT_X] * better + (depth >> 1)) // depth
-    left[at + OBJECT_Y] = (left[at + OBJECT_Y] * better + (depth >> 1)) // depth
-    left[at + OBJECT_Z] = better
-    left[at + OBJECT_MEASURES] = left[at + OBJECT_MEASURES] | BY_DISPARITY
+    if depth <= 0:
+        return 0
+    if abs(disparity_of(geometry, depth) - disparity) > disparity_range:
+        if by_disparity != 0:
+            move_to(left, one, by_disparity)
+            left[at + OBJECT_MEASURES] = BY_DISPARITY
+            left[at + OBJECT_EXTENT] = disparity
+        return 0
+    if by_disparity != 0:
+        own = weight_of(i32(left[at + OBJECT_EXTENT]))
+        move_to(left, one, weighted(depth, own, by_disparity, weight_of(disparity)))
+        left[at + OBJECT_MEASURES] = left[at + OBJECT_MEASURES] | BY_DISPARITY
+    return 1
+
+
+@kernel
+def has_disparity(models: i32[:], left: i16[:], one: i32, right: i16[:], other: i32) -> i32:
+    """Return 1 if the middles of both images are one point of a measured object: both have its shape, no goal's; else 0."""
+    at = one * OBJECT_WORDS
+    to = other * OBJECT_WORDS
+    shape_in_both = left[at + OBJECT_TESTS] & right[to + OBJECT_TESTS] & SIZE_TEST
+    if left[at + OBJECT_MEASURES] == 0 or shape_in_both == 0:
+        return 0
+    return 1 - is_goal(models, i32(left[at + OBJECT_MODEL]))
+
+
+@kernel
+def unite(
+    geometry: i32[:],
+    models: i32[:],
+    left: i16[:],
+    one: i32,
+    right: i16[:],
+    other: i32,
+    disparity_range: i32,
+    weight: i32,
+    size_weight: i32,
+    refined: i32,
+) -> None:
+    """Make an object of the left camera and its partner of the right one a single one, in `left`."""
+    at = one * OBJECT_WORDS
+    to = other * OBJECT_WORDS
+    average_places(left, one, right, other)
+    tests = left[at + OBJECT_TESTS] | right[to + OBJECT_TESTS]
+    accuracy = max(left[at + OBJECT_ACCURACY], right[to + OBJECT_ACCURACY])
+    agree: i32 = 1
+    if refined != 0 and has_disparity(models, left, one, right, other) != 0:
+        disparity = left[at + OBJECT_IMAGE_X] - right[to + OBJECT_IMAGE_X]
+        agree = refine_place(geometry, left, one, disparity, disparity_range)
+    if agree != 0:
+        left[at + OBJECT_ACCURACY] = min(accuracy + weight, LARGEST_ACCURACY)
+        left[at + OBJECT_TESTS] = tests | VERIFIED
+    else:
+        left[at + OBJECT_ACCURACY] = max(accuracy - size_weight, 0)
+        left[at + OBJECT_TESTS] = tests & ~SIZE_TEST
+    left[at + OBJECT_CAMERAS] = SEEN_LEFT | SEEN_RIGHT
+    right[to + OBJECT_MODEL] = NO_MODEL
 
 
 @kernel
 def verify_objects(
     geometry: i32[:],
+    models: i32[:],
     left: i16[:],
     right: i16[:],
     row_range: i32,
     disparity_max: i32,
+    disparity_range: i32,
     weight: i32,
+    size_weight: i32,
     refined: i32,
 ) -> i32:
     """Make one object of each pair that both cameras see, in `left`; returns how many pairs there are.
 
     The other ones of the right camera stay in `right`. All are in the frame of the left camera then. A verified object
-    is as accurate as the better of the two, and `weight` more. Lengths in 1/16 px.
+    is as accurate as the better of the two, and `weight` more; one whose disparity disagrees is `size_weight` less. Lengths in
+    1/16 px.
     """
     pairs: i32 = 0
     for other in range(len(right) // OBJECT_WORDS):
         shift_right_object(geometry, right, other)
     for one in range(len(left) // OBJECT_WORDS):
-        at = one * OBJECT_WORDS
-        if left[at + OBJECT_MODEL] != NO_MODEL:
-            other = partner_of(left, one, right, row_range, disparity_max)
-            if other != NOBODY:
-                to = other * OBJECT_WORDS
+        if left[one * OBJECT_WORDS + OBJECT_MODEL] != NO_MODEL:
+            partner = partner_of(left, one, right, row_range, disparity_max)
+            if partner != NOBODY:
                 pairs = pairs + 1
-                average_places(left, one, right, other)
-                shape_in_both = left[at + OBJECT_TESTS] & right[to + OBJECT_TESTS] & SIZE_TEST
-                if refined != 0 and shape_in_both != 0:
-                    disparity = left[at + OBJECT_IMAGE_X] - right[to + OBJECT_IMAGE_X]
-                    refine_place(geometry, left, one, disparity)
-                accuracy = max(left[at + OBJECT_ACCURACY], right[to + OBJECT_ACCURACY])
-                left[at + OBJECT_ACCURACY] = min(accuracy + weight, LARGEST_ACCURACY)
-                left[at + OBJECT_TESTS] = left[at + OBJECT_TESTS] | right[to + OBJECT_TESTS] | VERIFIED
-                left[at + OBJECT_CAMERAS] = SEEN_LEFT | SEEN_RIGHT
-                right[to + OBJECT_MODEL] = NO_MODEL
+                unite(
+                    geometry,
+                    models,
+                    left,
+                    one,
+                    right,
+                    partner,
+                    disparity_range,
+                    weight,
+                    size_weight,
+                    refined,
+                )
     return pairs

@@ -2,7 +2,8 @@
 
 The thesis has the stage and says little of it; the rules are [ours]. A border line runs along its side of the blob for
 a good part of it, and the outermost point of that part is near the blob's border. Of several the nearest is taken.
-A line with its bright side outside counts as farther off: things on the field are brighter than the floor.
+A line with its bright side outside counts as farther off: things on the field are brighter than the floor, though not than
+the lines on it.
 
 A line may be longer than the side, as where the background carries it on (T Figure 6.9); only its part beside the
 blob is looked at.
@@ -14,7 +15,7 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from bfsim.api import Buffer, Core, i16, i32, kernel, u32
+from bfsim.api import Buffer, Core, i16, i32, kernel, u8, u32
 from firmware.fields import allowed
 from firmware.stores.blobs import ACROSS, BLOB_WORDS, COLOURS, DOWN
 from firmware.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, SUBPIXELS
@@ -45,7 +46,7 @@ class RectangleThresholds:
     """What makes a border line.
 
     `border_px`: so far it may be from the blob's border. `dark_px`: so much farther off counts a line that is bright
-    outside. `overlap`: the share of the blob's side that it runs along, of 256.
+    outside when there are several. `overlap`: the share of the blob's side that it runs along, of 256.
     """
 
     border_px: int = allowed(0, 64)
@@ -74,13 +75,14 @@ def border_distance(
     first: i32,
     last: i32,
     border: i32,
+    reach: i32,
     overlap: i32,
     dark: i32,
 ) -> i32:
     """Return how far a line is from being the border of a blob, in 1/16 px; FAR if it cannot be.
 
-    The blob reaches from `first` to `last` along the border, which is at `border` across. A line that is bright
-    outside is `dark` farther away.
+    The blob reaches from `first` to `last` along the border, which is at `border` across, and the line must be `reach`
+    from it at most. One that is bright outside counts as `dark` farther away.
     """
     start = line * LINE_WORDS + LINE_X0
     end = line * LINE_WORDS + LINE_X1
@@ -98,6 +100,8 @@ def border_distance(
     one = outward * crossing(along0, across0, along1, across1, low)
     other = outward * crossing(along0, across0, along1, across1, high)
     distance = abs(max(one, other) - outward * border)
+    if distance > reach:
+        return FAR
     bright_inside = run * outward  # if above 0, by the orientation of lines
     if upright == UPRIGHT:
         bright_inside = -bright_inside
@@ -119,11 +123,11 @@ def border_line(
     overlap: i32,
     dark: i32,
 ) -> i32:
-    """Return the line nearest to a border of a blob, at most `reach` away, or NO_LINE; of equal ones the first."""
+    """Return the line nearest to a border of a blob, or NO_LINE; of equal ones the first."""
     found: i32 = NO_LINE
-    nearest = reach + 1
+    nearest: i32 = FAR
     for line in range(count):
-        distance = border_distance(lines, line, upright, outward, first, last, border, overlap, dark)
+        distance = border_distance(lines, line, upright, outward, first, last, border, reach, overlap, dark)
         if distance < nearest:
             nearest = distance
             found = line
@@ -168,6 +172,7 @@ def find_rectangle(
 @kernel
 def find_rectangles(
     blob_data: u32[:],
+    parents: u8[:],
     blobs: i32,
     colours: u32,
     lines: i16[:],
@@ -177,11 +182,11 @@ def find_rectangles(
     overlap: i32,
     dark: i32,
 ) -> i32:
-    """Make a record of each blob that has some of `colours`; returns how many there are, also beyond the room."""
+    """Make a record of each blob that has some of `colours` and is no part of another; returns how many there are, also beyond the room."""
     found: i32 = 0
     room = len(rectangles) // RECTANGLE_WORDS
     for blob in range(blobs):
-        if blob_data[blob * BLOB_WORDS + COLOURS] & colours != 0:
+        if parents[blob] == blob and blob_data[blob * BLOB_WORDS + COLOURS] & colours != 0:
             if found < room:
                 find_rectangle(blob_data, blob, lines, count, rectangles, found, reach, overlap, dark)
             found = found + 1
@@ -191,7 +196,7 @@ def find_rectangles(
 def rectangle_detection(
     core: Core, blobs: int, lines: int, colours: int, thresholds: RectangleThresholds
 ) -> Generator[Any, Any, int]:
-    """Look for the border lines of the blobs of rectangular models and leave them in `rectangles`.
+    """Look for the border lines of the blobs of rectangular models, merged ones too, and leave them in `rectangles`.
 
     `blobs` and `lines` are how many are in their stores, `colours` those of the models. Publishes `rectangles`, how many
     are stored, and `rectangles_lost`, how many had no room. Returns how many are stored.
@@ -199,7 +204,7 @@ def rectangle_detection(
     limits = SUBPIXELS * thresholds.border_px, thresholds.overlap, SUBPIXELS * thresholds.dark_px
     found = yield core.run(
         find_rectangles,
-        *(core.array("blob_data"), blobs, colours),
+        *(core.array("blob_data"), core.array("label_parents"), blobs, colours),
         *(core.array("lines"), lines, core.array("rectangles")),
         *limits,
     )

@@ -28,6 +28,8 @@ DOWN = 5  # iTop and iBottom
 POSITION = 6
 CENTRE = 7
 
+BORDER_PX = 1  # the opening leaves no colour in the outermost pixels of a picture
+
 
 @kernel
 def pair(low: i32, high: i32) -> u32:
@@ -45,6 +47,30 @@ def wider(span: u32, first: i32, last: i32) -> u32:
 def middle(span: u32) -> i32:
     """Return the middle of a pair of ends, rounded down."""
     return i32(span & 0xFFFF) + i32(span >> 16) >> 1
+
+
+@kernel
+def extent_of(span: u32) -> i32:
+    """Return how many pixels a pair of ends has from one to the other."""
+    return i32(span >> 16) - i32(span & 0xFFFF) + 1
+
+
+@kernel
+def is_cut_before(span: u32) -> i32:
+    """Return 1 if a blob that reaches from end to end of `span` leaves the picture at the left, or at the top; else 0."""
+    return 1 if i32(span & 0xFFFF) <= BORDER_PX else 0
+
+
+@kernel
+def is_cut_behind(span: u32, pixels: i32) -> i32:
+    """Return 1 if it leaves a picture of `pixels` at the right, or at the bottom; else 0."""
+    return 1 if i32(span >> 16) >= pixels - 1 - BORDER_PX else 0
+
+
+@kernel
+def is_cut(span: u32, pixels: i32) -> i32:
+    """Return 1 if it leaves the picture at either end; else 0."""
+    return is_cut_before(span) | is_cut_behind(span, pixels)
 
 
 @kernel

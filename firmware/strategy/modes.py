@@ -108,6 +108,7 @@ INDOOR_FIELD = Mode(
         # Half a picture of 320x240 in one colour is no object but a camera that has not settled (T Figure 6.8).
         max_pixels=38_400,
         max_blobs=64,
+        merged=True,
     ),
     lines=LineThresholds(
         # A sixteenth of a turn, the finer partition of Burns's line detector (T §2.2.1). With 12 the stairs of drawn
@@ -148,10 +149,14 @@ INDOOR_FIELD = Mode(
         ball_area=40,
         # A goal's mouth at 45 degrees fills three quarters; two thirds of a whole rectangle otherwise.
         rectangle_area=160,
+        # A third; a shorter arc tells little of the centre.
+        hidden_arc=85,
         # Rectified pictures agree in rows to a pixel; the centres of blobs that are hidden in part do not.
         row_range=6,
         # A ball of 6 cm that is nearer than 15 cm is not in the picture as a whole: 386 px x 30.47 mm / 150 mm.
         disparity_max=78,
+        # Twice what a pixel of error in each picture may be off.
+        disparity_range=2,
         refined=True,
         # A second at 5 frames a second.
         age_max=5,

@@ -178,6 +178,27 @@ def refined(circle: Circle, points: Sequence[Point], limit: int) -> Circle:
     return x + dx, y + dy, radius + (2 * (total(3) - towards) + weight) // (2 * weight)
 
 
+def arc(circle: Circle, points: Sequence[Point]) -> int:
+    """How much of a circle has a point within a pixel, in 1/256: 8 for each of its 32 sectors."""
+    x, y, radius = circle
+    near = [each for each in points if abs(distance(each, (x, y)) - radius) <= FINE]
+    if not near:
+        return 0
+    off = np.array(near) - (x, y)
+    return 8 * len(set((references.angle(off[:, 0], off[:, 1]) // 8).tolist()))
+
+
+def middle(span: tuple[int, int], chord: int, pixels: int, mass: int) -> int:
+    """Where the middle of a disc is along an axis: beyond the border that leaves less than half of it, by its height over the chord."""
+    first, last = span
+    seen = last - first + 1
+    before, behind = first <= 1, last >= pixels - 2
+    if before == behind or not chord / 7 <= seen < chord / 2:
+        return mass
+    radius = (chord**2 + 4 * seen**2) // (8 * seen)
+    return last - radius if before else first + radius
+
+
 @dataclass(frozen=True, slots=True)
 class Blob:
     """What the stage wants of a blob's record."""
@@ -208,22 +229,26 @@ def circle(
         max(top - limits.border, 0),
         min(bottom + limits.border, height - 1),
     )
-    found = selected(edges, opened, colours, wide, blob.mass, limits.angle_range, limits.dark_balls)
+    mass = (
+        middle((left, right), bottom - top + 1, width, blob.mass[0]),
+        middle((top, bottom), right - left + 1, height, blob.mass[1]),
+    )
+    found = selected(edges, opened, colours, wide, mass, limits.angle_range, limits.dark_balls)
     found = found[: 3 * width]
     record = [(32 * each + blob.pixels) // (2 * blob.pixels) for each in blob.sums]
-    record += [0, number, len(found), 0, 0, 0]
+    record += [0, number, len(found), 0, 0, 0, 0]
     if len(found) < max(limits.min_edges, 1):
         return record
     reach = min((max(right - left, bottom - top) + 1) // 2, limits.patch_reach)
     around = min(limits.peak_reach, reach)
-    patch = votes(found, blob.mass, reach)
+    patch = votes(found, mass, reach)
     row, column, size = peak(patch, around)
     record[5] = min(256 * size // (len(found) * (2 * around + 1)), 255)
     if not size or record[5] < limits.centre_share:
         return record
     square = patch[row - around : row + around + 1, column - around : column + around + 1]
-    x = FINE * (blob.mass[0] - reach + column) + mean_offset(square.sum(axis=0).tolist())
-    y = FINE * (blob.mass[1] - reach + row) + mean_offset(square.sum(axis=1).tolist())
+    x = FINE * (mass[0] - reach + column) + mean_offset(square.sum(axis=0).tolist())
+    y = FINE * (mass[1] - reach + row) + mean_offset(square.sum(axis=1).tolist())
     record[7] = 1
     _, size, radius = radius_peak(histogram(found, (x, y), width), limits.peak_reach)
     record[6] = min(256 * size // len(found), 255)
@@ -240,5 +265,6 @@ def circle(
             for _ in range(limits.fit_rounds):
                 x, y, radius = refined((x, y, radius), points, limit)
                 limit = max(limit // 2, FINE)
+            record[8] = arc((x, y, radius), points)
     record[:3] = [(each + 2) // 4 for each in (x, y, radius)]
     return record

@@ -25,7 +25,9 @@ def rounded(value: Fraction) -> int:
 # Rectangles
 
 
-def border_cost(line: Sequence[int], side: str, box: Record, overlap: int, dark: int) -> int | None:
+def border_cost(
+    line: Sequence[int], side: str, box: Record, reach: int, overlap: int, dark: int
+) -> int | None:
     """How far a line is from the border of a box on a side, in 1/16 px; None if it cannot be."""
     x0, y0, x1, y1 = line
     upright = side in ("left", "right")
@@ -46,6 +48,8 @@ def border_cost(line: Sequence[int], side: str, box: Record, overlap: int, dark:
     outermost = max if side in ("right", "bottom") else min
     border = 16 * box[side] + (8 if side in ("right", "bottom") else -8)
     cost = abs(outermost(across(low), across(high)) - border)
+    if cost > reach:
+        return None
     # the bright side lies on the left of the way from start to end
     inside = {"left": y1 > y0, "right": y1 < y0, "top": x1 < x0, "bottom": x1 > x0}[side]
     return cost if inside else cost + dark
@@ -55,8 +59,8 @@ def rectangle(lines: Sequence[Sequence[int]], box: Record, reach: int, overlap: 
     """The border lines left, right, top and bottom of a box, -1 for none."""
     found = []
     for side in ("left", "right", "top", "bottom"):
-        costs = [border_cost(line, side, box, overlap, dark) for line in lines]
-        near = [(cost, number) for number, cost in enumerate(costs) if cost is not None and cost <= reach]
+        costs = [border_cost(line, side, box, reach, overlap, dark) for line in lines]
+        near = [(cost, number) for number, cost in enumerate(costs) if cost is not None]
         found.append(min(near)[1] if near else -1)
     return found
 
@@ -79,17 +83,54 @@ def tests_of(
     passed = 1
     for bit, test in ((2, dimension), (4, area)):
         if not test(box, model, geometry, thresholds, width, height):
-            return passed
+            hidden = (
+                model.shape == BALL
+                and outline
+                and hidden_ball(box, model, outline, geometry, thresholds, height)
+            )
+            return passed | (24 if hidden else 0)
         passed |= bit
     if outline is None:
         return passed
     if model.shape == BALL:
-        centre, shape = outline["tests"] & 1, outline["tests"] & 2
+        centre, shape = outline["tests"] & 1, outline["tests"] & 2 and within(box, outline)
     else:
         centre, shape = outline["bottom"] >= 0, outline["left"] >= 0 and outline["right"] >= 0
     if centre:
         passed |= 8 | (16 if shape else 0)
     return passed
+
+
+def within(box: Record, circle: Record) -> bool:
+    """Whether a blob lies in the square round a circle, to two pixels."""
+    reach = circle["radius"] + 32
+    return (
+        16 * box["left"] >= circle["x"] - reach
+        and 16 * box["right"] <= circle["x"] + reach
+        and 16 * box["top"] >= circle["y"] - reach
+        and 16 * box["bottom"] <= circle["y"] + reach
+    )
+
+
+def hidden_ball(
+    box: Record, model: Any, circle: Record, geometry: Sequence[int], thresholds: Any, height: int
+) -> bool:
+    """Whether a circle can be trusted whose blob has not the form of a ball."""
+    wide = 2 * circle["radius"]
+    return (
+        0 < thresholds.hidden_arc <= circle["arc"]
+        and circle["tests"] == 3
+        and within(box, circle)
+        and wide >= 16 * thresholds.shortest_side
+        and right_size(wide, circle["y"] + circle["radius"] - 8 * (height - 1), model, geometry, thresholds)
+    )
+
+
+def right_size(looks_px16: int, row: int, model: Any, geometry: Sequence[int], thresholds: Any) -> bool:
+    """Whether what looks so high is as high as the model where its lower border stands."""
+    looks = looks_px16 * floor_depth(geometry, row, model.floor_mm) // 16
+    true = geometry[FOCAL] * model.height_mm // 16
+    return 16 * looks <= thresholds.size_range * true and 16 * true <= thresholds.size_range * looks
 
 
 def sides(box: Record) -> tuple[int, int]:
@@ -112,9 +153,7 @@ def dimension(
     if cut_down:
         return True
     row = 16 * box["bottom"] + 8 - 8 * (height - 1)
-    looks = high * floor_depth(geometry, row, model.floor_mm)
-    true = geometry[FOCAL] * model.height_mm // 16
-    return 16 * looks <= thresholds.size_range * true and 16 * true <= thresholds.size_range * looks
+    return right_size(16 * high, row, model, geometry, thresholds)
 
 
 def area(box: Record, model: Any, _geometry: Any, thresholds: Any, *_size: int) -> bool:
@@ -184,31 +223,81 @@ def ball_at(
     return placed(found, geometry, depth, size)
 
 
+def row_below(line: Sequence[int] | None, bottom: int, column: int) -> int:
+    """The row of a bottom line at a column, or else of the end of a blob."""
+    if line is None:
+        return 16 * bottom + 8
+    x0, y0, x1, y1 = line
+    return y0 + floor(Fraction((y1 - y0) * (column - x0) + (x1 - x0) // 2, x1 - x0))
+
+
 def rectangle_at(
     found: Record,
     model: Any,
     box: Record,
+    parts: Sequence[Record],
     bottom: Sequence[int] | None,
     geometry: Sequence[int],
+    refined: bool,
     size: tuple[int, int],
 ) -> Record:
-    """A rectangle by the floor below it; `bottom` is its bottom line."""
-    _, height = size
+    """A rectangle by the floor below it; `bottom` is its bottom line, `parts` are those of a merged blob."""
+    width, height = size
+    middle_x, middle_y = 8 * (width - 1), 8 * (height - 1)
     cut = box["top"] <= 1 or box["bottom"] >= height - 2
-    if not found["tests"] & 2 or cut:
-        return placed(found, geometry, 0, size)
-    row = 16 * box["bottom"] + 8
-    if bottom is not None:
-        x0, y0, x1, y1 = bottom
-        row = y0 + floor(Fraction((y1 - y0) * (found["image_x"] - x0) + (x1 - x0) // 2, x1 - x0))
-    row -= 8 * (height - 1)
+    row = row_below(bottom, box["bottom"], found["image_x"]) - middle_y
     depth = floor_depth(geometry, row, model.floor_mm)
-    found = placed(found, geometry, depth, size)
-    if not depth:
-        return found
+    if not found["tests"] & 2 or cut or not depth:
+        return placed(found, geometry, 0, size)
+    x, y, z = on_floor(geometry, found["image_x"] - middle_x, row, depth)
+    if refined and model.shape == GOAL:
+        corners = []
+        for side, column in (("left", 16 * box["left"] - 8), ("right", 16 * box["right"] + 8)):
+            below = row_below(bottom, lowest_at(box, parts, side), column) - middle_y
+            corners.append((column - middle_x, below, floor_depth(geometry, below, 0)))
+        cuts = box["left"] <= 1, box["right"] >= width - 2
+        if all(each[2] for each in corners):
+            x, y, z = between_feet(corners, cuts, model.width_mm, geometry)
     up, back = (((model.height_mm * geometry[each] >> 14) + 1) // 2 for each in (COSINE, SINE))
     extent = abs(horizon_distance(geometry, row))
-    return found | {"y": aside(geometry, depth, row) - up, "z": depth - back, "measures": 2, "extent": extent}
+    return found | {"x": x, "y": y - up, "z": z - back, "measures": 2, "extent": extent}
+
+
+def on_floor(geometry: Sequence[int], column: int, row: int, depth: int) -> tuple[int, int, int]:
+    """What is seen there, from the principal point, at a depth."""
+    return aside(geometry, depth, column), aside(geometry, depth, row), depth
+
+
+def lowest_at(box: Record, parts: Sequence[Record], side: str) -> int:
+    """The lowest row of the part that reaches farthest to a side, the last of such, and of those above or below it."""
+    ends = [each for each in parts if each[side] == box[side]]
+    if not ends:
+        return box["bottom"]
+    end = ends[-1]
+
+    def shares_columns(one: Record) -> bool:
+        common = min(one["right"], end["right"]) + 1 - max(one["left"], end["left"])
+        return 2 * common >= min(sides(one)[0], sides(end)[0])
+
+    return max(each["bottom"] for each in parts if shares_columns(each))
+
+
+def between_feet(
+    corners: Sequence[tuple[int, int, int]], cuts: tuple[bool, bool], width_mm: int, geometry: Sequence[int]
+) -> tuple[int, int, int]:
+    """The middle of a goal's mouth on the floor, from its lower corners: column, row and depth of each."""
+    left, right = (on_floor(geometry, *each) for each in corners)
+    off = [b - a for a, b in zip(left, right, strict=True)]
+    apart = isqrt(sum(each * each for each in off)) if max(map(abs, off)) < 16_000 else 16_000
+    share = Fraction(apart, width_mm)
+    if share > Fraction(5, 4) or share < (Fraction(3, 4) if cuts[0] == cuts[1] else Fraction(1, 4)):
+        _, row, depth = min(corners, key=lambda each: each[2])
+        return on_floor(geometry, (corners[0][0] + corners[1][0]) >> 1, row, depth)
+    part = Fraction(1, 2) if cuts[0] == cuts[1] else Fraction(width_mm, 2 * apart)
+    if cuts[0] and not cuts[1]:
+        part = 1 - part
+    x, y, z = (rounded(a + (b - a) * part) for a, b in zip(left, right, strict=True))
+    return x, y, z
 
 
 # Sight
@@ -216,6 +305,7 @@ def rectangle_at(
 
 def sight(
     boxes: Sequence[Record],
+    parents: Sequence[int],
     models: Sequence[Any],
     circles: Sequence[Record],
     rectangles: Sequence[Record],
@@ -226,10 +316,12 @@ def sight(
     size: tuple[int, int],
     room: int,
 ) -> tuple[list[Record], int]:
-    """The objects that a camera sees, `room` at the most, and how many there would be."""
+    """The objects that a camera sees, `room` at the most, and how many there would be; `parents`: what each blob is part of."""
     seen: list[Record] = []
     count = 0
     for number, box in enumerate(boxes):
+        if parents[number] != number:
+            continue
         circle = next(((at, c) for at, c in enumerate(circles) if c["blob"] == number), (-1, None))
         border = next(((at, r) for at, r in enumerate(rectangles) if r["blob"] == number), (-1, None))
         best = None
@@ -252,7 +344,8 @@ def sight(
             found = ball_at(found, model, outline, geometry, thresholds.refined, size)
         else:
             bottom = lines[outline["bottom"]] if outline and outline["bottom"] >= 0 else None
-            found = rectangle_at(found, model, box, bottom, geometry, size)
+            parts = [each for at, each in enumerate(boxes[:number]) if parents[at] == number]
+            found = rectangle_at(found, model, box, parts, bottom, geometry, thresholds.refined, size)
         count += 1
         if len(seen) < room:
             seen.append(found)
@@ -286,52 +379,72 @@ def unlikeness(one: Record, other: Record, row_range: int, disparity_max: int) -
 def verified(
     left: Sequence[Record],
     right: Sequence[Record],
+    models: Sequence[Any],
     geometry: Sequence[int],
-    row_range: int,
-    disparity_max: int,
-    weight: int,
+    ranges: Sequence[int],
+    weights: Sequence[int],
     refined: bool,
 ) -> tuple[list[Record], list[Record]]:
-    """The objects of the left camera, made better by the right one's; and what the right one has beside, free ones too."""
+    """The objects of the left camera, made better by the right one's; and what the right one has beside, free ones too.
+
+    `ranges`: of rows, the largest of disparities, and between disparities; `weights`: of the second camera and of the size.
+    """
     baseline = (geometry[BASELINE] + 500) // 1000
+    goals = {each.number for each in models if each.shape == GOAL}
     others = [each | ({"x": each["x"] + baseline} if each["measures"] else {}) for each in right]
     result = []
     for one in left:
         likes = [
             (unlike, number)
             for number, other in enumerate(others)
-            if one["model"] and (unlike := unlikeness(one, other, row_range, disparity_max)) is not None
+            if one["model"] and (unlike := unlikeness(one, other, *ranges[:2])) is not None
         ]
         if not likes:
             result.append(one)
             continue
         other = others[min(likes)[1]]
-        result.append(_pair(one, other, geometry, weight, refined))
+        has_disparity = refined and one["model"] not in goals
+        result.append(_pair(one, other, geometry, ranges[2], weights, has_disparity))
         others[min(likes)[1]] = other | {"model": 0}
     return result, others
 
 
-def _pair(one: Record, other: Record, geometry: Sequence[int], weight: int, refined: bool) -> Record:
+def _pair(
+    one: Record, other: Record, geometry: Sequence[int], off: int, weights: Sequence[int], has_disparity: bool
+) -> Record:
     both = dict(one)
     if one["measures"] and other["measures"]:
         both |= {name: (one[name] + other[name] + 1) // 2 for name in ("x", "y", "z", "extent")}
     elif other["measures"]:
         both |= {name: other[name] for name in ("x", "y", "z", "extent")}
     both["measures"] = one["measures"] | other["measures"]
-    disparity = one["image_x"] - other["image_x"]
-    depth = disparity_depth(geometry, disparity)
-    agree = depth > 0 and both["z"] <= 2 * depth and depth <= 2 * both["z"]
-    if refined and one["tests"] & other["tests"] & 16 and agree and both["measures"]:
-        weights = [max(min((each + 8) // 16, 128), 1) ** 2 for each in (both["extent"], disparity)]
-        better = rounded(Fraction(both["z"] * weights[0] + depth * weights[1], sum(weights)))
-        for name in ("x", "y"):
-            both[name] = (both[name] * better + both["z"] // 2) // both["z"]
-        both["z"] = better
-        both["measures"] |= 4
-    both["accuracy"] = min(max(one["accuracy"], other["accuracy"]) + weight, 255)
-    both["tests"] = one["tests"] | other["tests"] | 32
     both["cameras"] = 3
-    return both
+    tests = one["tests"] | other["tests"]
+    accuracy = max(one["accuracy"], other["accuracy"])
+    agree = True
+    if has_disparity and one["tests"] & other["tests"] & 16 and both["measures"]:
+        agree = _by_disparity(both, one["image_x"] - other["image_x"], geometry, off)
+    if agree:
+        return both | {"accuracy": min(accuracy + weights[0], 255), "tests": tests | 32}
+    return both | {"accuracy": max(accuracy - weights[1], 0), "tests": tests & ~16}
+
+
+def _by_disparity(both: Record, disparity: int, geometry: Sequence[int], off: int) -> bool:
+    """Place an object by its disparity too, or alone if that is more than `off` from what its depth makes; whether it is not."""
+    before, depth = both["z"], disparity_depth(geometry, disparity)
+    if before <= 0:
+        return False
+    agree = abs((geometry[FOCAL] * geometry[BASELINE] // before + 500) // 1000 - disparity) <= off
+    if not depth:
+        return agree
+    better, measures, extent = depth, 4, disparity
+    if agree:
+        squares = [max(min((each + 8) // 16, 128), 1) ** 2 for each in (both["extent"], disparity)]
+        better = rounded(Fraction(before * squares[0] + depth * squares[1], sum(squares)))
+        measures, extent = both["measures"] | 4, both["extent"]
+    moved = {name: (both[name] * better + before // 2) // before for name in ("x", "y")}
+    both |= moved | {"z": better, "measures": measures, "extent": extent}
+    return agree
 
 
 # History

@@ -10,8 +10,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from firmware.stages.circle_detection import share_of, sixteenths
-from firmware.stages.circle_edges import AREA_WORDS, looks_at, next_blob, open_area, select_edges_row
-from firmware.stages.circle_fit import FIT_WORDS, REFINED, fit_circle
+from firmware.stages.circle_edges import (
+    AREA_WORDS,
+    looks_at,
+    middle_beyond,
+    next_blob,
+    open_area,
+    select_edges_row,
+)
+from firmware.stages.circle_fit import FIT_WORDS, REFINED, arc_of, fit_circle
 from firmware.stages.circle_outline import LUMA_LINES, clear_points, luma_row, refine_row
 from firmware.stages.circle_radius import edges_round, fill_histogram, find_radius, mean_radius
 from firmware.stages.circle_votes import (
@@ -217,3 +224,52 @@ def test_areas_end_at_the_picture() -> None:
     assert area.tolist() == [0, 42, 0, 30, 20, 15, 19]
     open_area(records, 1, area, 4, 7, 43, 31)
     assert area[-1] == 7
+
+
+@settings(max_examples=80, deadline=None)
+@given(st.integers(0, 639), st.integers(0, 639), st.integers(1, 640), st.integers(0, 639))
+def test_the_middle_of_what_the_border_cuts(one: int, other: int, chord: int, mass: int) -> None:
+    """Any blob of a picture 640 wide: the centre of mass, or what the height over the chord says."""
+    span = min(one, other), max(one, other)
+    found = middle_beyond(span[0] | span[1] << 16, chord, 640, mass)
+    assert found == expected.middle(span, chord, 640, mass)
+    assert -640 < found < 1280
+
+
+@pytest.mark.parametrize(
+    ("span", "pixels", "middle"),
+    [
+        ((200, 238), 240, 265),  # 39 px high over a chord of 120: the radius is 65
+        ((200, 237), 240, 219),  # not cut
+        ((1, 39), 240, -26),
+        ((1, 39), 41, 20),  # cut at both ends
+        ((178, 238), 240, 219),  # more than half of it
+        ((222, 238), 240, 219),  # hardly any of it
+    ],
+)
+def test_a_middle_beyond_the_border(span: tuple[int, int], pixels: int, middle: int) -> None:
+    """What is cut, by how much; else the centre of mass, here 219 or 20."""
+    mass = 20 if pixels == 41 else 219
+    assert middle_beyond(span[0] | span[1] << 16, 120, pixels, mass) == middle
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.lists(st.tuples(st.integers(0, 64 * 640), st.integers(0, 64 * 480)), max_size=12),
+    st.lists(st.tuples(st.floats(0, 7), st.integers(-80, 80)), max_size=40),
+    st.integers(64, 64 * 200),
+)
+def test_the_arc_that_is_seen(
+    points: list[tuple[int, int]], near: list[tuple[float, int]], radius: int
+) -> None:
+    """Points of chance, and some a little off the circle."""
+    centre = 64 * 300, 64 * 230
+    points = points + [
+        (max(round(centre[0] + (radius + off) * np.cos(angle)), 0), max(round(centre[1] + (radius + off) * np.sin(angle)), 0))
+        for angle, off in near
+    ]  # fmt: skip
+    fit = np.zeros(FIT_WORDS, np.int32)
+    fit[:3] = *centre, radius
+    fit[REFINED] = len(points)
+    words = np.array([x | y << 16 for x, y in points] or [0], np.uint32)
+    assert arc_of(words, fit, ATAN) == expected.arc((*centre, radius), points)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from benchmarks.seen_circles import see
 from bfsim.recording import StereoFrame
 from firmware.stages.circle_detection import CIRCLE_CAPACITY, CircleThresholds
-from firmware.stores.circles import CIRCLE_CENTRE, CIRCLE_EDGES, CIRCLE_RADIUS_SHARE
+from firmware.stores.circles import CIRCLE_ARC, CIRCLE_CENTRE, CIRCLE_EDGES, CIRCLE_RADIUS_SHARE
 from firmware.strategy.modes import FITTED_CIRCLES, INDOOR_FIELD, PLAIN_CIRCLES
 from tests.firmware.circle_rig import FLOOR_RGB, WHITE_RGB, YELLOW, Circles, Drawing, Seen, circles_of, seen
 from tests.firmware.pictures import random_uyvy
@@ -78,6 +78,25 @@ def test_the_centre_may_lie_outside_the_picture() -> None:
     found = checked(seen(Drawing(96, 96).disc(-6.0, 48.0, 25).uyvy(noise=1.0)), FITTED_CIRCLES)
     centre, size = errors(found, (-6.0, 48.0, 25))
     assert max(centre, size) < 0.5
+
+
+@pytest.mark.parametrize(("x", "y"), [(-10.0, 48.0), (105.5, 48.0), (48.0, -10.0), (48.0, 105.5)])
+def test_less_than_half_of_a_disc(x: float, y: float) -> None:
+    """Its radius is 40: 30 are in the picture, and the centre of mass lies farther off than the patch reaches from edge to edge."""
+    picture = seen(Drawing(96, 96).disc(x, y, 40).uyvy(noise=1.0))
+    centre, size = errors(checked(picture, FITTED_CIRCLES), (x, y, 40))
+    assert max(centre, size) < 1.0
+
+
+def test_how_much_of_the_circle_is_seen() -> None:
+    """All of a whole disc, half of a half hidden one, a third of one cut at 60 degrees from its middle; nothing where none is fitted."""
+    drawings = [Drawing(96, 96).disc(48, 48, 22.4) for _ in range(2)] + [Drawing(96, 96).disc(48, 105.5, 25)]
+    drawings[1].paint(lambda x, _y: x < 48, WHITE_RGB)
+    arcs = [int(checked(seen(each.uyvy()), FITTED_CIRCLES).words[0, CIRCLE_ARC]) for each in drawings]
+    assert arcs[0] == 256
+    assert 112 <= arcs[1] <= 144
+    assert 72 <= arcs[2] <= 104
+    assert checked(seen(drawings[0].uyvy()), PLAIN_CIRCLES).words[0, CIRCLE_ARC] == 0
 
 
 @BOTH

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -46,7 +47,7 @@ OFTEN = COLOUR_TEST | DIMENSION_TEST | AREA_TEST
 
 # A ball 450 mm away: 52 px, on the floor. Its circle, with both tests passed.
 ROUND = {"colours": YELLOW, "pixels": 2123, "left": 134, "right": 185, "top": 103, "bottom": 154}
-CIRCLE = {"x": 2552, "y": 2056, "radius": 412, "blob": 0, "tests": 3}
+CIRCLE = {"x": 2552, "y": 2056, "radius": 412, "blob": 0, "tests": 3, "arc": 0}
 # A goal from the front, its bottom line one px below the blob.
 MOUTH = {"colours": BLUE, "pixels": 9000, "left": 60, "right": 260, "top": 60, "bottom": 106}
 BORDERS = {"left": 1, "right": 2, "top": -1, "bottom": 0, "blob": 0}
@@ -58,6 +59,7 @@ def see(
     circles: list[dict[str, int]] = [],  # noqa: B006
     rectangles: list[dict[str, int]] = [],  # noqa: B006
     *,
+    parents: Sequence[int] | None = None,
     lines: Any = LINES,
     models: Any = MODELS,
     thresholds: ObjectThresholds = THRESHOLDS,
@@ -68,14 +70,27 @@ def see(
     """What the kernel sees, which must be what the reference sees."""
     words = geometry_words(geometry)
     table = np.full(room * OBJECT_WORDS, 77, np.int16)
-    rounds = [(c["x"], c["y"], c["radius"], c["blob"], 0, 0, 0, c["tests"]) for c in circles]
+    parents = range(len(boxes)) if parents is None else parents
+    rounds = [(c["x"], c["y"], c["radius"], c["blob"], 0, 0, 0, c["tests"], c["arc"]) for c in circles]
     borders = [[r[name] for name in ("left", "right", "top", "bottom", "blob")] for r in rectangles]
     found = see_objects(
-        *(blob_words(*boxes), len(boxes), models_of(*models)),
+        *(blob_words(*boxes), np.array(parents, np.uint8), len(boxes), models_of(*models)),
         *(circle_words(*rounds), len(rounds), rectangle_words(*borders), len(borders), line_words(lines)),
         *(words, np.array(thresholds.limits, np.int32), table, SEEN_LEFT, *size),
     )
-    scene = boxes, models, circles, rectangles, lines, words.tolist(), thresholds, SEEN_LEFT, size, room
+    scene = (
+        boxes,
+        parents,
+        models,
+        circles,
+        rectangles,
+        lines,
+        words.tolist(),
+        thresholds,
+        SEEN_LEFT,
+        size,
+        room,
+    )
     wanted, count = references.sight(*scene)
     seen = as_dicts(table)
     assert found == count
@@ -120,6 +135,7 @@ def test_a_goal_that_passes_all_tests() -> None:
         (ROUND, CIRCLE | {"tests": 0}, OFTEN),
         (ROUND, CIRCLE | {"tests": 1}, OFTEN | CENTRE_TEST),
         (ROUND, CIRCLE | {"blob": 1}, OFTEN),  # of another blob
+        (ROUND, CIRCLE | {"radius": 350}, OFTEN | CENTRE_TEST),  # inside the blob
     ],
 )
 def test_a_ball_that_fails(box: dict[str, int], circle: dict[str, int], passed: int | None) -> None:
@@ -130,6 +146,47 @@ def test_a_ball_that_fails(box: dict[str, int], circle: dict[str, int], passed: 
         assert each["measures"] == 0
         assert each["z"] == 4096
         assert each["accuracy"] < sum(THRESHOLDS.weights[:5])
+
+
+# The left third of it: a robot hides the others, but for a bit of outline at the top.
+SLICE = ROUND | {"right": 150, "pixels": 600}
+SEEN_WELL = CIRCLE | {"arc": THRESHOLDS.hidden_arc}
+
+
+def test_a_hidden_ball_whose_outline_tells_its_size() -> None:
+    """It has not the dimension, and the place all the same; the tests that failed add nothing."""
+    (ball,) = see([SLICE], [SEEN_WELL], models=(BALL,))
+    assert ball["tests"] == COLOUR_TEST | CENTRE_TEST | SIZE_TEST
+    weights = THRESHOLDS.colour_weight, THRESHOLDS.centre_weight, THRESHOLDS.size_weight
+    assert ball["accuracy"] == sum(weights)
+    assert (ball["measures"], ball["z"]) == (BY_SIZE, 451)
+    (aslant,) = see([ROUND | {"pixels": 1500}], [SEEN_WELL], models=(BALL,))
+    assert aslant["tests"] == COLOUR_TEST | DIMENSION_TEST | CENTRE_TEST | SIZE_TEST
+
+
+@pytest.mark.parametrize(
+    ("box", "change", "hidden_arc"),
+    [
+        (SLICE, {"arc": THRESHOLDS.hidden_arc - 1}, THRESHOLDS.hidden_arc),
+        (SLICE, {"tests": 1}, THRESHOLDS.hidden_arc),
+        (SLICE, {"x": 2552 + 64}, THRESHOLDS.hidden_arc),  # the blob looks out of it
+        (SLICE | {"top": 40, "bottom": 90}, {"y": 1048}, THRESHOLDS.hidden_arc),  # in the sky
+        (
+            SLICE | {"left": 155, "right": 162, "top": 125, "bottom": 132},
+            {"radius": 47},
+            THRESHOLDS.hidden_arc,
+        ),
+        (SLICE, {}, 0),  # not wanted
+    ],
+)
+def test_a_hidden_ball_whose_outline_tells_too_little(
+    box: dict[str, int], change: dict[str, int], hidden_arc: int
+) -> None:
+    """Only the way to it is known."""
+    thresholds = replace(THRESHOLDS, hidden_arc=hidden_arc)
+    (ball,) = see([box], [SEEN_WELL | change], models=(BALL,), thresholds=thresholds)
+    assert ball["tests"] == COLOUR_TEST
+    assert ball["measures"] == 0
 
 
 @pytest.mark.parametrize(
@@ -233,7 +290,10 @@ circles = st.fixed_dictionaries(
         "radius": st.integers(0, 4000),
         "blob": st.integers(0, 4),
         "tests": st.sampled_from([0, 1, 3, 3]),
+        "arc": st.sampled_from([0, 84, 85, 256]),
     }
+) | st.builds(
+    lambda blob, nudge: SEEN_WELL | {"blob": blob, "x": 2552 + nudge}, st.integers(0, 4), st.integers(-99, 99)
 )
 borders = st.fixed_dictionaries(
     dict.fromkeys(("left", "right", "top", "bottom"), st.integers(-1, 0)) | {"blob": st.integers(0, 4)}
@@ -244,17 +304,23 @@ level_lines = st.tuples(
 
 
 @given(
-    st.lists(boxes(), max_size=6),
+    st.lists(boxes(), max_size=6).flatmap(
+        lambda some: st.tuples(
+            st.just(some), st.tuples(*[st.integers(at, max(len(some) - 1, 0)) for at in range(len(some))])
+        )
+    ),
     st.lists(circles, max_size=4),
     st.lists(borders, max_size=4),
     level_lines,
     st.booleans(),
     st.sampled_from([THESIS, StereoGeometry(311, 30, 60, 0), StereoGeometry(772, 60, 300, 45)]),
 )
-def test_as_the_reference(boxes, circles, rectangles, line, refined, geometry) -> None:
+def test_as_the_reference(blobs, circles, rectangles, line, refined, geometry) -> None:
     """Bit for bit, with any records."""
     thresholds = replace(THRESHOLDS, refined=refined)
-    see(boxes, circles, rectangles, lines=[line], thresholds=thresholds, geometry=geometry, room=4)
+    boxes, parents = blobs
+    limits = {"thresholds": thresholds, "geometry": geometry, "room": 4}
+    see(boxes, circles, rectangles, parents=parents, lines=[line], **limits)
 
 
 @pytest.mark.parametrize(

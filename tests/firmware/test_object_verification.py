@@ -17,10 +17,13 @@ from firmware.stores.objects import (
     SIZE_TEST,
     VERIFIED,
 )
+from firmware.strategy.models import MODELS
 from tests.firmware import object_references as references
-from tests.firmware.object_rig import THESIS, THRESHOLDS, as_dicts, geometry_words, object_words
+from tests.firmware.object_rig import THESIS, THRESHOLDS, as_dicts, geometry_words, models_of, object_words
 
 ROWS, FARTHEST_APART = 16 * THRESHOLDS.row_range, 16 * THRESHOLDS.disparity_max
+OFF = 16 * THRESHOLDS.disparity_range
+WEIGHTS = THRESHOLDS.camera_weight, THRESHOLDS.size_weight
 
 # A ball 400 mm ahead of the left camera, seen by both: 386 px x 60 mm / 400 mm = 57.9 px, 29.4 px apart.
 LEFT = {
@@ -34,10 +37,10 @@ def verify(left, right, *, refined: bool = True) -> tuple[list[dict[str, int]], 
     """What is left in both tables, which must be what the reference leaves."""
     words = geometry_words()
     tables = object_words(*left), object_words(*right)
-    limits = ROWS, FARTHEST_APART, THRESHOLDS.camera_weight
+    ranges = ROWS, FARTHEST_APART, OFF
     before = as_dicts(tables[0]), as_dicts(tables[1])
-    pairs = verify_objects(words, *tables, *limits, int(refined))
-    wanted = references.verified(*before, words.tolist(), *limits, refined)
+    pairs = verify_objects(words, models_of(), *tables, *ranges, *WEIGHTS, int(refined))
+    wanted = references.verified(*before, MODELS, words.tolist(), ranges, WEIGHTS, refined)
     found = as_dicts(tables[0]), as_dicts(tables[1])
     assert found == wanted
     assert pairs == sum(each["cameras"] == 3 for each in found[0])
@@ -94,17 +97,47 @@ def test_the_mean_of_both() -> None:
 
 
 def test_disparity_weighs_less_than_size() -> None:
-    """58 px against 29 px: 4 to 1. Both say 400 mm or 500 mm."""
-    near = RIGHT | {"image_x": 2552 - 376}  # 23.5 px: 500 mm
+    """58 px against 28 px: 4 to 1. They say 400 mm and 414 mm."""
+    near = RIGHT | {"image_x": 2552 - 454}
     (one,), _ = verify([LEFT], [near])
-    assert one["z"] == round((58**2 * 400 + 24**2 * 500) / (58**2 + 24**2))
+    assert one["z"] == round((58**2 * 400 + 28**2 * 414) / (58**2 + 28**2))
 
 
-@pytest.mark.parametrize(("shift", "refined"), [(235, True), (234, False), (938, True), (940, False)])
-def test_disparity_that_says_otherwise_is_not_trusted(shift: int, refined: bool) -> None:
-    """Half of 29.4 px says twice as far."""
-    (one,), _ = verify([LEFT | {"z": 401}], [RIGHT | {"z": 401, "image_x": 2552 - shift}])
-    assert bool(one["measures"] & BY_DISPARITY) == refined
+@pytest.mark.parametrize(
+    ("off", "agree"), [(0, True), (OFF, True), (-OFF, True), (OFF + 1, False), (-OFF - 1, False)]
+)
+def test_disparity_and_size(off: int, agree: bool) -> None:
+    """Where they disagree the disparity alone places the object along the way to it, and it is less certain by the size's weight."""
+    (one,), _ = verify([LEFT | {"x": 40}], [RIGHT | {"x": 10, "image_x": 2552 - 470 + off}])
+    assert one["cameras"] == SEEN_LEFT | SEEN_RIGHT
+    if agree:
+        assert (one["measures"], one["tests"]) == (BY_SIZE | BY_DISPARITY, 31 | VERIFIED)
+        assert one["accuracy"] == 224 + THRESHOLDS.camera_weight
+    else:
+        assert (one["measures"], one["tests"]) == (BY_DISPARITY, 31 & ~SIZE_TEST)
+        assert one["accuracy"] == 224 - THRESHOLDS.size_weight
+        assert one["z"] == round(386 * 30.47 * 16 / (470 - off))
+        assert one["x"] == round(40 * one["z"] / 400)
+
+
+def test_a_ball_of_another_size() -> None:
+    """One half as large again is 600 mm away where the model's would be 400 mm away."""
+    (one,), _ = verify([LEFT], [RIGHT | {"image_x": 2552 - 314}])
+    assert (one["z"], one["measures"]) == (599, BY_DISPARITY)
+
+
+def test_no_disparity_of_any_depth() -> None:
+    """The size places it, which nothing confirms."""
+    (one,), _ = verify([LEFT], [RIGHT | {"image_x": 2552}])
+    assert (one["z"], one["measures"], one["accuracy"]) == (400, BY_SIZE, 224 - THRESHOLDS.size_weight)
+
+
+def test_goals_have_no_disparity() -> None:
+    """The mean of both feet is none of a point; a mark has one."""
+    for model, measures in ((2, BY_FLOOR), (3, BY_FLOOR), (4, BY_FLOOR | BY_DISPARITY)):
+        changes = {"model": model, "measures": BY_FLOOR}
+        (one,), _ = verify([LEFT | changes], [RIGHT | changes])
+        assert one["measures"] == measures
 
 
 @pytest.mark.parametrize("tests", [31 - SIZE_TEST, 3])
@@ -133,7 +166,7 @@ def test_each_has_its_own_partner() -> None:
 
 
 words = {
-    "model": st.integers(0, 2),
+    "model": st.integers(0, 4),
     "accuracy": st.integers(0, 255),
     "tests": st.integers(0, 31),
     "measures": st.sampled_from([0, BY_SIZE, BY_FLOOR]),

@@ -38,6 +38,7 @@ def find(lines: Sequence[Sequence[int]], *boxes: dict[str, int], colours: int = 
     """What the stage leaves: left, right, top, bottom, blob of each rectangle."""
     core = BareCore({"rectangles": [np.full(RECTANGLE_CAPACITY * RECTANGLE_WORDS, 77, np.int16)]})
     core.arrays |= {"blob_data": [blob_words(*boxes)], "lines": [line_words(lines)]}
+    core.arrays |= {"label_parents": [np.arange(len(boxes), dtype=np.uint8)]}
     count = core.play(rectangle_detection(core, len(boxes), len(lines), colours, LIMITS))
     assert core.published["rectangles"] == count
     lost = core.published["rectangles_lost"]
@@ -57,8 +58,8 @@ def test_all_four() -> None:
         (BOTTOM, True),
         ((1600, 1608 + 64, 2880, 1608 + 64), True),  # 4 px off
         ((1600, 1608 + 65, 2880, 1608 + 65), False),  # and a little more
-        ((2880, 1608 + 32, 1600, 1608 + 32), True),  # bright outside: counts as 2 px farther
-        ((2880, 1608 + 33, 1600, 1608 + 33), False),
+        ((2880, 1608 + 64, 1600, 1608 + 64), True),  # bright outside, as where it is a line on the floor
+        ((2880, 1608 + 65, 1600, 1608 + 65), False),
         ((1600, 1608, 2248, 1608), True),  # half of the side
         ((1600, 1608, 2247, 1608), False),  # not quite
         ((0, 1608, 5000, 1608), True),  # goes on to both sides (T Figure 6.9)
@@ -78,13 +79,27 @@ def test_a_bottom_line(line: tuple[int, ...], found: bool) -> None:
 def test_the_nearest_one() -> None:
     """Of several the nearest, of equal ones the first; a line that is bright inside is nearer."""
     assert find([(1600, 1640, 2880, 1640), BOTTOM, BOTTOM], BOX)[0][3] == 1
-    assert find([(2880, 1608, 1600, 1608), (1600, 1631, 2880, 1631)], BOX)[0][3] == 1
+    assert find([(2880, 1608, 1600, 1608), (1600, 1639, 2880, 1639)], BOX)[0][3] == 1
+    assert (
+        find([(2880, 1608, 1600, 1608), (1600, 1641, 2880, 1641)], BOX)[0][3] == 0
+    )  # unless it is 2 px farther off
 
 
 def test_only_blobs_of_rectangles() -> None:
     """Others have no record."""
     other = BOX | {"colours": YELLOW}
     assert [each[4] for each in find([], other, BOX, other, BOX)] == [1, 3]
+
+
+def test_parts_of_a_merged_blob() -> None:
+    """The merged blob has a record, its parts have none."""
+    table = np.zeros(2 * RECTANGLE_WORDS, np.int16)
+    parents = np.array([2, 2, 2], np.uint8)
+    boxes = BOX | {"right": 120}, BOX | {"left": 160}, BOX
+    limits = 64, LIMITS.overlap, 32
+    lines = line_words([BOTTOM])
+    assert find_rectangles(blob_words(*boxes), parents, 3, BLUE, lines, 1, table, *limits) == 1
+    assert table[:RECTANGLE_WORDS].tolist() == [NO_LINE, NO_LINE, NO_LINE, 0, 2]
 
 
 def test_more_than_there_is_room() -> None:
@@ -119,7 +134,10 @@ def test_lines_as_long_as_a_word_can_say(ends: tuple[int, ...]) -> None:
     box = BOX | {"right": 639, "bottom": 479}
     wanted = references.rectangle([within], box, 64, 128, 32)
     table = np.zeros(RECTANGLE_WORDS, np.int16)
-    assert find_rectangles(blob_words(box), 1, BLUE, line_words([within]), 1, table, 64, 128, 32) == 1
+    parents = np.zeros(1, np.uint8)
+    assert (
+        find_rectangles(blob_words(box), parents, 1, BLUE, line_words([within]), 1, table, 64, 128, 32) == 1
+    )
     assert table.tolist() == [*wanted, 0]
 
 

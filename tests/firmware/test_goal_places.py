@@ -1,0 +1,134 @@
+"""Where a goal is: from the feet at both ends of its blob to the middle of its mouth, beside closed forms."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from firmware.stores.objects import BY_FLOOR
+from firmware.strategy.models import BLUE, MODELS
+from firmware.strategy.modes import INDOOR_FIELD
+from tests.firmware.object_rig import HEIGHT, THESIS, WIDTH
+from tests.firmware.test_object_sight import see
+
+GOAL = MODELS[1]
+FOCAL, UP_MM, TILT = THESIS.focal_px, THESIS.height_mm, np.radians(THESIS.tilt_deg)
+POST_PX = 6
+PIXEL_MM = 1000**2 / (FOCAL * UP_MM)  # what a row is worth at 1 m
+
+
+def seen_at(across_mm: float, ahead_mm: float, up_mm: float = 0) -> tuple[np.ndarray, float, float]:
+    """A point in the camera's frame, and its column and row."""
+    below = UP_MM - up_mm
+    point = np.array(
+        [
+            across_mm,
+            below * np.cos(TILT) - ahead_mm * np.sin(TILT),
+            ahead_mm * np.cos(TILT) + below * np.sin(TILT),
+        ]
+    )
+    column, row = FOCAL * point[:2] / point[2]
+    return point, column + (WIDTH - 1) / 2, row + (HEIGHT - 1) / 2
+
+
+def goal(
+    middle_mm: tuple[float, float], turn_deg: float
+) -> tuple[list[dict[str, int]], list[int], np.ndarray, list[float]]:
+    """The blobs of a goal of two posts and its back, merged, as far as they are in the picture; its middle; its bottom line."""
+    turn = np.radians(turn_deg)
+    along = 200 * np.array([np.cos(turn), np.sin(turn)])
+    ends = [seen_at(*(middle_mm + side * along)) for side in (-1, 1)]
+    tops = [seen_at(*(middle_mm + side * along), up_mm=100)[2] for side in (-1, 1)]
+    posts = [(round(column) - 2, round(row - 0.5)) for _, column, row in ends]
+    boxes = [
+        {"left": left, "right": left + POST_PX, "top": round(top), "bottom": bottom}
+        for (left, bottom), top in zip(posts, tops, strict=True)
+    ]
+    back = {"left": boxes[0]["right"] + 8, "right": boxes[1]["left"] - 8}
+    boxes.append(back | {"top": boxes[0]["top"] - 2, "bottom": min(each["bottom"] for each in boxes) - 4})
+    inside = [each | {"right": min(each["right"], WIDTH - 2)} for each in boxes if each["left"] < WIDTH - 8]
+    whole = {
+        name: pick(each[name] for each in inside)
+        for name, pick in (("left", min), ("right", max), ("top", min), ("bottom", max))
+    }
+    blobs = [each | {"colours": BLUE, "pixels": 2000} for each in (*inside, whole)]
+    place, *_ = seen_at(*middle_mm, up_mm=50)
+    line = [16 * each for _, column, row in ends for each in (column, row)]
+    return blobs, [len(inside)] * len(blobs), place, line
+
+
+def placed(blobs: Any, parents: Any, line: Any = None, *, refined: bool = True) -> np.ndarray:
+    """Where the only goal is seen."""
+    thresholds = replace(INDOOR_FIELD.objects, refined=refined)
+    borders = [{"left": -1, "right": -1, "top": -1, "bottom": 0, "blob": len(blobs) - 1}] if line else []
+    lines = [[round(each) for each in line]] if line else []
+    (found,) = see(
+        blobs, rectangles=borders, parents=parents, lines=lines, models=(GOAL,), thresholds=thresholds
+    )
+    assert found["measures"] == BY_FLOOR
+    return np.array([found["x"], found["y"], found["z"]])
+
+
+@pytest.mark.parametrize("turn_deg", [0, 20, -35, 50])
+@pytest.mark.parametrize("middle_mm", [(0, 900), (-60, 800), (40, 1100)])
+def test_between_both_posts(turn_deg: float, middle_mm: tuple[float, float]) -> None:
+    """From the front and at an angle: half a row of error at each post, where the whole rows are all that is known."""
+    blobs, parents, place, line = goal(middle_mm, turn_deg)
+    error_mm = PIXEL_MM * ((middle_mm[1] + 200) / 1000) ** 2
+    assert np.linalg.norm(placed(blobs, parents) - place) < error_mm
+    assert np.linalg.norm(placed(blobs, parents, line) - place) < error_mm / 2
+
+
+def test_the_thesis_s_way_takes_the_nearest_part() -> None:
+    """At an angle the floor below the blob is that before the nearer post."""
+    blobs, parents, place, _ = goal((0, 900), 50)
+    plain = placed(blobs, parents, refined=False)
+    assert plain[2] < place[2] - 100
+
+
+@pytest.mark.parametrize(("middle_x_mm", "turn_deg"), [(180, 0), (150, 30), (170, -25)])
+def test_a_goal_that_the_picture_cuts(middle_x_mm: float, turn_deg: float) -> None:
+    """Half its width from the post that is seen, along its bottom line."""
+    blobs, parents, place, line = goal((middle_x_mm, 600), turn_deg)
+    assert blobs[-1]["right"] == WIDTH - 2
+    assert np.linalg.norm(placed(blobs, parents, line) - place) < 0.05 * np.linalg.norm(place)
+
+
+def test_it_is_the_same_from_the_other_side() -> None:
+    """Left and right exchanged."""
+    blobs, parents, _, line = goal((180, 600), 20)
+    mirrored = [
+        each | {"left": WIDTH - 1 - each["right"], "right": WIDTH - 1 - each["left"]} for each in blobs
+    ]
+    back = [
+        16 * (WIDTH - 1) - line[2],
+        line[3],
+        16 * (WIDTH - 1) - line[0],
+        line[1],
+    ]
+    x, y, z = placed(blobs, parents, line)
+    assert placed(mirrored, parents, back) == pytest.approx([-x, y, z], abs=2)
+
+
+def test_a_hidden_post() -> None:
+    """What is left is no goal's width wide: the nearer foot tells the depth, the middle of what is seen the way."""
+    blobs, _, _, _ = goal((0, 900), 0)
+    half = [blobs[1], blobs[2] | {"left": 190}]
+    whole = blobs[3] | {"left": 190}
+    x, _, z = placed([*half, whole], [2, 2, 2])
+    depth = UP_MM * FOCAL / (
+        (blobs[1]["bottom"] + 0.5 - 119.5) * np.cos(TILT) + FOCAL * np.sin(TILT)
+    ) - 50 * np.sin(TILT)
+    assert z == pytest.approx(depth, abs=2)
+    assert x == pytest.approx(((190 + whole["right"]) / 2 - 159.5) / FOCAL * z, rel=0.02)
+
+
+def test_a_post_in_two_parts() -> None:
+    """The lower one has the foot."""
+    blobs, _, place, _ = goal((0, 900), 20)
+    upper, lower = blobs[0] | {"bottom": 80}, blobs[0] | {"top": 84, "left": blobs[0]["left"] + 1}
+    found = placed([upper, lower, *blobs[1:]], [4] * 5)
+    assert np.linalg.norm(found - place) < PIXEL_MM
