@@ -9,15 +9,18 @@ from __future__ import annotations
 import hashlib
 import importlib
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from bfsim.kernel import store
 
 numba: Any = importlib.import_module("numba")  # its own types do not know all of its options
 _extending: Any = importlib.import_module("numba.extending")
+_caching: Any = importlib.import_module("numba.core.caching")
+_ccallback: Any = importlib.import_module("numba.core.ccallback")
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -45,6 +48,18 @@ def _keeps() -> bool:
     return os.access(_folder(), os.W_OK)
 
 
+class _Cache(_caching.FunctionCache):  # type: ignore[misc]  # see above
+    """A cache that is never in the way: what is damaged in it is compiled again, and on a full disk nothing is kept."""
+
+    @contextmanager
+    def _guard_against_spurious_io_errors(self) -> Iterator[None]:
+        try:
+            yield
+        except Exception:  # noqa: BLE001 - damaged data fail in any way
+            with suppress(OSError):
+                self.flush()
+
+
 def is_kept(name: str) -> bool:
     """Return whether the cache has machine code of the entry `name`, "MODULE.FUNCTION"; also if there is no cache to have it."""
     return not _keeps() or any(_folder().rglob(f"{name}-*.nbi"))
@@ -58,13 +73,18 @@ def compiled(function: Function) -> Function:
 
 def entry(function: Function) -> Function:
     """Compile `function` and all that it calls at its first call from Python, or take it from the cache."""
-    made: Function = numba.njit(cache=_keeps(), no_cfunc_wrapper=True, error_model="numpy")(function)
-    return made
+    made: Any = numba.njit(no_cfunc_wrapper=True, error_model="numpy")(function)
+    if _keeps():
+        made._cache = _Cache(function)  # noqa: SLF001 - numba's own cache takes its place by an option only
+    return cast("Function", made)
 
 
 def callback(signature: Any, function: Callable[..., None]) -> int:
     """Compile `function` for calls from machine code, or take it from the cache; return its host address."""
-    made = numba.cfunc(signature, cache=_keeps())(function)
+    made = _ccallback.CFunc(function, (signature.args, signature.return_type), {}, {})
+    if _keeps():
+        made._cache = _Cache(function)  # noqa: SLF001 - as above
+    made.compile()
     _kept.append(made)  # the code lives as long as this object
     return int(made.address)
 

@@ -21,6 +21,8 @@ from bfsim.recording.video import open_video
 from bfsim.recording.writer import RecordingWriter
 
 DEFAULT_FPS = Fraction(30)
+FPS_PARTS = 1_000_000
+"""Frame rates are fractions with denominators up to this; it is the highest rate, too."""
 """Of sources that do not say: the VGA rate of the OmniVision sensors."""
 
 Progress = Callable[[int, int | None], None]
@@ -121,6 +123,8 @@ def _check_call(
     mono: bool,
     force: bool,
 ) -> None:
+    if guess_format(os.fspath(output)):
+        raise RecordingError(f"{output}: recording must have a name like run.mcap, not one of pictures")
     if output.exists() and not force:
         raise RecordingError(f"{output}: recording must not exist yet; `--force` overwrites it")
     if side_by_side and mono:
@@ -157,9 +161,9 @@ def _frame_rate(fps: Fraction | float | None, sources: list[PictureSource]) -> F
     if fps is None and len(rates) > 1:
         described = " and ".join(f"{float(rate):g}" for rate in sorted(rates))
         raise RecordingError(f"both cameras must have one frame rate, not {described}; `--fps` sets it")
-    if fps is not None and not 0 < fps <= 1_000_000:
-        raise RecordingError(f"frame rate must be above 0 and at most 1000000 per second, not {fps}")
-    return Fraction(fps).limit_denominator(1_000_000) if fps is not None else next(iter(rates), DEFAULT_FPS)
+    if fps is not None and not 1 <= fps * FPS_PARTS <= FPS_PARTS**2:
+        raise RecordingError(f"frame rate must be 0.000001 to 1000000 per second, not {fps}")
+    return Fraction(fps).limit_denominator(FPS_PARTS) if fps is not None else next(iter(rates), DEFAULT_FPS)
 
 
 def _check_pair(sources: list[PictureSource], *, side_by_side: bool, resized: bool) -> int | None:

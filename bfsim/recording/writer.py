@@ -51,8 +51,8 @@ class RecordingWriter:
         self._description = description
         self._rectification = rectification
         self._last_ns = {layout.LEFT_TOPIC: -1, layout.RIGHT_TOPIC: -1}
-        if not self.path.name or self.path.is_dir():
-            raise RecordingError(f"{path}: recording must be a file, not a folder")
+        if not self.path.name or (self.path.exists() and not self.path.is_file()):
+            raise RecordingError(f"{path}: recording must be a file, not a folder or a device")
         if width <= 0 or width % 2:
             raise RecordingError(
                 f"{path}: image width must be even and above 0 (UYVY pixels come in pairs), not {width}"

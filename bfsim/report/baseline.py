@@ -119,8 +119,6 @@ def _parsed(path: Path) -> TOMLDocument:
         return tomlkit.parse(path.read_text(encoding="utf-8"))
     except (TOMLKitError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} must be TOML: {error}") from error
-    except RecursionError as error:
-        raise ConfigError(f"{path} must not be nested so deep") from error
     except OSError as error:
         raise ConfigError(f"{path} must be a readable file: {error.strerror}") from error
 

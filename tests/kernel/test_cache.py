@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import resource
 import subprocess
 import sys
 from dataclasses import replace
@@ -170,3 +171,29 @@ def test_processes_share_the_cache_and_agree_on_the_cycles(tmp_path: Path) -> No
     assert compiled == "0"
     assert {result[0] for result in results} == {cycles}
     assert len(entries(cache)) == 1
+
+
+FOLLOW = "from bfsim.kernel.follow import function_address; print(function_address() > 0)"
+
+
+def follower_in(folder: Path, *, limit_bytes: int = resource.RLIM_INFINITY) -> None:
+    """Compile the follower in a process that can write files of a limited size, or take it from the cache."""
+    limit = f"import resource as r; r.setrlimit(r.RLIMIT_FSIZE, ({limit_bytes}, {limit_bytes})); "
+    surroundings = {**os.environ, "BFSIM_CACHE_DIR": str(folder)}
+    done = subprocess.run(
+        [sys.executable, "-c", limit + FOLLOW], capture_output=True, check=False, env=surroundings, text=True
+    )
+    assert (done.stdout, done.stderr) == ("True\n", "")
+
+
+def test_a_damaged_or_full_cache_of_the_follower_is_no_obstacle(folder: Path) -> None:
+    """It is compiled again, and kept if there is room."""
+    follower_in(folder, limit_bytes=1024)
+    assert not list(folder.rglob("*.nbc"))
+    follower_in(folder)
+    files = list(folder.rglob("follow*.nb?"))
+    assert files
+    for each in files:
+        each.write_bytes(each.read_bytes()[:50])
+    follower_in(folder)
+    assert all(each.stat().st_size > 50 for each in folder.rglob("follow*.nbi"))

@@ -43,6 +43,12 @@ def test_lens_that_folds_the_picture_is_refused() -> None:
         Lens(k1=-3.0).undistort(np.array([[0.4, 0.3]]))
 
 
+def test_misfit_must_be_of_numbers() -> None:
+    """A camera turned by no number is nowhere."""
+    with pytest.raises(RecordingError, match=r"turn of the right camera must be finite numbers, not \(nan"):
+        Misfit(turn_deg=(float("nan"), 0.0, 0.0))
+
+
 def ramp(view: Pinhole) -> Vector:
     """Light that is the ray's own slope, right and down."""
     columns, rows = np.meshgrid(np.arange(view.width_px), np.arange(view.height_px))

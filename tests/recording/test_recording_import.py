@@ -249,6 +249,15 @@ def test_existing_recording_needs_force(tmp_path: Path) -> None:
     assert frames_of(tmp_path / "a.mcap")[0].left[0, 1] == 7
 
 
+@pytest.mark.parametrize("name", ["left.png", "left.y4m", "pictures"])
+def test_forgotten_output_costs_no_picture(tmp_path: Path, name: str) -> None:
+    """The first source stands where the recording should: it stays, even with `force`."""
+    (tmp_path / "pictures").mkdir()
+    output = tmp_path / name
+    with pytest.raises(RecordingError, match=f"{name}: recording must have a name like run.mcap"):
+        import_recording([output], output, mono=True, force=True)
+
+
 def test_progress(tmp_path: Path) -> None:
     """The caller hears of every frame."""
     for k in range(3):
@@ -341,8 +350,9 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (["two", "two", "two"], {}, "sources must be 2, not 3"),
         (["two", "two"], {"mono": True}, "sources must be 1, not 2"),
         (["two"], {"mono": True, "side_by_side": True}, "not both"),
-        (["two"], {"mono": True, "fps": 0}, "frame rate must be above 0 .* not 0"),
-        (["two"], {"mono": True, "fps": float("nan")}, "frame rate must be above 0 .* not nan"),
+        (["two"], {"mono": True, "fps": 0}, "frame rate must be 0.000001 to .* not 0"),
+        (["two"], {"mono": True, "fps": 1e-300}, "frame rate must be 0.000001 to .* not 1e-300"),
+        (["two"], {"mono": True, "fps": float("nan")}, "frame rate must be 0.000001 to .* not nan"),
         (["two"], {"mono": True, "resize": (7, 4)}, "`--resize` must be above 0 and of even width, not 7x4"),
     ],
 )

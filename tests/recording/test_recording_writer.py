@@ -143,8 +143,9 @@ def test_full_disk(tmp_path: Path) -> None:
 
 
 def test_folder_that_is_not_there(tmp_path: Path) -> None:
-    """A recording into a missing folder, or in the place of a folder, is refused at once."""
+    """A recording into a missing folder, or in the place of a folder or a device, is refused at once."""
     with pytest.raises(RecordingError, match="recording must be writable: No such file or directory"):
         write(tmp_path / "none" / "a.mcap")
-    with pytest.raises(RecordingError, match="must be a file, not a folder"):
-        write(tmp_path)
+    for taken in (tmp_path, Path("/dev/null")):
+        with pytest.raises(RecordingError, match="must be a file, not a folder or a device"):
+            write(taken)

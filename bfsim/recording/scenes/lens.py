@@ -73,6 +73,11 @@ class Misfit:
     turn_deg: tuple[float, float, float] = (0.0, 0.0, 0.0)
     shift_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
+    def __post_init__(self) -> None:
+        for name, value in (("turn", self.turn_deg), ("shift", self.shift_mm)):
+            if not all(map(math.isfinite, value)):
+                raise RecordingError(f"{name} of the right camera must be finite numbers, not {value}")
+
     def misplaced(self, ideal: Pinhole) -> Pinhole:
         """Return the right camera where it really is."""
         rotation = ideal.rotation
