@@ -44,7 +44,7 @@ def run_simulated(frames: list[StereoFrame]) -> Outcome:
 
 @pytest.mark.benchmark(group=f"{STEREO_FRAMES} stereo frames")
 def test_simulated(benchmark: BenchmarkFixture, frames: list[StereoFrame]) -> None:
-    """Both stages on both cores with counters and the whole machine; stereo frames per second in `extra_info`."""
+    """All stages on both cores with counters and the whole machine; stereo frames per second in `extra_info`."""
     outcome = benchmark.pedantic(run_simulated, (frames,), warmup_rounds=1, rounds=7)
     benchmark.extra_info["stereo frames per second"] = STEREO_FRAMES / benchmark.stats.stats.median
     assert len(outcome.frames) == STEREO_FRAMES

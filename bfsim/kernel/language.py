@@ -1,7 +1,7 @@
 """The kernel language: the Python source of a function → typed tree, or a refusal with file, line and caret.
 
 The subset: parameters that are integers or arrays, 32-bit local integers, assignments, `if`, `while`,
-`for ... in range(...)`, `break`, `continue`, `return`, and the expressions of `expressions.py`. Anything
+`for ... in range(...)`, `break`, `continue`, `return`, and the expressions of `expressions.py` and `calls.py`. Anything
 else is refused when the function is decorated, before it ever runs.
 """
 
@@ -18,7 +18,7 @@ from typing import Any
 
 from bfsim.errors import KernelError
 from bfsim.kernel import tree
-from bfsim.kernel.expressions import Scope
+from bfsim.kernel.calls import Scope
 from bfsim.kernel.operators import BINARY
 from bfsim.kernel.refusal import Source
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, f32, i32, u32

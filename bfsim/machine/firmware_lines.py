@@ -1,11 +1,13 @@
-"""Which line of the firmware is at work: messages name it."""
+"""Which line of the firmware is at work, waits or has failed: messages name it."""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import sys
+import traceback
 from pathlib import Path
+from typing import Any
 
 NOT_FIRMWARE = (str(Path(__file__).parent.parent) + os.sep, contextlib.__file__)
 """Where the code lies that firmware calls."""
@@ -17,3 +19,23 @@ def running_line() -> str:
     while frame.f_back is not None and frame.f_code.co_filename.startswith(NOT_FIRMWARE):
         frame = frame.f_back
     return f"{frame.f_code.co_filename}:{frame.f_lineno}"
+
+
+def line_at(task: Any) -> str:
+    """Return the innermost line of the firmware at which a generator stands, as ` (file:line)`; nothing if it has ended."""
+    place = ""
+    while task is not None and getattr(task, "gi_frame", None) is not None:
+        code = task.gi_frame.f_code
+        if not code.co_filename.startswith(NOT_FIRMWARE):
+            place = f" ({code.co_filename}:{task.gi_frame.f_lineno})"
+        task = task.gi_yieldfrom
+    return place
+
+
+def line_of(error: BaseException) -> str:
+    """Return the innermost line of the firmware that `error` came through, as ` (file:line)`; nothing if none."""
+    calls = traceback.extract_tb(error.__traceback__)
+    places = [
+        f"{each.filename}:{each.lineno}" for each in calls if not each.filename.startswith(NOT_FIRMWARE)
+    ]
+    return f" ({places[-1]})" if places else ""

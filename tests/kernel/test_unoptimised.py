@@ -86,6 +86,15 @@ def classes_of(assembly: str) -> list[str]:
     ]
 
 
+def test_a_sum_of_constants_is_stored_in_bytes(import_kernels: ImportText) -> None:
+    """It costs no less than one of them, on its own or as a part of what is stored."""
+    (one, both, part) = (
+        sum(cclk_of(each.charges) for each in costs_of(import_kernels, f"a[0] = {value}").values())
+        for value in ("i32(255)", "i32(255) + i32(0)", "y + (i32(255) + i32(0))")
+    )
+    assert one <= both <= part
+
+
 @pytest.mark.parametrize("statement", STATEMENTS)
 def test_a_statement_costs_the_operations_that_gcc_writes(import_kernels: ImportText, statement: str) -> None:
     """Loads of variables, moves between register files, narrow arithmetic, and constants are GCC's."""

@@ -24,7 +24,7 @@ from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus, Transfer
 from bfsim.machine.cameras.capture import Feed
-from bfsim.machine.core.core import BUS_STALLS
+from bfsim.machine.core.playing import BUS_STALLS
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.program import Main

@@ -64,9 +64,9 @@ def low_bits_of(code: Values, value: Expr, target: Expr, *, late: bool) -> bool:
         pointer = code.value(value, adds=True)
         code.move(int(pointer))
         return pointer
-    if value.op not in (*FOLDED, *BITWISE):
-        return code.value(value)
     parts = [_stripped(each, target.bits) for each in value.args]
+    if value.op not in (*FOLDED, *BITWISE) or all(each.is_const for each in parts):
+        return code.value(value)
     last = parts[-1]
     sums = value.op == "+" and not last.is_const
     pointers = []

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import contextlib
-import traceback
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from operator import index
 from typing import Any
 
-import simpy
-
 from bfsim.chip.spec import BoardSpec
 from bfsim.chip.spi_registers import TRANSFER_WRITES
-from bfsim.errors import BfsimError, FirmwareError
-from bfsim.kernel import Kernel, Work
+from bfsim.errors import FirmwareError
 from bfsim.kernel.followers import Follower
 from bfsim.kernel.types import Number
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
-from bfsim.machine.calls.calls import CallBook, DeferredWork
+from bfsim.machine.calls.calls import CallBook
 from bfsim.machine.cameras.capture import Capture
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.layouts import Layouts
@@ -28,20 +24,12 @@ from bfsim.machine.core.synchronised import SharedObjects, SynchronisedCore
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.memory_dma import Dma, MemoryDma
 from bfsim.machine.dma.ring import InputRing, OutputRing
-from bfsim.machine.firmware_lines import NOT_FIRMWARE
 from bfsim.machine.memories import Row
 from bfsim.machine.program import FrameSize, Main
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi.spi import Spi
 from bfsim.seen import Seen
 from bfsim.trace import REST, CoreFrame, StallReason
-
-BUS_STALLS = (
-    StallReason.L2_LATENCY, StallReason.L2_PORT, StallReason.SDRAM_PAGE_HIT, StallReason.SDRAM_PAGE_MISS,
-    StallReason.SDRAM_PAGE_CONFLICT, StallReason.SDRAM_REFRESH, StallReason.EBIU_ARBITRATION, StallReason.STORE_BUFFER,
-    StallReason.CACHE_FILL, StallReason.CODE_FETCH,
-)  # fmt: skip
-"""What the bus stalls a core for, in the order of its counters (`bus.state`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +81,16 @@ class Core(SynchronisedCore):
 
         `view`: reads out what was seen, if anyone wants to know.
         """
-        super().__init__(env, name, board, bus, stages)
+        super().__init__(
+            env,
+            name,
+            board,
+            bus=bus,
+            number=number,
+            stages=stages,
+            calls=calls,
+            interrupts=shared.interrupts[name],
+        )
         self.finished: list[FinishedFrame] = []
         """Frames that are done, until the board takes them."""
         self._entered_at_cclk = 0
@@ -101,22 +98,16 @@ class Core(SynchronisedCore):
         self._on_finished = on_finished
         self._layouts = layouts
         self._view = view
-        self._calls = calls
-        self._number = number
         self._follower = follower
         self._capture = capture
         self._streams = streams
         self._dma = dma
         self._spi = spi
         self._shared = shared
-        self._interrupts = shared.interrupts[name]
         self._frame: Frame | None = None
         self._full_at_cclk = 0
         self._results: dict[str, int] = {}
         self._remarks: list[str] = []
-        self._unclaimed: Work | None = None
-        self._main: Generator[Any, Any, None] | None = None
-        self._in_handler = False
 
     # What firmware uses
 
@@ -168,18 +159,6 @@ class Core(SynchronisedCore):
         if self._is_cached(image):
             return CachedOutput(image)
         return OutputRing(self, self._streams[1], self.rows(ring), image)
-
-    def run(self, kernel: Kernel, *arguments: Row | int) -> Work:
-        """Run a kernel on rows and ints. Yield the result: the cycles are charged then, and you get its value."""
-        if self._unclaimed is not None:
-            self._check_claimed()
-        try:
-            call = self._calls.known[kernel, kernel.arrays_of(arguments)]
-        except (LookupError, TypeError, AttributeError):  # the first time, or something is wrong
-            call = self._calls.prepare(kernel, arguments)
-        # what reaches outside L1 may meet what others do: it runs when the simulated time is there
-        work = self._unclaimed = call.run(arguments) if call.stays_in_l1 else DeferredWork(call, arguments)
-        return work
 
     @contextlib.contextmanager
     def stage(self, name: str) -> Iterator[None]:
@@ -299,88 +278,6 @@ class Core(SynchronisedCore):
         yield from self._sync()
         self._close_frame()
         self._main = None
-
-    def _perform(self, task: Generator[Any, Any, Any]) -> Generator[Any, Any, None]:
-        """Play a generator of the firmware: charge the kernels that it yields, and wait for the events."""
-        value = None
-        while True:
-            try:
-                item = task.send(value)
-            except StopIteration:
-                break
-            except Exception as error:
-                raise self._told(error) from error
-            if item is self._unclaimed and item is not None:
-                self._unclaimed = None
-                if isinstance(item, DeferredWork):
-                    yield from self._sync()
-                    item = item.run()
-                    if item.accesses:
-                        yield from self._outside_l1(item)
-                self._cclk += item.issue_cclk + item.stall_cclk
-                self._account.issue_cclk += item.issue_cclk
-                if item.stall_cclk:
-                    stalls = self._account.stall_cclk
-                    stalls[StallReason.INTERLOCK] = stalls.get(StallReason.INTERLOCK, 0) + item.stall_cclk
-                value = item.value
-            elif isinstance(item, simpy.Event):
-                value = yield item
-            else:
-                raise FirmwareError(
-                    f"core {self.name}: firmware must yield each core.run(...) once, or `yield from` a wait, "
-                    f"not {item!r}{self.place()}"
-                )
-            if self._interrupts.are_handled and not self._in_handler:
-                yield from self._sync()
-                yield from self._take_interrupts()
-        self._check_claimed()
-
-    @property
-    def is_done(self) -> bool:
-        """Whether the main loop has ended."""
-        return self._main is None
-
-    def describe_wait(self) -> str:
-        """Say what the core waits for and where in the firmware."""
-        if self.is_done:
-            return f"core {self.name} has ended"
-        return f"core {self.name} waits for {self.waiting_for or 'a device'}{self.place()}"
-
-    # Inside
-
-    def place(self) -> str:
-        """Return the innermost line of the firmware that is being played, as ` (file:line)`."""
-        place = ""
-        generator: Any = self._main
-        while generator is not None and getattr(generator, "gi_frame", None) is not None:
-            code = generator.gi_frame.f_code
-            if not code.co_filename.startswith(NOT_FIRMWARE):
-                place = f" ({code.co_filename}:{generator.gi_frame.f_lineno})"
-            generator = generator.gi_yieldfrom
-        return place
-
-    def _told(self, error: Exception) -> BfsimError:
-        """Return what went wrong in the firmware, with its line there."""
-        calls = traceback.extract_tb(error.__traceback__)
-        places = [
-            f"{each.filename}:{each.lineno}" for each in calls if not each.filename.startswith(NOT_FIRMWARE)
-        ]
-        place = f" ({places[-1]})" if places else ""
-        if isinstance(error, BfsimError):
-            return type(error)(f"{error}{place}")
-        return FirmwareError(f"core {self.name}: firmware failed with {type(error).__name__}: {error}{place}")
-
-    def _check_claimed(self) -> None:
-        if self._unclaimed is not None:
-            raise FirmwareError(f"core {self.name}: core.run(...) must be yielded, or its cycles are lost")
-
-    def _outside_l1(self, work: Work) -> Generator[Any, Any, None]:
-        """Play the accesses of a call outside L1 from the core's clock on, and charge what they stall."""
-        begin, cclk = self.now_ticks, work.issue_cclk + work.stall_cclk
-        yield self._bus.access(self._number, begin, cclk, work.accesses)
-        for reason, stalled in zip(BUS_STALLS, self._bus.stalls_of(self._number), strict=True):
-            if stalled:
-                self.stall(reason, stalled)
 
     def _close_frame(self) -> None:
         """Turn the cycles since the last frame's end into a record, if there was a frame."""

@@ -1,4 +1,4 @@
-"""How cores meet each other and the devices: semaphores, spin locks and interrupts."""
+"""How cores meet each other: semaphores, spin locks, and the interrupt that one raises at the other."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Generator, Mapping
 from typing import Any
 
 from bfsim.errors import FirmwareError
-from bfsim.machine.core.clock import CoreClock
-from bfsim.machine.core.interrupts import Handler, Interrupts
+from bfsim.machine.core.interrupts import Interrupts
+from bfsim.machine.core.playing import PlayingCore
 from bfsim.machine.core.semaphore import Semaphore
 from bfsim.machine.core.spin_lock import SpinLock
 from bfsim.machine.firmware_lines import running_line
@@ -25,14 +25,10 @@ class SharedObjects:
         self.interrupts: dict[str, Interrupts] = {}
 
 
-class SynchronisedCore(CoreClock):
-    """A core's part of semaphores, locks and interrupts."""
+class SynchronisedCore(PlayingCore):
+    """A core's part of semaphores, locks and the other core's interrupt."""
 
     _shared: SharedObjects
-    _interrupts: Interrupts
-    _in_handler: bool
-
-    # ---- semaphores and locks, in L2
 
     def post(self, name: str) -> Generator[Any, Any, None]:
         """Add one to the semaphore `name`, in L2."""
@@ -90,19 +86,6 @@ class SynchronisedCore(CoreClock):
     def _lock(self, name: str) -> SpinLock:
         return self._shared.locks.setdefault(name, SpinLock(self._env, name))
 
-    # ---- interrupts
-
-    def on_interrupt(self, source: str, handler: Handler) -> None:
-        """Have `handler(core)` called at every interrupt of `source`, such as MDMA1_0, SPI_DMA or SUPPLEMENTAL_0.
-
-        A handler may be a generator function that yields kernels.
-        """
-        self._interrupts.attach(source, handler)
-
-    def request_interrupt(self, source: str) -> None:
-        """Ask this core for an interrupt, as a device does."""
-        self._interrupts.request(source)
-
     def interrupt_core(self, other: str) -> Generator[Any, Any, None]:
         """Raise the supplemental interrupt SUPPLEMENTAL_0 at another core."""
         others: Mapping[str, Interrupts] = self._shared.interrupts
@@ -111,58 +94,3 @@ class SynchronisedCore(CoreClock):
         self.issue(self._board.chip.events.mmr_write_cclk)
         yield from self._sync()
         others[other].request(OTHER_CORE)
-
-    def idle(self) -> Generator[Any, Any, None]:
-        """Wait for an interrupt, and let its handler run; one that was asked for already ends the wait at once."""
-        before, self._in_handler = self._in_handler, True
-        yield from self._sync()
-        self._in_handler = before
-        if not self._interrupts.is_waiting:
-            yield from self._blocked(iter([self._interrupts.next_request()]), "an interrupt")
-            self._wake(None)
-        if not self._in_handler:
-            yield from self._take_interrupts()
-
-    def _blocked(self, wait: Any, what: str) -> Generator[Any, Any, Any]:
-        """Play `wait`, a generator of events, saying meanwhile what the core waits for; interrupts are taken as they come."""
-        if self._interrupts.are_handled and not self._in_handler:
-            wait = self._interruptible(wait)
-        return super()._blocked(wait, what)
-
-    def _interruptible(self, wait: Any) -> Generator[Any, Any, Any]:
-        owed_cclk, what = 0, self.waiting_for
-        self._in_handler = True  # the clock still stands where the wait began: nobody else may take them
-        while True:
-            try:
-                event = next(wait)
-            except StopIteration as end:
-                result = end.value
-                break
-            while not event.processed:
-                yield self._env.any_of([event, self._interrupts.next_request()])
-                if self._interrupts.is_waiting:
-                    passed_cclk = self._until(self._env.tick)
-                    self._cclk += passed_cclk
-                    owed_cclk += passed_cclk
-                    yield from self._take_interrupts()
-                    self.waiting_for = what
-        self._in_handler = False
-        self._owed_cclk = owed_cclk
-        return result
-
-    def _take_interrupts(self) -> Generator[Any, Any, None]:
-        """Run the handlers of all interrupts that wait; the way in and out is a stall."""
-        events = self._board.chip.events
-        before, self._in_handler = self._in_handler, True
-        while self._interrupts.is_waiting:
-            handler = self._interrupts.take()
-            self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk)
-            task = handler(self)
-            if isinstance(task, Generator):
-                yield from self._perform(task)
-            self.stall(StallReason.INTERRUPT, events.interrupt_exit_cclk)
-        self._in_handler = before
-
-    def _perform(self, task: Generator[Any, Any, Any]) -> Generator[Any, Any, None]:
-        """Play a generator of the firmware."""
-        raise NotImplementedError

@@ -1,0 +1,96 @@
+"""Calls in expressions of the kernel language: of other kernels, of casts, and of the few functions of Python that it knows."""
+
+from __future__ import annotations
+
+import ast
+
+from bfsim.kernel import tree
+from bfsim.kernel.expressions import Expressions
+from bfsim.kernel.types import FloatType, IntType, Number, f32, i32, promoted, sqrt
+
+
+class Scope(Expressions):
+    """What a kernel's expressions are read in, calls among them."""
+
+    __slots__ = ()
+
+    def _call(self, node: ast.Call) -> tree.Expr:
+        if not isinstance(node.func, ast.Name) or node.keywords:
+            self.source.refuse(
+                node,
+                "a kernel can only call kernels, len, min, max, abs, sqrt and casts",
+                "call by name, without keywords",
+            )
+        name = node.func.id
+        if name == self.kernel:
+            self.source.refuse(
+                node, "a kernel cannot call itself", "write a loop, or give the other kernel another name"
+            )
+        if name in self.own:
+            self.source.refuse(
+                node, f"{name} is a variable here, not a function", "give the variable another name"
+            )
+        target = self.outer.get(name)
+        if isinstance(target, (IntType, FloatType)):
+            return self._cast(node, target)
+        callee = getattr(target, "function", None)
+        if isinstance(callee, tree.Function):
+            return self._kernel_call(node, callee)
+        if target is len:
+            return self._length(node)
+        if (target is min or target is max) and len(node.args) == 2:
+            return self._arithmetic(node, name, node.args[0], node.args[1])
+        if target is abs and len(node.args) == 1:
+            return self._absolute(node)
+        if target is sqrt and len(node.args) == 1:
+            return tree.Unary("sqrt", self.number(node.args[0], f32), f32, node.lineno)
+        advice = (
+            f"give {name} two arguments"
+            if target is min or target is max
+            else f"make {name} a @kernel, or inline it"
+        )
+        self.source.refuse(node, f"a kernel cannot call {name} like this", advice)
+
+    def _absolute(self, node: ast.Call) -> tree.Expr:
+        operand = self.number(node.args[0])
+        if isinstance(operand.type, FloatType):
+            return tree.Unary("abs", operand, f32, node.lineno)
+        operand = self._as_type(node.args[0], operand, i32)
+        if isinstance(operand, tree.Const):
+            return self._literal(node, abs(int(operand.value)))
+        return tree.Unary("abs", operand, i32, node.lineno)
+
+    def _cast(self, node: ast.Call, to: Number) -> tree.Expr:
+        if len(node.args) != 1:
+            self.source.refuse(node, f"{to}(...) takes one number", f"write {to}(x)")
+        operand = self.number(node.args[0])
+        if isinstance(operand.type, FloatType) and to.bits < f32.bits:
+            self.source.refuse(node, f"an f32 cannot become {to} in one step", f"write {to}(i32(x))")
+        return tree.Cast(operand, to, promoted(to), node.lineno)
+
+    def _length(self, node: ast.Call) -> tree.Expr:
+        if len(node.args) == 1 and isinstance(node.args[0], ast.Name) and node.args[0].id in self.arrays:
+            return tree.Length(node.args[0].id, i32, node.lineno)
+        self.source.refuse(node, "len is for array parameters", "write len(array)")
+
+    def _kernel_call(self, node: ast.Call, callee: tree.Function) -> tree.Call:
+        if len(node.args) != len(callee.parameters):
+            self.source.refuse(
+                node,
+                f"{callee.name} takes {len(callee.parameters)} arguments, not {len(node.args)}",
+                "match its def",
+            )
+        arguments = tuple(
+            self._argument(each, parameter)
+            for each, parameter in zip(node.args, callee.parameters, strict=True)
+        )
+        return tree.Call(callee, arguments, callee.result, node.lineno)
+
+    def _argument(self, node: ast.expr, parameter: tree.Parameter) -> tree.Expr | str:
+        if isinstance(parameter.type, (IntType, FloatType)):
+            return self.number(node, parameter.type)
+        if isinstance(node, ast.Name) and self.arrays.get(node.id) == parameter.type:
+            return node.id
+        self.source.refuse(
+            node, f"{parameter.name} must be an array {parameter.type}", "pass such a parameter on"
+        )

@@ -1,0 +1,196 @@
+"""A core that plays generators of the firmware, its main loop and its handlers: kernels are charged, events waited for."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import Any
+
+import simpy
+
+from bfsim.chip.spec import BoardSpec
+from bfsim.errors import BfsimError, FirmwareError
+from bfsim.kernel import Kernel, Work
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.calls.calls import CallBook, DeferredWork
+from bfsim.machine.core.clock import CoreClock
+from bfsim.machine.core.interrupts import Handler, Interrupts
+from bfsim.machine.firmware_lines import line_at, line_of
+from bfsim.machine.memories import Row
+from bfsim.machine.simulation import Simulation
+from bfsim.trace import StallReason
+
+BUS_STALLS = (
+    StallReason.L2_LATENCY, StallReason.L2_PORT, StallReason.SDRAM_PAGE_HIT, StallReason.SDRAM_PAGE_MISS,
+    StallReason.SDRAM_PAGE_CONFLICT, StallReason.SDRAM_REFRESH, StallReason.EBIU_ARBITRATION, StallReason.STORE_BUFFER,
+    StallReason.CACHE_FILL, StallReason.CODE_FETCH,
+)  # fmt: skip
+"""What the bus stalls a core for, in the order of its counters (`bus.state`)."""
+
+
+class PlayingCore(CoreClock):
+    """A core's part of kernels and interrupts."""
+
+    def __init__(
+        self,
+        env: Simulation,
+        name: str,
+        board: BoardSpec,
+        *,
+        bus: Bus,
+        number: int,
+        stages: tuple[str, ...],
+        calls: CallBook,
+        interrupts: Interrupts,
+    ) -> None:
+        super().__init__(env, name, board, bus, stages)
+        self._number = number
+        self._calls = calls
+        self._interrupts = interrupts
+        self._unclaimed: Work | None = None
+        self._main: Generator[Any, Any, None] | None = None
+        self._in_handler = False
+
+    # What firmware uses
+
+    def run(self, kernel: Kernel, *arguments: Row | int) -> Work:
+        """Run a kernel on rows and ints. Yield the result: the cycles are charged then, and you get its value."""
+        if self._unclaimed is not None:
+            self._check_claimed()
+        try:
+            call = self._calls.known[kernel, kernel.arrays_of(arguments)]
+        except (LookupError, TypeError, AttributeError):  # the first time, or something is wrong
+            call = self._calls.prepare(kernel, arguments)
+        # what reaches outside L1 may meet what others do: it runs when the simulated time is there
+        work = self._unclaimed = call.run(arguments) if call.stays_in_l1 else DeferredWork(call, arguments)
+        return work
+
+    def on_interrupt(self, source: str, handler: Handler) -> None:
+        """Have `handler(core)` called at every interrupt of `source`, such as MDMA1_0, SPI_DMA or SUPPLEMENTAL_0.
+
+        A handler may be a generator function that yields kernels.
+        """
+        self._interrupts.attach(source, handler)
+
+    def request_interrupt(self, source: str) -> None:
+        """Ask this core for an interrupt, as a device does."""
+        self._interrupts.request(source)
+
+    def idle(self) -> Generator[Any, Any, None]:
+        """Wait for an interrupt, and let its handler run; one that was asked for already ends the wait at once."""
+        before, self._in_handler = self._in_handler, True
+        yield from self._sync()
+        self._in_handler = before
+        if not self._interrupts.is_waiting:
+            yield from self._blocked(iter([self._interrupts.next_request()]), "an interrupt")
+            self._wake(None)
+        if not self._in_handler:
+            yield from self._take_interrupts()
+
+    # What the board uses
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the main loop has ended."""
+        return self._main is None
+
+    def describe_wait(self) -> str:
+        """Say what the core waits for and where in the firmware."""
+        if self.is_done:
+            return f"core {self.name} has ended"
+        return f"core {self.name} waits for {self.waiting_for or 'a device'}{line_at(self._main)}"
+
+    # Inside
+
+    def _perform(self, task: Generator[Any, Any, Any]) -> Generator[Any, Any, None]:
+        """Play a generator of the firmware: charge the kernels that it yields, and wait for the events."""
+        value = None
+        while True:
+            try:
+                item = task.send(value)
+            except StopIteration:
+                break
+            except Exception as error:
+                raise self._told(error) from error
+            if item is self._unclaimed and item is not None:
+                self._unclaimed = None
+                if isinstance(item, DeferredWork):
+                    yield from self._sync()
+                    item = item.run()
+                    if item.accesses:
+                        yield from self._outside_l1(item)
+                self._cclk += item.issue_cclk + item.stall_cclk
+                self._account.issue_cclk += item.issue_cclk
+                if item.stall_cclk:
+                    stalls = self._account.stall_cclk
+                    stalls[StallReason.INTERLOCK] = stalls.get(StallReason.INTERLOCK, 0) + item.stall_cclk
+                value = item.value
+            elif isinstance(item, simpy.Event):
+                value = yield item
+            else:
+                raise FirmwareError(
+                    f"core {self.name}: firmware must yield each core.run(...) once, or `yield from` a wait, "
+                    f"not {item!r}{line_at(self._main)}"
+                )
+            if self._interrupts.are_handled and not self._in_handler:
+                yield from self._sync()
+                yield from self._take_interrupts()
+        self._check_claimed()
+
+    def _told(self, error: Exception) -> BfsimError:
+        """Return what went wrong in the firmware, with its line there."""
+        line = line_of(error)
+        if isinstance(error, BfsimError):
+            return type(error)(f"{error}{line}")
+        return FirmwareError(f"core {self.name}: firmware failed with {type(error).__name__}: {error}{line}")
+
+    def _check_claimed(self) -> None:
+        if self._unclaimed is not None:
+            raise FirmwareError(f"core {self.name}: core.run(...) must be yielded, or its cycles are lost")
+
+    def _outside_l1(self, work: Work) -> Generator[Any, Any, None]:
+        """Play the accesses of a call outside L1 from the core's clock on, and charge what they stall."""
+        begin, cclk = self.now_ticks, work.issue_cclk + work.stall_cclk
+        yield self._bus.access(self._number, begin, cclk, work.accesses)
+        for reason, stalled in zip(BUS_STALLS, self._bus.stalls_of(self._number), strict=True):
+            if stalled:
+                self.stall(reason, stalled)
+
+    def _blocked(self, wait: Any, what: str) -> Generator[Any, Any, Any]:
+        """Play `wait`, a generator of events, saying meanwhile what the core waits for; interrupts are taken as they come."""
+        if self._interrupts.are_handled and not self._in_handler:
+            wait = self._interruptible(wait)
+        return super()._blocked(wait, what)
+
+    def _interruptible(self, wait: Any) -> Generator[Any, Any, Any]:
+        owed_cclk, what = 0, self.waiting_for
+        self._in_handler = True  # the clock still stands where the wait began: nobody else may take them
+        while True:
+            try:
+                event = next(wait)
+            except StopIteration as end:
+                result = end.value
+                break
+            while not event.processed:
+                yield self._env.any_of([event, self._interrupts.next_request()])
+                if self._interrupts.is_waiting:
+                    passed_cclk = self._until(self._env.tick)
+                    self._cclk += passed_cclk
+                    owed_cclk += passed_cclk
+                    yield from self._take_interrupts()
+                    self.waiting_for = what
+        self._in_handler = False
+        self._owed_cclk = owed_cclk
+        return result
+
+    def _take_interrupts(self) -> Generator[Any, Any, None]:
+        """Run the handlers of all interrupts that wait; the way in and out is a stall."""
+        events = self._board.chip.events
+        before, self._in_handler = self._in_handler, True
+        while self._interrupts.is_waiting:
+            handler = self._interrupts.take()
+            self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk)
+            task = handler(self)
+            if isinstance(task, Generator):
+                yield from self._perform(task)
+            self.stall(StallReason.INTERRUPT, events.interrupt_exit_cclk)
+        self._in_handler = before
