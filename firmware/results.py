@@ -18,6 +18,7 @@ import numpy as np
 
 from bfsim.api import FirmwareError, i16, i32, kernel, u16, u32
 from firmware.line_store import LINE_WORDS, LINE_X0, SUBPIXELS
+from firmware.models import MODEL_NUMBER, MODEL_SHAPE, MODEL_WORDS
 from firmware.object_store import (
     NO_MODEL,
     NO_OUTLINE,
@@ -40,7 +41,7 @@ from firmware.rectangle_store import (
     RECTANGLE_RIGHT,
     RECTANGLE_WORDS,
 )
-from firmware.stages.object_tests import is_goal
+from firmware.stages.object_tests import GOAL
 
 SYNC = 0xB5F1
 RESULTS = 1
@@ -99,6 +100,15 @@ def pack_line(message: u16[:], words: i32, model: i32, side: i32, lines: i16[:],
         message[to + 1 + word] = lines[line * LINE_WORDS + LINE_X0 + word]
     message[HEADER_WORDS + 3] = message[HEADER_WORDS + 3] + 1
     return words + LINE_REPORT_WORDS
+
+
+@kernel
+def is_goal(models: i32[:], number: i32) -> i32:
+    """Return 1 if the model with a number is a goal; else 0."""
+    for at in range(0, len(models), MODEL_WORDS):
+        if models[at + MODEL_NUMBER] == number and models[at + MODEL_SHAPE] == GOAL:
+            return 1
+    return 0
 
 
 @kernel
