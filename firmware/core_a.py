@@ -8,9 +8,10 @@ from typing import Any
 from bfsim.api import Core
 from firmware.features import features
 from firmware.stages.object_detection import left_sight, object_detection
+from firmware.stages.object_history import follow_area
 from firmware.stages.stereo_edges import stereo_edges
 from firmware.stages.stereo_lines import stereo_lines
-from firmware.strategy.orders import read_mode, see_by, take_orders
+from firmware.strategy.orders import halvings_of, read_mode, see_by, take_orders
 from firmware.strategy.report import report
 
 
@@ -30,6 +31,7 @@ def core_a(core: Core) -> Generator[Any, Any, None]:
             yield from stereo_lines(core, found.frame, found.lines, mode.stereo_lines)
             yield from stereo_edges(core, found.frame, mode.stereo_edges)
         with core.stage("Object detection"):
+            yield from follow_area(core, area, halvings_of(core, frame))
             yield from object_detection(core, mode.objects)
         refused = yield from take_orders(core)  # for the next frame; core B reads them when core A is done
         yield from core.post("core A is done")

@@ -8,7 +8,8 @@ from typing import Any
 from bfsim.api import Core
 from firmware.features import features
 from firmware.stages.object_detection import left_sight, remember
-from firmware.strategy.orders import read_mode, see_by, take_orders
+from firmware.stages.object_history import follow_area
+from firmware.strategy.orders import halvings_of, read_mode, see_by, take_orders
 from firmware.strategy.report import report
 
 
@@ -20,6 +21,7 @@ def one_core(core: Core) -> Generator[Any, Any, None]:
         found = yield from features(core, frame, mode, area)
         with core.stage("Object detection"):
             yield from left_sight(core, found.frame, found.outlines, mode.objects)
+            yield from follow_area(core, area, halvings_of(core, frame))
             yield from remember(core, [core.array("left_seen")], mode.objects)
         refused = yield from take_orders(core)
         yield from report(core, frame, area, refused)

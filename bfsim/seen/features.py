@@ -82,9 +82,9 @@ class SeenCircle:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenRectangle:
-    """The borders found near a blob, as numbers of lines of the same picture by their side."""
+    """The borders found near something, as numbers of lines of the same picture by their side; the numbers of its blobs."""
 
-    blob: int
+    blobs: tuple[int, ...]
     sides: dict[str, int]
 
 

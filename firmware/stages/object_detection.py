@@ -12,7 +12,7 @@ from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel
 from firmware.fields import allowed
-from firmware.stages.object_history import age_objects, remember_objects
+from firmware.stages.object_history import AREA_WORDS, age_objects, remember_objects
 from firmware.stages.object_sight import see_objects
 from firmware.stages.object_tests import LIMIT_WORDS
 from firmware.stages.object_verification import verify_objects
@@ -104,6 +104,7 @@ def left_object_buffers() -> Sequence[Buffer]:
     return (
         Buffer("left_seen", i16, SEEN_CAPACITY * OBJECT_WORDS, "data1"),
         Buffer("objects", i16, OBJECT_CAPACITY * OBJECT_WORDS, "data1"),
+        Buffer("history_area", i32, AREA_WORDS, "data1"),
     )
 
 
@@ -157,7 +158,7 @@ def object_detection(core: Core, thresholds: ObjectThresholds) -> Generator[Any,
     pixels = thresholds.row_range, thresholds.disparity_max, thresholds.disparity_range
     verified = yield core.run(
         verify_objects,
-        *(core.array("geometry"), core.array("models"), *tables),
+        *(core.array("geometry"), *tables),
         *(SUBPIXELS * each for each in pixels),
         *(thresholds.camera_weight, thresholds.size_weight, int(thresholds.refined)),
     )

@@ -1,16 +1,26 @@
 """The object history: what was seen in the last frames, each object once (T §5.2.6).
 
 An object seen now takes the place of the one of its model that was seen nearest to it before; both are compared by their
-bearing, which is known of all. What is not seen any more stays with its age until it is too old.
+bearing, which is known of all. What is not seen any more stays with its age until it is too old, and its image moves when
+the area of interest does.
 """
 
 from __future__ import annotations
 
-from bfsim.api import i16, i32, kernel
+from collections.abc import Generator
+from typing import Any
+
+from bfsim.api import Core, i16, i32, kernel
+from firmware.areas import Area
+from firmware.stores.lines import SUBPIXELS
 from firmware.stores.objects import (
     NO_MODEL,
     OBJECT_AGE,
+    OBJECT_EXTENT,
+    OBJECT_IMAGE_X,
+    OBJECT_IMAGE_Y,
     OBJECT_MODEL,
+    OBJECT_WIDTH,
     OBJECT_WORDS,
     OBJECT_X,
     OBJECT_Y,
@@ -20,6 +30,12 @@ from firmware.stores.objects import (
 
 BEARING_BITS = 8
 NOWHERE = -1
+
+# `history_area`: what the images of the history count from.
+AREA_X = 0  # px
+AREA_Y = 1
+AREA_HALVINGS = 2  # of the pictures' size
+AREA_WORDS = 3
 
 
 @kernel
@@ -94,3 +110,36 @@ def remember_objects(objects: i16[:], seen: i16[:], apart_max: i32) -> i32:
             else:
                 copy_object(seen, number, objects, record)
     return lost
+
+
+@kernel
+def rescaled(length: i32, before: i32, now: i32) -> i32:
+    """Return a length in pictures that were halved `before` times as it is in those that are `now` times."""
+    return length << before >> now
+
+
+@kernel
+def move_images(objects: i16[:], area: i32[:], x: i32, y: i32, halvings: i32) -> None:
+    """Let the images of all objects count from another area, whose corner is (x, y), and keep that in `area`.
+
+    Nothing is done if it is the same.
+    """
+    before = area[AREA_HALVINGS]
+    if area[AREA_X] == x and area[AREA_Y] == y and before == halvings:
+        return
+    for at in range(0, len(objects), OBJECT_WORDS):
+        column = rescaled(objects[at + OBJECT_IMAGE_X] + SUBPIXELS * area[AREA_X], before, halvings)
+        row = rescaled(objects[at + OBJECT_IMAGE_Y] + SUBPIXELS * area[AREA_Y], before, halvings)
+        objects[at + OBJECT_IMAGE_X] = column - SUBPIXELS * x
+        objects[at + OBJECT_IMAGE_Y] = row - SUBPIXELS * y
+        for word in range(OBJECT_WIDTH, OBJECT_EXTENT + 1):
+            objects[at + word] = rescaled(i32(objects[at + word]), before, halvings)
+    area[AREA_X] = x
+    area[AREA_Y] = y
+    area[AREA_HALVINGS] = halvings
+
+
+def follow_area(core: Core, area: Area, halvings: int) -> Generator[Any, Any, None]:
+    """Let the images of the history count from the area that is seen now, in pictures that were halved so often."""
+    corner = area.x, area.y, halvings
+    yield core.run(move_images, core.array("objects"), core.array("history_area"), *corner)

@@ -44,9 +44,7 @@ from firmware.strategy.models import (
     MODEL_COLOURS,
     MODEL_FLOOR,
     MODEL_HEIGHT,
-    MODEL_NUMBER,
     MODEL_SHAPE,
-    MODEL_WORDS,
     Shape,
 )
 
@@ -236,15 +234,6 @@ def tests_passed(
     if passed & AREA_TEST != 0:
         return passed | rectangle_tests(rectangles, outline)
     return passed
-
-
-@kernel
-def is_goal(models: i32[:], number: i32) -> i32:
-    """Return 1 if the model with a number is a goal; else 0."""
-    for at in range(0, len(models), MODEL_WORDS):
-        if models[at + MODEL_NUMBER] == number and models[at + MODEL_SHAPE] == GOAL:
-            return 1
-    return 0
 
 
 @kernel

@@ -1,11 +1,12 @@
 """The second camera: an object that both see is more certain, and better placed (T §5.2.6).
 
-The thesis takes the mean of what the cameras measure. [ours] is `refined`: where both have found the shape, the disparity
+The thesis takes the mean of what the cameras measure. [ours] is `refined`: where both have found the circle, the disparity
 of its two images measures the depth once more. Of two depths the one counts more that is measured by more pixels: an error
 of a pixel is then a smaller part of it, so each has the weight of its pixels squared. Where they disagree, the thing has not
 the size of its model; the disparity, which knows no model, places it then, and it is less certain.
 
-A goal is placed by its feet, which the middle of its image says nothing of: it has no disparity.
+That is for balls, whose circles have a middle even where part of them is hidden. The middle of a rectangle's image is that
+of what is seen of it, which the border of one picture may cut and that of the other not: it has no disparity.
 """
 
 from __future__ import annotations
@@ -13,10 +14,10 @@ from __future__ import annotations
 from bfsim.api import i16, i32, kernel
 from firmware.geometry import GEOMETRY_BASELINE, GEOMETRY_FOCAL, MICROMETRES, depth_mm
 from firmware.stages.object_places import HALF_PIXEL
-from firmware.stages.object_tests import is_goal
 from firmware.stores.lines import SUBPIXELS
 from firmware.stores.objects import (
     BY_DISPARITY,
+    BY_SIZE,
     NO_MODEL,
     OBJECT_ACCURACY,
     OBJECT_CAMERAS,
@@ -164,20 +165,17 @@ def refine_place(geometry: i32[:], left: i16[:], one: i32, disparity: i32, dispa
 
 
 @kernel
-def has_disparity(models: i32[:], left: i16[:], one: i32, right: i16[:], other: i32) -> i32:
-    """Return 1 if the middles of both images are one point of a measured object: both have its shape, no goal's; else 0."""
-    at = one * OBJECT_WORDS
-    to = other * OBJECT_WORDS
-    shape_in_both = left[at + OBJECT_TESTS] & right[to + OBJECT_TESTS] & SIZE_TEST
-    if left[at + OBJECT_MEASURES] == 0 or shape_in_both == 0:
+def has_disparity(left: i16[:], one: i32, right: i16[:], other: i32) -> i32:
+    """Return 1 if both cameras have found the circle of a ball, so that the middles of its images are one point; else 0."""
+    shape_in_both = left[one * OBJECT_WORDS + OBJECT_TESTS] & right[other * OBJECT_WORDS + OBJECT_TESTS]
+    if shape_in_both & SIZE_TEST == 0:
         return 0
-    return 1 - is_goal(models, i32(left[at + OBJECT_MODEL]))
+    return left[one * OBJECT_WORDS + OBJECT_MEASURES] & BY_SIZE
 
 
 @kernel
 def unite(
     geometry: i32[:],
-    models: i32[:],
     left: i16[:],
     one: i32,
     right: i16[:],
@@ -194,7 +192,7 @@ def unite(
     tests = left[at + OBJECT_TESTS] | right[to + OBJECT_TESTS]
     accuracy = max(left[at + OBJECT_ACCURACY], right[to + OBJECT_ACCURACY])
     agree: i32 = 1
-    if refined != 0 and has_disparity(models, left, one, right, other) != 0:
+    if refined != 0 and has_disparity(left, one, right, other) != 0:
         disparity = left[at + OBJECT_IMAGE_X] - right[to + OBJECT_IMAGE_X]
         agree = refine_place(geometry, left, one, disparity, disparity_range)
     if agree != 0:
@@ -210,7 +208,6 @@ def unite(
 @kernel
 def verify_objects(
     geometry: i32[:],
-    models: i32[:],
     left: i16[:],
     right: i16[:],
     row_range: i32,
@@ -236,7 +233,6 @@ def verify_objects(
                 pairs = pairs + 1
                 unite(
                     geometry,
-                    models,
                     left,
                     one,
                     right,

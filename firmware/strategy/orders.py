@@ -135,9 +135,14 @@ def see_by(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, Area]:
     """Look at what of a picture the mode wants, and set the camera for the next ones; returns the area that is seen."""
     full = _full_size(core)
     area = see(core, frame, mode.camera, mode.area, full)
-    halvings = (full.width_px // frame.width).bit_length() - 1
+    halvings = halvings_of(core, frame)
     yield core.run(look_at, core.array("geometry"), *principal_shift(frame, area, halvings), halvings)
     return area
+
+
+def halvings_of(core: Core, frame: Frame) -> int:
+    """Return how often the size of a picture was halved from that of the recorded ones."""
+    return (_full_size(core).width_px // frame.width).bit_length() - 1
 
 
 def _full_size(core: Core) -> FrameSize:

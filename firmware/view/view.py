@@ -141,9 +141,10 @@ def _circles(readout: Readout) -> tuple[SeenCircle, ...]:
 
 
 def _rectangles(readout: Readout) -> tuple[SeenRectangle, ...]:
+    parents = readout.values("label_parents")[: readout.published("blobs")]
     return tuple(
         SeenRectangle(
-            blob=each[r.RECTANGLE_BLOB],
+            blobs=tuple(np.flatnonzero(parents == each[r.RECTANGLE_BLOB]).tolist()),
             sides={side: each[word] for side, word in SIDES.items() if each[word] != r.NO_LINE},
         )
         for each in _records(readout, "rectangles", r.RECTANGLE_WORDS)

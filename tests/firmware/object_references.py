@@ -379,7 +379,6 @@ def unlikeness(one: Record, other: Record, row_range: int, disparity_max: int) -
 def verified(
     left: Sequence[Record],
     right: Sequence[Record],
-    models: Sequence[Any],
     geometry: Sequence[int],
     ranges: Sequence[int],
     weights: Sequence[int],
@@ -390,7 +389,6 @@ def verified(
     `ranges`: of rows, the largest of disparities, and between disparities; `weights`: of the second camera and of the size.
     """
     baseline = (geometry[BASELINE] + 500) // 1000
-    goals = {each.number for each in models if each.shape == GOAL}
     others = [each | ({"x": each["x"] + baseline} if each["measures"] else {}) for each in right]
     result = []
     for one in left:
@@ -403,14 +401,13 @@ def verified(
             result.append(one)
             continue
         other = others[min(likes)[1]]
-        has_disparity = refined and one["model"] not in goals
-        result.append(_pair(one, other, geometry, ranges[2], weights, has_disparity))
+        result.append(_pair(one, other, geometry, ranges[2], weights, refined))
         others[min(likes)[1]] = other | {"model": 0}
     return result, others
 
 
 def _pair(
-    one: Record, other: Record, geometry: Sequence[int], off: int, weights: Sequence[int], has_disparity: bool
+    one: Record, other: Record, geometry: Sequence[int], off: int, weights: Sequence[int], refined: bool
 ) -> Record:
     both = dict(one)
     if one["measures"] and other["measures"]:
@@ -422,7 +419,7 @@ def _pair(
     tests = one["tests"] | other["tests"]
     accuracy = max(one["accuracy"], other["accuracy"])
     agree = True
-    if has_disparity and one["tests"] & other["tests"] & 16 and both["measures"]:
+    if refined and one["tests"] & other["tests"] & 16 and both["measures"] & 1:
         agree = _by_disparity(both, one["image_x"] - other["image_x"], geometry, off)
     if agree:
         return both | {"accuracy": min(accuracy + weights[0], 255), "tests": tests | 32}

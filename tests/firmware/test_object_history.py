@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from firmware.stages.object_history import age_objects, remember_objects
+from firmware.stages.object_history import AREA_WORDS, age_objects, move_images, remember_objects
 from firmware.stores.objects import NO_MODEL
 from tests.firmware import object_references as references
 from tests.firmware.object_rig import THRESHOLDS, as_dicts, object_words
@@ -86,3 +87,32 @@ objects = st.fixed_dictionaries(
 def test_as_the_reference(frames) -> None:
     """Bit for bit, frame after frame."""
     remember([], *frames)
+
+
+SEEN = {"image_x": 1600, "image_y": 800, "width": 320, "height": 160, "extent": 96}
+
+
+def moved(*areas: tuple[int, int, int]) -> dict[str, int]:
+    """The image of an object seen in the whole picture, after these corners and halvings."""
+    table, area = object_words(HERE | SEEN, {}), np.zeros(AREA_WORDS, np.int32)
+    for each in areas:
+        move_images(table, area, *each)
+        assert area.tolist() == [*each]
+    return {name: as_dicts(table)[0][name] for name in SEEN}
+
+
+def test_an_image_moves_with_the_area() -> None:
+    """By its corner, to below 0 if it lies before it; and back again."""
+    assert moved((0, 0, 0)) == SEEN
+    assert moved((20, 60, 0)) == SEEN | {"image_x": 1600 - 320, "image_y": 800 - 960}
+    assert moved((20, 60, 0), (4, 3, 0)) == SEEN | {"image_x": 1600 - 64, "image_y": 800 - 48}
+    assert moved((20, 60, 0), (0, 0, 0)) == SEEN
+
+
+def test_an_image_shrinks_with_the_pictures() -> None:
+    """All its lengths; the corner counts in the pixels of its own pictures."""
+    halved = {name: length // 2 for name, length in SEEN.items()}
+    assert moved((0, 0, 1)) == halved
+    assert moved((30, 10, 1)) == halved | {"image_x": 800 - 480, "image_y": 400 - 160}
+    assert moved((30, 10, 1), (0, 0, 0)) == SEEN
+    assert moved((8, 8, 0), (30, 10, 2))["image_x"] == 400 - 480

@@ -142,6 +142,7 @@ def readout(results: dict[str, int], mode: Mode = INDOOR_FIELD, **buffers: Any) 
         "models": models.model_words(mode.models),
         "geometry": np.array([6176, 30_470, 1920, 1820, 0, 0, 24, -8, 6176], np.int32),
         **{name: np.zeros(9, np.int16) for name in ("lines", "circles", "rectangles")},
+        "label_parents": np.zeros(9, np.uint8),
     }
     rows = {
         name: [SimpleNamespace(array=row) for row in np.atleast_2d(each)]
@@ -192,7 +193,10 @@ def test_the_geometry_is_the_one_that_the_kernels_read() -> None:
 def test_circles_are_those_of_the_store() -> None:
     """In pixels, failed ones too, and none beyond the last."""
     words = (
-        [160, 320, 88, 0, 40, 255, 128, CENTRE_PASSED | RADIUS_PASSED] + [0] * 7 + [CENTRE_PASSED] + [7] * 8
+        [160, 320, 88, 0, 40, 255, 128, CENTRE_PASSED | RADIUS_PASSED, 256]
+        + [0] * 7
+        + [CENTRE_PASSED, 0]
+        + [7] * 9
     )
     one, two = view(readout({"circles": 2}, circles=np.array(words, np.int16))).circles
     assert (one.centre_px, one.radius_px, one.edges, one.passed) == ((10, 20), 5.5, 40, True)
@@ -200,10 +204,15 @@ def test_circles_are_those_of_the_store() -> None:
 
 
 def test_rectangles_name_the_sides_that_have_a_line() -> None:
-    """Left, right, top, bottom, blob."""
-    words = np.array([3, -1, 0, 2, 5], np.int16)
-    (found,) = view(readout({"rectangles": 1}, rectangles=words)).rectangles
-    assert (found.blob, found.sides) == (5, {"left": 3, "top": 0, "bottom": 2})
+    """Left, right, top, bottom, blob; of a merged blob those that it is of, and none beyond the last."""
+    words = np.array([3, -1, 0, 2, 5, -1, -1, -1, -1, 3], np.int16)
+    parents = np.array([5, 1, 5, 3, 5, 5, 5], np.uint8)
+    counts = {"rectangles": 2, "blobs": 5}
+    blobs = np.ones(5 * 8, np.uint32)
+    buffers = {"rectangles": words, "label_parents": parents, "blob_data": blobs}
+    one, two = view(readout(counts, **buffers)).rectangles
+    assert (one.blobs, one.sides) == ((0, 2, 4), {"left": 3, "top": 0, "bottom": 2})
+    assert (two.blobs, two.sides) == ((3,), {})
 
 
 def test_what_is_in_space_is_in_millimetres() -> None:
