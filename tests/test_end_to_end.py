@@ -175,7 +175,7 @@ def test_ctrl_c_ends_with_the_report_of_the_frames_done(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "bfsim", "run", str(recording)]
     subprocess.run([*command, "--frames", "1"], check=True, capture_output=True)  # all is compiled then
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        time.sleep(4)
+        time.sleep(8)
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
     assert process.returncode == 130
