@@ -121,7 +121,8 @@ class SeenObject:
     def caption(self) -> str:
         """What is written beside it: name, distance, accuracy, and when it was seen if that was before this frame."""
         how_far = "direction only" if self.is_direction else f"{self.distance_mm:.0f} mm"
-        age = f"  {self.age_frames} frames ago" if self.age_frames else ""
+        plural = "s" if self.age_frames > 1 else ""
+        age = f"  {self.age_frames} frame{plural} ago" if self.age_frames else ""
         return f"{self.name}  {how_far}  {100 * self.accuracy:.0f} %{age}"
 
 

@@ -17,7 +17,7 @@ from firmware.object_store import (
     VERIFIED,
 )
 from firmware.stages.object_verification import verify_objects
-from tests.firmware import object_references as references
+from tests.firmware import history_references as references
 from tests.firmware.object_rig import THESIS, THRESHOLDS, as_dicts, geometry_words, object_words
 
 ROWS, FARTHEST_APART = 16 * THRESHOLDS.row_range, 16 * THRESHOLDS.disparity_max
