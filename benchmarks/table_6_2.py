@@ -126,8 +126,9 @@ def comparison(recording: Path) -> Table:
         real, synthetic = THESIS.get(round(distance), (None, None))
         plain, ours = (measured(frame, each[number]) for each in seen.values())
         is_better = ours is not None and (synthetic is None or ours[2] < synthetic[2])
+        better = ("yes" if is_better else "no") if round(distance) in THESIS else "-"
         cells = [_cell(each) for each in (real, synthetic, plain, ours)]
-        table.add_row(f"{distance:.0f}", *cells, "yes" if is_better else "no")
+        table.add_row(f"{distance:.0f}", *cells, better)
     table.caption = "; ".join(f"{name}: {_cost(each)}" for name, each in seen.items())
     return table
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from firmware.stages.object_history import AREA_WORDS, age_objects, move_images, remember_objects
 from firmware.stores.objects import NO_MODEL
-from tests.firmware import object_references as references
+from tests.firmware import history_references as references
 from tests.firmware.object_rig import THRESHOLDS, as_dicts, object_words
 
 HERE = {"model": 1, "x": 100, "y": 0, "z": 1000, "accuracy": 200}

@@ -17,7 +17,7 @@ from firmware.stores.objects import (
     SIZE_TEST,
     VERIFIED,
 )
-from tests.firmware import object_references as references
+from tests.firmware import history_references as references
 from tests.firmware.object_rig import THESIS, THRESHOLDS, as_dicts, geometry_words, object_words
 
 ROWS, FARTHEST_APART = 16 * THRESHOLDS.row_range, 16 * THRESHOLDS.disparity_max
