@@ -10,6 +10,8 @@ from bfsim.linker import LinkerScript, parse_ldf
 from bfsim.run import PLACEMENTS
 
 CODE = "INPUT_SECTIONS($OBJECTS(program))"
+BEYOND_L1 = "INPUT_SECTIONS($OBJECTS(noncache_code program))"
+CACHED_CODE_IN_SDRAM = "#if !CACHES                    // with the code cache on"
 
 
 @cache
@@ -35,13 +37,6 @@ def changed(name: str, *changes: tuple[str, str]) -> LinkerScript:
 def code_in(memory: str, name: str = "thesis.ldf") -> LinkerScript:
     """Return a shipped placement whose code is in L2 or in SDRAM."""
     away = (CODE, "")
-    if memory == "L2":
-        return changed(name, away)
-    return changed(
-        name,
-        away,
-        (
-            "noncache_code program))\n         INPUT_SECTIONS($OBJECTS(voldata constdata data1))\n         INPUT_SECTIONS($OBJECTS(L2_bsz",
-            "noncache_code))\n         INPUT_SECTIONS($OBJECTS(voldata constdata data1))\n         INPUT_SECTIONS($OBJECTS(L2_bsz",
-        ),
-    )
+    if memory == "SDRAM":
+        return changed(name, away, (BEYOND_L1, BEYOND_L1.replace(" program", "")))
+    return changed(name, away, (CACHED_CODE_IN_SDRAM, CACHED_CODE_IN_SDRAM.replace("!CACHES", "1")))
