@@ -1,0 +1,102 @@
+"""Models of objects from the strategy unit: there and back, and every way to be refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bfsim.api import FirmwareError
+from bfsim.machine.spi.protocol import MessageType
+from firmware.fields import to_words
+from firmware.strategy import order_checks as checks
+from firmware.strategy.models import MODELS, ObjectModel, Shape, check_models
+from firmware.strategy.order_checks import WHICH_BIT
+from firmware.strategy.orders import mode_in, store_order
+from firmware.strategy.payloads import models_payload, payload
+from tests.firmware.order_messages import GOOD, framed, model, refusal_of_models
+
+
+def test_models_there_and_back() -> None:
+    """Those of the indoor field, and some of them."""
+    for models in (MODELS, MODELS[:1], MODELS[2:]):
+        words = [to_words(each) for each in models]
+        assert refusal_of_models(words) == 0
+        stored = np.full(8 * 8, 77, np.int32)
+        store_order(framed(MessageType.MODELS, [word for each in words for word in each]), stored)
+        mode = mode_in(np.array(GOOD), stored)
+        assert mode.models == models
+        assert mode.blobs.colour_groups == tuple(sorted({each.colours for each in models}))
+
+
+@pytest.mark.parametrize(
+    ("records", "refusal"),
+    [
+        ([model(1), model(2)], 0),
+        ([model(1, shape=1, height_mm=50)], 0),
+        ([model(1), model(2), model(3, shape=1)], checks.BALL_SIZE | 2 << WHICH_BIT),
+        ([model(1), model(1, colours=4)], checks.SAME_NUMBER | 1 << WHICH_BIT),
+        ([model(1, colours=6), model(2, colours=6, shape=2)], 0),
+        ([model(1, colours=6), model(2, colours=2)], checks.SHARED_COLOURS | 1 << WHICH_BIT),
+        ([model(1, colours=6), model(2, colours=6)], checks.SAME_MODEL | 1 << WHICH_BIT),
+        ([model(1), model(2, aspect_min=33)], checks.ABOVE | 14 << WHICH_BIT),
+        ([model(1), model(2, width_mm=0)], checks.RANGE | 11 << WHICH_BIT),
+        ([model(1, colours=3)], checks.RANGE | 2 << WHICH_BIT),
+        ([model(1)[:7]], checks.LENGTH),
+        ([], checks.LENGTH),
+        ([model(each) for each in range(1, 9)], 0),
+        ([model(each) for each in range(1, 10)], checks.LENGTH),
+    ],
+)
+def test_models_that_contradict_themselves_are_refused(records: list[list[int]], refusal: int) -> None:
+    """Each by itself, and with those before it."""
+    assert refusal_of_models(records) == refusal
+
+
+@given(st.lists(st.builds(model, st.integers(1, 4), shape=st.integers(1, 3), colours=st.sampled_from([2, 4, 6]),
+                          height_mm=st.sampled_from([40, 50]), aspect_min=st.sampled_from([16, 33])),
+                min_size=1, max_size=4))  # fmt: skip
+def test_the_chip_refuses_the_models_that_the_host_refuses(records: list[list[int]]) -> None:
+    """The kernels and `check_models` have the same rules."""
+    try:
+        names = (
+            "number",
+            "shape",
+            "colours",
+            "width_mm",
+            "height_mm",
+            "floor_mm",
+            "aspect_min",
+            "aspect_max",
+        )
+        made = [dict(zip(names, each, strict=True)) for each in records]
+        check_models([ObjectModel(name="?", **{**each, "shape": Shape(each["shape"])}) for each in made])
+    except FirmwareError:
+        assert refusal_of_models(records) != 0
+    else:
+        assert refusal_of_models(records) == 0
+
+
+def test_models_by_name() -> None:
+    """A name alone is that model; with fields it is changed."""
+    ball = to_words(MODELS[0])
+    assert models_payload(["ball"]) == payload(ball)
+    assert models_payload([{"name": "ball", "number": 9, "shape": "marker"}]) == payload([9, 3, *ball[2:]])
+
+
+@pytest.mark.parametrize(
+    ("models", "message"),
+    [
+        ("ball", "models must be a list of them, not 'ball'"),
+        ([], "models must be a list of them"),
+        (["bal"], "models.0 must be or have the name of one of ball, blue goal, .*, not be 'bal'"),
+        ([{"name": ["ball"]}], "models.0 must be or have the name of one of ball, .*, not be {'name': "),
+        (["ball", {"number": 3}], "models.1 must be or have the name of one of ball"),
+        ([{"name": "ball", "with_mm": 3}], "models.0.with_mm must be one of number, shape"),
+    ],
+)
+def test_mistakes_in_models(models: object, message: str) -> None:
+    """The entry, the field, what it must be."""
+    with pytest.raises(FirmwareError, match=message):
+        models_payload(models)
