@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from bfsim.linker import LinkerScript, parse_ldf
-
-Parse = Callable[[str], LinkerScript]
+from tests.linker.small_ldfs import Parse
 
 
 @pytest.fixture

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
 
 from bfsim.chip.memory_map import KIB, Region
 from bfsim.errors import LinkError
-from bfsim.linker import LinkerScript, Symbol, link
-
-Parse = Callable[[str], LinkerScript]
+from bfsim.linker import Symbol, link
+from tests.linker.small_ldfs import Parse
 
 # BF533: 64 KB of code SRAM with the 16 KB that can be cache behind it, without a gap.
 SINGLE_CORE = (

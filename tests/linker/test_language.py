@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from bfsim.errors import LinkError
-from bfsim.linker import LinkerScript, Symbol, link, parse_ldf
-
-Parse = Callable[[str], LinkerScript]
+from bfsim.linker import Symbol, link, parse_ldf
+from tests.linker.small_ldfs import Parse
 
 # One processor whose output section `data` fills 16 KB of L1; {input} says from where.
 L1_ONLY = """

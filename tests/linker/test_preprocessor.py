@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -14,8 +13,7 @@ from bfsim.errors import LinkError
 from bfsim.linker import LinkerScript, parse_ldf
 from bfsim.linker.conditions import holds
 from bfsim.linker.macros import Macro
-
-Parse = Callable[[str], LinkerScript]
+from tests.linker.small_ldfs import Parse
 
 SEGMENT = "MEMORY { M { TYPE(RAM) START(0) LENGTH(SIZE) } }"
 

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.errors import LinkError
-from bfsim.linker import LinkerScript, LinkMap, Symbol, link, parse_ldf
-
-Parse = Callable[[str], LinkerScript]
+from bfsim.linker import LinkMap, Symbol, link, parse_ldf
+from tests.linker.small_ldfs import Parse
 
 L1_A = 0xFF800000
 
