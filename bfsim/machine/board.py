@@ -213,14 +213,21 @@ class Board:
         return self._outcome(capture, interrupted)
 
     def _run_until(self, event: simpy.Event) -> None:
-        """Let time pass until `event`, or until nothing can happen any more."""
+        """Let time pass until `event`, or until nothing can happen any more that lets a core go on."""
         with suppress(simpy.core.EmptySchedule):
-            while not event.processed:
+            while not event.processed and not (self._shared.turns and self._is_deadlock()):
                 self._env.step()
                 if (
                     self._seen and self._on_seen
                 ):  # here, outside of the firmware: what fails is no fault of it
                     self._on_seen(*self._seen.pop())
+
+    def _is_deadlock(self) -> bool:
+        """Whether every core has ended or waits for another one, whatever DMA and cameras go on doing."""
+        turns = self._shared.turns
+        return all(
+            core.is_done or (name in turns and not turns[name].triggered) for name, core in self.cores.items()
+        )
 
     def _check_end(self) -> None:
         """Raise an error unless both main loops have ended, with the same frames."""

@@ -219,7 +219,6 @@ def test_an_idle_core_without_interrupts_is_told() -> None:
         run(every_frame(work))
 
 
-@pytest.mark.xfail(strict=True, reason="the line told is the main loop's, though its handler waits")
 def test_a_handler_that_waits_for_ever_is_told_with_its_own_line() -> None:
     """The deadlock is in the handler, not where it came between."""
 

@@ -218,7 +218,6 @@ def test_a_stopped_stream_can_be_started_again() -> None:
     assert runs == [(False, False)] * 2
 
 
-@pytest.mark.xfail(strict=True, reason="a stream that goes on for ever hides that nobody else can")
 def test_a_deadlock_is_told_while_a_stream_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """Autobuffer without interrupts: nothing it does can wake the core."""
     steps = count()

@@ -271,13 +271,12 @@ class Core(SynchronisedCore):
 
     def play(self, main: Main) -> Generator[Any, Any, None]:
         """Run the firmware's main loop: the process of this core."""
-        self._main = task = main(self)
+        task = main(self)
         if not isinstance(task, Generator):
             raise FirmwareError(f"core {self.name}: the main loop must be a generator function, not {main!r}")
         yield from self._perform(task)
         yield from self._sync()
         self._close_frame()
-        self._main = None
 
     def _close_frame(self) -> None:
         """Turn the cycles since the last frame's end into a record, if there was a frame."""

@@ -47,7 +47,7 @@ class PlayingCore(CoreClock):
         self._calls = calls
         self._interrupts = interrupts
         self._unclaimed: Work | None = None
-        self._main: Generator[Any, Any, None] | None = None
+        self._task: Generator[Any, Any, Any] | None = None  # the main loop, or the handler that came between
         self._in_handler = False
 
     # What firmware uses
@@ -91,18 +91,19 @@ class PlayingCore(CoreClock):
     @property
     def is_done(self) -> bool:
         """Whether the main loop has ended."""
-        return self._main is None
+        return self._task is None
 
     def describe_wait(self) -> str:
         """Say what the core waits for and where in the firmware."""
         if self.is_done:
             return f"core {self.name} has ended"
-        return f"core {self.name} waits for {self.waiting_for or 'a device'}{line_at(self._main)}"
+        return f"core {self.name} waits for {self.waiting_for or 'a device'}{line_at(self._task)}"
 
     # Inside
 
     def _perform(self, task: Generator[Any, Any, Any]) -> Generator[Any, Any, None]:
         """Play a generator of the firmware: charge the kernels that it yields, and wait for the events."""
+        before, self._task = self._task, task
         value = None
         while True:
             try:
@@ -129,12 +130,13 @@ class PlayingCore(CoreClock):
             else:
                 raise FirmwareError(
                     f"core {self.name}: firmware must yield each core.run(...) once, or `yield from` a wait, "
-                    f"not {item!r}{line_at(self._main)}"
+                    f"not {item!r}{line_at(task)}"
                 )
-            if self._interrupts.are_handled and not self._in_handler:
+            if self.can_be_interrupted:
                 yield from self._sync()
                 yield from self._take_interrupts()
         self._check_claimed()
+        self._task = before
 
     def _told(self, error: Exception) -> BfsimError:
         """Return what went wrong in the firmware, with its line there."""
@@ -155,9 +157,14 @@ class PlayingCore(CoreClock):
             if stalled:
                 self.stall(reason, stalled)
 
+    @property
+    def can_be_interrupted(self) -> bool:
+        """Whether a handler would be called now."""
+        return self._interrupts.are_handled and not self._in_handler
+
     def _blocked(self, wait: Any, what: str) -> Generator[Any, Any, Any]:
         """Play `wait`, a generator of events, saying meanwhile what the core waits for; interrupts are taken as they come."""
-        if self._interrupts.are_handled and not self._in_handler:
+        if self.can_be_interrupted:
             wait = self._interruptible(wait)
         return super()._blocked(wait, what)
 

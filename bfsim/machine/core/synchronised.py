@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Generator, Mapping
 from typing import Any
 
+import simpy
+
 from bfsim.errors import FirmwareError
 from bfsim.machine.core.interrupts import Interrupts
 from bfsim.machine.core.playing import PlayingCore
@@ -23,6 +25,8 @@ class SharedObjects:
         self.semaphores: dict[str, Semaphore] = {}
         self.locks: dict[str, SpinLock] = {}
         self.interrupts: dict[str, Interrupts] = {}
+        self.turns: dict[str, simpy.Event] = {}
+        """Of each core that no device can let go on: the event at which its turn at a semaphore or lock comes."""
 
 
 class SynchronisedCore(PlayingCore):
@@ -40,7 +44,7 @@ class SynchronisedCore(PlayingCore):
         yield from self._test_and_set()
         turn = self._semaphore(name).take()
         if turn is not None:
-            yield from self._blocked(iter([turn]), f"semaphore {name!r}")
+            yield from self._take_turn(turn, f"semaphore {name!r}")
             self._wake(StallReason.SEMAPHORE)
 
     def lock(self, name: str) -> Generator[Any, Any, None]:
@@ -51,7 +55,7 @@ class SynchronisedCore(PlayingCore):
             raise FirmwareError(f"core {self.name} must not take lock {name!r} again: it holds it already")
         turn = lock.take(self.name, self._described())
         if turn is not None:
-            yield from self._blocked(iter([turn]), f"lock {name!r}, held by {lock.holder}")
+            yield from self._take_turn(turn, f"lock {name!r}, held by {lock.holder}")
             self._wake(StallReason.SEMAPHORE, self._test_and_set_cclk() + self._board.chip.events.spin_cclk)
             lock.holder = self._described()
 
@@ -65,6 +69,12 @@ class SynchronisedCore(PlayingCore):
                 f"core {self.name} must not give lock {name!r} back, which {lock.holder or 'nobody'} holds"
             )
         lock.release()
+
+    def _take_turn(self, turn: simpy.Event, what: str) -> Generator[Any, Any, None]:
+        if not self.can_be_interrupted:
+            self._shared.turns[self.name] = turn
+        yield from self._blocked(iter([turn]), what)
+        self._shared.turns.pop(self.name, None)
 
     def _described(self) -> str:
         return f"core {self.name} since cycle {self._cclk:,} ({running_line()})"
