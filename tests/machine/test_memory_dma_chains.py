@@ -114,10 +114,7 @@ rows_of = pytest.mark.parametrize(
     ("source", "target"),
     [
         ("SDRAM", "L1"), ("L1", "SDRAM"), ("SDRAM", "L2"), ("SDRAM", "SDRAM"),
-        pytest.param(
-            "L1", "L2",
-            marks=pytest.mark.xfail(strict=True, reason="between L1 and L2 all rows move, and interrupt, at the end"),
-        ),
+        ("L1", "L2"),
     ],
 )  # fmt: skip
 

@@ -9,7 +9,7 @@ from bfsim.machine.bus.pacing import aligned, arrival, lose, lot_of, next_paced,
 from bfsim.machine.bus.sdram import access, stream
 from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.traffic import count_access, count_traffic
-from bfsim.machine.bus.transfers import after_move, finish, moved
+from bfsim.machine.bus.transfers import after_move, moved, next_on_chip
 
 
 @compiled
@@ -53,18 +53,23 @@ def exchange(state: State, memory: Memory, number: int, at: int) -> int:
 
 @compiled
 def copy_on_chip(state: State, memory: Memory, number: int, at: int) -> int:
-    """End a transfer between L1 and L2: all of it moves at its end."""
+    """End a row of a transfer between L1 and L2: all of it moves at its end."""
     master = w.MASTERS_AT + number
     slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
     first, end = state[w.L2_FIRST], state[w.L2_END]
-    nbytes = state[slot + w.LEFT] << state[slot + w.ELEMENT_BITS]
+    left = state[slot + w.TO_X_LEFT]
+    nbytes = left << state[slot + w.ELEMENT_BITS]
     if first <= state[slot + w.FROM] < end:
         count_traffic(state, number, w.IN_L2, False, nbytes)
     if first <= state[slot + w.TO] < end:
         count_traffic(state, number, w.IN_L2, True, nbytes)
-    while state[slot + w.LEFT]:
-        moved(state, memory, slot, min(state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT]))
-    return finish(state, master, slot, at)
+    while left:
+        count = min(state[slot + w.FROM_X_LEFT], left)
+        moved(state, memory, slot, count)
+        left -= count
+    if state[slot + w.LEFT]:
+        next_on_chip(state, master, slot)
+    return after_move(state, master, slot, at)
 
 
 @compiled

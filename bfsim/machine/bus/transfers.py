@@ -41,13 +41,19 @@ def begin(state: State, master: int, slot: int, at: int) -> None:
         next_paced(state, master, slot)
     elif mode == w.ON_CHIP:
         state[master + w.USES_BUS] = 0
-        state[master + w.READY] = (
-            start
-            + (state[slot + w.LEFT] * state[slot + w.ELEMENT] + state[slot + w.PARTS] - 1)
-            // state[slot + w.PARTS]
-        )
+        state[slot + w.START] = start
+        next_on_chip(state, master, slot)
     else:
         state[master + w.READY] = start
+
+
+@compiled
+def next_on_chip(state: State, master: int, slot: int) -> None:
+    """Note when the next row between L1 and L2 is through."""
+    parts = (state[slot + w.MOVED] + state[slot + w.TO_X_LEFT]) * state[slot + w.ELEMENT]
+    state[master + w.READY] = (
+        state[slot + w.START] + (parts + state[slot + w.PARTS] - 1) // state[slot + w.PARTS]
+    )
 
 
 @compiled
