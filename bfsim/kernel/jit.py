@@ -94,12 +94,17 @@ def _engine() -> llvm.ExecutionEngine:
 
 def load(code: bytes, entry: str, counters: tuple[Counter, ...]) -> Compiled:
     """Add an object file to this process and return the kernel in it."""
-    engine = _engine()
-    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
-    engine.finalize_object()
+    add(code)
     return Compiled(
         ENTRY(address_of(entry)), ctypes.c_int64.from_address(address_of(cell_name(entry))), counters
     )
+
+
+def add(code: bytes) -> None:
+    """Add an object file to this process."""
+    engine = _engine()
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    engine.finalize_object()
 
 
 def address_of(name: str) -> int:

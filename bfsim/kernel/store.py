@@ -38,7 +38,7 @@ def key(function: tree.Function, profile: CompilerProfile, variant: str) -> str:
 def _source(function: tree.Function, profile: CompilerProfile) -> str:
     """Digest of what every entry about a kernel depends on."""
     digest = hashlib.sha256()
-    for part in (_tools(), repr(profile), repr(function)):
+    for part in (tools(), repr(profile), repr(function)):
         digest.update(part.encode())
         digest.update(b"\0")
     return digest.hexdigest()
@@ -50,7 +50,7 @@ def sources() -> list[Path]:
 
 
 @cache
-def _tools() -> str:
+def tools() -> str:
     """The compiler's own sources, LLVM and the host's processor."""
     digest = hashlib.sha256()
     for path in sources():
@@ -62,6 +62,13 @@ def _tools() -> str:
         llvm.llvm_version_info,
     )
     return f"{digest.hexdigest()} {host}"
+
+
+def can_keep() -> bool:
+    """Return whether the cache can be written."""
+    with suppress(OSError):
+        folder().mkdir(parents=True, exist_ok=True)
+    return os.access(folder(), os.W_OK | os.X_OK) and folder().is_dir()
 
 
 def load(name: str) -> bytes | None:
