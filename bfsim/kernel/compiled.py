@@ -94,7 +94,7 @@ def _ir(each: Entry) -> str:
     """Return a module of LLVM IR with an entry and all that it calls, of which only the entry can be called from outside."""
     numba: Any = importlib.import_module("numba")  # its own types do not know all of its options
     while _parts:
-        numba.extending.register_jitable(**OPTIONS)(_parts.pop())
+        numba.extending.register_jitable(no_cfunc_wrapper=True, **OPTIONS)(_parts.pop())
     _extend(numba)
     kinds = [_kind(numba.types, name) for name in each.arguments]
     made = numba.cfunc(_kind(numba.types, each.result)(*kinds), **OPTIONS)(each.python)
