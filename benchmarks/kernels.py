@@ -127,12 +127,13 @@ def least_ns(loops: list[Callable[[int], Any]]) -> list[float]:
 
 def measure(case: Any) -> Timing:
     """Measure one twin."""
-    from bfsim.kernel import VDSP_O2, jit
+    from bfsim.kernel import VDSP_O2, costs, jit
 
     start = time.perf_counter()
     case.kernel.compiled(VDSP_O2)
     cold = time.perf_counter() - start
     jit.compiled.cache_clear()
+    costs.counters_of.cache_clear()
     start = time.perf_counter()
     case.kernel.compiled(VDSP_O2)
     warm = time.perf_counter() - start

@@ -31,7 +31,7 @@ def explain(
     Raises ConfigError when the kernel did not run, and KernelError when the profile refuses it.
     """
     function = kernel.function
-    counters = [each for each in kernel.compiled(profile).counters if each.routine == function.symbol]
+    counters = [each for each in kernel.counters(profile) if each.routine == function.symbol]
     mine = None if records is None else _of_kernel(function, records)
     lines = {line for each in counters for line, _, _ in each.line_cclk}
     return Explanation(

@@ -62,7 +62,7 @@ def simulate(
     require_cores(loaded.firmware, spec)
     script = _read_strategy(strategy, loaded)
     placement = read_placement(ldf, spec)
-    with RecordingReader(recording or BUILT_IN_RECORDING) as reader, compiled_ahead() as wait_for_compiler:
+    with RecordingReader(recording or BUILT_IN_RECORDING) as reader, compiled_ahead() as weave:
         size = FrameSize(reader.width, reader.height)
         program = loaded.firmware.calibrated(calibration_of(reader))
         symbols = symbols_of(program, size, compiler)
@@ -77,6 +77,7 @@ def simulate(
             profile=compiler,
             script=script,
             fidelity=fidelity,
+            weave=weave,
         )
         total = min(frames or reader.frame_count, reader.frame_count)
         if not total:
@@ -94,7 +95,6 @@ def simulate(
             if on_seen:
                 on_seen(SeenFrame(index=index, times_ns=source.take_times_ns(index), cameras=cameras))
 
-        wait_for_compiler()
         outcome = machine.run(iter(source), count, show if on_seen else None)
     return _record(outcome, spec, loaded, placement, feed, fidelity, size, source, compiler, script)
 

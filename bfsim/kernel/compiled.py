@@ -1,92 +1,118 @@
 """Compiled Python: what looks at every access to a memory or at every word on a bus, through numba.
 
-The machine code is kept in the cache of bfsim, in a folder named after the sources: a change in one file never meets code
-that was compiled against another one.
+Numba makes LLVM IR of it; the machine code is made, kept and loaded as that of kernels. Its name in the cache is a digest of
+all sources that hold such parts: a change in one file never meets code that was compiled against another one. Numba takes its
+time already to be imported, so it is imported only to compile.
 """
 
 from __future__ import annotations
 
 import hashlib
 import importlib
-import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
-from bfsim.kernel import store
+import llvmlite.binding as llvm
 
-numba: Any = importlib.import_module("numba")  # its own types do not know all of its options
-_extending: Any = importlib.import_module("numba.extending")
-_caching: Any = importlib.import_module("numba.core.caching")
-_ccallback: Any = importlib.import_module("numba.core.ccallback")
+from bfsim.kernel import jit, store
+
 Function = TypeVar("Function", bound=Callable[..., Any])
-
 
 ROOMS = ("kernel", "machine")
 """Folders of bfsim with compiled parts; those of one use numbers and functions of the other."""
+OPTIONS = {"error_model": "numpy"}
 
-
-@cache
-def _folder() -> Path:
-    package = Path(__file__).parent.parent
-    digest = hashlib.sha256()
-    for path in sorted(path for room in ROOMS for path in (package / room).rglob("*.py")):
-        digest.update(path.read_bytes())
-    return store.folder() / f"compiled-{digest.hexdigest()[:24]}"
-
-
-@cache
-def _keeps() -> bool:
-    """Have numba keep what it compiles in the cache of bfsim, if that can be written, and nowhere else."""
-    try:
-        _folder().mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return False
-    numba.config.CACHE_DIR = str(_folder())
-    return os.access(_folder(), os.W_OK)
-
-
-class _Cache(_caching.FunctionCache):  # type: ignore[misc]  # see above
-    """A cache that is never in the way: what is damaged in it is compiled again, and on a full disk nothing is kept."""
-
-    @contextmanager
-    def _guard_against_spurious_io_errors(self) -> Iterator[None]:
-        try:
-            yield
-        except Exception:  # noqa: BLE001 - damaged data fail in any way
-            with suppress(OSError):
-                self.flush()
-
-
-def is_kept(name: str) -> bool:
-    """Return whether the cache has machine code of the entry `name`, "MODULE.FUNCTION"; also if there is no cache to have it."""
-    return not _keeps() or any(_folder().rglob(f"{name}-*.nbi"))
+_parts: list[Callable[..., Any]] = []
+"""What numba has still to be told of."""
 
 
 def compiled(function: Function) -> Function:
     """Let `function` be compiled as a part of those that call it. Called from Python, it is plain Python."""
-    made: Function = _extending.register_jitable(error_model="numpy")(function)
-    return made
+    _parts.append(function)
+    return function
 
 
-def entry(function: Function) -> Function:
-    """Compile `function` and all that it calls at its first call from Python, or take it from the cache."""
-    made: Any = numba.njit(no_cfunc_wrapper=True, error_model="numpy")(function)
-    if _keeps():
-        made._cache = _Cache(function)  # noqa: SLF001 - numba's own cache takes its place by an option only
-    return cast("Function", made)
+def words_at(address: Any) -> Any:
+    """Return the array at an address that an entry was given. In plain Python it is given the array itself."""
+    return address
 
 
-def callback(signature: Any, function: Callable[..., None]) -> int:
-    """Compile `function` for calls from machine code, or take it from the cache; return its host address."""
-    made = _ccallback.CFunc(function, (signature.args, signature.return_type), {}, {})
-    if _keeps():
-        made._cache = _Cache(function)  # noqa: SLF001 - as above
-    made.compile()
-    _kept.append(made)  # the code lives as long as this object
-    return int(made.address)
+@dataclass(frozen=True)
+class Entry:
+    """A function that machine code can call: as it was written, and numba's names for the types of its result and arguments."""
+
+    python: Callable[..., Any]
+    result: str
+    arguments: tuple[str, ...]
+
+    @property
+    def symbol(self) -> str:
+        """Its name in the machine code."""
+        return f"bfsim_{self.python.__name__}"
+
+    def address(self) -> int:
+        """Return the host address of its machine code, which is compiled or taken from the cache; once per process."""
+        return _loaded(self)
+
+    def is_kept(self) -> bool:
+        """Return whether the cache has its machine code."""
+        return store.load(_key(self.symbol)) is not None
+
+    def compile(self) -> bytes:
+        """Compile it, and keep it in the cache; return the object file."""
+        code = jit.host_code(_ir(self))
+        store.save(_key(self.symbol), code)
+        return code
 
 
-_kept: list[Any] = []
+def entry(result: str, *arguments: str) -> Callable[[Callable[..., Any]], Entry]:
+    """Make a function an entry; types are those of numba, pointers with a star: "int64*"."""
+    return lambda function: Entry(function, result, arguments)
+
+
+@cache
+def _loaded(each: Entry) -> int:
+    code = store.load(_key(each.symbol)) or each.compile()
+    jit.add(code)
+    return jit.address_of(each.symbol)
+
+
+@cache
+def _key(symbol: str) -> str:
+    package = Path(__file__).parent.parent
+    digest = hashlib.sha256(f"{symbol} {version('numba')} {store.tools()}".encode())
+    for path in sorted(path for room in ROOMS for path in (package / room).rglob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def _ir(each: Entry) -> str:
+    """Return a module of LLVM IR with an entry and all that it calls, of which only the entry can be called from outside."""
+    numba: Any = importlib.import_module("numba")  # its own types do not know all of its options
+    while _parts:
+        numba.extending.register_jitable(no_cfunc_wrapper=True, **OPTIONS)(_parts.pop())
+    _extend(numba)
+    kinds = [_kind(numba.types, name) for name in each.arguments]
+    made = numba.cfunc(_kind(numba.types, each.result)(*kinds), **OPTIONS)(each.python)
+    module = llvm.parse_assembly(made.inspect_llvm())
+    for function in module.functions:
+        if function.name.startswith("cfunc."):
+            function.name = each.symbol
+        elif not function.is_declaration:
+            function.linkage = "internal"  # LLVM then sees that nothing in it can fail, and leaves out what Python would do then
+    return str(module)
+
+
+@cache
+def _extend(numba: Any) -> None:
+    """Tell numba of `words_at`: nothing asks for the length, which is not known."""
+    numba.extending.overload(words_at)(lambda address: lambda address: numba.carray(address, 1))
+
+
+def _kind(types: Any, name: str) -> Any:
+    """Return numba's type of that name."""
+    return types.CPointer(_kind(types, name[:-1])) if name.endswith("*") else getattr(types, name)

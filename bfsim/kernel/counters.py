@@ -23,6 +23,9 @@ DIVISION = re.compile(r"^(  %[\w.$-]+ = )(sdiv|udiv|srem|urem)(?: exact)? (i\d+)
 ACCESS = re.compile(r"^  (?:%[\w.$-]+ = load|store) (i\d+|float)(?: [^,]+)?, ptr (%[\w.$-]+)")
 CALL = re.compile(r"\bcall [^@]*@([\w.$-]+)\(")
 FLOAT_BYTES = 4
+# [ours] In a program of so many counters, a routine of so many of them stays a routine on the host: LLVM takes twice as long
+# for what it inlines there, and the program runs no faster.
+LARGE_PROGRAM_COUNTERS, LARGE_ROUTINE_COUNTERS = 60, 6
 TABLE = "%.bf.table"
 SWITCH = re.compile(r"^  switch (i\d+) ")
 NOISE = re.compile(r" local_unnamed_addr| #\d+| !dbg !\d+")
@@ -127,7 +130,8 @@ class _Rewriter:
     def _row(self, row: str) -> Iterator[str]:
         if found := DEFINE.match(row):
             self.routine, self.at_first_block = found.group(1), True
-            yield _with_table(re.sub(r"^define ", "define internal ", row), f"@{self.routine}(")
+            head = _with_table(re.sub(r"^define ", "define internal ", row), f"@{self.routine}(")
+            yield head.replace(" {", " noinline {") if self._is_large() else head
         elif found := LABEL.match(row):
             yield row.split(";", maxsplit=1)[0]
             if self.at_first_block:
@@ -160,9 +164,17 @@ class _Rewriter:
         yield DIVISION.sub(r"\1call \3 @bfsim.\2.\3(\3 \4, \3 \5)", row)
 
     def _allocations(self) -> list[str]:
-        mine = [number for number, _ in self._mine() if number not in self.derived]
-        slots = [f"  %.bf.{number} = alloca i64" for number in mine]
-        return slots + [f"  store i64 0, ptr %.bf.{number}" for number in mine]
+        slots = [f"  %.bf.{number} = alloca i64" for number in self._counted()]
+        return slots + [f"  store i64 0, ptr %.bf.{number}" for number in self._counted()]
+
+    def _is_large(self) -> bool:
+        """Whether the routine is to stay one, wherever it is called."""
+        is_part = len(self.counters) >= LARGE_PROGRAM_COUNTERS
+        return is_part and len(self._counted()) >= LARGE_ROUTINE_COUNTERS
+
+    def _counted(self) -> list[int]:
+        """Return the counters of the routine that are not derived from others."""
+        return [number for number, _ in self._mine() if number not in self.derived]
 
     def _mine(self) -> list[tuple[int, Counter]]:
         return [(number, each) for number, each in enumerate(self.counters) if each.routine == self.routine]

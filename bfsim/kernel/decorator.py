@@ -13,11 +13,13 @@ from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
 from bfsim.kernel import sanitizer, tree
+from bfsim.kernel.costs import counters_of
 from bfsim.kernel.entry import FIRST_ARGUMENT
 from bfsim.kernel.followers import Follower
 from bfsim.kernel.jit import Compiled, compiled
 from bfsim.kernel.language import read_kernel
 from bfsim.kernel.profile import VDSP_O2, CompilerProfile
+from bfsim.kernel.schedule import Counter
 from bfsim.kernel.types import ArrayType, FloatType, IntType
 from bfsim.kernel.work import PreparedCall
 
@@ -59,14 +61,18 @@ class Kernel:
 
         Raises KernelError where the kernel has floats and the profile has no library for them.
         """
-        if profile.floats is None:
-            self._refuse_floats(profile)
+        self._refuse_floats(profile)
         return compiled(self.function, profile, followed=followed, counted=counted)
+
+    def counters(self, profile: CompilerProfile) -> tuple[Counter, ...]:
+        """Return what is counted in a run and what it costs, callees included. Raises KernelError as `compiled`."""
+        self._refuse_floats(profile)
+        return counters_of(self.function, profile)
 
     def code_bytes(self, profile: CompilerProfile) -> dict[str, int]:
         """Return the size of the kernel's code, and of each kernel that it calls, by the names in the machine code."""
         nbytes: dict[str, int] = {}
-        for each in self.compiled(profile).counters:
+        for each in self.counters(profile):
             nbytes[each.routine] = nbytes.get(each.routine, 0) + each.nbytes
         return nbytes
 
@@ -91,6 +97,8 @@ class Kernel:
         )
 
     def _refuse_floats(self, profile: CompilerProfile) -> None:
+        if profile.floats is not None:
+            return
         for each in (self.function, *self.function.callees()):
             line = each.first_float()
             if line is not None:

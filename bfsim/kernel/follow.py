@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import MutableSequence
-from functools import cache
-from typing import Any
 
 from bfsim.kernel import followers as log
-from bfsim.kernel.compiled import callback, compiled, numba
+from bfsim.kernel.compiled import compiled, entry, words_at
 
 State = MutableSequence[int]
-carray = numba.carray
 
 
 @compiled
@@ -67,22 +64,15 @@ def follow_cached(state: State, offset: int, write: bool, policy: int, stamp: in
         write_entry(state, log.FILL, offset >> bits << bits, stamp)
 
 
-def follow(at: Any, address: int, access: int, stamp: int) -> None:
+@entry("void", "int64*", "int64", "int64", "int64")
+def follow(at: State, address: int, access: int, stamp: int) -> None:
     """Follow an access of `access` bytes, WRITE more if it writes, at a host address and a cycle of the call."""
-    head = carray(at, log.LOG)
-    if not head[log.ARENA] <= address < head[log.END]:
+    state = words_at(at)
+    if not state[log.ARENA] <= address < state[log.END]:
         return
-    state = carray(at, log.LOG + head[log.ROOM])
-    write, offset = access >= log.WRITE, address - head[log.ARENA]
+    write, offset = access >= log.WRITE, address - state[log.ARENA]
     policy = policy_of(state, offset)
     if policy == log.EMPTY:
         write_entry(state, log.STORE if write else log.LOAD, offset, stamp)
     else:
         follow_cached(state, offset, write, policy, stamp)
-
-
-@cache
-def function_address() -> int:
-    """Return the host address of `follow`, compiled."""
-    word = numba.types.int64
-    return callback(numba.types.void(numba.types.CPointer(word), word, word, word), follow)

@@ -109,9 +109,9 @@ class Follower:
     def address(self) -> int:
         """Return the host address of the state, ready to be followed."""
         if not self._state[FUNCTION]:
-            from bfsim.kernel.follow import function_address  # numba is imported for it
+            from bfsim.kernel.follow import follow  # which has the numbers above from here
 
-            self._state[FUNCTION] = function_address()
+            self._state[FUNCTION] = follow.address()
         return int(self._state.ctypes.data)
 
     def take_count(self) -> int:

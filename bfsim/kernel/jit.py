@@ -1,7 +1,6 @@
-"""Kernel → machine code: optimise once for a fixed generic target, cost, count, then compile for the host.
+"""Kernel → machine code: the code that was costed, with its counters, compiled for the host.
 
-The first pass decides what the Blackfin would run and must not depend on the host; the second one may
-vectorise and unroll as it likes, because the counters are in the code by then.
+This pass may vectorise and unroll as it likes, because the counters are in the code by then.
 """
 
 from __future__ import annotations
@@ -15,21 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.kernel import store, tree
+from bfsim.kernel.costs import counters_of, optimised
 from bfsim.kernel.counters import instrument
-from bfsim.kernel.emit import emit
 from bfsim.kernel.entry import cell_name
-from bfsim.kernel.ir_text import read_module
-from bfsim.kernel.profile import GENERIC_FEATURES, GENERIC_TRIPLE, CompilerProfile
-from bfsim.kernel.schedule import Counter, cost
+from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.schedule import Counter
 
 ENTRY = ctypes.CFUNCTYPE(ctypes.c_int64)
 HOST_SPEED_LEVEL = 3
-PASSES = (
-    "sroa", "simplify_cfg", "jump_threading", "simplify_cfg", "instruction_combine", "loop_simplify", "lcssa",
-    "loop_rotate", "new_gvn", "jump_threading", "instruction_combine", "simplify_cfg", "loop_simplify", "lcssa",
-    "loop_rotate", "jump_threading", "instruction_combine", "new_gvn", "simplify_cfg", "instruction_combine",
-    "aggressive_dce", "simplify_cfg",
-)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,36 +46,16 @@ def compiled(
     `followed` kernels report every access to the memory followers; without `counted` there are no counters
     (the floor that benchmarks compare with) and every call costs 0 cycles.
     """
-    variant = f"followed={followed} counted={counted}"
-    name = store.key(function, profile, variant)
-    binary = store.load(name)
-    if binary is None:
-        binary = _compile(function, profile, _entry_name(name), followed=followed, counted=counted)
-        store.save(name, binary)
-    return load(binary.code, _entry_name(name), binary.counters)
-
-
-def optimised(function: tree.Function, profile: CompilerProfile, *, checked: bool = False) -> str:
-    """Return the optimised IR of `function` and its callees: the code that is costed and counted."""
-    machine = _generic_machine()
-    module = emit(function, checked=checked)
-    module.triple, module.data_layout = GENERIC_TRIPLE, str(machine.target_data)
-    # "no-builtins": a loop that fills or copies stays a loop, whose turns can be counted. "optforfuzzing": branches
-    # stay branches; what a compiler for the Blackfin makes of them is for the lowering to say
-    parsed = llvm.parse_assembly(str(module).replace(" noinline", ' noinline optforfuzzing "no-builtins"'))
-    if profile.optimises:
-        _simplify(parsed, machine)
-    return str(parsed)
-
-
-def _compile(
-    function: tree.Function, profile: CompilerProfile, entry: str, *, followed: bool, counted: bool
-) -> store.Binary:
-    text = optimised(function, profile)
-    counters = (
-        tuple(each for routine in read_module(text) for each in cost(routine, profile)) if counted else ()
-    )
-    return store.Binary(host_code(instrument(text, function, counters, entry, followed=followed)), counters)
+    key = store.key(function, profile, f"followed={followed} counted={counted}")
+    entry = _entry_name(key)
+    counters = counters_of(function, profile) if counted else ()
+    code = store.load(key)
+    if code is None:
+        code = host_code(
+            instrument(optimised(function, profile), function, counters, entry, followed=followed)
+        )
+        store.save(key, code)
+    return load(code, entry, counters)
 
 
 def host_code(text: str) -> bytes:
@@ -97,28 +69,14 @@ def host_code(text: str) -> bytes:
     return code
 
 
-def _simplify(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
-    """Run the passes whose like every optimising compiler has, but none that reorders sums or merges branches."""
-    passes = llvm.create_new_module_pass_manager()
-    for name in PASSES:
-        getattr(passes, f"add_{name}_pass")()
-    passes.run(module, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options()))
-
-
 def _optimise(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
     """Optimise for the host."""
     options = llvm.create_pipeline_tuning_options(speed_level=HOST_SPEED_LEVEL)
-    options.loop_vectorization = options.slp_vectorization = True
-    options.loop_unrolling = options.loop_interleaving = True
+    options.loop_vectorization = options.loop_unrolling = options.loop_interleaving = True
+    # it takes a fifth of the time to compile, most of it on counters, and kernels run no faster for it
+    options.slp_vectorization = False
     builder = llvm.create_pass_builder(machine, options)
     builder.getModulePassManager().run(module, builder)
-
-
-@cache
-def _generic_machine() -> llvm.TargetMachine:
-    llvm.initialize_all_targets()
-    llvm.initialize_all_asmprinters()
-    return llvm.Target.from_triple(GENERIC_TRIPLE).create_target_machine(features=GENERIC_FEATURES)
 
 
 @cache
@@ -137,12 +95,17 @@ def _engine() -> llvm.ExecutionEngine:
 
 def load(code: bytes, entry: str, counters: tuple[Counter, ...]) -> Compiled:
     """Add an object file to this process and return the kernel in it."""
-    engine = _engine()
-    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
-    engine.finalize_object()
+    add(code)
     return Compiled(
         ENTRY(address_of(entry)), ctypes.c_int64.from_address(address_of(cell_name(entry))), counters
     )
+
+
+def add(code: bytes) -> None:
+    """Add an object file to this process."""
+    engine = _engine()
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    engine.finalize_object()
 
 
 def address_of(name: str) -> int:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
 from bfsim.kernel import jit, tree
+from bfsim.kernel.costs import optimised
 from bfsim.kernel.counters import instrument
 from bfsim.kernel.emit import TRAP, TRAP_WORDS
 from bfsim.kernel.profile import VDSP_O2
@@ -58,6 +59,6 @@ def _report(function: tree.Function, line: int, number: int, position: int, inde
 def _checked(function: tree.Function) -> tuple[jit.Compiled, Any]:
     """Compile the checked build; return it and the words of its trap."""
     name = f"checked_{function.symbol}_{id(function):x}"
-    text = jit.optimised(function, VDSP_O2, checked=True).replace(f"@{TRAP}", f"@trap_{name}")
+    text = optimised(function, VDSP_O2, checked=True).replace(f"@{TRAP}", f"@trap_{name}")
     code = jit.load(jit.host_code(instrument(text, function, (), name, followed=False)), name, ())
     return code, (ctypes.c_int64 * TRAP_WORDS).from_address(jit.address_of(f"trap_{name}"))

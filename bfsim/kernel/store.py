@@ -1,4 +1,4 @@
-"""The cache of compiled kernels on disk: machine code and its counters, shared by every process of a user.
+"""The cache of compiled kernels on disk: machine code and counters, shared by every process of a user.
 
 An entry's name is a digest of everything it depends on, so a changed source, profile, bfsim, LLVM or host
 processor never meets a stale one. Files are written aside and renamed: two processes may start at once.
@@ -7,34 +7,20 @@ processor never meets a stale one. Files are written aside and renamed: two proc
 from __future__ import annotations
 
 import hashlib
-import json
 import os
 import tempfile
 from contextlib import suppress
-from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import llvmlite
 import llvmlite.binding as llvm
 import platformdirs
 
 from bfsim.kernel import tree
-from bfsim.kernel.isa import Op
-from bfsim.kernel.lowering.charges import Charge
 from bfsim.kernel.profile import CompilerProfile
-from bfsim.kernel.schedule import Counter
 
 CHECKSUM_BYTES = 32
-
-
-@dataclass(frozen=True, slots=True)
-class Binary:
-    """Machine code of one kernel (an object file) and the counters that its entry point fills."""
-
-    code: bytes
-    counters: tuple[Counter, ...]
 
 
 def folder() -> Path:
@@ -44,9 +30,15 @@ def folder() -> Path:
 
 
 def key(function: tree.Function, profile: CompilerProfile, variant: str) -> str:
-    """Digest of all that the binary of `function` depends on."""
+    """Digest of all that an entry about `function` depends on; `variant` says what it is."""
+    return hashlib.sha256(f"{variant}\0{_source(function, profile)}".encode()).hexdigest()
+
+
+@cache
+def _source(function: tree.Function, profile: CompilerProfile) -> str:
+    """Digest of what every entry about a kernel depends on."""
     digest = hashlib.sha256()
-    for part in (_tools(), repr(profile), variant, repr(function)):
+    for part in (tools(), repr(profile), repr(function)):
         digest.update(part.encode())
         digest.update(b"\0")
     return digest.hexdigest()
@@ -58,7 +50,7 @@ def sources() -> list[Path]:
 
 
 @cache
-def _tools() -> str:
+def tools() -> str:
     """The compiler's own sources, LLVM and the host's processor."""
     digest = hashlib.sha256()
     for path in sources():
@@ -72,7 +64,14 @@ def _tools() -> str:
     return f"{digest.hexdigest()} {host}"
 
 
-def load(name: str) -> Binary | None:
+def can_keep() -> bool:
+    """Return whether the cache can be written."""
+    with suppress(OSError):
+        folder().mkdir(parents=True, exist_ok=True)
+    return os.access(folder(), os.W_OK | os.X_OK) and folder().is_dir()
+
+
+def load(name: str) -> bytes | None:
     """Return the entry `name`, or None when there is none or it is damaged."""
     try:
         data = (folder() / name[:2] / name).read_bytes()
@@ -81,14 +80,11 @@ def load(name: str) -> Binary | None:
     checksum, body = data[:CHECKSUM_BYTES], data[CHECKSUM_BYTES:]
     if hashlib.sha256(body).digest() != checksum:
         return None
-    header, _, code = body.partition(b"\n")
-    return Binary(code, tuple(_counter(each) for each in json.loads(header)))
+    return body
 
 
-def save(name: str, binary: Binary) -> None:
-    """Keep `binary` under `name`. A cache that cannot be written is no error; the next start compiles again."""
-    header = json.dumps([asdict(each) for each in binary.counters], separators=(",", ":")).encode()
-    body = header + b"\n" + binary.code
+def save(name: str, body: bytes) -> None:
+    """Keep `body` under `name`. A cache that cannot be written is no error; the next start compiles again."""
     with suppress(OSError):
         place = folder() / name[:2]
         place.mkdir(parents=True, exist_ok=True)
@@ -100,10 +96,3 @@ def save(name: str, binary: Binary) -> None:
         except BaseException:
             Path(aside).unlink()
             raise
-
-
-def _counter(row: dict[str, Any]) -> Counter:
-    """Build a counter from its JSON."""
-    charges = tuple(Charge(**each | {"op": Op(each["op"])}) for each in row["charges"])
-    accesses = tuple((name, reads, writes) for name, reads, writes in row["accesses"])
-    return Counter(**row | {"charges": charges, "accesses": accesses})

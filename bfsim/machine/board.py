@@ -19,6 +19,7 @@ from bfsim.linker import LinkMap, Symbol
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.traffic import traffic_records
+from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches, written_through
 from bfsim.machine.calls.calls import CallBook
 from bfsim.machine.calls.conflicts import SubBanks
@@ -57,8 +58,6 @@ class Fidelity(StrEnum):
 
 
 OnSeen = Callable[[int, tuple[Seen, ...]], None]
-
-BUSES = {Fidelity.FAST: Bus, Fidelity.DETAILED: DetailedBus}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,6 +129,7 @@ class Board:
     sanitize: bool = False
     script: Script = ()
     fidelity: Fidelity = Fidelity.FAST
+    weave: Weave = compiled_weave
     cores: dict[str, Core] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -138,7 +138,11 @@ class Board:
         chip = self.spec.chip
         self._memories = Memories(self.spec, outside_nbytes=chip.ppis * pictures_nbytes + OUTSIDE_BYTES)
         self._outside = [self._memories.outside + number * pictures_nbytes for number in range(chip.ppis + 1)]
-        self._bus = BUSES[self.fidelity](self._env, self.spec, self._memories)
+        self._bus = (
+            DetailedBus(self._env, self.spec, self._memories)
+            if self.fidelity is Fidelity.DETAILED
+            else Bus(self._env, self.spec, self._memories, self.weave)
+        )
         self._calls: dict[str, CallBook] = {}
         self._frames: list[FrameRecord] = []
         self._seen: list[tuple[int, tuple[Seen, ...]]] = []

@@ -6,13 +6,15 @@ import os
 import resource
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
 
-from bfsim.kernel import VDSP_O2, Kernel, jit, store
+from bfsim.kernel import VDSP_O2, Kernel, costs, jit, store
 from tests.kernel.modules import HEADER, import_text
 from tests.kernel.running import cclk
 
@@ -22,8 +24,8 @@ import numpy as np
 from bfsim.kernel import VDSP_O2, jit
 from program import f
 compiles = []
-compile_it = jit._compile
-jit._compile = lambda *a, **k: compiles.append(1) or compile_it(*a, **k)
+compile_it = jit.host_code
+jit.host_code = lambda text: compiles.append(1) or compile_it(text)
 a = np.arange(64, dtype=np.uint8); b = a.copy()
 code = f.compiled(VDSP_O2)
 work = f.prepare(code, [a, b], code.new_totals()).run((a, b))
@@ -41,21 +43,35 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def compiles(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """List the kernels that are really compiled from now on."""
+    """List the kernels that are really compiled for the host from now on."""
+    return _noted(monkeypatch, jit, "instrument", lambda _, function, *__, **___: function.name)
+
+
+@pytest.fixture
+def costings(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """List the routines that are really costed from now on."""
+    return _noted(monkeypatch, costs, "cost", lambda routine, _: routine.symbol)
+
+
+def _noted(
+    monkeypatch: pytest.MonkeyPatch, module: ModuleType, name: str, of: Callable[..., str]
+) -> list[str]:
+    """List what a function of a module is called for from now on."""
     found: list[str] = []
-    compile_it = jit._compile
+    real = getattr(module, name)
 
-    def noted(function: jit.tree.Function, *rest: object, **options: object) -> store.Binary:
-        found.append(function.name)
-        return compile_it(function, *rest, **options)  # type: ignore[arg-type]
+    def noted(*arguments: object, **options: object) -> object:
+        found.append(of(*arguments, **options))
+        return real(*arguments, **options)
 
-    monkeypatch.setattr(jit, "_compile", noted)
+    monkeypatch.setattr(module, name, noted)
     return found
 
 
 def entries(folder: Path) -> list[Path]:
-    """Return the files of the cache."""
-    return [each for each in folder.rglob("*") if each.is_file()]
+    """Return the files of the cache: those with counters first, then those with machine code."""
+    files = [each for each in folder.rglob("*") if each.is_file()]
+    return sorted(files, key=lambda each: b"[{" not in each.read_bytes()[:40])
 
 
 def cost_of(kernel: Kernel) -> int:
@@ -87,7 +103,7 @@ def test_a_kernel_is_compiled_once(folder: Path, compiles: list[str], tmp_path: 
     assert cost_of(first) == cost_of(second)
     assert first.compiled(VDSP_O2).counters == second.compiled(VDSP_O2).counters
     assert compiles == ["f"]
-    assert len(entries(folder)) == 1
+    assert len(entries(folder)) == 2
 
 
 @pytest.mark.parametrize(("old", "new"), [("// 3", "// 5"), ("a[i]", "b[i]"), ("b: u8[:]", "b: i8[:]")])
@@ -98,11 +114,23 @@ def test_a_changed_source_is_compiled_again(
     for text in (TEXT, TEXT.replace(old, new)):
         import_text(text, tmp_path, "same").f.compiled(VDSP_O2)
     assert compiles == ["f", "f"]
-    assert len(entries(folder)) == 2
+    assert len(entries(folder)) == 2 * 2
+
+
+def test_what_is_never_run_is_never_compiled(
+    folder: Path, compiles: list[str], costings: list[str], tmp_path: Path
+) -> None:
+    """The size of a kernel is known from its costs; its machine code, in every build, is compiled when it is called."""
+    kernel: Kernel = import_text(TEXT, tmp_path, "same").f
+    assert sum(kernel.code_bytes(VDSP_O2).values()) > 0
+    assert (compiles, costings, len(entries(folder))) == ([], ["same_f"], 1)
+    for followed in (False, True):
+        assert kernel.compiled(VDSP_O2, followed=followed).counters == kernel.counters(VDSP_O2)
+    assert (compiles, costings, len(entries(folder))) == (["f", "f"], ["same_f"], 3)
 
 
 def test_a_changed_callee_profile_or_variant_is_compiled_again(
-    folder: Path, compiles: list[str], tmp_path: Path
+    folder: Path, compiles: list[str], costings: list[str], tmp_path: Path
 ) -> None:
     """What a kernel calls, the compiler profile and the kind of build belong to the entry's name."""
     for factor in (2, 3):
@@ -113,16 +141,18 @@ def test_a_changed_callee_profile_or_variant_is_compiled_again(
     module.f.compiled(VDSP_O2, counted=False)
     module.f.compiled(VDSP_O2, followed=True)
     assert compiles == ["f"] * 5
-    assert len(entries(folder)) == 5
+    assert costings == ["same_g", "same_f"] * 3
+    assert len(entries(folder)) == 5 + 3
 
 
+@pytest.mark.parametrize("which", [0, 1])
 @pytest.mark.parametrize("damage", ["cut", "emptied", "flipped", "swapped"])
-def test_a_damaged_entry_is_compiled_again(
-    damage: str, folder: Path, compiles: list[str], tmp_path: Path
+def test_a_damaged_entry_is_made_again(
+    damage: str, which: int, folder: Path, compiles: list[str], costings: list[str], tmp_path: Path
 ) -> None:
-    """An entry that was cut short or has a flipped bit is noticed, replaced, and never run."""
+    """An entry that was cut short or has a flipped bit is noticed, replaced, and never used."""
     cycles = cost_of(import_text(TEXT, tmp_path, "same").f)
-    (entry,) = entries(folder)
+    entry = entries(folder)[which]
     good = entry.read_bytes()
     flipped = bytearray(good)
     flipped[len(good) // 2] ^= 4
@@ -131,8 +161,8 @@ def test_a_damaged_entry_is_compiled_again(
     ]
     entry.write_bytes(bad)
     assert cost_of(import_text(TEXT, tmp_path, "same").f) == cycles
-    assert compiles == ["f", "f"]
-    assert entry.read_bytes() != bad
+    assert (len(costings), len(compiles)) == [(2, 1), (1, 2)][which]
+    assert entry.read_bytes() == good
 
 
 def test_a_folder_that_cannot_be_written_is_no_obstacle(
@@ -148,11 +178,10 @@ def test_a_folder_that_cannot_be_written_is_no_obstacle(
     assert entries(folder) == []
 
 
-def test_an_entry_is_text_and_machine_code(folder: Path, tmp_path: Path) -> None:
-    """An entry is a checksum, one line of JSON and an object file: nothing in it is unpickled."""
+def test_an_entry_is_text_or_machine_code(folder: Path, tmp_path: Path) -> None:
+    """An entry is a checksum and one line of JSON or an object file: nothing in it is unpickled."""
     cost_of(import_text(TEXT, tmp_path, "same").f)
-    (entry,) = entries(folder)
-    header, _, code = entry.read_bytes()[store.CHECKSUM_BYTES :].partition(b"\n")
+    header, code = (each.read_bytes()[store.CHECKSUM_BYTES :] for each in entries(folder))
     assert header.startswith(b'[{"routine":"same_f"')
     assert b"ELF" in code[:4] or code[:4] in (b"\xcf\xfa\xed\xfe", b"\x64\x86\x00\x00")
 
@@ -170,10 +199,10 @@ def test_processes_share_the_cache_and_agree_on_the_cycles(tmp_path: Path) -> No
     cycles, compiled = later.communicate()[0].split()
     assert compiled == "0"
     assert {result[0] for result in results} == {cycles}
-    assert len(entries(cache)) == 1
+    assert len(entries(cache)) == 2
 
 
-FOLLOW = "from bfsim.kernel.follow import function_address; print(function_address() > 0)"
+FOLLOW = "from bfsim.kernel.follow import follow; print(follow.address() > 0)"
 
 
 def follower_in(folder: Path, *, limit_bytes: int = resource.RLIM_INFINITY) -> None:
@@ -189,11 +218,10 @@ def follower_in(folder: Path, *, limit_bytes: int = resource.RLIM_INFINITY) -> N
 def test_a_damaged_or_full_cache_of_the_follower_is_no_obstacle(folder: Path) -> None:
     """It is compiled again, and kept if there is room."""
     follower_in(folder, limit_bytes=1024)
-    assert not list(folder.rglob("*.nbc"))
+    assert entries(folder) == []
     follower_in(folder)
-    files = list(folder.rglob("follow*.nb?"))
-    assert files
-    for each in files:
-        each.write_bytes(each.read_bytes()[:50])
+    (entry,) = entries(folder)
+    good = entry.read_bytes()
+    entry.write_bytes(good[:50])
     follower_in(folder)
-    assert all(each.stat().st_size > 50 for each in folder.rglob("follow*.nbi"))
+    assert entry.read_bytes() == good

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import sys
 from collections import Counter as Tally
+from pathlib import Path
 from types import FrameType
 from typing import Any
 
@@ -13,7 +14,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from bfsim.kernel import GCC_O0, Kernel
+from bfsim.kernel import GCC_O0, VDSP_O2, Kernel, counters
 from tests.kernel.modules import import_text
 from tests.kernel.programs import programs
 from tests.kernel.test_semantics import arrays_of
@@ -94,3 +95,38 @@ def test_a_traced_run_sees_both_sides_of_a_test() -> None:
     text = "\n@kernel\ndef program(a: u8[:], x: i32, y: u32) -> i32:\n    p = i32(0)\n    for i in range(5):\n        if i < 2:\n            p = p + i\n    return p\n"
     found = plain_lines(text, {"a": np.zeros(16, np.uint8)}, 1, 2)
     assert (found[4], found[6], found[7], found[8]) == (1, 5, 2, 1)
+
+
+CALLER = """
+@kernel
+def digits(x: i32) -> i32:
+    found = 0
+    while x > 0:
+        if x % 10 > 4:
+            found += 1
+        x = x // 10
+    return found
+
+@kernel
+def f(a: u8[:], b: u8[:]):
+    for i in range(len(a)):
+        if a[i] > 20:
+            b[i] = digits(a[i]) + digits(b[i])
+"""
+
+
+def test_a_routine_counts_alike_whether_inlined_or_called(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What the host's compiler does with a routine is not seen in its counts."""
+    a = np.arange(64, dtype=np.uint8)
+    counts = []
+    for name in ("inlined", "called"):
+        kernel = import_text(CALLER, tmp_path, name).f
+        code, arrays = kernel.compiled(VDSP_O2), [a, a[::-1].copy()]
+        totals = code.new_totals()
+        cclk = kernel.prepare(code, arrays, totals).run(arrays).issue_cclk
+        counts.append((cclk, totals.tolist(), arrays[1].tolist()))
+        monkeypatch.setattr(counters, "LARGE_PROGRAM_COUNTERS", 0)
+        monkeypatch.setattr(counters, "LARGE_ROUTINE_COUNTERS", 0)
+    assert counts[0] == counts[1]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from bfsim.kernel import VDSP_O2
+from bfsim.kernel.costs import optimised
 from bfsim.kernel.counters import instrument
 from bfsim.kernel.ir_text import Instruction, read_module
-from bfsim.kernel.jit import optimised
 from bfsim.kernel.loops import Flow
 from bfsim.kernel.lowering.places import Places
 from bfsim.kernel.lowering.walks import Walks

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from bfsim.kernel import Kernel
+from bfsim.kernel.costs import optimised
 from bfsim.kernel.ir_text import Routine, read_module
 from bfsim.kernel.isa import Op
-from bfsim.kernel.jit import optimised
 from bfsim.kernel.lowering.charges import BlockCost, Charge
 from bfsim.kernel.lowering.unoptimised import lower
 from bfsim.kernel.profile import GCC_O0

@@ -23,6 +23,7 @@ from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
 from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus, Transfer
+from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.core.playing import BUS_STALLS
 from bfsim.machine.dma.mdma import MdmaStream
@@ -197,14 +198,19 @@ class Bench:
     """The bus of a board with its memories and masters; what tests post is all that happens on it."""
 
     def __init__(
-        self, board: str | BoardSpec = "cm-bf561", *, outside_nbytes: int = 0, **changes: Any
+        self,
+        board: str | BoardSpec = "cm-bf561",
+        *,
+        outside_nbytes: int = 0,
+        weave: Weave = compiled_weave,
+        **changes: Any,
     ) -> None:
         """`changes`: fields of the board that are other than the shipped ones."""
         spec = board_named(board) if isinstance(board, str) else board
         self.spec = replace(spec, **changes)
         self.env = Simulation()
         self.memories = Memories(self.spec, outside_nbytes)
-        self.bus = Bus(self.env, self.spec, self.memories)
+        self.bus = Bus(self.env, self.spec, self.memories, weave)
         self.stream = self.new_stream()
 
     def new_stream(self, master: int = w.MDMA1_0) -> MdmaStream:

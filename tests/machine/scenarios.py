@@ -18,6 +18,7 @@ from bfsim.kernel.followers import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_B
 from bfsim.machine.bus import bursts, core_requests, dma_requests
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Pace, Plan, Transfer, Walk
+from bfsim.machine.bus.weave import Weave, compiled_weave, plain_weave
 from tests.machine.rig import Bench, Call, Play
 
 SDRAM_PLACES = (0x0000_1000, 0x0000_1F00, 0x0000_8000, 0x0080_1000, 0x0100_0700)
@@ -35,11 +36,12 @@ OF_THE_LAST_ACCESS = (w.BEGAN, w.PAGE_CLASS, w.REFRESH_WAIT)
 class Scene:
     """One scene, made by `chance`, ready to be played: who asks for what, and at which tick."""
 
-    def __init__(self, chance: Random) -> None:
+    def __init__(self, chance: Random, weave: Weave = compiled_weave) -> None:
         spec = board_named(chance.choice(["cm-bf561", "cm-bf561-ratings", "bf561-ezkit"]))
         self.bench = Bench(
             replace(spec, sdram=replace(spec.sdram, rows_refreshed=chance.choice([4096, 120_000]))),
             outside_nbytes=OUTSIDE,
+            weave=weave,
             dma_over_core=chance.choice([True, False]),
             deb_period_transfers=chance.choice([0, 0, 0, 4, 15]),
             mdma_period_transfers=chance.choice([0, 0, 0, 1, 8]),
@@ -178,5 +180,5 @@ def record_grants() -> list[tuple[int, int]]:
 
 if __name__ == "__main__":
     noted = record_grants()
-    left = Scene(Random(int(sys.argv[1]))).play()
+    left = Scene(Random(int(sys.argv[1])), plain_weave).play()
     print(json.dumps({"left": left, "grants": noted}))  # noqa: T201

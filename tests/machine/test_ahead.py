@@ -1,38 +1,120 @@
-"""The weave that is compiled beside the kernels is the one that a run calls."""
+"""What is compiled beside a run: found by the next one, never in the way of this one."""
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from random import Random
 
 import pytest
 
+from bfsim import run
+from bfsim.kernel import store
+from bfsim.kernel.compiled import Entry
 from bfsim.machine.bus import ahead
-from bfsim.machine.bus.weave import advance
+from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.run import simulate
+from tests.machine.scenarios import Scene
 
 
-def test_types_are_those_of_a_run() -> None:
-    """A run asks for no other types than those that were compiled ahead."""
-    simulate(frames=1)
-    weave: Any = advance
-    assert weave.signatures == [ahead.TYPES]
+@dataclass
+class Compiler:
+    """A process that is through when it was asked so often."""
+
+    polls: int
+
+    def poll(self) -> int | None:
+        self.polls -= 1
+        return 0 if self.polls < 0 else None
 
 
-def test_nothing_is_started_when_it_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A warm start starts no process."""
-    monkeypatch.setattr(ahead, "is_kept", lambda name: True)
+@pytest.fixture
+def cold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have nothing compiled, a place to keep it and two processors."""
+    monkeypatch.setattr(Entry, "is_kept", lambda _: False)
+    monkeypatch.setattr(store, "can_keep", lambda: True)
+    monkeypatch.setattr(ahead.os, "cpu_count", lambda: 2)
+
+
+@pytest.mark.parametrize("polls", [0, 700, 10**9])
+def test_a_run_is_the_same_whenever_the_weave_is_compiled(
+    monkeypatch: pytest.MonkeyPatch, polls: int
+) -> None:
+    """At once, in the midst of the first frame, or never."""
+    compiled = simulate(frames=1)
+
+    @contextmanager
+    def compiled_ahead() -> Iterator[Weave]:
+        yield partial(ahead._at_first_plain, Compiler(polls))  # type: ignore[arg-type]
+
+    monkeypatch.setattr(run, "compiled_ahead", compiled_ahead)
+    assert simulate(frames=1) == compiled
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_bus_is_the_same_whenever_the_weave_is_compiled(seed: int) -> None:
+    """With every kind of master, at any time."""
+    polls = Random(seed).randint(0, 12)
+    weave = partial(ahead._at_first_plain, Compiler(polls))  # type: ignore[arg-type]
+    stops = range(0, 8000, 500)
+    assert Scene(Random(seed), weave).play(stops) == Scene(Random(seed)).play(stops)
+
+
+@pytest.mark.parametrize(
+    ("kept", "can_keep", "processors"), [(True, True, 2), (False, False, 2), (False, True, 1)]
+)
+def test_nothing_is_started_for_nothing(
+    monkeypatch: pytest.MonkeyPatch, kept: bool, can_keep: bool, processors: int
+) -> None:
+    """A warm start starts no process, nor does one that could not keep what it makes, or has no processor for it."""
+    monkeypatch.setattr(Entry, "is_kept", lambda _: kept)
+    monkeypatch.setattr(store, "can_keep", lambda: can_keep)
+    monkeypatch.setattr(ahead.os, "cpu_count", lambda: processors)
     monkeypatch.setattr(ahead.subprocess, "Popen", lambda *_, **__: pytest.fail("a process was started"))
-    with ahead.compiled_ahead() as wait:
-        wait()
+    with ahead.compiled_ahead() as weave:
+        assert weave is compiled_weave
 
 
+@pytest.mark.usefixtures("cold")
 @pytest.mark.parametrize("command", ["/no/such/python", sys.executable])
 def test_a_compiler_that_fails_is_no_failure(monkeypatch: pytest.MonkeyPatch, command: str) -> None:
-    """The weave is then compiled where it is called."""
-    monkeypatch.setattr(ahead, "is_kept", lambda name: False)
-    monkeypatch.setattr(ahead.os, "cpu_count", lambda: 2)
+    """The weave is then compiled here."""
     monkeypatch.setattr(ahead.sys, "executable", command)
     monkeypatch.setattr(ahead, "__name__", "bfsim.no_such_module")
-    with ahead.compiled_ahead() as wait:
-        assert wait() in (None, 1)
+    with ahead.compiled_ahead() as weave:
+        left = Scene(Random(1), weave).play()
+    assert left == Scene(Random(1)).play()
+
+
+@pytest.mark.usefixtures("cold")
+def test_a_run_that_fails_does_not_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The other process ends with it."""
+    sleeper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+    monkeypatch.setattr(ahead.subprocess, "Popen", lambda *_, **__: sleeper)
+    with pytest.raises(KeyError), ahead.compiled_ahead():
+        raise KeyError
+    assert sleeper.returncode
+
+
+FIND = """
+import sys
+from bfsim.kernel.follow import follow
+from bfsim.machine.bus.weave import advance
+print(all(each.is_kept() and each.address() for each in (follow, advance)), "numba" in sys.modules)
+"""
+
+
+def test_what_it_makes_needs_no_compiler(tmp_path: Path) -> None:
+    """What the process leaves in the cache is all that a later one needs: numba is not even imported there."""
+    surroundings = {**os.environ, "BFSIM_CACHE_DIR": str(tmp_path)}
+    for command in (["-m", ahead.__name__], ["-c", FIND]):
+        done = subprocess.run(
+            [sys.executable, *command], env=surroundings, capture_output=True, check=True, text=True
+        )
+    assert done.stdout == "True False\n"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterable, Iterator
@@ -90,10 +89,9 @@ def test_commands_follow_each_other_on_the_bus(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", [1, 2, 3, 4])
 def test_plain_python_does_the_same_and_no_grants_overlap(seed: int) -> None:
-    """In a process without the compiler: the same ends, bytes and counters; and there every grant can be watched."""
+    """Not compiled: the same ends, bytes and counters; and there every grant can be watched."""
     done = subprocess.run(
         [sys.executable, "-W", "error", "-m", "tests.machine.scenarios", str(seed)],
-        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
         capture_output=True,
         text=True,
         check=False,

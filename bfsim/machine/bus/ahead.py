@@ -1,7 +1,7 @@
-"""A cold start on two processors: another process compiles the weave while this one compiles kernels.
+"""A cold start on two processors: another process compiles what is needed beside the kernels while this one begins to run.
 
-`python -m bfsim.machine.bus.ahead` is that process. What it makes is found in the cache; if it fails, the weave is compiled
-here, where it is first called.
+`python -m bfsim.machine.bus.ahead` is that process. What it makes is found in the cache. Until then the weave is played in
+plain Python; if the other process fails, it is compiled here.
 """
 
 from __future__ import annotations
@@ -11,37 +11,37 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
-import numpy as np
+from numpy.typing import NDArray
 
-from bfsim.kernel.compiled import is_kept, numba
-from bfsim.machine.bus.weave import advance
-
-TYPES = (numba.typeof(np.zeros(1, np.int64)), numba.typeof(np.zeros(1, np.uint32)), numba.types.int64)
-"""The state of the bus, the memory, and the tick to advance to."""
+from bfsim.kernel import store
+from bfsim.kernel.follow import follow
+from bfsim.machine.bus.weave import Weave, advance, compiled_weave, plain_weave
 
 # Its loops are short and full of branches: the highest level takes a second longer and gains nothing.
 OPTIMISATION = "1"
 
 
 @contextmanager
-def compiled_ahead() -> Iterator[Callable[[], object]]:
-    """Start to compile the weave beside what runs in the context; gives what waits for it."""
+def compiled_ahead() -> Iterator[Weave]:
+    """Start to compile beside what runs in the context; gives the weave to run with. In the end, waits for the compiler."""
     process = _start()
     if process is None:
-        yield lambda: None
+        yield compiled_weave
         return
     with process:
         try:
-            yield process.wait
+            yield partial(_at_first_plain, process)
+            process.wait()  # the next run finds it
         finally:
             process.kill()
 
 
 def _start() -> subprocess.Popen[bytes] | None:
-    """Start the other process, unless there is nothing to compile or no processor to do it on."""
-    if is_kept("weave.advance") or (os.cpu_count() or 1) < 2:
+    """Start the other process, unless there is nothing to compile, no place to keep it or no processor to do it on."""
+    if advance.is_kept() or not store.can_keep() or (os.cpu_count() or 1) < 2:
         return None
     command = [sys.executable, "-m", __name__]
     environment = {**os.environ, "NUMBA_OPT": OPTIMISATION}
@@ -52,6 +52,21 @@ def _start() -> subprocess.Popen[bytes] | None:
         return None
 
 
+def _at_first_plain(
+    compiler: subprocess.Popen[bytes], state: NDArray[Any], memory: NDArray[Any]
+) -> Callable[[int], int]:
+    """Bind `advance` as plain Python until the compiler is through, and compiled from then on."""
+    bound, is_plain = plain_weave(state, memory), True
+
+    def play(until: int) -> int:
+        nonlocal bound, is_plain
+        if is_plain and compiler.poll() is not None:
+            bound, is_plain = compiled_weave(state, memory), False
+        return bound(until)
+
+    return play
+
+
 if __name__ == "__main__":
-    compiler: Any = advance
-    compiler.compile(TYPES)
+    for each in (follow, advance):  # the follower is needed first
+        each.compile()

@@ -21,7 +21,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.sdram import new_sdram
-from bfsim.machine.bus.weave import advance
+from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
 
@@ -84,7 +84,9 @@ class Transfer:
 class Bus:
     """The SDRAM bus and the port of L2 of one board, with all who use them."""
 
-    def __init__(self, env: Simulation, board: BoardSpec, memories: Memories) -> None:
+    def __init__(
+        self, env: Simulation, board: BoardSpec, memories: Memories, weave: Weave = compiled_weave
+    ) -> None:
         self._env = env
         self._chip = board.chip
         self._clocks = board.clocks
@@ -92,6 +94,7 @@ class Bus:
         self._memory: Any = memories.arena.view(np.uint32)
         self.words: Any = self._state.data
         """The whole state, word by word."""
+        self._advance = weave(self._state, self._memory)
         self._transfers = 0
         self._waiting: dict[int, simpy.Event] = {}
         self._state[: w.SDRAM_WORDS] = new_sdram(board)
@@ -153,7 +156,7 @@ class Bus:
 
         The event of whoever waits is put on the simulation's queue at its tick.
         """
-        while (woken := advance(self._state, self._memory, tick)) != w.NONE:
+        while (woken := self._advance(tick)) != w.NONE:
             event = self._waiting.pop(woken, None)
             if event is not None:
                 self._env.trigger_at(event, self.words[w.DONE_AT])

@@ -6,7 +6,14 @@ one with the best rank. Runs of words that nobody can interrupt are done at once
 
 from __future__ import annotations
 
-from bfsim.kernel.compiled import compiled, entry
+import ctypes
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from numpy.typing import NDArray
+
+from bfsim.kernel.compiled import compiled, entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_requests import serve_core, serve_stores, start_jobs
 from bfsim.machine.bus.dma_requests import serve_dma
@@ -104,12 +111,13 @@ def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int
     return serve_dma(state, memory, number, at, until)
 
 
-@entry
-def advance(state: State, memory: Memory, until: int) -> int:
+@entry("int64", "int64*", "uint32*", "int64")
+def advance(state_at: State, memory_at: Memory, until: int) -> int:
     """Grant all requests before tick `until`, in order; return early with who is woken, at tick DONE_AT, else NONE.
 
     A transfer is woken by its number, the job of core c by NONE - 1 - c.
     """
+    state, memory = words_at(state_at), words_at(memory_at)
     accept(state)
     start_jobs(state)
     while True:
@@ -125,3 +133,21 @@ def advance(state: State, memory: Memory, until: int) -> int:
             count_direction(state, before)
         if woken != w.NONE:
             return woken
+
+
+Weave = Callable[[NDArray[Any], NDArray[Any]], Callable[[int], int]]
+"""Binds `advance` to a state and a memory: what is left to be told is the tick to advance to."""
+
+CALL = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
+
+
+def compiled_weave(state: NDArray[Any], memory: NDArray[Any]) -> Callable[[int], int]:
+    """Bind the compiled `advance`. Both arrays must live as long as it is called."""
+    return partial(
+        CALL(advance.address()), ctypes.c_void_p(state.ctypes.data), ctypes.c_void_p(memory.ctypes.data)
+    )
+
+
+def plain_weave(state: NDArray[Any], memory: NDArray[Any]) -> Callable[[int], int]:
+    """Bind `advance` as plain Python, which does the same and takes much longer."""
+    return partial(advance.python, state.data, memory.data)

@@ -13,6 +13,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import followers
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import RANKS, Bus, Pace, Plan, Transfer, Walk
+from bfsim.machine.bus.weave import plain_weave
 from bfsim.machine.detailed.arbiter import L2Port, SdramArbiter
 from bfsim.machine.detailed.core import CorePort
 from bfsim.machine.detailed.dma import DetailedPlan, DmaChannel, Errand
@@ -24,7 +25,7 @@ class DetailedBus(Bus):
     """The SDRAM bus and the port of L2 of one board, with all who use them, as processes."""
 
     def __init__(self, env: Simulation, board: BoardSpec, memories: Memories) -> None:
-        super().__init__(env, board, memories)
+        super().__init__(env, board, memories, plain_weave)
         sdram, l2 = SdramArbiter(env, board, self.words), L2Port(env, board, self.words)
         self._channels = {
             master: DmaChannel(env, board, memories, sdram, self.words, master) for master in RANKS
