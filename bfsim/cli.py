@@ -13,15 +13,15 @@ from bfsim.cli_boards import boards
 from bfsim.cli_ldf import ldf
 from bfsim.cli_record import record
 from bfsim.cli_seen import Watchers, require_view, takes_views, watching
-from bfsim.errors import BfsimError, ConfigError
+from bfsim.errors import INTERRUPTED, BfsimError, ConfigError
 from bfsim.terminal import print_report, progress_bar, replace_what_has_no_code, writing_output
 
 if TYPE_CHECKING:
     from bfsim.seen import SeenFrame
     from bfsim.trace import RunRecord
 
-LIMIT_BROKEN, MISTAKE, INTERRUPTED = 1, 2, 130
-"""Exit codes other than 0; a run that Ctrl-C cut short is never 0, for it did not do what was asked."""
+LIMIT_BROKEN, MISTAKE = 1, 2
+"""Exit codes other than 0 and INTERRUPTED."""
 
 STDOUT = Path("-")
 
