@@ -227,8 +227,10 @@ def explain(kernel: str, runs: bool, as_json: bool, **what: Any) -> None:
     from bfsim.explain import explain_named
     from bfsim.report.explain_tables import explain_json, explain_report
 
-    done = _simulate(**what) if runs or what["recording"] else None
-    explanation = explain_named(kernel, what["firmware"], what["profile"], done)
+    named = kernel, what["firmware"], what["profile"]
+    explanation = explain_named(*named)  # a slip in a name is told before the run
+    if runs or what["recording"]:
+        explanation = explain_named(*named, _simulate(**what))
     if as_json:
         click.echo(explain_json(explanation), nl=False)
     else:
