@@ -15,6 +15,9 @@ from bfsim.errors import BfsimError, FirmwareError
 from bfsim.kernel import Kernel
 from bfsim.machine.program import Firmware
 
+OWN_FOLDER = Path(__file__).parent
+"""Where the lines are that no user has written."""
+
 NEAREST_NAMES = 5
 """As many names are offered to who asked for one that there is not."""
 
@@ -107,7 +110,8 @@ def _failed(package: str, error: BaseException) -> FirmwareError:
     if isinstance(error, SyntaxError):
         place = f"{error.filename}:{error.lineno}"
     else:
-        last = traceback.extract_tb(error.__traceback__)[-1]
+        frames = traceback.extract_tb(error.__traceback__)
+        last = [each for each in frames if not Path(each.filename).is_relative_to(OWN_FOLDER)][-1]
         place = f"{last.filename}:{last.lineno}"
     message = f"importing {package} failed with {type(error).__name__}: {error} ({place})"
     return FirmwareError(f"--firmware: {message}")
