@@ -14,7 +14,13 @@ from bfsim.cli_ldf import ldf
 from bfsim.cli_record import record
 from bfsim.cli_seen import Watchers, require_view, takes_views, watching
 from bfsim.errors import INTERRUPTED, BfsimError, ConfigError
-from bfsim.terminal import print_report, progress_bar, replace_what_has_no_code, writing_output
+from bfsim.terminal import (
+    ending_deaf_kernels,
+    print_report,
+    progress_bar,
+    replace_what_has_no_code,
+    writing_output,
+)
 
 if TYPE_CHECKING:
     from bfsim.seen import SeenFrame
@@ -293,7 +299,7 @@ def _simulate(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
         for each in watchers or ():
             each(frame)
 
-    with progress_bar("Simulating frames") as progress:
+    with progress_bar("Simulating frames") as progress, ending_deaf_kernels():
         on_seen = tell if watchers else None
         done = simulate(
             feed=Feed(feed), fidelity=Fidelity(fidelity), progress=progress, on_seen=on_seen, **what
