@@ -8,12 +8,8 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from typing import TYPE_CHECKING
 
 from bfsim.errors import INTERRUPTED
-
-if TYPE_CHECKING:
-    from types import FrameType
 
 
 def main() -> None:
@@ -30,7 +26,7 @@ def main() -> None:
     command(prog_name="bfsim")
 
 
-def _leave(_signal: int, _frame: FrameType | None) -> None:
+def _leave(_signal: int, _frame: object) -> None:
     """End at once: nothing is begun yet that must be tidied up, and an import is no place to raise from."""
     sys.stderr.write("bfsim: interrupted\n")
     sys.stderr.flush()
