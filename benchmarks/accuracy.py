@@ -28,6 +28,15 @@ from bfsim.kernel.learnt import LEARNT_FROM
 
 PROFILES = {"O0": GCC_O0, "O2": GCC_O2}
 
+# The classes whose names are wider than their numbers.
+HEADS = {
+    "stores": "store",
+    "shifts": "shift",
+    "multiplies": "mul",
+    "compares": "cmp",
+    "not taken": "not\ntaken",
+}
+
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
@@ -88,26 +97,46 @@ def summary(rows: Sequence[Comparison], role: Role) -> dict[str, float]:
     }
 
 
-def table(rows: Sequence[Comparison], level: str) -> Table:
-    """Return the comparison, the reference kernels first, in each group the worst one first."""
-    result = Table(
-        title=f"gcc -{level}: predicted and measured", title_justify="left", box=None, padding=(0, 1, 0, 0)
-    )
-    result.add_column("kernel")
-    for name in ("cycles", "measured", "error %", "left out", *CLASSES):
+def sorted_rows(rows: Sequence[Comparison], role: Role) -> list[Comparison]:
+    """Return the kernels of a role, the worst one first."""
+    return sorted((row for row in rows if row.role == role), key=lambda row: -abs(row.error))
+
+
+def cycle_table(rows: Sequence[Comparison], level: str) -> Table:
+    """Return cycles and their errors, the reference kernels first."""
+    result = _new_table(f"gcc -{level}: cycles predicted and measured")
+    for name in ("cycles", "measured", "error %", "left out"):
         result.add_column(name, justify="right")
     for role in Role:
-        for each in sorted((row for row in rows if row.role == role), key=lambda row: -abs(row.error)):
-            classes = (f"{value:+.1f}" if abs(value) >= 0.05 else "·" for value in each.classes.values())
+        for each in sorted_rows(rows, role):
             errors = f"{each.error:+.1f}", f"{each.error_left_out:+.1f}"
-            result.add_row(
-                each.kernel, f"{each.predicted_cycles:,}", f"{each.measured_cycles:,}", *errors, *classes
-            )
+            result.add_row(each.kernel, f"{each.predicted_cycles:,}", f"{each.measured_cycles:,}", *errors)
         sums = summary(rows, role)
         means = f"{sums['mean']:.1f}", f"{sums['mean_left_out']:.1f}"
         result.add_row(
             f"{role.value}: mean of {sums['kernels']:.0f}", "", "", *means, style="bold", end_section=True
         )
+    return result
+
+
+def class_table(rows: Sequence[Comparison], level: str) -> Table:
+    """Return the errors of the classes of operations, in the same order; they fit 80 columns."""
+    result = _new_table(f"gcc -{level}: operations predicted minus measured, % of all measured")
+    for name in CLASSES:
+        result.add_column(HEADS.get(name, name), justify="right")
+    for role in Role:
+        for each in sorted_rows(rows, role):
+            result.add_row(
+                each.kernel,
+                *(f"{value:+.1f}" if abs(value) >= 0.05 else "·" for value in each.classes.values()),
+            )
+        result.add_section()
+    return result
+
+
+def _new_table(title: str) -> Table:
+    result = Table(title=title, title_justify="left", box=None, padding=(0, 1, 0, 0), pad_edge=False)
+    result.add_column("kernel", no_wrap=True)
     return result
 
 
@@ -134,7 +163,8 @@ def main() -> None:
         )
         return
     console = Console()
-    console.print(table(rows, options.level))
+    console.print(cycle_table(rows, options.level))
+    console.print(class_table(rows, options.level))
     for role in Role:
         sums = summary(rows, role)
         line = f"{role.value}: mean {sums['mean']:.1f} %, largest {sums['largest']:.1f} %"

@@ -1,8 +1,37 @@
-"""`python -m bfsim`: the command line without the installed script."""
+"""The door of the command line: the installed script `bfsim`, and `python -m bfsim`.
+
+Imports next to nothing, so that Ctrl-C finds somebody at home before the command line is there to hear it.
+"""
 
 from __future__ import annotations
 
-from bfsim.cli import main
+import os
+import signal
+import sys
+
+from bfsim.errors import INTERRUPTED
+
+
+def main() -> None:
+    """Call the command line."""
+    # A stream that the shell closed (`>&-`) is None; what nobody wants to read goes nowhere.
+    sys.stdout = sys.stdout or os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
+    sys.stderr = sys.stderr or os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
+    hear = signal.getsignal(signal.SIGINT)
+    if hear is signal.default_int_handler:  # otherwise Ctrl-C is ignored: in the background of a shell
+        signal.signal(signal.SIGINT, _leave)
+    from bfsim.cli import main as command
+
+    signal.signal(signal.SIGINT, hear)
+    command(prog_name="bfsim")
+
+
+def _leave(_signal: int, _frame: object) -> None:
+    """End at once: nothing is begun yet that must be tidied up, and an import is no place to raise from."""
+    sys.stderr.write("bfsim: interrupted\n")
+    sys.stderr.flush()
+    os._exit(INTERRUPTED)
+
 
 if __name__ == "__main__":
-    main(prog_name="bfsim")
+    main()

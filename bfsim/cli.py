@@ -13,15 +13,21 @@ from bfsim.cli_boards import boards
 from bfsim.cli_ldf import ldf
 from bfsim.cli_record import record
 from bfsim.cli_seen import Watchers, require_view, takes_views, watching
-from bfsim.errors import BfsimError, ConfigError
-from bfsim.terminal import print_report, progress_bar, replace_what_has_no_code, writing_output
+from bfsim.errors import INTERRUPTED, BfsimError, ConfigError
+from bfsim.terminal import (
+    ending_deaf_kernels,
+    print_report,
+    progress_bar,
+    replace_what_has_no_code,
+    writing_output,
+)
 
 if TYPE_CHECKING:
     from bfsim.seen import SeenFrame
     from bfsim.trace import RunRecord
 
-LIMIT_BROKEN, MISTAKE, INTERRUPTED = 1, 2, 130
-"""Exit codes other than 0; a run that Ctrl-C cut short is never 0, for it did not do what was asked."""
+LIMIT_BROKEN, MISTAKE = 1, 2
+"""Exit codes other than 0 and INTERRUPTED."""
 
 STDOUT = Path("-")
 
@@ -227,8 +233,10 @@ def explain(kernel: str, runs: bool, as_json: bool, **what: Any) -> None:
     from bfsim.explain import explain_named
     from bfsim.report.explain_tables import explain_json, explain_report
 
-    done = _simulate(**what) if runs or what["recording"] else None
-    explanation = explain_named(kernel, what["firmware"], what["profile"], done)
+    named = kernel, what["firmware"], what["profile"]
+    explanation = explain_named(*named)  # a slip in a name is told before the run
+    if runs or what["recording"]:
+        explanation = explain_named(*named, _simulate(**what))
     if as_json:
         click.echo(explain_json(explanation), nl=False)
     else:
@@ -291,7 +299,7 @@ def _simulate(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
         for each in watchers or ():
             each(frame)
 
-    with progress_bar("Simulating frames") as progress:
+    with progress_bar("Simulating frames") as progress, ending_deaf_kernels():
         on_seen = tell if watchers else None
         done = simulate(
             feed=Feed(feed), fidelity=Fidelity(fidelity), progress=progress, on_seen=on_seen, **what

@@ -6,6 +6,9 @@ exits with code 2. A missed deadline or a missed frame is a result and never an 
 
 from __future__ import annotations
 
+INTERRUPTED = 130
+"""Exit code of a command that Ctrl-C cut short: never 0, for it did not do what was asked."""
+
 
 class BfsimError(Exception):
     """Parent of every error that bfsim raises on purpose."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import hashlib
 import importlib
 import sys
@@ -13,6 +14,12 @@ from types import ModuleType
 from bfsim.errors import BfsimError, FirmwareError
 from bfsim.kernel import Kernel
 from bfsim.machine.program import Firmware
+
+OWN_FOLDER = Path(__file__).parent
+"""Where the lines are that no user has written."""
+
+NEAREST_NAMES = 5
+"""As many names are offered to who asked for one that there is not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,10 +61,9 @@ def load_kernel(name: str, firmware: str) -> Kernel:
         found = [each for each in kernels_of(firmware) if each.name == attribute]
     kernels = [each for each in found if isinstance(each, Kernel)]
     if len(kernels) != 1:
-        known = ", ".join(sorted({each.name for each in kernels_of(package or firmware)})) or "none"
-        raise FirmwareError(
-            f"{name} must name one kernel, but names {len(kernels) or 'none'}; there are {known}"
-        )
+        known = {each.name for each in kernels_of(package or firmware)}
+        advice = _apart(kernels) if kernels else _nearest(attribute, known)
+        raise FirmwareError(f"{name} must name one kernel, but names {len(kernels) or 'none'}; {advice}")
     return kernels[0]
 
 
@@ -66,6 +72,20 @@ def kernels_of(name: str) -> set[Kernel]:
     top = name.partition(":")[0].partition(".")[0]
     modules = [module for each, module in sys.modules.items() if each == top or each.startswith(f"{top}.")]
     return {each for module in modules for each in vars(module).values() if isinstance(each, Kernel)}
+
+
+def _apart(kernels: list[Kernel]) -> str:
+    """Say by which names kernels of one name are told apart."""
+    names = sorted(f"{each.python.__module__}:{each.name}" for each in kernels)
+    return f"write {' or '.join(names)}"
+
+
+def _nearest(name: str, known: set[str]) -> str:
+    """Say which of the known names are most like `name`."""
+    if not known:
+        return "there are none"
+    nearest = difflib.get_close_matches(name.lower(), sorted(known), n=NEAREST_NAMES, cutoff=0)
+    return f"the nearest of {len(known)} are {', '.join(nearest)}"
 
 
 def _import(package: str) -> ModuleType:
@@ -90,7 +110,8 @@ def _failed(package: str, error: BaseException) -> FirmwareError:
     if isinstance(error, SyntaxError):
         place = f"{error.filename}:{error.lineno}"
     else:
-        last = traceback.extract_tb(error.__traceback__)[-1]
+        frames = traceback.extract_tb(error.__traceback__)
+        last = [each for each in frames if not Path(each.filename).is_relative_to(OWN_FOLDER)][-1]
         place = f"{last.filename}:{last.lineno}"
     message = f"importing {package} failed with {type(error).__name__}: {error} ({place})"
     return FirmwareError(f"--firmware: {message}")

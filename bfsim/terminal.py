@@ -4,22 +4,27 @@ from __future__ import annotations
 
 import errno
 import os
+import signal
+import socket
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from io import TextIOWrapper
-from threading import Timer
+from threading import Event, Thread, Timer
+from types import FrameType
 
 from rich.console import Console, RenderableType
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from bfsim.errors import ConfigError
+from bfsim.errors import INTERRUPTED, ConfigError
 
 WIDTH_WITHOUT_TERMINAL = 100
 LEAST_WIDTH = 20
 """Narrower than this, tables have no room for their borders."""
 PATIENCE_S = 1.0
 """What is done sooner shows no bar."""
+DEAF_S = 2.0
+"""Calls of kernels take milliseconds: one that Ctrl-C has not ended by then does not end at all."""
 
 
 @contextmanager
@@ -37,6 +42,40 @@ def progress_bar(title: str) -> Iterator[Callable[[int, int | None], None]]:
         start.cancel()
         start.join()
         bar.stop()
+
+
+@contextmanager
+def ending_deaf_kernels() -> Iterator[None]:
+    """Let Ctrl-C end Python from inside a kernel that loops for ever: machine code, which hears of no exception."""
+    before = signal.getsignal(signal.SIGINT)
+    if before is not signal.default_int_handler:  # ignored, or another's: in the background, or in a debugger
+        yield
+        return
+    heard = Event()
+
+    def hear(number: int, frame: FrameType | None) -> None:
+        heard.set()
+        signal.default_int_handler(number, frame)
+
+    def watch() -> None:
+        if pressed.recv(1) and not heard.wait(DEAF_S):
+            os.write(2, b"bfsim: interrupted in a kernel that does not end\n")
+            os._exit(INTERRUPTED)
+
+    pressed, press = socket.socketpair()
+    press.settimeout(0)
+    watcher = Thread(target=watch, daemon=True)
+    watcher.start()
+    signal.signal(signal.SIGINT, hear)
+    signal.set_wakeup_fd(press.fileno())
+    try:
+        yield
+    finally:
+        signal.set_wakeup_fd(-1)
+        signal.signal(signal.SIGINT, before)
+        press.close()
+        watcher.join()
+        pressed.close()
 
 
 def print_report(report: RenderableType) -> None:

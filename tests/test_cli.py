@@ -97,6 +97,25 @@ def test_a_full_disk_behind_standard_output(command: list[str]) -> None:
     assert done.stderr == "bfsim: error: standard output must be accessible: No space left on device\n"
 
 
+def test_closed_streams() -> None:
+    """`>&- 2>&-` means that nobody wants to read; the command does its work all the same."""
+    command = 'exec "$0" -m bfsim explain isqrt32 --json >&- 2>&-'
+    assert subprocess.run(["/bin/sh", "-c", command, sys.executable], check=False).returncode == 0
+
+
+def test_ctrl_c_while_the_command_line_is_imported(tmp_path: Path) -> None:
+    """Who changes their mind at once gets no traceback, either."""
+    (tmp_path / "click.py").write_text("import signal\nsignal.raise_signal(signal.SIGINT)\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "bfsim", "boards"],
+        env={**os.environ, "PYTHONPATH": f"{tmp_path}:{Path(__file__).parent.parent}"},
+        capture_output=True,
+        check=False,
+        text=True,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "bfsim: interrupted\n")
+
+
 def test_a_terminal_with_no_room_and_few_letters() -> None:
     """Tables need some columns, and letters that the encoding lacks become question marks."""
     surroundings = {**os.environ, "COLUMNS": "1", "PYTHONIOENCODING": "ascii"}

@@ -184,6 +184,43 @@ def test_ctrl_c_ends_with_the_report_of_the_frames_done(tmp_path: Path) -> None:
     assert "Traceback" not in err
 
 
+ENDLESS = """
+from pathlib import Path
+from bfsim.api import Buffer, BudgetRow, Firmware, i32, kernel, u8
+
+@kernel
+def spin() -> i32:
+    x = 1
+    while x > 0:
+        x = 1
+    return x
+
+def main(core):
+    while (yield from core.next_frame()) is not None:
+        Path("begun").touch()
+        yield core.run(spin)
+
+def buffers(size):
+    rows = {"A": "sdram_bank0", "B": "sdram_bank1"}
+    return {core: [Buffer("camera", u8, 2 * size.width_px, bank, rows=2 * size.height_px)] for core, bank in rows.items()}
+
+fw = Firmware(mains={"A": main, "B": main}, buffers=buffers, camera="camera", rows=(BudgetRow(stage="S", thesis_ms=None),))
+"""
+
+
+def test_ctrl_c_ends_a_kernel_that_does_not_end(tmp_path: Path) -> None:
+    """Python hears nothing while the machine code of a kernel runs; the user needs no `kill`."""
+    (tmp_path / "endless.py").write_text(ENDLESS)
+    command = [sys.executable, "-m", "bfsim", "run", "--firmware", "endless:fw"]
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
+        while process.poll() is None and not (tmp_path / "begun").exists():
+            time.sleep(0.05)
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=30)
+    assert (process.returncode, err) == (130, "bfsim: interrupted in a kernel that does not end\n")
+
+
 def write_recording(path: Path, width: int = 16, height: int = 8) -> Path:
     """Write a recording of two grey stereo frames."""
     picture = np.full((height, 2 * width), 128, np.uint8)

@@ -42,7 +42,7 @@ MAY_IMPORT = {
     "cli_seen": {"errors", "recording", "report", "run", "seen"},
     "cli": {"errors", "seen", "trace", "report", "run", "explain", "terminal"}
     | {"cli_boards", "cli_ldf", "cli_record", "cli_seen"},
-    "__main__": {"cli"},
+    "__main__": {"errors", "cli"},
 }
 MACHINE = {
     "firmware_lines": set(),

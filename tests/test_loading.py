@@ -94,6 +94,10 @@ def test_a_missing_package_is_told_where_it_should_be(write: Write, tmp_path: Pa
         ("import json\n1 / 0\n", "ZeroDivisionError: division by zero"),
         ("import json\nraise SystemExit(3)\n", "SystemExit: 3"),
         ("from bfsim.api import *\nBuffer('line')\n", "TypeError: "),
+        (
+            "from bfsim.api import *\nImage = u8[:, :]\n",
+            "TypeError: an array type must be written u8[:]: one ",
+        ),
     ],
 )
 def test_an_error_while_importing_is_told_with_its_line(write: Write, text: str, message: str) -> None:

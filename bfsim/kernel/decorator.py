@@ -21,7 +21,7 @@ from bfsim.kernel.language import read_kernel
 from bfsim.kernel.profile import VDSP_O2, CompilerProfile
 from bfsim.kernel.schedule import Counter
 from bfsim.kernel.types import ArrayType, FloatType, IntType
-from bfsim.kernel.work import PreparedCall
+from bfsim.kernel.work import PreparedCall, is_single
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,12 +141,10 @@ class Kernel:
                     f"{name} must be an int in {low}..{high}, not {value!r} ({self.name}, {self.place})"
                 )
         for position in self.float_positions:
-            if isinstance(arguments[position], bool) or not isinstance(
-                arguments[position], (float, int, np.floating)
-            ):
+            if not is_single(arguments[position]):
                 name = self.function.parameters[position].name
                 raise KernelError(
-                    f"{name} must be a float, not {arguments[position]!r} ({self.name}, {self.place})"
+                    f"{name} must be a float of 32 bits, not {arguments[position]!r} ({self.name}, {self.place})"
                 )
 
     @cached_property

@@ -307,6 +307,9 @@ class Expressions:
 
     def array_of(self, node: ast.Subscript) -> tuple[str, Number]:
         """Name and element type of the array that `node` indexes."""
+        if isinstance(node.value, ast.Attribute) and node.value.attr == "shape":
+            name = ast.unparse(node.value.value)
+            self.source.refuse(node, "an array has one dimension and no shape", f"write len({name})")
         if not isinstance(node.value, ast.Name) or node.value.id not in self.arrays:
             self.source.refuse(node, "only array parameters can be indexed", "pass the array as a parameter")
         return node.value.id, self.arrays[node.value.id].element

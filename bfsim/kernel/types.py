@@ -38,7 +38,7 @@ class IntType:
 
     def __getitem__(self, item: object) -> ArrayType:
         if item != slice(None):
-            raise TypeError(f"an array type must be written {self.name}[:], not {self.name}[{item!r}]")
+            raise TypeError(f"an array type must be written {self.name}[:]: one dimension, no size")
         return ArrayType(self)
 
     def __call__(self, value: int) -> int:
@@ -68,7 +68,7 @@ class FloatType:
 
     def __getitem__(self, item: object) -> ArrayType:
         if item != slice(None):
-            raise TypeError(f"an array type must be written {self.name}[:], not {self.name}[{item!r}]")
+            raise TypeError(f"an array type must be written {self.name}[:]: one dimension, no size")
         return ArrayType(self)
 
     def __call__(self, value: float) -> float:

@@ -19,6 +19,17 @@ FLOAT, BITS = struct.Struct("<f"), struct.Struct("<I")
 ISSUE_MASK = (1 << STALL_SHIFT) - 1
 
 
+def is_single(value: object) -> bool:
+    """Whether a value is a number that an IEEE single can hold, rounded; infinities and NaN are."""
+    if isinstance(value, bool) or not isinstance(value, (float, int, np.floating)):
+        return False
+    try:
+        FLOAT.pack(value)
+    except OverflowError:
+        return False
+    return True
+
+
 class Work:
     """One kernel call, done natively: pixels are written already, time has not passed yet.
 

@@ -133,8 +133,8 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
 
     # ---- object lists
 
-    def file(self, name: Token) -> Files:
-        return frozenset({name.strip('"')})
+    def file(self, name: Token, is_taken: bool | None) -> Files:
+        return frozenset() if is_taken is False else frozenset({name.strip('"')})
 
     def members(self, _library: Token, *members: Token) -> Files:
         return frozenset(member.strip('"') for member in members)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import tempfile
 from collections.abc import Iterable
@@ -11,11 +12,13 @@ from bfsim.errors import ConfigError
 
 
 def require_place(path: Path) -> None:
-    """Raise ConfigError unless a file can be written at `path`: its folder exists, and what is there is a file."""
+    """Raise ConfigError unless a file can be written at `path`: its folder exists and is writable, and what is there is a file."""
     if not path.parent.is_dir():
         raise ConfigError(f"{path}: the folder {path.parent} must exist to write a file there")
     if path.exists() and not path.is_file():
         raise ConfigError(f"{path} must be an ordinary file to be written, not a folder or a device")
+    if not os.access(path.resolve().parent, os.W_OK):
+        raise ConfigError(f"{path}: the folder {path.parent} must be writable to write a file there")
 
 
 def require_apart(path: Path, others: Iterable[Path | None]) -> None:

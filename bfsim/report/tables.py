@@ -31,6 +31,9 @@ SHOWN_AT_EACH_END = 4
 MISSED_LISTED = 10
 """Missed frames that are listed by number."""
 
+REMARKS_LISTED = 20
+"""Different remarks that are listed."""
+
 
 def run_report(run: RunRecord) -> RenderableType:
     """Return the report of a run of at least one frame, the most wanted numbers first."""
@@ -220,14 +223,21 @@ def _results_table(run: RunRecord) -> Iterator[Table]:
 
 
 def _remarks(run: RunRecord) -> Iterator[Table]:
-    """Yield what the firmware said about single frames, if it did."""
-    table = new_table("Remarks", "Frame")
-    table.add_column("", overflow="fold")
+    """Yield what the firmware said about frames, if it did: each sentence once."""
+    frames: dict[str, list[int]] = {}
     for frame in run.frames:
         for text in frame.remarks:
-            table.add_row(str(frame.index), text)
-    if table.row_count:
-        yield table
+            frames.setdefault(text, []).append(frame.index)
+    if not frames:
+        return
+    table = new_table("Remarks", "Frame")
+    table.add_column("", overflow="fold")
+    for text, said in list(frames.items())[:REMARKS_LISTED]:
+        more = f" ({len(said):,} times, the last in frame {said[-1]})" if len(said) > 1 else ""
+        table.add_row(str(said[0]), text + more)
+    if len(frames) > REMARKS_LISTED:
+        table.add_row("", f"({len(frames) - REMARKS_LISTED:,} others; the JSON has all)")
+    yield table
 
 
 def configuration(run: RunRecord) -> Table:

@@ -145,8 +145,11 @@ def test_floats_and_integers_do_not_mix_by_themselves(line: str, what: str, tmp_
 
 
 def test_wrong_arguments_are_refused() -> None:
-    """What is no number, and arrays of doubles, are refused at the call."""
-    with pytest.raises(KernelError, match="a must be a float, not 'x'"):
+    """What is no number, or too large for one, and arrays of doubles, are refused at the call."""
+    with pytest.raises(KernelError, match="a must be a float of 32 bits, not 'x'"):
         product("x", 1.0)
+    with pytest.raises(KernelError, match=r"a must be a float of 32 bits, not 1e\+39"):
+        product(1e39, 1.0)
+    assert product(float("inf"), 1.0) == float("inf")
     with pytest.raises(KernelError, match="must be one contiguous row of float32, not float64"):
         norm(np.zeros(3))

@@ -57,6 +57,7 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("y = {x: 1}", "{x: 1}", "cannot use dictionaries"),
         ("y = [i for i in range(3)]", "[i for", "cannot use comprehensions"),
         ("y = lambda: 1", "lambda: 1", "cannot use lambda"),
+        ("y = row.shape[0]", "row.shape", "an array has one dimension and no shape; write len(row)"),
         ("y = row.size", "row.size", "cannot use attributes"),
         ("y = (z := x)", "z := x", "cannot use `:=`"),
         ("y = x is x", "x is x", "cannot use `is`; write < <= > >= == !="),

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import dataclasses
+import io
 from statistics import mean
 
 import pytest
+from rich.console import Console
 
+from benchmarks.accuracy import Comparison, class_table, cycle_table
 from benchmarks.twins.case import Case
 from benchmarks.twins.cases import CASES
-from benchmarks.twins.measured import Role, by_class, measured
+from benchmarks.twins.measured import CLASSES, Role, by_class, measured
 from benchmarks.twins.predicted import predict
 from bfsim.kernel import GCC_O0, GCC_O2
 from bfsim.kernel.learnt import LEARNT_FROM, Learnt
@@ -68,3 +72,18 @@ def test_every_fitted_rule_names_kernels_that_were_measured() -> None:
     assert set(LEARNT_FROM) == set(Learnt)
     for kernels in LEARNT_FROM.values():
         assert {MEASURED[each].role for each in kernels} <= {Role.REFERENCE, Role.FIT}
+
+
+def test_the_accuracy_is_readable_in_80_columns() -> None:
+    """The longest names and numbers that there are; nothing of them is cut."""
+    longest = max((each.name for each in CASES), key=len)
+    row = Comparison(longest, "", 1_234_567, 1_234_567, -36.84, -136.84, dict.fromkeys(CLASSES, -16.1))
+    rows = [dataclasses.replace(row, role=role.value) for role in Role]
+    console = Console(file=io.StringIO(), width=80)
+    console.print(cycle_table(rows, "O2"), class_table(rows, "O2"))
+    assert isinstance(console.file, io.StringIO)
+    printed = console.file.getvalue()
+    assert f"{longest} 1,234,567 1,234,567 -36.8 -136.8" in [
+        " ".join(line.split()) for line in printed.splitlines()
+    ]
+    assert "…" not in printed

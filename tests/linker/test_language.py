@@ -115,6 +115,9 @@ def test_deep_expressions_are_read(parse: Parse) -> None:
         ("libmath.dlb(data1)", "libmath.dlb", True),
         ('"lib/with space.dlb"(data1)', "lib/with space.dlb", True),
         ("$LIBRARIES(data1)", "firmware.doj", False),
+        ("$OBJECTS \\\n (data1)", "firmware.doj", True),
+        ('firmware.doj{prefersMem("internal")}(data1)', "firmware.doj", False),
+        ('firmware.doj {!prefersMem("external")} (data1)', "firmware.doj", True),
         ('$OBJECTS{prefersMem("internal")}(data1)', "firmware.doj", False),
         ('$OBJECTS{!prefersMem("external")}(data1)', "firmware.doj", True),
         ('$OBJECTS{(!DualCoreMem("CoreB")) && (!sharing("MustShare"))}(data1)', "firmware.doj", True),
@@ -226,6 +229,10 @@ def test_a_mistake_inside_a_macro_is_shown_where_the_macro_is_used(parse: Parse)
         (
             "PROCESSOR p0 { SECTIONS { OVERLAY_INPUT { OVERLAY_OUTPUT(a.ovl) } > M } }",
             r"test\.ldf:1:27: LDF must do without OVERLAY_INPUT: overlays",
+        ),
+        (
+            "PROCESSOR p0 { SECTIONS { OVERLAY_INPUT { INPUT_SECTIONS(a.doj(s)) ALGORITHM(ALL_FIT) SIZE(4) } } }",
+            r"LDF must do without OVERLAY_INPUT: overlays",
         ),
         ("PROCESSOR p0 { PLIT { } }", r"LDF must do without PLIT: it belongs to overlays"),
         ("PROCESSOR p0 { SECTIONS { a { PACKING(6 B1 B2) } } }", r"LDF must do without PACKING: a Blackfin"),

@@ -75,6 +75,12 @@ def float_result(core: Core, frame: Frame) -> Play:
     yield core.run(spin, 1)
 
 
+def end_of_all(core: Core, frame: Frame) -> Play:
+    """End Python, which would pass for success."""
+    yield core.run(spin, 1)
+    raise SystemExit(0)
+
+
 def no_kernel(core: Core, frame: Frame) -> Play:
     """Forget the decorator."""
     yield core.run(division, frame)  # type: ignore[arg-type]
@@ -97,6 +103,7 @@ def no_kernel(core: Core, frame: Frame) -> Play:
         (unknown_stage, FirmwareError, "stage must be one of Work, More work, not 'Wrok'", 2),
         (gone_line, FirmwareError, "line 0 is not in ring in_ring", 3),
         (division, FirmwareError, "core A: firmware failed with ZeroDivisionError: integer division", 2),
+        (end_of_all, FirmwareError, "core A: firmware failed with SystemExit: 0", 3),
         (float_result, FirmwareError, "core A: firmware failed with TypeError: 'float' object cannot be", 2),
     ],
 )
@@ -134,6 +141,17 @@ def test_next_frame_in_a_stage_is_refused() -> None:
             yield from see_all(core)
 
     with pytest.raises(FirmwareError, match="next_frame must be called outside of stages, not in 'Work'"):
+        run(main)
+
+
+def test_who_asks_for_frames_for_ever_is_told() -> None:
+    """No time passes after the last one, so the loop would never end."""
+
+    def main(core: Core) -> Play:
+        while True:
+            yield from core.next_frame()
+
+    with pytest.raises(FirmwareError, match="next_frame must not be called again after None, for the reco"):
         run(main)
 
 

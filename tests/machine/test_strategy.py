@@ -107,7 +107,8 @@ def test_a_script_is_read(tmp_path: Path, name: str) -> None:
         ("after_frames = 3", "", "the key send.0.after_frames must be there"),
         ('"MODE"', '"RESULTS"', "send.0.type must be 'MODE' or 'MODELS', not 'RESULTS'"),
         ("-28", "65536", "send.0.words.1 must be less than or equal to 65535, not 65536"),
-        ("words = []", "word = []", "the key send.1.words must be there"),
+        ("words = []", "word = []", "send.1 must have one of words, bytes, not none of them"),
+        ('type = "MODE"', "", "the key send.0.type must be there"),
         ("words = []", "words = []\noctets = 3", "send.1.octets must be a key of a script, and is none"),
         ("[[send]]", "[[sent]]", "the key send must be there"),
         ("[[send]]", "[[send", "must be TOML: "),
@@ -160,7 +161,7 @@ def test_orders_by_name_and_bytes_as_they_are(tmp_path: Path) -> None:
         (
             "mode.speed = 7",
             "mode.speed = 7\nwords = []",
-            "send.0.words must be a key of a script, and is none",
+            "send.0 must have one of mode, words, bytes, not words and mode",
         ),
         ("after_frames = 1", "", "the key send.0.after_frames must be there"),
         ("[241, 0]", "[241, 256]", "send.1.bytes.1 must be less than or equal to 255, not 256"),

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from bfsim.errors import ConfigError
-from bfsim.report.save import write_text
+from bfsim.report.save import require_place, write_text
 
 
 def test_file_is_replaced_and_nothing_is_left_beside_it(tmp_path: Path) -> None:
@@ -35,6 +35,15 @@ def test_missing_folder_is_refused(tmp_path: Path) -> None:
     """Folders are not made up on the way."""
     with pytest.raises(ConfigError, match=r"the folder .*reports must exist"):
         write_text(tmp_path / "reports" / "run.json", "new")
+
+
+def test_a_folder_that_cannot_be_written_is_told_before_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The tests may run as root, who can write everywhere; so the system's answer is made up."""
+    monkeypatch.setattr("bfsim.report.save.os.access", lambda path, mode: False)
+    with pytest.raises(ConfigError, match=r"the folder .* must be writable to write a file there"):
+        require_place(tmp_path / "run.json")
 
 
 def test_folder_and_device_are_refused(tmp_path: Path) -> None:

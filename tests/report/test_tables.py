@@ -167,6 +167,21 @@ def test_profile_shows_memories() -> None:
     assert "SDRAM MDMA1 2.0 kB 1.0 kB 90 4 6 25.0" in map(squeezed, printed(profile_report(run)))
 
 
+def test_remarks_are_summed_up() -> None:
+    """What is said a thousand times is said once, and of a thousand different things some."""
+    run = edge_run(100, 100)
+    first, second = run.frames
+    often = replace(first, remarks=("again",) * 999), replace(second, remarks=("again", "other"))
+    lines = [*map(squeezed, printed(run_report(replace(run, frames=often))))]
+    assert "0 again (1,000 times, the last in frame 1)" in lines
+    assert "1 other" in lines
+    many = replace(first, remarks=tuple(f"no. {number}" for number in range(1_000)))
+    lines = [*map(squeezed, printed(run_report(replace(run, frames=(many, second)))))]
+    assert len([line for line in lines if "no. " in line]) == 20
+    assert "(980 others; the JSON has all)" in lines
+    assert "Remarks" not in printed(run_report(run))
+
+
 def test_check_report_lists_broken_limits_and_gains(tmp_path: Path) -> None:
     """Limit, measured, by how much; what became better stands apart."""
     path = tmp_path / "bfsim.toml"

@@ -105,6 +105,7 @@ class Core(SynchronisedCore):
         self._spi = spi
         self._shared = shared
         self._frame: Frame | None = None
+        self._is_over = False
         self._full_at_cclk = 0
         self._results: dict[str, int] = {}
         self._remarks: list[str] = []
@@ -174,12 +175,15 @@ class Core(SynchronisedCore):
         """Finish the current frame and wait for the next picture; None when the recording is over."""
         if self._calls.stage != REST:
             raise FirmwareError(f"next_frame must be called outside of stages, not in {self._calls.stage!r}")
+        if self._is_over:
+            raise FirmwareError("next_frame must not be called again after None, for the recording is over")
         self._check_claimed()
         yield from self._sync()
         self._close_frame()
         pair = yield from self._blocked(self._capture.claim(self.name), "the next picture")
         self._wake(None)
         if pair is None:
+            self._is_over = True
             return None
         events = self._board.chip.events  # the interrupt of the PPI's DMA ends the wait
         self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk + events.interrupt_exit_cclk)

@@ -110,7 +110,7 @@ class PlayingCore(CoreClock):
                 item = task.send(value)
             except StopIteration:
                 break
-            except Exception as error:
+            except (Exception, SystemExit) as error:
                 raise self._told(error) from error
             if item is self._unclaimed and item is not None:
                 self._unclaimed = None
@@ -138,7 +138,7 @@ class PlayingCore(CoreClock):
         self._check_claimed()
         self._task = before
 
-    def _told(self, error: Exception) -> BfsimError:
+    def _told(self, error: Exception | SystemExit) -> BfsimError:
         """Return what went wrong in the firmware, with its line there."""
         line = line_of(error)
         if isinstance(error, BfsimError):

@@ -86,12 +86,20 @@ def read_script(path: Path, orders: Orders) -> Script:
 
 
 def _entry(file: str, key: str, entry: dict[str, Any], orders: Orders) -> ScriptedMessage | ScriptedBytes:
+    kinds = ("bytes", "words", *(each.name.lower() for each in MessageType))
+    found = [each for each in kinds if each in entry]
+    if len(found) != 1:
+        known = ", ".join([*orders, "words", "bytes"])
+        raise ConfigError(
+            f"{file}{key.rstrip('.')} must have one of {known}, not {' and '.join(found) or 'none of them'}"
+        )
     try:
-        if "bytes" in entry:
-            return _scripted_bytes(_Bytes.model_validate(entry))
-        if named := entry.keys() & {each.name.lower() for each in MessageType}:
-            return _scripted_order(entry, min(named), orders)
-        return _scripted_words(_Words.model_validate(entry))
+        match found:
+            case ["bytes"]:
+                return _scripted_bytes(_Bytes.model_validate(entry))
+            case ["words"]:
+                return _scripted_words(_Words.model_validate(entry))
+        return _scripted_order(entry, found[0], orders)
     except ValidationError as error:
         raise ConfigError(f"{file}{_mistake(error, key)}") from error
     except FirmwareError as error:
