@@ -151,9 +151,27 @@ def dimension(
     if (aspect < model.aspect_min and not cut_across) or (aspect > model.aspect_max and not cut_down):
         return False
     if cut_down:
-        return True
+        return not cut_across and cut_size(box, model, geometry, thresholds, height)
     row = 16 * box["bottom"] + 8 - 8 * (height - 1)
     return right_size(16 * high, row, model, geometry, thresholds)
+
+
+def cut_size(box: Record, model: Any, geometry: Sequence[int], thresholds: Any, height: int) -> bool:
+    """Whether what the picture cuts above or below looks as large as the model may where the border that is seen has it."""
+    cut_above, cut_below = box["top"] <= 1, box["bottom"] >= height - 2
+    if cut_above and cut_below:
+        return False
+    border = 16 * box["top"] - 8 if cut_below else 16 * box["bottom"] + 8
+    over_mm = model.floor_mm + (model.height_mm if cut_below else 0)
+    depth = floor_depth(geometry, border - 8 * (height - 1), over_mm)
+    slack = Fraction(thresholds.size_range, 16)
+    wide_mm, high_mm = (Fraction(side * depth, geometry[FOCAL] // 16) for side in sides(box))
+    return (
+        depth > 0
+        and wide_mm <= slack * model.width_mm
+        and high_mm <= slack * model.height_mm
+        and wide_mm * slack >= model.height_mm * model.aspect_min // 16
+    )
 
 
 def area(box: Record, model: Any, _geometry: Any, thresholds: Any, *_size: int) -> bool:
