@@ -143,8 +143,13 @@ def cut_size_passes(
     depth = depth_by_floor(geometry, row, above_mm)
     wide = extent_of(across) * depth
     unit = geometry[GEOMETRY_FOCAL] // SUBPIXELS
-    narrowest_mm = height_mm * models[model + MODEL_ASPECT_MIN] // ASPECT_UNITS
-    if depth == 0 or size_range * wide < SIZE_UNITS * unit * narrowest_mm:
+    narrowest_mm = min(
+        height_mm * models[model + MODEL_ASPECT_MIN] // ASPECT_UNITS, models[model + MODEL_WIDTH]
+    )
+    least = (
+        SIZE_UNITS * unit * narrowest_mm + size_range - 1
+    ) // size_range  # so that no product leaves 32 bits
+    if depth == 0 or wide < least:
         return 0
     if SIZE_UNITS * wide > size_range * unit * models[model + MODEL_WIDTH]:
         return 0

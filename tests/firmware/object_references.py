@@ -170,7 +170,7 @@ def cut_size(box: Record, model: Any, geometry: Sequence[int], thresholds: Any, 
         depth > 0
         and wide_mm <= slack * model.width_mm
         and high_mm <= slack * model.height_mm
-        and wide_mm * slack >= model.height_mm * model.aspect_min // 16
+        and wide_mm * slack >= min(model.height_mm * model.aspect_min // 16, model.width_mm)
     )
 
 
