@@ -249,6 +249,12 @@ def row_below(line: Sequence[int] | None, bottom: int, column: int) -> int:
     return y0 + floor(Fraction((y1 - y0) * (column - x0) + (x1 - x0) // 2, x1 - x0))
 
 
+def foot_row(line: Sequence[int] | None, bottom: int, column: int, is_cut: bool) -> int:
+    """The row of a foot: the bottom line, or the end of the blob if that is more than one pixel above it, but not more than four."""
+    end, row = row_below(None, bottom, column), row_below(line, bottom, column)
+    return end if 16 < row - end <= 64 and not is_cut else row
+
+
 def rectangle_at(
     found: Record,
     model: Any,
@@ -271,7 +277,8 @@ def rectangle_at(
     if refined and model.shape == GOAL:
         corners = []
         for side, column in (("left", 16 * box["left"] - 8), ("right", 16 * box["right"] + 8)):
-            below = row_below(bottom, lowest_at(box, parts, side), column) - middle_y
+            is_cut = box["left"] <= 1 if side == "left" else box["right"] >= width - 2
+            below = foot_row(bottom, lowest_at(box, parts, side), column, is_cut) - middle_y
             corners.append((column - middle_x, below, floor_depth(geometry, below, 0)))
         cuts = box["left"] <= 1, box["right"] >= width - 2
         if all(each[2] for each in corners):
