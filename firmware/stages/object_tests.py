@@ -10,7 +10,17 @@ from __future__ import annotations
 from bfsim.api import i16, i32, kernel, u32
 from firmware.geometry import GEOMETRY_FOCAL, GEOMETRY_SHIFT_Y
 from firmware.stages.object_places import HALF_PIXEL, depth_by_floor, principal
-from firmware.stores.blobs import ACROSS, BLOB_WORDS, COLOURS, DOWN, PIXELS, extent_of, is_cut
+from firmware.stores.blobs import (
+    ACROSS,
+    BLOB_WORDS,
+    COLOURS,
+    DOWN,
+    PIXELS,
+    extent_of,
+    is_cut,
+    is_cut_before,
+    is_cut_behind,
+)
 from firmware.stores.circles import (
     CENTRE_PASSED,
     CIRCLE_ARC,
@@ -45,6 +55,7 @@ from firmware.strategy.models import (
     MODEL_FLOOR,
     MODEL_HEIGHT,
     MODEL_SHAPE,
+    MODEL_WIDTH,
     Shape,
 )
 
@@ -97,6 +108,55 @@ def has_size(extent: i32, row: i32, geometry: i32[:], height_mm: i32, floor_mm: 
 
 
 @kernel
+def row_of(pixel: i32, geometry: i32[:], height: i32) -> i32:
+    """Return how far below the principal point a pixel's lower border is, in 1/16 px."""
+    return SUBPIXELS * pixel + HALF_PIXEL - principal(height) - geometry[GEOMETRY_SHIFT_Y]
+
+
+@kernel
+def cut_size_passes(
+    across: u32,
+    down: u32,
+    models: i32[:],
+    model: i32,
+    geometry: i32[:],
+    size_range: i32,
+    width: i32,
+    height: i32,
+) -> i32:
+    """Return 1 if a blob that leaves the picture above or below has a size that its model may have; else 0.
+
+    How deep it stands is told by its lower border, or by its upper one if that alone is in the picture. What is seen of it
+    is not larger than the model there, and not narrower than one of its height may be. In a corner of the picture, or with
+    neither border, too little is known of it.
+    """
+    above_mm = models[model + MODEL_FLOOR]
+    height_mm = models[model + MODEL_HEIGHT]
+    row = row_of(i32(down >> 16), geometry, height)
+    if is_cut(across, width) != 0:
+        return 0
+    if is_cut_behind(down, height) != 0:
+        if is_cut_before(down) != 0:
+            return 0
+        above_mm = above_mm + height_mm
+        row = row_of(i32(down & 0xFFFF) - 1, geometry, height)
+    depth = depth_by_floor(geometry, row, above_mm)
+    wide = extent_of(across) * depth
+    unit = geometry[GEOMETRY_FOCAL] // SUBPIXELS
+    narrowest_mm = min(
+        height_mm * models[model + MODEL_ASPECT_MIN] // ASPECT_UNITS, models[model + MODEL_WIDTH]
+    )
+    least = (
+        SIZE_UNITS * unit * narrowest_mm + size_range - 1
+    ) // size_range  # so that no product leaves 32 bits
+    if depth == 0 or wide < least:
+        return 0
+    if SIZE_UNITS * wide > size_range * unit * models[model + MODEL_WIDTH]:
+        return 0
+    return 1 if SIZE_UNITS * extent_of(down) * depth <= size_range * unit * height_mm else 0
+
+
+@kernel
 def dimension_passes(
     blob_data: u32[:],
     blob: i32,
@@ -116,9 +176,9 @@ def dimension_passes(
     aspect_max = models[model + MODEL_ASPECT_MAX]
     if has_form(across, down, aspect_min, aspect_max, width, height) == 0:
         return 0
-    if is_cut(down, height) != 0:  # too little is known of it
-        return 1
-    row = SUBPIXELS * i32(down >> 16) + HALF_PIXEL - principal(height) - geometry[GEOMETRY_SHIFT_Y]
+    if is_cut(down, height) != 0:
+        return cut_size_passes(across, down, models, model, geometry, limits[SIZE_RANGE], width, height)
+    row = row_of(i32(down >> 16), geometry, height)
     height_mm = models[model + MODEL_HEIGHT]
     floor_mm = models[model + MODEL_FLOOR]
     return has_size(SUBPIXELS * extent_of(down), row, geometry, height_mm, floor_mm, limits[SIZE_RANGE])

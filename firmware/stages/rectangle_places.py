@@ -48,6 +48,8 @@ from firmware.stores.rectangles import NO_LINE, RECTANGLE_BOTTOM, RECTANGLE_WORD
 from firmware.strategy.models import LARGEST_MM, MODEL_FLOOR, MODEL_HEIGHT, MODEL_SHAPE, MODEL_WIDTH
 
 NO_PART = -1
+OPENING_LOSS = SUBPIXELS  # so far above its bottom line the opening may end a blob [ours]
+FLOOR_LINE = 4 * SUBPIXELS  # so far below the feet the line may be that is painted along the goal [ours]
 FAR_APART = 4 * LARGEST_MM  # mm: farther than any goal is wide; three squares of it stay in 32 bits
 
 
@@ -65,6 +67,19 @@ def bottom_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], col
             y = i32(lines[at + LINE_Y0])
             return crossing(x, y, i32(lines[at + LINE_X1]), i32(lines[at + LINE_Y1]), column)
     return SUBPIXELS * i32(down >> 16) + HALF_PIXEL
+
+
+@kernel
+def foot_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], column: i32, cut: i32) -> i32:
+    """Return where a goal stands on the floor at an end of its blob, in 1/16 px; `down` are the rows of the part that is there.
+
+    That is its bottom line, unless the part ends a little above it: then it is the foot of a post, and the line one on the
+    floor, whose front edge is nearer, and blurred further down the thinner it looks. Where the picture has `cut` the part
+    off there is no foot.
+    """
+    end = bottom_row(down, rectangles, NO_OUTLINE, lines, column)
+    line = bottom_row(down, rectangles, rectangle, lines, column)
+    return end if end + OPENING_LOSS < line <= end + FLOOR_LINE and cut == 0 else line
 
 
 @kernel
@@ -223,10 +238,10 @@ def see_rectangle(
         right = SUBPIXELS * i32(across >> 16) + HALF_PIXEL
         left_down = rows_at_end(blob_data, parents, blob, 0)
         right_down = rows_at_end(blob_data, parents, blob, 1)
-        left_row = bottom_row(left_down, rectangles, rectangle, lines, left) - middle_y
-        right_row = bottom_row(right_down, rectangles, rectangle, lines, right) - middle_y
         cut_left = is_cut_before(across)
         cut_right = is_cut_behind(across, width)
+        left_row = foot_row(left_down, rectangles, rectangle, lines, left, cut_left) - middle_y
+        right_row = foot_row(right_down, rectangles, rectangle, lines, right, cut_right) - middle_y
         wide = models[model + MODEL_WIDTH]
         left = left - middle_x
         right = right - middle_x

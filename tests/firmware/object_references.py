@@ -151,9 +151,27 @@ def dimension(
     if (aspect < model.aspect_min and not cut_across) or (aspect > model.aspect_max and not cut_down):
         return False
     if cut_down:
-        return True
+        return not cut_across and cut_size(box, model, geometry, thresholds, height)
     row = 16 * box["bottom"] + 8 - 8 * (height - 1)
     return right_size(16 * high, row, model, geometry, thresholds)
+
+
+def cut_size(box: Record, model: Any, geometry: Sequence[int], thresholds: Any, height: int) -> bool:
+    """Whether what the picture cuts above or below looks as large as the model may where the border that is seen has it."""
+    cut_above, cut_below = box["top"] <= 1, box["bottom"] >= height - 2
+    if cut_above and cut_below:
+        return False
+    border = 16 * box["top"] - 8 if cut_below else 16 * box["bottom"] + 8
+    over_mm = model.floor_mm + (model.height_mm if cut_below else 0)
+    depth = floor_depth(geometry, border - 8 * (height - 1), over_mm)
+    slack = Fraction(thresholds.size_range, 16)
+    wide_mm, high_mm = (Fraction(side * depth, geometry[FOCAL] // 16) for side in sides(box))
+    return (
+        depth > 0
+        and wide_mm <= slack * model.width_mm
+        and high_mm <= slack * model.height_mm
+        and wide_mm * slack >= min(model.height_mm * model.aspect_min // 16, model.width_mm)
+    )
 
 
 def area(box: Record, model: Any, _geometry: Any, thresholds: Any, *_size: int) -> bool:
@@ -231,6 +249,12 @@ def row_below(line: Sequence[int] | None, bottom: int, column: int) -> int:
     return y0 + floor(Fraction((y1 - y0) * (column - x0) + (x1 - x0) // 2, x1 - x0))
 
 
+def foot_row(line: Sequence[int] | None, bottom: int, column: int, is_cut: bool) -> int:
+    """The row of a foot: the bottom line, or the end of the blob if that is more than one pixel above it, but not more than four."""
+    end, row = row_below(None, bottom, column), row_below(line, bottom, column)
+    return end if 16 < row - end <= 64 and not is_cut else row
+
+
 def rectangle_at(
     found: Record,
     model: Any,
@@ -253,7 +277,8 @@ def rectangle_at(
     if refined and model.shape == GOAL:
         corners = []
         for side, column in (("left", 16 * box["left"] - 8), ("right", 16 * box["right"] + 8)):
-            below = row_below(bottom, lowest_at(box, parts, side), column) - middle_y
+            is_cut = box["left"] <= 1 if side == "left" else box["right"] >= width - 2
+            below = foot_row(bottom, lowest_at(box, parts, side), column, is_cut) - middle_y
             corners.append((column - middle_x, below, floor_depth(geometry, below, 0)))
         cuts = box["left"] <= 1, box["right"] >= width - 2
         if all(each[2] for each in corners):

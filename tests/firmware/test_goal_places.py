@@ -82,6 +82,26 @@ def test_between_both_posts(turn_deg: float, middle_mm: tuple[float, float]) -> 
     assert np.linalg.norm(placed(blobs, parents, line) - place) < error_mm / 2
 
 
+@pytest.mark.parametrize(("below_px", "is_floor_line"), [(0.9, False), (2, True), (3.9, True), (6, False)])
+def test_a_line_painted_before_the_goal(below_px: float, is_floor_line: bool) -> None:
+    """A line a little below both feet is on the floor; what is so near that the opening made the gap is the goal's own.
+
+    One farther below is taken for the line on which the feet stand that are not seen.
+    """
+    blobs, parents, _, line = goal((0, 900), 0)
+    line[1] = line[3] = 16 * (blobs[0]["bottom"] + 0.5 + below_px)  # both feet end in one row
+    wanted = placed(blobs, parents) if is_floor_line else placed(blobs, parents, line, refined=False)
+    assert placed(blobs, parents, line)[2] == pytest.approx(wanted[2], abs=2)
+
+
+def test_a_cut_end_has_no_foot() -> None:
+    """At the picture's border the line is believed, though the back of the goal ends little above it."""
+    blobs, parents, _, line = goal((180, 600), 0)
+    before = placed(blobs, parents, line)
+    line[3] += 16  # lower, so nearer
+    assert placed(blobs, parents, line)[2] < before[2] - 2
+
+
 def test_the_thesis_s_way_takes_the_nearest_part() -> None:
     """At an angle the floor below the blob is that before the nearer post."""
     blobs, parents, place, _ = goal((0, 900), 50)
