@@ -6,7 +6,9 @@ from benchmarks.twins import (
     angles,
     bits,
     codes,
+    digits,
     drawing,
+    exchanges,
     fills,
     filters,
     grids,
@@ -26,11 +28,13 @@ from benchmarks.twins import (
     sorting,
     tables,
     text,
+    transforms,
     words,
 )
 
 SUBJECTS = (
-    *(angles, bits, codes, drawing, fills, filters, grids, heaps, integers, labels, lines, lookups),
-    *(ordering, patches, pictures, pixels, regions, rows, samples, signals, sorting, tables, text, words),
+    *(angles, bits, codes, digits, drawing, exchanges, fills, filters, grids, heaps, integers),
+    *(labels, lines, lookups, ordering, patches, pictures, pixels, regions, rows, samples),
+    *(signals, sorting, tables, text, transforms, words),
 )
 CASES = tuple(case for subject in SUBJECTS for case in subject.CASES)
