@@ -60,7 +60,14 @@ class Needs(Folding):
         ) or not self.calling.isdisjoint(loop.blocks)
         turns = self.walks.turns(loop)
         many = turns is None or turns > FEWEST_TURNS
-        return not library and many and self.walks.is_counted(loop) and not self._may_be_endless(loop)
+        counted = self.walks.is_counted(loop) and not self._may_be_endless(loop)
+        return not library and many and counted and (turns is not None or self._steps_by_power(loop))
+
+    def _steps_by_power(self, loop: Loop) -> bool:
+        """Whether the number of turns takes a shift to find, not a division ["Costs of niter computation too high" there]."""
+        test = self.flow.instruction(self.walks.exit_test(loop) or "")
+        gains = [self.walks.advance(operand, loop) for operand in test.operands[:2]] if test is not None else []
+        return all(gain is None or abs(gain.constant).bit_count() <= 1 for gain in gains)
 
     def _may_be_endless(self, loop: Loop) -> bool:
         """With several exits, the pointer that walks is compared for equality with its end.
