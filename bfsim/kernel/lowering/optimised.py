@@ -164,8 +164,7 @@ class _Lowering:
             if label not in self.context.shapes.gone and not self._vanishes(label):
                 cost.charges += self.layout.on(label, block.successors[0], terminator.line)
         elif terminator.opcode == "br" and label in self.context.shapes.by_label:
-            arms = self.context.shapes.by_label[label].arms
-            join = next(way for arm in arms for way in self.flow.blocks[arm].successors if way not in arms)
+            join, _ = self.flow.defined[self.context.shapes.by_label[label].phi.result or ""]
             cost.charges += self.layout.jump(label, self.layout.landing(join), terminator.line)
         elif terminator.opcode == "br":
             self._conditional(block, cost)
