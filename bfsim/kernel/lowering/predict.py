@@ -16,6 +16,7 @@ EVEN = 0.5
 # hit rates [predict.def]
 LOOP_EXIT, EXTRA_EXIT, LOOP_GUARD = 0.89, 0.67, 0.73
 POSITIVE, NOT_EQUAL, CALL = 0.59, 0.66, 0.67
+CONTINUE = 0.67  # the surest hint of the source: the side without `continue`
 MOST_TURNS = 100  # a loop is guessed to turn at most so often where its count is a constant
 
 BELOW_ZERO = {("slt", 0), ("slt", 1), ("sle", 0), ("sle", -1), ("slt", -1), ("sle", 1)}
@@ -129,9 +130,12 @@ class Likelihood:
 
 
 def _by_hint(block: Block) -> list[float]:
-    """A side of an `if` that ends in `continue` or `return` is unlikely: the source knows, the branch carries it."""
+    """A side of an `if` that ends in `continue` or `return` is unlikely: the source knows, the branch carries it.
+
+    Where a jump was threaded, LLVM has made an extreme of it.
+    """
     weights = block.terminator.weights
-    return [weights[0] / sum(weights)] if all(weights) and weights else []
+    return [min(max(weights[0] / sum(weights), 1 - CONTINUE), CONTINUE)] if any(weights) else []
 
 
 def combined(votes: list[float]) -> float:
