@@ -56,7 +56,7 @@ def fir_decimate(x: i16[:], n: i32, taps: i16[:], k: i32, y: i16[:]) -> None:
         if total < -32768:
             total = -32768
         y[o] = total
-        o += 1
+        o += 1  # noqa: SIM113 - as in C
 
 
 @kernel

@@ -66,7 +66,9 @@ class Needs(Folding):
     def _steps_by_power(self, loop: Loop) -> bool:
         """Whether the number of turns takes a shift to find, not a division ["Costs of niter computation too high" there]."""
         test = self.flow.instruction(self.walks.exit_test(loop) or "")
-        gains = [self.walks.advance(operand, loop) for operand in test.operands[:2]] if test is not None else []
+        gains = (
+            [self.walks.advance(operand, loop) for operand in test.operands[:2]] if test is not None else []
+        )
         return all(gain is None or abs(gain.constant).bit_count() <= 1 for gain in gains)
 
     def _may_be_endless(self, loop: Loop) -> bool:

@@ -82,9 +82,7 @@ class Shapes:
                 choices.append((each, chosen, other))
         if len(choices) != 1:
             return None
-        return self._of_choice(
-            label, frozenset(arm for arm in arms if self._is_arm(arm, label)), *choices[0]
-        )
+        return self._of_choice(label, frozenset(arm for arm in arms if self._is_arm(arm, label)), *choices[0])
 
     def _chosen(self, phi: Instruction, source: str, label: str) -> str:
         """What a phi takes over from `source`, a side of the test in block `label`."""
