@@ -15,6 +15,7 @@ from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.registers import Allocation, allocate
 from bfsim.kernel.lowering.select import select
 from bfsim.kernel.lowering.steps import Step
+from bfsim.kernel.lowering.sunk import with_values_sunk
 from bfsim.kernel.profile import CompilerProfile
 
 ALONE = Issue()
@@ -22,7 +23,7 @@ ALONE = Issue()
 
 def lower(routine: Routine, profile: CompilerProfile) -> dict[str, BlockCost]:
     """Return what each block of `routine` costs, by label."""
-    routine = without_redundant_loads(routine)
+    routine = with_values_sunk(without_redundant_loads(routine))
     lowering = _Lowering(routine, profile)
     return {block.label: lowering.block(block) for block in routine.blocks}
 
