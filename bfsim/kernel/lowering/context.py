@@ -12,6 +12,7 @@ from bfsim.kernel.lowering.idioms import bit_counting_loops, filling_loops
 from bfsim.kernel.lowering.needs import Needs
 from bfsim.kernel.lowering.places import Places
 from bfsim.kernel.lowering.predict import Likelihood
+from bfsim.kernel.lowering.ranges import ranges
 from bfsim.kernel.lowering.shapes import Shape, Shapes
 from bfsim.kernel.lowering.walks import Walks
 from bfsim.kernel.profile import CompilerProfile
@@ -26,10 +27,13 @@ class Context:
         self.flags = Flags(self.flow)
         for loop in self.flow.loops:
             loop.blocks -= self.flags.leaving(loop)
-        self.likelihood = Likelihood(self.flow)
         self.places = Places(self.flow)
         self.walks = Walks(self.flow, self.places)
         self.shapes = Shapes(self.flow, profile)
+        self.ranges = ranges(self.flow, frozenset({*self.shapes.by_label, *self.shapes.gone}))
+        self.second_parts = {each.second: each.inside for each in self.ranges.values()}
+        """Blocks whose test is part of the one before, and where they lead if both hold."""
+        self.likelihood = Likelihood(self.flow, self.second_parts)
         self.groups = Groups(self.flow, self.walks, profile)
         self.bit_counts = bit_counting_loops(self.flow, self.walks)
         self.fills = filling_loops(self.flow, self.walks) if profile.library.fill else {}

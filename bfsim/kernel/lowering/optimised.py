@@ -39,7 +39,11 @@ class _Lowering:
             edge: [self._charge(step) for step in steps] for edge, steps in self.allocation.on_edges.items()
         }
         self.layout = Layout(
-            self.flow, self.context.likelihood, frozenset(empty | self.context.shapes.gone), copies
+            self.flow,
+            self.context.likelihood,
+            frozenset(empty | self.context.shapes.gone | self.context.second_parts.keys()),
+            copies,
+            leaving_side_last=profile.applies(Learnt.LEAVING_SIDE),
         )
         self.hardware = {loop.header for loop in self.flow.loops if self._is_hardware(loop)}
 
@@ -60,6 +64,7 @@ class _Lowering:
             each
             for each in self.flow.predecessors[loop.latch]
             if not self.flow.is_overflow_guard(self.flow.blocks[each])
+            and each not in self.context.shapes.gone
         ]
         copied = any(self._ends_apart(inner, before) for inner in loop.inner)
         if copied and self.profile.applies(Learnt.COPIED_END):
@@ -175,7 +180,9 @@ class _Lowering:
 
     def _conditional(self, block: Block, cost: BlockCost) -> None:
         label, line = block.label, block.terminator.line
-        if self.context.flags.decides(block.terminator) or self.flow.is_overflow_guard(block):
+        if label in self.context.second_parts:
+            sides = self._second_part(label, line)
+        elif self.context.flags.decides(block.terminator) or self.flow.is_overflow_guard(block):
             sides = tuple(self.layout.on(label, way, line) for way in block.successors)
         else:
             if self._is_kept(block):
@@ -183,6 +190,19 @@ class _Lowering:
                 cost.nbytes += COSTS[Op.CC_MOVE].nbytes
             sides = self._branch(label, line)
         cost.branch(block.terminator.operands[0], tuple(sides[0]), tuple(sides[1]))
+
+    def _second_part(self, label: str, line: int) -> tuple[list[Charge], ...]:
+        """What it costs more if the second part of a test does not hold after all: the branch was before."""
+        tested = self.context.ranges[label]
+        before = self.layout.sides(tested.first, line)
+        first = self.flow.blocks[tested.first].successors.index(label)
+        sides = []
+        for way in self.flow.blocks[label].successors:
+            copied = self.layout.copies.get((label, way), [])
+            sides.append(
+                [*copied, *(() if way == tested.inside else instead(before[1 - first], before[first]))]
+            )
+        return tuple(sides)
 
     def _is_kept(self, block: Block) -> bool:
         """Whether a condition was computed before the loop: a register keeps it, and CC gets it back."""

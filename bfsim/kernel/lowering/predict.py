@@ -7,6 +7,7 @@ sets the (bp) bit of a branch that is more likely taken than not.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 
 from bfsim.kernel.ir_text import Block, Instruction
@@ -26,8 +27,9 @@ ABOVE_ZERO = {("sgt", 0), ("sgt", -1), ("sge", 0), ("sge", 1), ("sgt", 1), ("sge
 class Likelihood:
     """Probabilities of the edges, and frequencies of the blocks, of one routine."""
 
-    def __init__(self, flow: Flow) -> None:
-        self.flow = flow
+    def __init__(self, flow: Flow, second_parts: Mapping[str, str] | None = None) -> None:
+        """`second_parts`: blocks whose test is made by the one before, and where they lead then."""
+        self.flow, self.second_parts = flow, second_parts or {}
 
     @cached_property
     def taken(self) -> dict[tuple[str, str], float]:
@@ -35,7 +37,11 @@ class Likelihood:
         found: dict[tuple[str, str], float] = {}
         for block in self.flow.routine.blocks:
             ways = block.successors
-            if len(set(ways)) < 2:
+            if block.label in self.second_parts:
+                found.update(
+                    {(block.label, way): float(way == self.second_parts[block.label]) for way in ways}
+                )
+            elif len(set(ways)) < 2:
                 found.update({(block.label, way): 1.0 for way in ways})
             elif block.terminator.opcode == "br":
                 first = self._of_true_side(block)
@@ -100,6 +106,8 @@ class Likelihood:
         """Equality is unlikely, and values are positive."""
         test = self.flow.instruction(block.terminator.operands[0])
         if test is None or test.opcode != "icmp":
+            return []
+        if self.second_parts.keys() & set(block.successors):
             return []
         kind, constant = predicate(test), test.operands[1]
         number = int(constant) if constant.lstrip("-").isdigit() else None

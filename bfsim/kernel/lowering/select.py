@@ -17,6 +17,7 @@ from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.multiples import multiple
 from bfsim.kernel.lowering.predict import predicate
+from bfsim.kernel.lowering.ranges import Range
 from bfsim.kernel.lowering.shapes import Kind
 from bfsim.kernel.lowering.steps import Bank, Step, Steps
 
@@ -249,6 +250,12 @@ class _Selector(Calls):
             masked = self.context.needs.bit_tested(each) or ""
             self.step(Op.BIT_TEST, each, None, DATA, (masked, DATA))
             return
+        if (joined := self.context.ranges.get(self.label)) is not None and _decides(
+            self.flow.blocks[self.label].terminator, each
+        ):
+            if self.label == joined.first:
+                self._in_range(each, joined)
+            return
         left, right = self.context.needs.compared(each)
         if right.lstrip("-").isdigit() and _is_near(predicate(each), int(right)):
             self.step(Op.COMPARE, each, None, DATA, (left, ANY))
@@ -257,6 +264,20 @@ class _Selector(Calls):
             self.step(Op.COMPARE, each, None, DATA, (left, ANY), (f"{each.result}.bound", ANY))
         else:
             self.step(Op.COMPARE, each, None, DATA, (left, ANY), (right, ANY))
+
+    def _in_range(self, each: Instruction, tested: Range) -> None:
+        """The distance from the lower end, compared as an unsigned number."""
+        value, distance, length = tested.value, f"{each.result}.distance", tested.high - tested.low
+        if -tested.low in isa.ADD_IMMEDIATE and tested.low:
+            self.step(Op.ALU, each, distance, ANY, (value, ANY), overwrites=(value,))
+        elif tested.low:
+            self.step(Op.ALU, each, distance, ANY, (value, ANY), (f"#{-tested.low}", ANY))
+        value = distance if tested.low else value
+        if length in isa.COMPARE_UNSIGNED_IMMEDIATE:
+            self.step(Op.COMPARE, each, None, DATA, (value, ANY))
+        else:
+            self.steps.add(self.label, load_constant(f"#{length}", each.line, f"{each.result}.bound"))
+            self.step(Op.COMPARE, each, None, DATA, (value, ANY), (f"{each.result}.bound", ANY))
 
     def choose(self, each: Instruction) -> None:
         """A select that LLVM itself formed."""
@@ -294,6 +315,10 @@ class _Selector(Calls):
         else:
             uses = tuple((value, ANY) for value in shape.operands)
             self.step(Op.COND_MOVE, each, result, ANY, *uses, overwrites=shape.operands[1:])
+
+
+def _decides(branch: Instruction, test: Instruction) -> bool:
+    return branch.operands[:1] == (test.result,)
 
 
 def _is_single_bit(opcode: str, mask: int) -> bool:
