@@ -130,7 +130,8 @@ class Needs(Folding):
 
     def _really_used(self, each: Instruction) -> tuple[str, ...]:
         if each.opcode in ("load", "store") and id(each) in self.groups.of:
-            return (*each.operands[:-1], *(name for name, _ in self.groups.of[id(each)].start))
+            group = self.groups.of[id(each)]
+            return (*each.operands[:-1], *(name for name, _ in (*group.start, *group.distance)))
         if each.opcode == "br":
             return () if self.flags.decides(each) or self._is_guard(each) else self._of_branch(each)
         if each.opcode == "icmp":
