@@ -17,6 +17,7 @@ from benchmarks.twins import (
     labels,
     lines,
     lookups,
+    neighbours,
     ordering,
     patches,
     pictures,
@@ -27,6 +28,7 @@ from benchmarks.twins import (
     signals,
     sorting,
     tables,
+    tallies,
     text,
     transforms,
     words,
@@ -34,7 +36,7 @@ from benchmarks.twins import (
 
 SUBJECTS = (
     *(angles, bits, codes, digits, drawing, exchanges, fills, filters, grids, heaps, integers),
-    *(labels, lines, lookups, ordering, patches, pictures, pixels, regions, rows, samples),
-    *(signals, sorting, tables, text, transforms, words),
+    *(labels, lines, lookups, neighbours, ordering, patches, pictures, pixels, regions, rows, samples),
+    *(signals, sorting, tables, tallies, text, transforms, words),
 )
 CASES = tuple(case for subject in SUBJECTS for case in subject.CASES)

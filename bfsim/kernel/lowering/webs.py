@@ -88,12 +88,12 @@ class Webs:
         found = []
         for phi, arms in self.phis.items():
             label, each = self.flow.defined[phi]
-            loop = next((loop for loop in self.flow.loops if loop.header == label), None)
+            latches = [loop.latch for loop in self.flow.loops if loop.header == label]
             for value, source in arms:
                 step = self.flow.instruction(value)
-                if loop is not None and source == loop.latch and step is not None and step.opcode == "add":
-                    if step.operands[0] == phi and self.flow.users[value] == [each]:
-                        found.append((phi, value))
+                steps = step is not None and step.opcode == "add" and step.operands[0] == phi
+                if steps and source in latches and self.flow.users[value] == [each]:
+                    found.append((phi, value))
         return found
 
     def _interference(self) -> defaultdict[str, set[str]]:
