@@ -138,6 +138,8 @@ class Needs(Folding):
             return self._of_compare(each)
         if (other := self.added_flag(each)) is not None:
             return (other,)
+        if (division := self.remainder(each)) is not None:
+            return division.operands
         if each.opcode in ("select", "and", "or") and each.bits == 1:
             counting = {self.walks.exit_test(loop) for loop in self.flow.loops if loop.header in self.counted}
             return tuple(operand for operand in each.operands if operand not in counting)
@@ -161,10 +163,10 @@ class Needs(Folding):
         return each.operands
 
     def _of_compare(self, each: Instruction) -> tuple[str, ...]:
-        """A counter that only walks and is compared with a fixed bound: the pointer is compared instead."""
+        """A counter that only walks and is compared with a bound that ends the loop: the pointer is compared instead."""
         label = self.flow.defined[each.result or ""][0]
         loop = self.flow.innermost(label)
-        if loop is None or not any(group.loop is loop and not group.stride for group in self.groups.all):
+        if loop is None or label not in self.flow.exits(loop) or not any(group.loop is loop and not group.stride for group in self.groups.all):
             return self.compared(each)
         gains = [self.walks.advance(operand, loop) for operand in each.operands[:2]]
         if None in gains or sum(gain.moves for gain in gains if gain) != 1:

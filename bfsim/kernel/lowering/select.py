@@ -6,6 +6,7 @@ Each rule says what a C compiler emits for an instruction in its surroundings; w
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from bfsim.kernel import isa
 from bfsim.kernel.ir_text import Instruction
@@ -71,6 +72,10 @@ class _Selector(Accesses):
         if (plan := self.context.needs.shift_add(each)) is not None:
             shifted, other = plan
             self.step(Op.ADD_SHIFT, each, each.result, POINTER, (other, POINTER), (shifted, POINTER))
+            return
+        if (division := self.context.needs.remainder(each)) is not None:
+            rest = replace(each, opcode=division.opcode.replace("div", "rem"), operands=division.operands)
+            self.divide(rest)
             return
         left, right = each.operands[:2]
         if (total := self.context.needs.added_flag(each)) is not None:
