@@ -19,6 +19,7 @@ from bfsim.kernel.counters import instrument
 from bfsim.kernel.emit import emit
 from bfsim.kernel.entry import cell_name
 from bfsim.kernel.ir_text import read_module
+from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.unrolled import marked
 from bfsim.kernel.profile import GENERIC_FEATURES, GENERIC_TRIPLE, CompilerProfile
 from bfsim.kernel.schedule import Counter, cost
@@ -85,7 +86,7 @@ def optimised(function: tree.Function, profile: CompilerProfile, *, checked: boo
         parsed = llvm.parse_assembly(unrolling)
         _run(("loop_unroll", *CLEANING), parsed, machine)
         text = str(parsed)
-    return text
+    return with_preheaders(text)
 
 
 def _compile(

@@ -168,7 +168,11 @@ class Folding:
         for part in parts:
             division = self.flow.instruction(part)
             values = (each.operands[0], product.operands[1])
-            if division is not None and division.opcode in ("sdiv", "udiv") and division.operands[:2] == values:
+            if (
+                division is not None
+                and division.opcode in ("sdiv", "udiv")
+                and division.operands[:2] == values
+            ):
                 return division
         return None
 

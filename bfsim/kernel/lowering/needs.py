@@ -166,7 +166,11 @@ class Needs(Folding):
         """A counter that only walks and is compared with a bound that ends the loop: the pointer is compared instead."""
         label = self.flow.defined[each.result or ""][0]
         loop = self.flow.innermost(label)
-        if loop is None or label not in self.flow.exits(loop) or not any(group.loop is loop and not group.stride for group in self.groups.all):
+        if (
+            loop is None
+            or label not in self.flow.exits(loop)
+            or not any(group.loop is loop and not group.stride for group in self.groups.all)
+        ):
             return self.compared(each)
         gains = [self.walks.advance(operand, loop) for operand in each.operands[:2]]
         if None in gains or sum(gain.moves for gain in gains if gain) != 1:
