@@ -17,7 +17,7 @@ from bfsim.kernel.lowering.folding import NARROW, Folding
 from bfsim.kernel.lowering.groups import Groups
 from bfsim.kernel.lowering.redundant import AGAIN
 from bfsim.kernel.lowering.shapes import Kind, Shapes
-from bfsim.kernel.lowering.walks import Walks
+from bfsim.kernel.lowering.walks import Advance, Walks
 from bfsim.kernel.profile import CompilerProfile
 
 BYTE = 8
@@ -138,12 +138,24 @@ class Needs(Folding):
             return self._of_compare(each)
         if (other := self.added_flag(each)) is not None:
             return (other,)
+        if each.opcode == "mul" and self.stepped(each) is not None:
+            return tuple(operand for operand in each.operands if self._stays(operand, each))
         if (division := self.remainder(each)) is not None:
             return division.operands
         if each.opcode in ("select", "and", "or") and each.bits == 1:
             counting = {self.walks.exit_test(loop) for loop in self.flow.loops if loop.header in self.counted}
             return tuple(operand for operand in each.operands if operand not in counting)
         return each.operands
+
+    def stepped(self, product: Instruction) -> Advance | None:
+        """By how much a product of a counter grows with each turn: an addition takes its place (strength reduction)."""
+        loop = self.flow.innermost(self.walks.places.of[product.result or ""])
+        advance = self.walks.advance(product.result or "", loop) if loop is not None else None
+        return advance if advance is not None and advance.moves else None
+
+    def _stays(self, operand: str, product: Instruction) -> bool:
+        loop = self.flow.innermost(self.walks.places.of[product.result or ""])
+        return loop is not None and self.walks.places.is_invariant(operand, loop)
 
     def _is_guard(self, branch: Instruction) -> bool:
         return any(

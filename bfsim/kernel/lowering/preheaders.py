@@ -29,7 +29,8 @@ def _edges(routine: Routine) -> Iterator[tuple[str, str]]:
 def _rows(text: str, edges: set[tuple[str, str, str]]) -> Iterator[str]:
     symbol = label = ""
     notes: dict[str, str] = {}
-    for row in text.splitlines():
+    for line in text.splitlines():
+        row = line
         if found := DEFINE.match(row):
             symbol = found.group(1)
         elif found := LABEL.match(row):

@@ -156,9 +156,8 @@ class _Selector(Accesses):
 
     def _steps_along(self, each: Instruction) -> bool:
         """A product of a counter: an addition per turn takes its place (strength reduction)."""
-        loop = self.flow.innermost(self.label)
-        advance = self.context.walks.advance(each.result or "", loop) if loop else None
-        if loop is None or advance is None or not advance.moves:
+        loop, advance = self.flow.innermost(self.label), self.context.needs.stepped(each)
+        if loop is None or advance is None:
             return False
         stride = f"{each.result}.stride"
         self.steps.add(self.flow.entering(loop), Step(Op.IMM, each.line, each.result, ANY))
