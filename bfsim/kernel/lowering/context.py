@@ -15,6 +15,7 @@ from bfsim.kernel.lowering.predict import Likelihood
 from bfsim.kernel.lowering.ranges import ranges
 from bfsim.kernel.lowering.shapes import Shape, Shapes
 from bfsim.kernel.lowering.walks import Walks
+from bfsim.kernel.lowering.widths import widest
 from bfsim.kernel.profile import CompilerProfile
 
 
@@ -78,7 +79,9 @@ class Context:
             return False
         if each.opcode == "and":
             return any(self._is_clean(operand, depth - 1) for operand in each.operands)
-        if each.opcode in ("trunc", "call"):
+        if each.opcode == "trunc":
+            return widest(self.flow, each.operands[0]) <= int(each.text.rsplit("i", 1)[1])
+        if each.opcode == "call":
             return False
         return all(self._is_clean(operand, depth - 1) for operand in each.operands)
 
