@@ -10,6 +10,7 @@ from bfsim.kernel.lowering.predict import predicate
 
 JOINED = ("and", "or", "decided")  # what the blocks of a condition of several parts are called
 RENAMING = ("zext", "sext", "trunc", "freeze")
+WORD = 32
 OPPOSITE = {"lt": "ge", "ge": "lt", "gt": "le", "le": "gt"}
 
 
@@ -51,7 +52,28 @@ def _range(flow: Flow, first: str, second: str) -> Range | None:
         bounds = {kind: bound for _, kind, bound in (outer, inner)}
         if bounds["low"] < bounds["high"]:
             return Range(first, second, inside, outer[0], bounds["low"], bounds["high"])
-    return None
+    return _neither(flow, first, second)
+
+
+def _neither(flow: Flow, first: str, second: str) -> Range | None:
+    """The test for one of two numbers side by side, of which 255 and 0 are two if the value is a byte."""
+    ways = flow.blocks[first].successors
+    tests = [flow.instruction(flow.blocks[label].terminator.operands[0]) for label in (first, second)]
+    if not all(test is not None and test.opcode == "icmp" and predicate(test) == "eq" for test in tests):
+        return None
+    one, other = (test for test in tests if test is not None)
+    hit, miss = flow.blocks[second].successors
+    if ways != (hit, second) or _plain(flow, one) != _plain(flow, other):
+        return None
+    numbers = [test.operands[1] for test in (one, other)]
+    if not all(each.lstrip("-").isdigit() for each in numbers):
+        return None
+    low, high = sorted(map(int, numbers))
+    if high != low + 1:
+        return None
+    if low == -1 and one.bits < WORD:  # as LLVM writes the highest of a narrow type
+        return Range(first, second, miss, _plain(flow, one), 1, (1 << one.bits) - 2)
+    return Range(first, second, miss, _plain(flow, one), low, high)
 
 
 def _bound(flow: Flow, label: str, holds: bool) -> tuple[str, str, int] | None:
