@@ -17,6 +17,7 @@ from benchmarks.twins import (
     labels,
     lines,
     lookups,
+    mixture,
     neighbours,
     ordering,
     patches,
@@ -36,7 +37,20 @@ from benchmarks.twins import (
 
 SUBJECTS = (
     *(angles, bits, codes, digits, drawing, exchanges, fills, filters, grids, heaps, integers),
-    *(labels, lines, lookups, neighbours, ordering, patches, pictures, pixels, regions, rows, samples),
+    *(
+        labels,
+        lines,
+        lookups,
+        mixture,
+        neighbours,
+        ordering,
+        patches,
+        pictures,
+        pixels,
+        regions,
+        rows,
+        samples,
+    ),
     *(signals, sorting, tables, tallies, text, transforms, words),
 )
 CASES = tuple(case for subject in SUBJECTS for case in subject.CASES)
