@@ -95,6 +95,16 @@ class Accesses(Calls):
         op = Op.ALU if nbytes == 1 else Op.ADD_SHIFT
         self.step(op, each, each.result, POINTER, (self.context.base(base), POINTER), (index, POINTER))
 
+    def counters(self, label: str) -> None:
+        """Compute the counters that a pointer stands for; it has been stepped by then, so each turn keeps what it was."""
+        for each in self.context.needs.behind.values():
+            group = each.group
+            if label == group.loop.header:
+                self.steps.add(label, Step(Op.MOVE, group.line, None, POINTER, ((group.name, POINTER),)))
+            if label in each.places:
+                terms = ((group.name, POINTER), (self.context.name(group.root), POINTER))
+                self.steps.add(label, Step(Op.ALU, group.line, each.name, POINTER, terms))
+
     def pointers(self) -> None:
         """Set up the pointers that walk, and step those for which no post-increment does."""
         for group in self.context.groups.all:
@@ -112,7 +122,10 @@ class Accesses(Calls):
                 self.steps.add(entering, Step(Op.ALU, line, group.name, POINTER, ((group.name, POINTER),)))
             if not group.steps_free:
                 uses = ((group.name, POINTER),) + (((group.stride, POINTER),) if group.stride else ())
-                self.steps.add(latch, Step(Op.ALU, line, group.name, POINTER, uses))
+                kept = any(each.group is group for each in self.context.needs.behind.values())
+                self.steps.add(
+                    group.loop.header if kept else latch, Step(Op.ALU, line, group.name, POINTER, uses)
+                )
                 loose = (
                     group.loop.header not in self.context.needs.counted
                     and len(self.flow.exits(group.loop)) > 1

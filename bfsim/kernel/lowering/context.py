@@ -90,6 +90,8 @@ class Context:
         if not value.startswith(("%", "@")):
             return f"#{value}"
         value = self.places.same.get(value, value)
+        if value in self.needs.behind:
+            return self.needs.behind[value].name
         each = self.flow.instruction(value)
         if each is not None and self.needs.in_sunk_mask(each):
             return self.name(each.operands[0])

@@ -74,9 +74,9 @@ class Groups:
         ):
             return False
         fixed = all(self.walks.places.is_invariant(name, one.loop) for name, _ in self._distance(one, other))
-        return fixed and not one.advance.symbolic and self._is_steady(one) and not self._is_steady(other)
+        return fixed and not one.advance.symbolic and self.is_steady(one) and not self.is_steady(other)
 
-    def _is_steady(self, group: Group) -> bool:
+    def is_steady(self, group: Group) -> bool:
         """Whether every turn makes one of the accesses."""
         return any(self.flow.every_turn(label, group.loop) for label, _, _ in group.accesses)
 

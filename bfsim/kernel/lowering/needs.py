@@ -12,6 +12,7 @@ from bfsim.kernel.divisions import FLOOR, SIGNED
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import Flow, Loop
+from bfsim.kernel.lowering.behind import counters_behind
 from bfsim.kernel.lowering.flags import Flags
 from bfsim.kernel.lowering.folding import NARROW, Folding
 from bfsim.kernel.lowering.groups import Groups
@@ -50,6 +51,7 @@ class Needs(Folding):
         self.walks, self.shapes, self.groups, self.flags = walks, shapes, groups, flags
         self.calling = calling
         self.counted = {loop.header for loop in flow.loops if self._turns_by_counter(loop)}
+        self.behind = counters_behind(flow, walks, groups, self.counted)
 
     def _turns_by_counter(self, loop: Loop) -> bool:
         """Counted, and without calls: a register counts the turns, not the program's variable."""
@@ -117,12 +119,18 @@ class Needs(Folding):
             if each.result and (each.result not in needed or id(each) in roots):
                 needed.add(each.result)
             for used in self._really_used(each):
+                if used in self.behind and not self._is_own_step(each, used):
+                    continue
                 operand = self.walks.places.same.get(used, used)
                 source = self.flow.instruction(operand)
                 if source is not None and operand not in needed:
                     needed.add(operand)
                     waiting.append(source)
         return needed
+
+    def _is_own_step(self, each: Instruction, counter: str) -> bool:
+        phi = self.flow.instruction(counter)
+        return phi is not None and each.result in phi.operands
 
     def _is_root(self, each: Instruction) -> bool:
         along = (each.result or "").endswith(AGAIN)

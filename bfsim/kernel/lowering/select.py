@@ -36,6 +36,7 @@ def select(context: Context) -> Steps:
     for label in context.flow.order:
         if label in context.replaced:
             continue
+        selector.counters(label)
         for each in context.flow.blocks[label].instructions:
             if context.needs.emits(each):
                 selector.emit(each, context.places.of.get(each.result or "", label))
