@@ -94,10 +94,11 @@ def test_the_remainder_written_as_a_difference_is_a_second_call(tmp_path: Path) 
 
 
 def test_a_counter_of_bytes_is_read_off_the_pointer(tmp_path: Path) -> None:
-    """Where only some turns want it, nothing steps it; words would need a shift."""
-    text = "def f(a: {}[:], n: i32, v: i32) -> i32:\n    at = 0\n    for i in range(n):\n        if a[i] > v:\n            at = i\n            a[i] = 0\n    return at\n"
-    assert context(text.format("u8"), tmp_path).needs.behind
-    assert not context(text.format("i32"), tmp_path).needs.behind
+    """Where only some turns want it and each looks at neighbours, nothing steps it; words would need a shift."""
+    text = "def f(a: {}[:], n: i32, v: i32) -> i32:\n    at = 0\n    for i in range(n):\n        if a[i] > {}:\n            at = i\n            a[i] = 0\n    return at\n"
+    assert context(text.format("u8", "a[i + 1]"), tmp_path).needs.behind
+    assert not context(text.format("u8", "v"), tmp_path).needs.behind
+    assert not context(text.format("i32", "a[i + 1]"), tmp_path).needs.behind
 
 
 def test_what_only_some_turns_load_needs_no_pointer_of_its_own(tmp_path: Path) -> None:

@@ -104,6 +104,7 @@ class Accesses(Calls):
             if label in each.places:
                 terms = ((group.name, POINTER), (self.context.name(group.root), POINTER))
                 self.steps.add(label, Step(Op.ALU, group.line, each.name, POINTER, terms))
+                self.steps.add(label, Step(Op.ALU, group.line, each.name, POINTER, ((each.name, POINTER),)))
 
     def pointers(self) -> None:
         """Set up the pointers that walk, and step those for which no post-increment does."""

@@ -1,4 +1,7 @@
-"""Counters that a pointer stands for: where only some turns want `i`, it is the pointer less the array [tree-ssa-loop-ivopts.cc]."""
+"""Counters that a pointer stands for: where only some turns want `i`, it is the pointer less the array [tree-ssa-loop-ivopts.cc].
+
+So it is where every turn accesses neighbours, a[i] and a[i + 1]; beside a single access, GCC keeps the counter.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +34,8 @@ def counters_behind(flow: Flow, walks: Walks, groups: Groups, counted: set[str])
     for group in groups.all:
         loop = group.loop
         bytewise = not group.advance.symbolic and abs(group.advance.constant) == 1
-        if loop.header not in counted or not bytewise or not groups.is_steady(group):
+        steady = {offset for label, _, offset in group.accesses if flow.every_turn(label, loop)}
+        if loop.header not in counted or not bytewise or len(steady) < 2:
             continue
         for each in flow.blocks[loop.header].instructions:
             name = each.result or ""
