@@ -5,7 +5,7 @@ from __future__ import annotations
 from bfsim.kernel.loops import Flow
 
 WORD = 32
-DEEPEST = 12  # operations that are looked through
+DEEPEST = 6  # operations that are looked through; each may have several operands
 
 
 def widest(flow: Flow, value: str, seen: frozenset[str] = frozenset()) -> int:
