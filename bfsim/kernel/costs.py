@@ -18,14 +18,19 @@ from bfsim.kernel.emit import emit
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.charges import Charge
+from bfsim.kernel.lowering.preheaders import with_preheaders
+from bfsim.kernel.lowering.unrolled import marked
 from bfsim.kernel.profile import GENERIC_FEATURES, GENERIC_TRIPLE, CompilerProfile
 from bfsim.kernel.schedule import Counter, cost
 
+UNROLLED_NESTING = 3  # loops in loops that are written out, the inner ones first
+CLEANING = (
+    "instruction_combine", "new_gvn", "simplify_cfg", "instruction_combine", "aggressive_dce", "simplify_cfg",
+)  # fmt: skip
 PASSES = (
     "sroa", "simplify_cfg", "jump_threading", "simplify_cfg", "instruction_combine", "loop_simplify", "lcssa",
     "loop_rotate", "new_gvn", "jump_threading", "instruction_combine", "simplify_cfg", "loop_simplify", "lcssa",
-    "loop_rotate", "jump_threading", "instruction_combine", "new_gvn", "simplify_cfg", "instruction_combine",
-    "aggressive_dce", "simplify_cfg",
+    "loop_rotate", "jump_threading", *CLEANING,
 )  # fmt: skip
 
 
@@ -58,15 +63,23 @@ def optimised(function: tree.Function, profile: CompilerProfile, *, checked: boo
     # "no-builtins": a loop that fills or copies stays a loop, whose turns can be counted. "optforfuzzing": branches
     # stay branches; what a compiler for the Blackfin makes of them is for the lowering to say
     parsed = llvm.parse_assembly(str(module).replace(" noinline", ' noinline optforfuzzing "no-builtins"'))
-    if profile.optimises:
-        _simplify(parsed, machine)
-    return str(parsed)
+    if not profile.optimises:
+        return str(parsed)
+    _run(PASSES, parsed, machine)
+    text = str(parsed)
+    for _ in range(UNROLLED_NESTING):
+        if (unrolling := marked(text)) is None:
+            break
+        parsed = llvm.parse_assembly(unrolling)
+        _run(("loop_unroll", *CLEANING), parsed, machine)
+        text = str(parsed)
+    return with_preheaders(text)
 
 
-def _simplify(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
-    """Run the passes whose like every optimising compiler has, but none that reorders sums or merges branches."""
+def _run(names: tuple[str, ...], module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
+    """Run passes whose like every optimising compiler has, but none that reorders sums or merges branches."""
     passes = llvm.create_new_module_pass_manager()
-    for name in PASSES:
+    for name in names:
         getattr(passes, f"add_{name}_pass")()
     passes.run(module, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options()))
 

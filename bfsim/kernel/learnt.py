@@ -27,6 +27,9 @@ class Learnt(StrEnum):
     ACCUMULATORS = "what a loop only adds to may live in another bank, for one move"
     DIFFERENCE = "the absolute value of a difference, written as an `if`, is a branch"
     COMMON_LOADS = "what both sides of a test load first is loaded before it"
+    LEAVING_SIDE = (
+        "of two equally likely sides of a test in a loop, the one that may leave the loop is not in line"
+    )
     KNOWN_SIGN = "a value known to be positive is divided by a constant with the signed routine"
 
 
@@ -45,5 +48,6 @@ LEARNT_FROM: dict[Learnt, tuple[str, ...]] = {
     Learnt.ACCUMULATORS: ("moments",),
     Learnt.DIFFERENCE: ("sad_search",),
     Learnt.COMMON_LOADS: ("cordic_atan",),
+    Learnt.LEAVING_SIDE: ("grow_segments",),
     Learnt.KNOWN_SIGN: ("digits",),
 }

@@ -83,11 +83,12 @@ class Calls:
     def _swap_bits(self, each: Instruction) -> None:
         """Halves are swapped over and over, as the source does from which LLVM has read the whole reversal."""
         stages = 5 if "bitreverse" in each.text else 2
-        for _ in range(stages - 1):
+        for stage in range(stages - 1):
             self.step(Op.SHIFT, each, f"{each.result}.up", DATA, (each.operands[0], DATA))
             self.step(Op.SHIFT, each, f"{each.result}.down", DATA, (each.operands[0], DATA))
             for half in ("up", "down"):
-                self.step(Op.ALU, each, f"{each.result}.{half}", DATA, (f"{each.result}.{half}", DATA))
+                mask = (f"#{stage} {half}", DATA)
+                self.step(Op.ALU, each, f"{each.result}.{half}", DATA, (f"{each.result}.{half}", DATA), mask)
             self.step(
                 Op.ALU, each, each.result, DATA, (f"{each.result}.up", DATA), (f"{each.result}.down", DATA)
             )

@@ -12,8 +12,10 @@ from bfsim.kernel.lowering.idioms import bit_counting_loops, filling_loops
 from bfsim.kernel.lowering.needs import Needs
 from bfsim.kernel.lowering.places import Places
 from bfsim.kernel.lowering.predict import Likelihood
+from bfsim.kernel.lowering.ranges import ranges
 from bfsim.kernel.lowering.shapes import Shape, Shapes
 from bfsim.kernel.lowering.walks import Walks
+from bfsim.kernel.lowering.widths import widest
 from bfsim.kernel.profile import CompilerProfile
 
 
@@ -26,10 +28,13 @@ class Context:
         self.flags = Flags(self.flow)
         for loop in self.flow.loops:
             loop.blocks -= self.flags.leaving(loop)
-        self.likelihood = Likelihood(self.flow)
         self.places = Places(self.flow)
         self.walks = Walks(self.flow, self.places)
         self.shapes = Shapes(self.flow, profile)
+        self.ranges = ranges(self.flow, frozenset({*self.shapes.by_label, *self.shapes.gone}))
+        self.second_parts = {each.second: each.inside for each in self.ranges.values()}
+        """Blocks whose test is part of the one before, and where they lead if both hold."""
+        self.likelihood = Likelihood(self.flow, self.second_parts)
         self.groups = Groups(self.flow, self.walks, profile)
         self.bit_counts = bit_counting_loops(self.flow, self.walks)
         self.fills = filling_loops(self.flow, self.walks) if profile.library.fill else {}
@@ -74,7 +79,9 @@ class Context:
             return False
         if each.opcode == "and":
             return any(self._is_clean(operand, depth - 1) for operand in each.operands)
-        if each.opcode in ("trunc", "call"):
+        if each.opcode == "trunc":
+            return widest(self.flow, each.operands[0]) <= int(each.text.rsplit("i", 1)[1])
+        if each.opcode == "call":
             return False
         return all(self._is_clean(operand, depth - 1) for operand in each.operands)
 
@@ -83,6 +90,8 @@ class Context:
         if not value.startswith(("%", "@")):
             return f"#{value}"
         value = self.places.same.get(value, value)
+        if value in self.needs.behind:
+            return self.needs.behind[value].name
         each = self.flow.instruction(value)
         if each is not None and self.needs.in_sunk_mask(each):
             return self.name(each.operands[0])

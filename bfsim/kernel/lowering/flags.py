@@ -6,6 +6,8 @@ test is left [tree-ssa-threadbackward.cc of GCC 12].
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from bfsim.kernel.ir_text import PHI_ARM, Instruction
 from bfsim.kernel.loops import Flow, Loop
 from bfsim.kernel.lowering.predict import predicate
@@ -23,14 +25,43 @@ class Flags:
             if each.opcode == "phi" and not each.text.startswith("phi ptr")
         }
         self.names = {name for name, each in phis.items() if self._is_tested(each)}
+        self._keep(lambda name: self._is_set_to_constants(phis[name]) and self._is_only_tested(name))
+        carried = {name for name in self.names if self._is_carried(name)}
+        self._keep(
+            lambda name: (
+                name not in carried and self._is_set_to_constants(phis[name]) and self._is_only_tested(name)
+            )
+        )
+
+    def _keep(self, is_flag: Callable[[str], bool]) -> None:
+        """Drop those that are no flags, and whatever is none without them."""
         changed = True
         while changed:
-            kept = {
-                name
-                for name in self.names
-                if self._is_set_to_constants(phis[name]) and self._is_only_tested(name)
-            }
+            kept = {name for name in self.names if is_flag(name)}
             changed, self.names = kept != self.names, kept
+
+    def _is_carried(self, name: str) -> bool:
+        """Whether a loop carries a flag from turn to turn: no jump is threaded through the head of a loop.
+
+        A flag that ends the loop once it is set is always the same in it.
+        """
+        home = self.flow.defined[name][0]
+        loop = next((each for each in self.flow.loops if each.header == home), None)
+        return loop is not None and len(self._values(name, loop, set())) > 1
+
+    def _values(self, name: str, loop: Loop, seen: set[str]) -> set[str]:
+        """Constants that a flag may be in the turns of `loop`."""
+        seen.add(name)
+        home, phi = self.flow.defined[name]
+        found: set[str] = set()
+        for value, source in PHI_ARM.findall(phi.text):
+            if source[1:] in loop.blocks and self._sets_an_end(source[1:], home, loop):
+                continue
+            if _is_constant(value):
+                found.add(value)
+            elif value not in seen:
+                found |= self._values(value, loop, seen)
+        return found
 
     def _is_tested(self, phi: Instruction) -> bool:
         return bool(self.flow.users.get(phi.result or ""))

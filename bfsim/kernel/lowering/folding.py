@@ -158,6 +158,24 @@ class Folding:
                 return each.result or "", str(int(right) + int(each.operands[1]))
         return left, right
 
+    def remainder(self, each: Instruction) -> Instruction | None:
+        """The division whose remainder x - x / y * y is [match.pd of GCC 12]: where that is a call, it is another one."""
+        product = self.flow.instruction(each.operands[1]) if each.opcode == "sub" else None
+        if product is None or product.opcode != "mul":
+            return None
+        rounded = self.flow.instruction(product.operands[0])
+        parts = rounded.operands if rounded is not None and rounded.opcode == "add" else product.operands[:1]
+        for part in parts:
+            division = self.flow.instruction(part)
+            values = (each.operands[0], product.operands[1])
+            if (
+                division is not None
+                and division.opcode in ("sdiv", "udiv")
+                and division.operands[:2] == values
+            ):
+                return division
+        return None
+
     def added_flag(self, each: Instruction) -> str | None:
         """The other operand of a sum with 0 or another constant, by the way: only the ways that do not bring 0 add.
 

@@ -28,6 +28,10 @@ class Group:
     """What is added to the array's address where the loop starts, with factors: values computed from data."""
     steps_free: bool = False
     offset_apart: bool = False
+    neighbour: Group | None = None
+    """The group whose pointer serves this one as well: only some turns access it, at a distance that does not change."""
+    distance: tuple[tuple[str, int], ...] = ()
+    """The terms of that distance, with factors."""
 
     @property
     def stride(self) -> str | None:
@@ -51,6 +55,34 @@ class Groups:
         for group in self.all:
             group.steps_free = self._steps_free(group)
             group.offset_apart = not any(offset == 0 for _, _, offset in group.accesses)
+        for group in self.all:
+            group.neighbour = next((other for other in self.all if self._serves(other, group)), None)
+            if group.neighbour is not None:
+                group.distance = self._distance(group.neighbour, group)
+
+    def _serves(self, one: Group, other: Group) -> bool:
+        """Whether the pointer of one group takes the place of another's [cost of an iv use, tree-ssa-loop-ivopts.cc].
+
+        An access that not every turn makes costs less where it is computed from a pointer that is there than with a pointer
+        of its own, which every turn would have to step.
+        """
+        if (
+            one is other
+            or one.loop is not other.loop
+            or one.root != other.root
+            or one.advance != other.advance
+        ):
+            return False
+        fixed = all(self.walks.places.is_invariant(name, one.loop) for name, _ in self._distance(one, other))
+        return fixed and not one.advance.symbolic and self.is_steady(one) and not self.is_steady(other)
+
+    def is_steady(self, group: Group) -> bool:
+        """Whether every turn makes one of the accesses."""
+        return any(self.flow.every_turn(label, group.loop) for label, _, _ in group.accesses)
+
+    def _distance(self, one: Group, other: Group) -> tuple[tuple[str, int], ...]:
+        here, there = (self.walks.form(group.accesses[0][1].operands[-1]) for group in (one, other))
+        return there.plus(here, -1).terms
 
     def _pointers(self, label: str, each: Instruction) -> list[tuple[str, str]]:
         """(block, pointer) of an access; LLVM merges the loads of several arms, a compiler for the Blackfin does not."""

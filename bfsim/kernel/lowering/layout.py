@@ -26,8 +26,11 @@ class Layout:
         likelihood: Likelihood,
         skipped: frozenset[str],
         copies: dict[tuple[str, str], list[Charge]],
+        *,
+        leaving_side_last: bool,
     ) -> None:
         self.flow, self.likelihood, self.skipped, self.copies = flow, likelihood, skipped, copies
+        self.leaving_side_last = leaving_side_last
         self.names = [*self._named(copies)]
         order = self._order()
         self.next_of = dict(pairwise(order))
@@ -53,7 +56,8 @@ class Layout:
     def landing(self, label: str) -> str:
         """Where a jump to `label` ends: behind blocks that hold no code."""
         while label in self.skipped:
-            label = next(each for each in self.flow.blocks[label].successors if each != label)
+            ways = self.flow.blocks[label].successors
+            label = self.likelihood.second_parts.get(label) or next(each for each in ways if each != label)
         return label
 
     def _order(self) -> list[str]:
@@ -85,13 +89,32 @@ class Layout:
         for way, target in zip(self.ways(name), targets, strict=True):
             chances[way] = chances.get(way, 0) + self.likelihood.taken.get((name, target), 1.0)
         free = [each for each in chances if each in left]
-        best = max(free, key=lambda way: (chances[way], -left.index(way)), default=None)
+        best = max(
+            free,
+            key=lambda way: (chances[way], not self._may_leave(name, way, free), -left.index(way)),
+            default=None,
+        )
         for way in free:
             # the body of an `if` stays in line unless it is rare: half as likely as what skips it
             is_body = way != best and self.ways(way) == (best,) and self._entries(way) == 1
             if best is not None and is_body and 2 * chances[way] >= chances[best]:
                 return way
         return best
+
+    def _may_leave(self, name: str, way: str, ways: list[str]) -> bool:
+        """Whether a side of a test may leave the loop before it meets the other side."""
+        loop = self.flow.innermost(name) if name in self.flow.blocks else None
+        if not self.leaving_side_last or loop is None or len(ways) < 2 or way == loop.latch:
+            return False
+        seen, waiting = {*ways, loop.header, loop.latch}, [way]
+        while waiting:
+            for after in self.ways(waiting.pop()):
+                if after in self.flow.blocks and after not in loop.blocks:
+                    return True
+                if after not in seen:
+                    seen.add(after)
+                    waiting.append(after)
+        return False
 
     def _entries(self, name: str) -> int:
         return len(self.flow.predecessors[name]) if name in self.flow.blocks else 1

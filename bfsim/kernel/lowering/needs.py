@@ -12,12 +12,13 @@ from bfsim.kernel.divisions import FLOOR, SIGNED
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import Flow, Loop
+from bfsim.kernel.lowering.behind import counters_behind
 from bfsim.kernel.lowering.flags import Flags
 from bfsim.kernel.lowering.folding import NARROW, Folding
 from bfsim.kernel.lowering.groups import Groups
 from bfsim.kernel.lowering.redundant import AGAIN
 from bfsim.kernel.lowering.shapes import Kind, Shapes
-from bfsim.kernel.lowering.walks import Walks
+from bfsim.kernel.lowering.walks import Advance, Walks
 from bfsim.kernel.profile import CompilerProfile
 
 BYTE = 8
@@ -50,6 +51,7 @@ class Needs(Folding):
         self.walks, self.shapes, self.groups, self.flags = walks, shapes, groups, flags
         self.calling = calling
         self.counted = {loop.header for loop in flow.loops if self._turns_by_counter(loop)}
+        self.behind = counters_behind(flow, walks, groups, self.counted)
 
     def _turns_by_counter(self, loop: Loop) -> bool:
         """Counted, and without calls: a register counts the turns, not the program's variable."""
@@ -60,7 +62,16 @@ class Needs(Folding):
         ) or not self.calling.isdisjoint(loop.blocks)
         turns = self.walks.turns(loop)
         many = turns is None or turns > FEWEST_TURNS
-        return not library and many and self.walks.is_counted(loop) and not self._may_be_endless(loop)
+        counted = self.walks.is_counted(loop) and not self._may_be_endless(loop)
+        return not library and many and counted and (turns is not None or self._steps_by_power(loop))
+
+    def _steps_by_power(self, loop: Loop) -> bool:
+        """Whether the number of turns takes a shift to find, not a division ["Costs of niter computation too high" there]."""
+        test = self.flow.instruction(self.walks.exit_test(loop) or "")
+        gains = (
+            [self.walks.advance(operand, loop) for operand in test.operands[:2]] if test is not None else []
+        )
+        return all(gain is None or abs(gain.constant).bit_count() <= 1 for gain in gains)
 
     def _may_be_endless(self, loop: Loop) -> bool:
         """With several exits, the pointer that walks is compared for equality with its end.
@@ -108,6 +119,8 @@ class Needs(Folding):
             if each.result and (each.result not in needed or id(each) in roots):
                 needed.add(each.result)
             for used in self._really_used(each):
+                if used in self.behind and not self._is_own_step(each, used):
+                    continue
                 operand = self.walks.places.same.get(used, used)
                 source = self.flow.instruction(operand)
                 if source is not None and operand not in needed:
@@ -115,23 +128,42 @@ class Needs(Folding):
                     waiting.append(source)
         return needed
 
+    def _is_own_step(self, each: Instruction, counter: str) -> bool:
+        phi = self.flow.instruction(counter)
+        return phi is not None and each.result in phi.operands
+
     def _is_root(self, each: Instruction) -> bool:
         along = (each.result or "").endswith(AGAIN)
         return each.opcode in ("store", "br", "switch", "ret") or each.is_call or along
 
     def _really_used(self, each: Instruction) -> tuple[str, ...]:
         if each.opcode in ("load", "store") and id(each) in self.groups.of:
-            return (*each.operands[:-1], *(name for name, _ in self.groups.of[id(each)].start))
+            group = self.groups.of[id(each)]
+            return (*each.operands[:-1], *(name for name, _ in (*group.start, *group.distance)))
         if each.opcode == "br":
             return () if self.flags.decides(each) or self._is_guard(each) else self._of_branch(each)
         if each.opcode == "icmp":
             return self._of_compare(each)
         if (other := self.added_flag(each)) is not None:
             return (other,)
+        if each.opcode == "mul" and self.stepped(each) is not None:
+            return tuple(operand for operand in each.operands if self._stays(operand, each))
+        if (division := self.remainder(each)) is not None:
+            return division.operands
         if each.opcode in ("select", "and", "or") and each.bits == 1:
             counting = {self.walks.exit_test(loop) for loop in self.flow.loops if loop.header in self.counted}
             return tuple(operand for operand in each.operands if operand not in counting)
         return each.operands
+
+    def stepped(self, product: Instruction) -> Advance | None:
+        """By how much a product of a counter grows with each turn: an addition takes its place (strength reduction)."""
+        loop = self.flow.innermost(self.walks.places.of[product.result or ""])
+        advance = self.walks.advance(product.result or "", loop) if loop is not None else None
+        return advance if advance is not None and advance.moves else None
+
+    def _stays(self, operand: str, product: Instruction) -> bool:
+        loop = self.flow.innermost(self.walks.places.of[product.result or ""])
+        return loop is not None and self.walks.places.is_invariant(operand, loop)
 
     def _is_guard(self, branch: Instruction) -> bool:
         return any(
@@ -151,10 +183,14 @@ class Needs(Folding):
         return each.operands
 
     def _of_compare(self, each: Instruction) -> tuple[str, ...]:
-        """A counter that only walks and is compared with a fixed bound: the pointer is compared instead."""
+        """A counter that only walks and is compared with a bound that ends the loop: the pointer is compared instead."""
         label = self.flow.defined[each.result or ""][0]
         loop = self.flow.innermost(label)
-        if loop is None or not any(group.loop is loop and not group.stride for group in self.groups.all):
+        if (
+            loop is None
+            or label not in self.flow.exits(loop)
+            or not any(group.loop is loop and not group.stride for group in self.groups.all)
+        ):
             return self.compared(each)
         gains = [self.walks.advance(operand, loop) for operand in each.operands[:2]]
         if None in gains or sum(gain.moves for gain in gains if gain) != 1:

@@ -15,6 +15,7 @@ from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.registers import Allocation, allocate
 from bfsim.kernel.lowering.select import select
 from bfsim.kernel.lowering.steps import Step
+from bfsim.kernel.lowering.sunk import with_values_sunk
 from bfsim.kernel.profile import CompilerProfile
 
 ALONE = Issue()
@@ -22,7 +23,7 @@ ALONE = Issue()
 
 def lower(routine: Routine, profile: CompilerProfile) -> dict[str, BlockCost]:
     """Return what each block of `routine` costs, by label."""
-    routine = without_redundant_loads(routine)
+    routine = with_values_sunk(without_redundant_loads(routine))
     lowering = _Lowering(routine, profile)
     return {block.label: lowering.block(block) for block in routine.blocks}
 
@@ -38,7 +39,11 @@ class _Lowering:
             edge: [self._charge(step) for step in steps] for edge, steps in self.allocation.on_edges.items()
         }
         self.layout = Layout(
-            self.flow, self.context.likelihood, frozenset(empty | self.context.shapes.gone), copies
+            self.flow,
+            self.context.likelihood,
+            frozenset(empty | self.context.shapes.gone | self.context.second_parts.keys()),
+            copies,
+            leaving_side_last=profile.applies(Learnt.LEAVING_SIDE),
         )
         self.hardware = {loop.header for loop in self.flow.loops if self._is_hardware(loop)}
 
@@ -59,6 +64,7 @@ class _Lowering:
             each
             for each in self.flow.predecessors[loop.latch]
             if not self.flow.is_overflow_guard(self.flow.blocks[each])
+            and each not in self.context.shapes.gone
         ]
         copied = any(self._ends_apart(inner, before) for inner in loop.inner)
         if copied and self.profile.applies(Learnt.COPIED_END):
@@ -164,8 +170,7 @@ class _Lowering:
             if label not in self.context.shapes.gone and not self._vanishes(label):
                 cost.charges += self.layout.on(label, block.successors[0], terminator.line)
         elif terminator.opcode == "br" and label in self.context.shapes.by_label:
-            arms = self.context.shapes.by_label[label].arms
-            join = next(way for arm in arms for way in self.flow.blocks[arm].successors if way not in arms)
+            join, _ = self.flow.defined[self.context.shapes.by_label[label].phi.result or ""]
             cost.charges += self.layout.jump(label, self.layout.landing(join), terminator.line)
         elif terminator.opcode == "br":
             self._conditional(block, cost)
@@ -175,7 +180,9 @@ class _Lowering:
 
     def _conditional(self, block: Block, cost: BlockCost) -> None:
         label, line = block.label, block.terminator.line
-        if self.context.flags.decides(block.terminator) or self.flow.is_overflow_guard(block):
+        if label in self.context.second_parts:
+            sides = self._second_part(label, line)
+        elif self.context.flags.decides(block.terminator) or self.flow.is_overflow_guard(block):
             sides = tuple(self.layout.on(label, way, line) for way in block.successors)
         else:
             if self._is_kept(block):
@@ -183,6 +190,19 @@ class _Lowering:
                 cost.nbytes += COSTS[Op.CC_MOVE].nbytes
             sides = self._branch(label, line)
         cost.branch(block.terminator.operands[0], tuple(sides[0]), tuple(sides[1]))
+
+    def _second_part(self, label: str, line: int) -> tuple[list[Charge], ...]:
+        """What it costs more if the second part of a test does not hold after all: the branch was before."""
+        tested = self.context.ranges[label]
+        before = self.layout.sides(tested.first, line)
+        first = self.flow.blocks[tested.first].successors.index(label)
+        sides = []
+        for way in self.flow.blocks[label].successors:
+            copied = self.layout.copies.get((label, way), [])
+            sides.append(
+                [*copied, *(() if way == tested.inside else instead(before[1 - first], before[first]))]
+            )
+        return tuple(sides)
 
     def _is_kept(self, block: Block) -> bool:
         """Whether a condition was computed before the loop: a register keeps it, and CC gets it back."""

@@ -7,6 +7,7 @@ sets the (bp) bit of a branch that is more likely taken than not.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 
 from bfsim.kernel.ir_text import Block, Instruction
@@ -16,6 +17,7 @@ EVEN = 0.5
 # hit rates [predict.def]
 LOOP_EXIT, EXTRA_EXIT, LOOP_GUARD = 0.89, 0.67, 0.73
 POSITIVE, NOT_EQUAL, CALL = 0.59, 0.66, 0.67
+CONTINUE = 0.67  # the surest hint of the source: the side without `continue`
 MOST_TURNS = 100  # a loop is guessed to turn at most so often where its count is a constant
 
 BELOW_ZERO = {("slt", 0), ("slt", 1), ("sle", 0), ("sle", -1), ("slt", -1), ("sle", 1)}
@@ -25,8 +27,9 @@ ABOVE_ZERO = {("sgt", 0), ("sgt", -1), ("sge", 0), ("sge", 1), ("sgt", 1), ("sge
 class Likelihood:
     """Probabilities of the edges, and frequencies of the blocks, of one routine."""
 
-    def __init__(self, flow: Flow) -> None:
-        self.flow = flow
+    def __init__(self, flow: Flow, second_parts: Mapping[str, str] | None = None) -> None:
+        """`second_parts`: blocks whose test is made by the one before, and where they lead then."""
+        self.flow, self.second_parts = flow, second_parts or {}
 
     @cached_property
     def taken(self) -> dict[tuple[str, str], float]:
@@ -34,7 +37,11 @@ class Likelihood:
         found: dict[tuple[str, str], float] = {}
         for block in self.flow.routine.blocks:
             ways = block.successors
-            if len(set(ways)) < 2:
+            if block.label in self.second_parts:
+                found.update(
+                    {(block.label, way): float(way == self.second_parts[block.label]) for way in ways}
+                )
+            elif len(set(ways)) < 2:
                 found.update({(block.label, way): 1.0 for way in ways})
             elif block.terminator.opcode == "br":
                 first = self._of_true_side(block)
@@ -100,6 +107,8 @@ class Likelihood:
         test = self.flow.instruction(block.terminator.operands[0])
         if test is None or test.opcode != "icmp":
             return []
+        if self.second_parts.keys() & set(block.successors):
+            return []
         kind, constant = predicate(test), test.operands[1]
         number = int(constant) if constant.lstrip("-").isdigit() else None
         if kind in ("eq", "ne") and number != 0:
@@ -129,9 +138,12 @@ class Likelihood:
 
 
 def _by_hint(block: Block) -> list[float]:
-    """A side of an `if` that ends in `continue` or `return` is unlikely: the source knows, the branch carries it."""
+    """A side of an `if` that ends in `continue` or `return` is unlikely: the source knows, the branch carries it.
+
+    Where a jump was threaded, LLVM has made an extreme of it.
+    """
     weights = block.terminator.weights
-    return [weights[0] / sum(weights)] if all(weights) and weights else []
+    return [min(max(weights[0] / sum(weights), 1 - CONTINUE), CONTINUE)] if any(weights) else []
 
 
 def combined(votes: list[float]) -> float:

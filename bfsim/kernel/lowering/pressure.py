@@ -1,4 +1,7 @@
-"""Register pressure: what does not fit in the registers of a loop is reloaded where it is used."""
+"""Register pressure: what does not fit in the registers of a loop is reloaded where it is used.
+
+Values come from the stack; constants from registers that can do nothing else (I, M, B), which takes a move.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,6 @@ from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import Loop
-from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.steps import Bank, Step
 from bfsim.kernel.lowering.webs import Webs
 
@@ -121,11 +123,7 @@ class Pressure:
                     constant = web.startswith("#")
                     if block and _is_copy_for(block[-1], step) and web in map(self.find, step.overwrites):
                         block.pop()  # what was reloaded may be overwritten
-                    block.append(
-                        load_constant(web, step.line)
-                        if constant
-                        else Step(Op.LOAD32, step.line, None, Bank.ANY)
-                    )
+                    block.append(Step(Op.MOVE if constant else Op.LOAD32, step.line, None, Bank.ANY))
                 block.append(step)
                 if step.result and self.find(step.result) == web:
                     block.append(Step(Op.STORE32, step.line, None, Bank.ANY))

@@ -6,23 +6,22 @@ Each rule says what a C compiler emits for an instruction in its surroundings; w
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from bfsim.kernel import isa
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.isa import Op
 from bfsim.kernel.learnt import Learnt
-from bfsim.kernel.loops import pointee_nbytes
-from bfsim.kernel.lowering.calls import Calls
+from bfsim.kernel.lowering.accesses import Accesses
 from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.multiples import multiple
 from bfsim.kernel.lowering.predict import predicate
+from bfsim.kernel.lowering.ranges import Range
 from bfsim.kernel.lowering.shapes import Kind
 from bfsim.kernel.lowering.steps import Bank, Step, Steps
 
 ANY, DATA, POINTER = Bank.ANY, Bank.DATA, Bank.POINTER
-LOADS = {8: Op.LOAD8, 16: Op.LOAD16, 32: Op.LOAD32}
-STORES = {8: Op.STORE8, 16: Op.STORE16, 32: Op.STORE32}
 EXTENDING_MASKS = {"255": 8, "65535": 16}
 
 
@@ -37,6 +36,7 @@ def select(context: Context) -> Steps:
     for label in context.flow.order:
         if label in context.replaced:
             continue
+        selector.counters(label)
         for each in context.flow.blocks[label].instructions:
             if context.needs.emits(each):
                 selector.emit(each, context.places.of.get(each.result or "", label))
@@ -44,11 +44,7 @@ def select(context: Context) -> Steps:
     return selector.steps
 
 
-class _Selector(Calls):
-    def __init__(self, context: Context) -> None:
-        super().__init__(context)
-        self.flow = context.flow
-
+class _Selector(Accesses):
     def emit(self, each: Instruction, label: str) -> None:
         """Append the operations of one instruction to the block where it is computed."""
         self.label = label
@@ -64,72 +60,6 @@ class _Selector(Calls):
         if rule is not None:
             rule(self, each)
 
-    # Memory
-
-    def load(self, each: Instruction) -> None:
-        bank = ANY if each.bits == 32 else DATA
-        address, nbytes = (self._address(each), POINTER), self._access_bytes(each)
-        self.step(LOADS[each.bits], each, each.result, bank, address, nbytes=nbytes)
-        if self.context.needs.extended_apart(each):
-            self.step(Op.EXTEND, each, f"{each.result}.wide", DATA, (each.result or "", DATA))
-        elif self.context.needs.extended_late(each):
-            self.step(Op.EXTEND, each, each.result, DATA, (each.result or "", DATA))
-
-    def store(self, each: Instruction) -> None:
-        bank = ANY if each.bits == 32 else DATA
-        value, address = (each.operands[0], bank), (self._address(each), POINTER)
-        self.step(STORES[each.bits], each, None, DATA, value, address, nbytes=self._access_bytes(each))
-
-    def _access_bytes(self, each: Instruction) -> int | None:
-        """Bytes have no short form with an offset [PRM]."""
-        pointer = self.flow.instruction(each.operands[-1])
-        offset = (
-            pointer is not None
-            and pointer.opcode == "getelementptr"
-            and not pointer.operands[-1].startswith("%")
-        )
-        return isa.LONG_FORM_BYTES if offset and each.bits == isa.BYTE_BITS else None
-
-    def _address(self, each: Instruction) -> str:
-        """Return the pointer that an access uses: one that walks along, or one that was computed."""
-        group = self.context.groups.of.get(id(each))
-        return group.name if group else self.context.base(each.operands[-1])
-
-    def element(self, each: Instruction) -> None:
-        """An address that does not walk: base plus scaled index; constant offsets belong to the access."""
-        base, index = each.operands[0], each.operands[-1]
-        if not index.startswith("%"):
-            return
-        nbytes = pointee_nbytes(each)
-        op = Op.ALU if nbytes == 1 else Op.ADD_SHIFT
-        self.step(op, each, each.result, POINTER, (self.context.base(base), POINTER), (index, POINTER))
-
-    def pointers(self) -> None:
-        """Set up the pointers that walk, and step those for which no post-increment does."""
-        for group in self.context.groups.all:
-            if group.loop.header in self.context.fills:
-                continue
-            line = group.line
-            entering, latch = self.flow.entering(group.loop), group.loop.latch
-            start = Step(Op.MOVE, line, group.name, POINTER, ((group.root, ANY),))
-            self.steps.add(entering, start)
-            for name, times in group.start:
-                op = Op.ALU if abs(times) == 1 else Op.ADD_SHIFT
-                terms = ((group.name, POINTER), (self.context.name(name), POINTER))
-                self.steps.add(entering, Step(op, line, group.name, POINTER, terms))
-            if group.offset_apart:
-                self.steps.add(entering, Step(Op.ALU, line, group.name, POINTER, ((group.name, POINTER),)))
-            if not group.steps_free:
-                uses = ((group.name, POINTER),) + (((group.stride, POINTER),) if group.stride else ())
-                self.steps.add(latch, Step(Op.ALU, line, group.name, POINTER, uses))
-                loose = (
-                    group.loop.header not in self.context.needs.counted
-                    and len(self.flow.exits(group.loop)) > 1
-                )
-                if loose and self.context.profile.applies(Learnt.POINTER_COPIES):
-                    # the exits see the pointer before and after its step
-                    self.steps.add(latch, Step(Op.MOVE, line, None, POINTER, ((group.name, POINTER),)))
-
     # Arithmetic
 
     def add(self, each: Instruction) -> None:
@@ -143,6 +73,10 @@ class _Selector(Calls):
         if (plan := self.context.needs.shift_add(each)) is not None:
             shifted, other = plan
             self.step(Op.ADD_SHIFT, each, each.result, POINTER, (other, POINTER), (shifted, POINTER))
+            return
+        if (division := self.context.needs.remainder(each)) is not None:
+            rest = replace(each, opcode=division.opcode.replace("div", "rem"), operands=division.operands)
+            self.divide(rest)
             return
         left, right = each.operands[:2]
         if (total := self.context.needs.added_flag(each)) is not None:
@@ -223,9 +157,8 @@ class _Selector(Calls):
 
     def _steps_along(self, each: Instruction) -> bool:
         """A product of a counter: an addition per turn takes its place (strength reduction)."""
-        loop = self.flow.innermost(self.label)
-        advance = self.context.walks.advance(each.result or "", loop) if loop else None
-        if loop is None or advance is None or not advance.moves:
+        loop, advance = self.flow.innermost(self.label), self.context.needs.stepped(each)
+        if loop is None or advance is None:
             return False
         stride = f"{each.result}.stride"
         self.steps.add(self.flow.entering(loop), Step(Op.IMM, each.line, each.result, ANY))
@@ -249,6 +182,12 @@ class _Selector(Calls):
             masked = self.context.needs.bit_tested(each) or ""
             self.step(Op.BIT_TEST, each, None, DATA, (masked, DATA))
             return
+        if (joined := self.context.ranges.get(self.label)) is not None and _decides(
+            self.flow.blocks[self.label].terminator, each
+        ):
+            if self.label == joined.first:
+                self._in_range(each, joined)
+            return
         left, right = self.context.needs.compared(each)
         if right.lstrip("-").isdigit() and _is_near(predicate(each), int(right)):
             self.step(Op.COMPARE, each, None, DATA, (left, ANY))
@@ -257,6 +196,20 @@ class _Selector(Calls):
             self.step(Op.COMPARE, each, None, DATA, (left, ANY), (f"{each.result}.bound", ANY))
         else:
             self.step(Op.COMPARE, each, None, DATA, (left, ANY), (right, ANY))
+
+    def _in_range(self, each: Instruction, tested: Range) -> None:
+        """The distance from the lower end, compared as an unsigned number."""
+        value, distance, length = tested.value, f"{each.result}.distance", tested.high - tested.low
+        if -tested.low in isa.ADD_IMMEDIATE and tested.low:
+            self.step(Op.ALU, each, distance, ANY, (value, ANY), overwrites=(value,))
+        elif tested.low:
+            self.step(Op.ALU, each, distance, ANY, (value, ANY), (f"#{-tested.low}", ANY))
+        value = distance if tested.low else value
+        if length in isa.COMPARE_UNSIGNED_IMMEDIATE:
+            self.step(Op.COMPARE, each, None, DATA, (value, ANY))
+        else:
+            self.steps.add(self.label, load_constant(f"#{length}", each.line, f"{each.result}.bound"))
+            self.step(Op.COMPARE, each, None, DATA, (value, ANY), (f"{each.result}.bound", ANY))
 
     def choose(self, each: Instruction) -> None:
         """A select that LLVM itself formed."""
@@ -294,6 +247,10 @@ class _Selector(Calls):
         else:
             uses = tuple((value, ANY) for value in shape.operands)
             self.step(Op.COND_MOVE, each, result, ANY, *uses, overwrites=shape.operands[1:])
+
+
+def _decides(branch: Instruction, test: Instruction) -> bool:
+    return branch.operands[:1] == (test.result,)
 
 
 def _is_single_bit(opcode: str, mask: int) -> bool:

@@ -68,7 +68,7 @@ class Shapes:
         if block.terminator.opcode != "br" or len(set(block.successors)) != 2:
             return None
         yes, no = block.successors
-        arms = [way for way in (yes, no) if self._is_arm(way, label)]
+        arms = [way for way in (yes, no) if self._is_arm(way, label) or self._only_renames(way)]
         ends = {self.flow.blocks[way].successors[0] if way in arms else way for way in (yes, no)}
         if not arms or len(ends) != 1:
             return None
@@ -77,12 +77,26 @@ class Shapes:
         phis = [each for each in self.flow.blocks[join].instructions if each.opcode == "phi"]
         choices: list[tuple[Instruction, str, str]] = []
         for each in phis:
-            chosen, other = (self._plain(_arm_value(each, source), each) for source in sources)
+            chosen, other = (self._chosen(each, source, label) for source in sources)
             if chosen != other:
                 choices.append((each, chosen, other))
         if len(choices) != 1:
             return None
-        return self._of_choice(label, frozenset(arms), *choices[0])
+        return self._of_choice(label, frozenset(arm for arm in arms if self._is_arm(arm, label)), *choices[0])
+
+    def _chosen(self, phi: Instruction, source: str, label: str) -> str:
+        """What a phi takes over from `source`, a side of the test in block `label`."""
+        value = self._plain(_arm_value(phi, source), phi)
+        if source == label or self._is_arm(source, label) or self.flow.defined.get(value, ("",))[0] != source:
+            return value
+        return self._plain(_arm_value(self.flow.defined[value][1], label), phi)
+
+    def _only_renames(self, way: str) -> bool:
+        """Whether a block that several ways lead to only hands values on: of the way from the test, it is no block at all."""
+        rows = self.flow.blocks[way].instructions
+        alone = len(set(self.flow.blocks[way].successors)) == 1 and len(self.flow.predecessors[way]) > 1
+        is_header = any(loop.header == way for loop in self.flow.loops)
+        return alone and not is_header and all(each.opcode in ("phi", *RENAMING) for each in rows[:-1])
 
     def _clamp(self, label: str) -> Shape | None:
         """A minimum of a constant and of a maximum, or the other way round [minmax_replacement in tree-ssa-phiopt.cc]."""

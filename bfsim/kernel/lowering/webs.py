@@ -65,6 +65,9 @@ class Webs:
     def _coalesce(self) -> None:
         """Give a phi and its arms one register, the most frequent copies first, unless both are wanted at once."""
         apart = self._interference()
+        for phi, value in self._stepped():
+            apart[phi].discard(value)
+            apart[value].discard(phi)
         members = {name: {name} for name in apart}
         copies = [
             (self.frequency[label], phi, value)
@@ -79,6 +82,19 @@ class Webs:
                 continue
             self.web[other] = one
             mine |= theirs
+
+    def _stepped(self) -> list[tuple[str, str]]:
+        """Counters of loops and their next values, which only the next turn wants: they are stepped last, in place."""
+        found = []
+        for phi, arms in self.phis.items():
+            label, each = self.flow.defined[phi]
+            latches = [loop.latch for loop in self.flow.loops if loop.header == label]
+            for value, source in arms:
+                step = self.flow.instruction(value)
+                steps = step is not None and step.opcode == "add" and step.operands[0] == phi
+                if steps and source in latches and self.flow.users[value] == [each]:
+                    found.append((phi, value))
+        return found
 
     def _interference(self) -> defaultdict[str, set[str]]:
         """Of each value: those that are alive where it is computed, or that are computed while it is alive."""

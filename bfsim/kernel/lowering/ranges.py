@@ -1,0 +1,98 @@
+"""Two tests for a range, made as one: `48 <= c and c <= 57` is `(unsigned) c - 48 <= 9` [fold_range_test in fold-const.cc of GCC 12]."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.loops import Flow
+from bfsim.kernel.lowering.predict import predicate
+
+JOINED = ("and", "or", "decided")  # what the blocks of a condition of several parts are called
+RENAMING = ("zext", "sext", "trunc", "freeze")
+WORD = 32
+OPPOSITE = {"lt": "ge", "ge": "lt", "gt": "le", "le": "gt"}
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """The test for `low <= value <= high` in block `first`, of which the block `second` would be the second part.
+
+    `inside` is where both lead if the value is in the range.
+    """
+
+    first: str
+    second: str
+    inside: str
+    value: str
+    low: int
+    high: int
+
+
+def ranges(flow: Flow, taken: frozenset[str]) -> dict[str, Range]:
+    """Return the ranges that a routine tests for, by both of their blocks, none of which is in `taken`."""
+    found: dict[str, Range] = {}
+    for label in flow.order:
+        for way in flow.blocks[label].successors:
+            if not {label, way} & (taken | found.keys()) and (each := _range(flow, label, way)) is not None:
+                found[label] = found[way] = each
+    return found
+
+
+def _range(flow: Flow, first: str, second: str) -> Range | None:
+    rows = flow.blocks[second].instructions
+    alone = flow.predecessors[second] == [first] and second.startswith(JOINED)
+    if not alone or any(each.opcode not in (*RENAMING, "icmp", "br") for each in rows):
+        return None
+    outer = _bound(flow, first, flow.blocks[first].successors.index(second) == 0)
+    for side, inside in enumerate(flow.blocks[second].successors):
+        inner = _bound(flow, second, side == 0)
+        if outer is None or inner is None or outer[0] != inner[0] or outer[1] == inner[1]:
+            continue
+        bounds = {kind: bound for _, kind, bound in (outer, inner)}
+        if bounds["low"] < bounds["high"]:
+            return Range(first, second, inside, outer[0], bounds["low"], bounds["high"])
+    return _neither(flow, first, second)
+
+
+def _neither(flow: Flow, first: str, second: str) -> Range | None:
+    """The test for one of two numbers side by side, of which 255 and 0 are two if the value is a byte."""
+    ways = flow.blocks[first].successors
+    tests = [flow.instruction(flow.blocks[label].terminator.operands[0]) for label in (first, second)]
+    if not all(test is not None and test.opcode == "icmp" and predicate(test) == "eq" for test in tests):
+        return None
+    one, other = (test for test in tests if test is not None)
+    hit, miss = flow.blocks[second].successors
+    if ways != (hit, second) or _plain(flow, one) != _plain(flow, other):
+        return None
+    numbers = [test.operands[1] for test in (one, other)]
+    if not all(each.lstrip("-").isdigit() for each in numbers):
+        return None
+    low, high = sorted(map(int, numbers))
+    if high != low + 1:
+        return None
+    if low == -1 and one.bits < WORD:  # as LLVM writes the highest of a narrow type
+        return Range(first, second, miss, _plain(flow, one), 1, (1 << one.bits) - 2)
+    return Range(first, second, miss, _plain(flow, one), low, high)
+
+
+def _bound(flow: Flow, label: str, holds: bool) -> tuple[str, str, int] | None:
+    """(value, low or high, bound) that the test at the end of a block sets if it comes out as `holds`."""
+    branch = flow.blocks[label].terminator
+    test = flow.instruction(branch.operands[0]) if branch.opcode == "br" and branch.operands else None
+    if test is None or test.opcode != "icmp" or len(flow.users.get(test.result or "", [])) > 1:
+        return None
+    relation, bound = predicate(test)[-2:], test.operands[1]
+    if relation not in OPPOSITE or not bound.lstrip("-").isdigit():
+        return None
+    relation = relation if holds else OPPOSITE[relation]
+    number = int(bound) + {"lt": -1, "gt": 1}.get(relation, 0)
+    return _plain(flow, test), "low" if relation[0] == "g" else "high", number
+
+
+def _plain(flow: Flow, test: Instruction) -> str:
+    value, each = test.operands[0], flow.instruction(test.operands[0])
+    while each is not None and each.opcode in RENAMING:
+        value = each.operands[0]
+        each = flow.instruction(value)
+    return value
