@@ -366,7 +366,10 @@ def test_small_pictures_run_three_times_as_fast(tmp_path: Path) -> None:
             "send.0.mode.lines.far_gap must be a whole number of 32 bits, not 2.5",
         ),
         ({"models": ["bal"]}, "send.0.models.0 must be or have the name of one of ball, blue goal"),
-        ({"mode": {}, "models": []}, "send.0 must have one of mode, models, words, bytes, not mode and models"),
+        (
+            {"mode": {}, "models": []},
+            "send.0 must have one of mode, models, words, bytes, not mode and models",
+        ),
     ],
 )
 def test_mistakes_in_orders_are_named(tmp_path: Path, entry: dict[str, Any], message: str) -> None:
