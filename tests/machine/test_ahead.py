@@ -102,6 +102,26 @@ def test_a_run_that_fails_does_not_wait(monkeypatch: pytest.MonkeyPatch) -> None
     assert sleeper.returncode
 
 
+IR = """
+from bfsim.kernel.compiled import _ir
+from bfsim.kernel.follow import follow
+print("IndexError" in _ir(follow))
+"""
+
+
+@pytest.mark.parametrize("name", ["NUMBA_BOUNDSCHECK", "NUMBA_DISABLE_JIT"])
+def test_what_is_compiled_is_the_same_in_any_environment(name: str) -> None:
+    """What somebody has set to look for mistakes in code of their own ended bfsim, from the cache also without it."""
+    done = subprocess.run(
+        [sys.executable, "-c", IR],
+        env=os.environ | {name: "1"},
+        capture_output=True,
+        check=True,
+        text=True,
+    )
+    assert done.stdout == "False\n"
+
+
 FIND = """
 import sys
 from bfsim.kernel.follow import follow
