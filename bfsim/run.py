@@ -204,6 +204,7 @@ def _record(
         traffic=outcome.traffic,
         code=outcome.code,
         messages=outcome.messages,
+        untaken=outcome.untaken,
         interrupts=outcome.interrupts,
         events=outcome.events,
     )

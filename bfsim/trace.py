@@ -198,6 +198,7 @@ class MessageRecord:
 class RunRecord:
     """One run. `messages` went over SPI; `interrupts` were taken, by core and source. `missed` are the recording's frames that came while the firmware was busy.
 
+    `untaken` are the entries of the strategy script that the firmware did not take: after how many frames each was due.
     When `interrupted` by Ctrl-C, `kernels` and `traffic` also hold what was done of the frame that was not finished.
     """
 
@@ -210,6 +211,7 @@ class RunRecord:
     traffic: tuple[TrafficRecord, ...]
     code: tuple[CodeRecord, ...]
     messages: tuple[MessageRecord, ...]
+    untaken: tuple[int, ...]
     interrupts: Mapping[str, int]
     events: int
 

@@ -33,6 +33,9 @@ SINE_BITS = 14
 DEEPEST = (1 << 31) - MICROMETRES
 """Focal length times baseline, in the units above, must stay below: it is what all depths are made of."""
 
+HIGHEST = 1 << 31
+"""Focal length times height, in the units above, must stay below: depths on the floor are made of it."""
+
 FARTHEST_MM = 32767
 """A point that is farther away does not go into a 16-bit word."""
 
@@ -43,12 +46,22 @@ def geometry_buffer(geometry: Geometry) -> Buffer:
 
 
 def thesis_geometry_buffer(size: FrameSize) -> Buffer:
-    """Return the geometry of the thesis's robot (T §6.2, §6.4), for recordings that do not say theirs."""
+    """Return the geometry of the thesis's robot (T §6.2, §6.4), for recordings that do not say theirs.
+
+    Raises FirmwareError for pictures so large that nothing can be computed with its cameras.
+    """
     focal_px = 386.0 * size.width_px / 320  # measured in pictures of 320x240
-    return _buffer(focal_px, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
+    try:
+        return _buffer(focal_px, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
+    except FirmwareError as error:
+        raise FirmwareError(
+            f"a recording of {size} pixels must say its geometry (bfsim record import --geometry), "
+            f"for with the thesis's {error}"
+        ) from error
 
 
 def _buffer(focal_px: float, baseline_mm: float, height_mm: float, tilt_deg: float) -> Buffer:
+    _check(focal_px, baseline_mm, height_mm)
     words = (
         round(SUBPIXELS * focal_px),
         round(MICROMETRES * baseline_mm),
@@ -60,13 +73,24 @@ def _buffer(focal_px: float, baseline_mm: float, height_mm: float, tilt_deg: flo
         0,
         round(SUBPIXELS * focal_px),
     )
-    if words[GEOMETRY_FOCAL] * words[GEOMETRY_BASELINE] >= DEEPEST:
-        limit = DEEPEST / (SUBPIXELS * MICROMETRES)
-        raise FirmwareError(
-            f"focal length times baseline of the cameras must be below {limit:.0f} px mm, "
-            f"not {focal_px:g} px times {baseline_mm:g} mm"
-        )
     return Buffer("geometry", i32, GEOMETRY_WORDS, "data1", values=np.array(words))
+
+
+def _check(focal_px: float, baseline_mm: float, height_mm: float) -> None:
+    """Raise FirmwareError unless 32 bits can compute with the cameras."""
+    if focal_px < 1:
+        raise FirmwareError(f"focal length of the cameras must be at least 1 px, not {focal_px:g} px")
+    if baseline_mm < 1 / MICROMETRES:
+        raise FirmwareError(f"baseline of the cameras must be at least 0.001 mm, not {baseline_mm:g} mm")
+    for name, mm, limit in (
+        ("baseline", baseline_mm, DEEPEST / (SUBPIXELS * MICROMETRES)),
+        ("height", abs(height_mm), HIGHEST / (SUBPIXELS * HEIGHT_STEPS)),
+    ):
+        if focal_px * mm >= limit:
+            raise FirmwareError(
+                f"focal length times {name} of the cameras must be below {limit:.0f} px mm, "
+                f"not {focal_px:g} px times {mm:g} mm"
+            )
 
 
 @kernel

@@ -25,6 +25,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 ROOMS = ("kernel", "machine")
 """Folders of bfsim with compiled parts; those of one use numbers and functions of the other."""
 OPTIONS = {"error_model": "numpy"}
+SETTINGS = {"BOUNDSCHECK": 0, "DISABLE_JIT": 0}
+"""What a user's environment may tell numba for code of its own: `words_at` does not know the length that would be checked."""
 
 _parts: list[Callable[..., Any]] = []
 """What numba has still to be told of."""
@@ -93,6 +95,8 @@ def _key(symbol: str) -> str:
 def _ir(each: Entry) -> str:
     """Return a module of LLVM IR with an entry and all that it calls, of which only the entry can be called from outside."""
     numba: Any = importlib.import_module("numba")  # its own types do not know all of its options
+    for name, value in SETTINGS.items():
+        setattr(numba.config, name, value)
     while _parts:
         numba.extending.register_jitable(no_cfunc_wrapper=True, **OPTIONS)(_parts.pop())
     _extend(numba)

@@ -177,14 +177,27 @@ class Kernel:
         """Run with every index checked and undo it; raise KernelError at the first index outside its array."""
         sanitizer.check(self.function, arguments)
 
-    def __call__(self, *arguments: Any) -> Any:
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
         """Run on numpy arrays and ints, as the firmware would, but without a machine around it."""
+        if named:
+            names = ", ".join(each.name for each in self.function.parameters)
+            raise KernelError(
+                f"{self.name} must get {names} by their places, not {', '.join(named)} by name ({self.place})"
+            )
         self.check(arguments)
         arrays = [arguments[each] for each in self.array_positions]
         code = self.compiled(VDSP_O2)
         return self.prepare(code, arrays, code.new_totals()).run(arguments).value
 
 
-def kernel(python: Callable[..., Any]) -> Kernel:
-    """Make `python` a kernel. Raises KernelError, with file, line and caret, where it leaves the language."""
+def kernel(python: Callable[..., Any] | None = None, /, **options: object) -> Kernel:
+    """Make `python` a kernel. Raises KernelError, with file, line and caret, where it leaves the language.
+
+    There are no options: what is written in brackets is refused.
+    """
+    if python is None or options:
+        raise KernelError(
+            f"@kernel must stand without brackets, not as @kernel({', '.join(options)}): how it is compiled is for "
+            "the profile to say (--profile)"
+        )
     return Kernel(read_kernel(python), python)

@@ -71,6 +71,7 @@ class Outcome:
     traffic: tuple[TrafficRecord, ...]
     code: tuple[CodeRecord, ...]
     messages: tuple[MessageRecord, ...]
+    untaken: tuple[int, ...]
     interrupts: Mapping[str, int]
     events: int
 
@@ -346,6 +347,7 @@ class Board:
             traffic=traffic_records(self._bus.words, self.spec.clocks.cclk_ticks),
             code=code_records(self.link_map, PROCESSORS, self.spec.chip.regions),
             messages=tuple(self._spi.records),
+            untaken=self._untaken(),
             interrupts={
                 f"{core} {source}": count
                 for core, each in self._shared.interrupts.items()
@@ -353,3 +355,8 @@ class Board:
             },
             events=self._env.count_events(),
         )
+
+    def _untaken(self) -> tuple[int, ...]:
+        """Return when each entry of the script was due that did not come in."""
+        taken = sum(each.direction == "in" for each in self._spi.records)
+        return tuple(sorted(each.after_frames for each in self.script)[taken:])

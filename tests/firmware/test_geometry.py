@@ -16,6 +16,8 @@ from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
 from bfsim.run import calibration_of
 from firmware import one_eye, tinyphoon
 from firmware.geometry import FARTHEST_MM, GEOMETRY_WORDS, beside_mm, depth_mm, geometry_buffer, look_at
+from firmware.stages.object_places import depth_by_floor
+from firmware.stores.lines import SUBPIXELS
 from tests.firmware.whole_pictures import buffer, random_frames, run
 
 THESIS = [386 * 16, 30470, 120 * 16, 1820, 2845, 16135, 0, 0, 386 * 16]
@@ -61,6 +63,37 @@ def test_cameras_that_32_bits_cannot_compute_with_are_refused() -> None:
     geometry_buffer(StereoGeometry(1000.0, 134.0, 0, 0))
     with pytest.raises(FirmwareError, match="must be below 134218 px mm, not 1000 px times 135 mm"):
         geometry_buffer(StereoGeometry(1000.0, 135.0, 0, 0))
+
+
+@pytest.mark.parametrize(
+    ("geometry", "what"),
+    [
+        ((0.99, 30.0, 120.0), "focal length of the cameras must be at least 1 px, not 0.99 px"),
+        ((386.0, 0.0009, 120.0), "baseline of the cameras must be at least 0.001 mm, not 0.0009 mm"),
+        ((386.0, 30.0, 1e9), r"length times height .* below 8388608 px mm, not 386 px times 1e\+09 mm"),
+        ((386.0, 30.0, -21800.0), "length times height .* below 8388608 px mm, not 386 px times 21800 mm"),
+    ],
+)
+def test_cameras_that_are_nowhere_are_refused(geometry: tuple[float, float, float], what: str) -> None:
+    """In words about the cameras, before any kernel divides by 0 or leaves 32 bits."""
+    with pytest.raises(FirmwareError, match=what):
+        geometry_buffer(StereoGeometry(*geometry, tilt_deg=0.0))
+
+
+@pytest.mark.parametrize(("focal_px", "height_mm"), [(1.0, 1e6), (386.0, 21700.0), (386.0, -21700.0)])
+def test_the_highest_camera_sees_the_floor_where_it_is(focal_px: float, height_mm: float) -> None:
+    """A point so far from the principal point that it is one height away: no product has left 32 bits."""
+    values = np.array(geometry_buffer(StereoGeometry(focal_px, 1.0, height_mm, 0.0)).values, np.int32)
+    row = round(SUBPIXELS * focal_px) * (1 if height_mm > 0 else -1)
+    depth = abs(height_mm) if abs(height_mm) <= FARTHEST_MM else 0
+    assert depth_by_floor(values, row, 0) == depth
+
+
+def test_pictures_too_large_for_the_geometry_of_the_thesis_must_bring_theirs() -> None:
+    """The message says how."""
+    tinyphoon.buffers(FrameSize(3648, 16))
+    with pytest.raises(FirmwareError, match=r"4096x16 pixels must say .* --geometry\), .* must be below"):
+        tinyphoon.buffers(FrameSize(4096, 16))
 
 
 @given(st.integers(1, 1 << 15), st.integers(1, 65535), st.integers(-100, 1 << 15))

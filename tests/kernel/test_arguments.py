@@ -110,3 +110,20 @@ def test_totals_add_up_over_calls() -> None:
         sum(int(n) * each.issue_cclk for n, each in zip(totals, code.counters, strict=True))
         == 5 * cycles.pop()
     )
+
+
+def test_arguments_by_name_are_refused() -> None:
+    """As in a kernel that calls another one."""
+    with pytest.raises(
+        KernelError, match="shade must get row, table, gain, bits by their places, not bits by name"
+    ):
+        shade(ROW, TABLE, 1, bits=2)
+
+
+@pytest.mark.parametrize(("options", "shown"), [({}, ""), ({"fast": True, "inline": 1}, "fast, inline")])
+def test_the_decorator_has_no_options(options: dict[str, object], shown: str) -> None:
+    """It is told what to write, and where what it may have looked for is."""
+    with pytest.raises(
+        KernelError, match=re.escape(f"must stand without brackets, not as @kernel({shown}): how")
+    ):
+        kernel(**options)

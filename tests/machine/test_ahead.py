@@ -102,6 +102,49 @@ def test_a_run_that_fails_does_not_wait(monkeypatch: pytest.MonkeyPatch) -> None
     assert sleeper.returncode
 
 
+START = f"""
+import os, subprocess, sys, time
+subprocess.Popen([sys.executable, "-m", "{ahead.__name__}", str(os.getpid())])
+print("started", flush=True)
+time.sleep(600)
+"""
+
+
+@pytest.mark.skipif(
+    sys.platform == "win32", reason="a process there does not learn that its parent has ended"
+)
+def test_it_does_not_outlive_who_started_it(tmp_path: Path) -> None:
+    """Killed from outside, with no time to end it: the pipe is closed, and nobody has compiled to the end."""
+    surroundings = {**os.environ, "BFSIM_CACHE_DIR": str(tmp_path)}
+    parent = subprocess.Popen([sys.executable, "-c", START], env=surroundings, stdout=subprocess.PIPE)
+    with parent:
+        assert parent.stdout
+        assert parent.stdout.readline() == b"started\n"
+        parent.kill()
+        assert parent.stdout.read() == b""
+    assert len([each for each in tmp_path.rglob("*") if each.is_file()]) < 2
+
+
+IR = """
+from bfsim.kernel.compiled import _ir
+from bfsim.kernel.follow import follow
+print("IndexError" in _ir(follow))
+"""
+
+
+@pytest.mark.parametrize("name", ["NUMBA_BOUNDSCHECK", "NUMBA_DISABLE_JIT"])
+def test_what_is_compiled_is_the_same_in_any_environment(name: str) -> None:
+    """What somebody has set to look for mistakes in code of their own ended bfsim, from the cache also without it."""
+    done = subprocess.run(
+        [sys.executable, "-c", IR],
+        env=os.environ | {name: "1"},
+        capture_output=True,
+        check=True,
+        text=True,
+    )
+    assert done.stdout == "False\n"
+
+
 FIND = """
 import sys
 from bfsim.kernel.follow import follow
@@ -113,7 +156,7 @@ print(all(each.is_kept() and each.address() for each in (follow, advance)), "num
 def test_what_it_makes_needs_no_compiler(tmp_path: Path) -> None:
     """What the process leaves in the cache is all that a later one needs: numba is not even imported there."""
     surroundings = {**os.environ, "BFSIM_CACHE_DIR": str(tmp_path)}
-    for command in (["-m", ahead.__name__], ["-c", FIND]):
+    for command in (["-m", ahead.__name__, str(os.getpid())], ["-c", FIND]):
         done = subprocess.run(
             [sys.executable, *command], env=surroundings, capture_output=True, check=True, text=True
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -13,7 +14,8 @@ from bfsim.machine.core.semaphore import Semaphore
 from bfsim.machine.simulation import Simulation
 from bfsim.trace import REST, StallReason
 from tests.machine.kernels import spin
-from tests.machine.rig import Play, cycles_of, every_frame, run, stage_of
+from tests.machine.made_boards import noise
+from tests.machine.rig import Play, cycles_of, every_frame, load, run, see_all, stage_of
 
 CHIP = board_named("cm-bf561").chip
 assert CHIP.l2 is not None
@@ -139,6 +141,25 @@ def test_a_core_that_waits_for_one_that_has_ended_is_told() -> None:
 
     with pytest.raises(DeadlockError, match="core A waits for semaphore 'go', .*; core B has ended"):
         run(waiting_for("go"), end)
+
+
+def test_a_core_that_has_not_begun_has_not_ended() -> None:
+    """Where semaphores cost nothing, A waits before B has had its first turn."""
+
+    def post(core: Core) -> Play:
+        yield from core.post("go")
+        yield from see_all(core)
+
+    def wait(core: Core) -> Play:
+        yield from core.wait("go")
+        yield from see_all(core)
+
+    board = load(wait, post)
+    chip = board.spec.chip
+    assert chip.l2
+    at_once = replace(chip, events=replace(chip.events, testset_cclk=0), l2=replace(chip.l2, read_cclk=0))
+    board = replace(board, spec=replace(board.spec, chip=at_once))
+    assert len(board.run(noise(2, board.size)).frames) == 2
 
 
 def test_a_core_that_ends_early_keeps_its_pair_of_pictures() -> None:

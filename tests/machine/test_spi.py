@@ -212,6 +212,22 @@ def test_what_the_script_says_comes_in_after_its_frame() -> None:
     ]
     incoming = [each for each in outcome.messages if each.direction == "in"]
     assert [(each.type, each.sequence) for each in incoming] == [("MODE", 0), ("MODELS", 1), ("MODE", 2)]
+    assert outcome.untaken == ()
+
+
+@pytest.mark.parametrize(("frames", "untaken"), [(1, (2, 2, 9)), (2, (2, 2, 9)), (3, (9,))])
+def test_what_comes_after_the_last_frame_is_told(frames: int, untaken: tuple[int, ...]) -> None:
+    """What was not due yet, and what was due when nobody asked any more."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        row = core.array("message")
+        while (yield from core.receive(row)):
+            pass
+        yield from core.send(row, put(core, results(frame.index)))
+
+    late = ScriptedBytes(after_frames=9, octets=b"late")
+    outcome, _ = run(every_frame(work), frames=frames, script=(late, *SCRIPT))
+    assert outcome.untaken == untaken
 
 
 def test_a_message_in_is_waited_for_and_an_empty_wire_is_not() -> None:

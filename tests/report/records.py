@@ -82,6 +82,7 @@ def run_of(frames: Sequence[FrameRecord], missed: tuple[int, ...] = ()) -> RunRe
         code=(),
         traffic=(),
         messages=(),
+        untaken=(),
         interrupts={},
         events=0,
     )

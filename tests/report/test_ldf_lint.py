@@ -158,6 +158,25 @@ def test_nearly_full(used_bytes: int, count: int) -> None:
     assert len(found(memory_map, "nearly full")) == count
 
 
+@pytest.mark.parametrize(
+    ("memory", "takes", "used_bytes", "count"),
+    [
+        ("COREA_L1_CODE_CACHE", ("program", "cplb_code"), 950, 0),
+        ("COREA_L1_CODE_CACHE", ("program", "cplb_code"), 951, 2),
+        ("COREA_L1_CODE_CACHE", ("cplb_code",), 0, 1),
+        ("L2", ("program", "cplb_code"), 0, 1),
+    ],
+    ids=["room beside it", "that is full, too", "room for something else", "a slower memory"],
+)
+def test_nearly_full_where_the_next_one_finds_room(
+    memory: str, takes: tuple[str, ...], used_bytes: int, count: int
+) -> None:
+    """What spills to a memory as fast costs nothing."""
+    full = a_segment("COREA_L1_CODE", start=0, nbytes=1000, used_bytes=1000, takes=("program",))
+    other = a_segment(memory, start=0x2000, nbytes=1000, used_bytes=used_bytes, takes=takes)
+    assert len(found(a_map(full, other), "nearly full")) == count
+
+
 def test_tables_in_sdram() -> None:
     """Look-up tables wait for the SDRAM at every element, but not behind a data cache or in L2."""
     table = a_symbol("atan", Kind.TABLE, "A", bank(2), 257)

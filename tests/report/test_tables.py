@@ -182,6 +182,16 @@ def test_remarks_are_summed_up() -> None:
     assert "Remarks" not in printed(run_report(run))
 
 
+def test_what_of_a_script_was_not_taken_is_said() -> None:
+    """With the frames that there were to take it in."""
+    run = edge_run(100, 100)
+    (line,) = (each for each in printed(run_report(replace(run, untaken=(2, 12)))) if "Not taken" in each)
+    assert squeezed(line) == (
+        "Not taken 2 entries of the strategy script, the first with after_frames = 2: 2 frames were run"
+    )
+    assert not any("Not taken" in each for each in printed(run_report(run)))
+
+
 def test_check_report_lists_broken_limits_and_gains(tmp_path: Path) -> None:
     """Limit, measured, by how much; what became better stands apart."""
     path = tmp_path / "bfsim.toml"

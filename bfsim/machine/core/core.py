@@ -281,6 +281,7 @@ class Core(SynchronisedCore):
         yield from self._perform(task)
         yield from self._sync()
         self._close_frame()
+        self.is_done = True
 
     def _close_frame(self) -> None:
         """Turn the cycles since the last frame's end into a record, if there was a frame."""

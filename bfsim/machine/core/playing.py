@@ -49,6 +49,8 @@ class PlayingCore(CoreClock):
         self._unclaimed: Work | None = None
         self._task: Generator[Any, Any, Any] | None = None  # the main loop, or the handler that came between
         self._in_handler = False
+        self.is_done = False
+        """Whether the main loop has ended."""
 
     # What firmware uses
 
@@ -87,11 +89,6 @@ class PlayingCore(CoreClock):
             yield from self._take_interrupts()
 
     # What the board uses
-
-    @property
-    def is_done(self) -> bool:
-        """Whether the main loop has ended."""
-        return self._task is None
 
     def describe_wait(self) -> str:
         """Say what the core waits for and where in the firmware."""

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from bfsim.report.ldf.map import SHARED, Kind, MapSymbol, MemoryMap
+from bfsim.report.ldf.map import SHARED, Kind, MapSegment, MapSymbol, MemoryMap
 
 FULL_SHARE = 0.95
 """A segment that is used beyond this share is nearly full."""
@@ -167,8 +167,11 @@ def _scratchpad(memory_map: MemoryMap) -> Iterator[Finding]:
 
 
 def _nearly_full(memory_map: MemoryMap) -> Iterator[Finding]:
+    """Nothing more fits, here or in a memory as fast that takes the same input sections."""
     for segment in memory_map.segments:
-        if segment.used_share > FULL_SHARE:
+        if segment.used_share > FULL_SHARE and not any(
+            _has_room_for(segment, each) for each in memory_map.segments
+        ):
             yield Finding(
                 rule="nearly full",
                 where=segment.name,
@@ -176,6 +179,20 @@ def _nearly_full(memory_map: MemoryMap) -> Iterator[Finding]:
                 "slower memory, or does not link",
                 advice="move what is used least out of it",
             )
+
+
+def _has_room_for(full: MapSegment, other: MapSegment) -> bool:
+    """Say whether all that a full segment takes can go to the other one, and is as fast there."""
+    as_fast = other.owner == full.owner and _level(other) == _level(full)
+    return as_fast and other.used_share <= FULL_SHARE and _taken(full) <= _taken(other)
+
+
+def _level(segment: MapSegment) -> str:
+    return "L1" if "_L1_" in segment.memory else segment.memory
+
+
+def _taken(segment: MapSegment) -> set[str]:
+    return {name for section in segment.sections for name in section.takes}
 
 
 def _tables(memory_map: MemoryMap) -> Iterator[Finding]:
