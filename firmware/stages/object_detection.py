@@ -44,7 +44,7 @@ class ObjectThresholds:
     thesis (T Eq. 4.1, the mean of both cameras).
 
     `age_max`: for how many frames an object that is not seen stays in the history. `apart_max`: how far it may have moved
-    in the picture since the last frame, of 256 for a focal length.
+    in the picture since the last frame, of 256 for a focal length; a goal, the only one of its model, may have moved more.
     """
 
     colour_weight: int = allowed(0, LARGEST_ACCURACY, total=LARGEST_ACCURACY)
@@ -172,5 +172,5 @@ def remember(core: Core, tables: Sequence[Row], thresholds: ObjectThresholds) ->
     yield core.run(age_objects, objects, thresholds.age_max)
     lost = 0
     for seen in tables:
-        lost += yield core.run(remember_objects, objects, seen, thresholds.apart_max)
+        lost += yield core.run(remember_objects, objects, seen, core.array("models"), thresholds.apart_max)
     core.publish(objects_lost=lost)

@@ -1,8 +1,10 @@
 """The object history: what was seen in the last frames, each object once (T §5.2.6).
 
 An object seen now takes the place of the one of its model that was seen nearest to it before; both are compared by their
-bearing, which is known of all. What is not seen any more stays with its age until it is too old, and its image moves when
-the area of interest does.
+bearing, which is known of all. A goal, the only one of its model, takes its place however far from there it was; of several
+in a frame the most accurate one is it [ours]: the cameras may see different parts of it, and other things of its colour look
+like one. What is not seen any more stays with its age until it is too old, and its image moves when the area of interest
+does.
 """
 
 from __future__ import annotations
@@ -12,9 +14,11 @@ from typing import Any
 
 from bfsim.api import Core, i16, i32, kernel
 from firmware.areas import Area
+from firmware.stages.object_tests import is_goal
 from firmware.stores.lines import SUBPIXELS
 from firmware.stores.objects import (
     NO_MODEL,
+    OBJECT_ACCURACY,
     OBJECT_AGE,
     OBJECT_EXTENT,
     OBJECT_IMAGE_X,
@@ -99,16 +103,37 @@ def record_for(objects: i16[:], seen: i16[:], number: i32, apart_max: i32) -> i3
 
 
 @kernel
-def remember_objects(objects: i16[:], seen: i16[:], apart_max: i32) -> i32:
-    """Take the objects that are seen into the history; returns how many found no record."""
+def only_record(objects: i16[:], model: i32) -> i32:
+    """Return the record of the model with a number, of which there is one thing, or NOWHERE."""
+    for record in range(len(objects) // OBJECT_WORDS):
+        if objects[record * OBJECT_WORDS + OBJECT_MODEL] == model:
+            return record
+    return NOWHERE
+
+
+@kernel
+def remember_objects(objects: i16[:], seen: i16[:], models: i32[:], apart_max: i32) -> i32:
+    """Take the objects that are seen into the history; returns how many found no record.
+
+    Of the goals of a model in this frame the most accurate one stays, of equal ones the first; the others are not lost.
+    """
     lost: i32 = 0
     for number in range(len(seen) // OBJECT_WORDS):
-        if seen[number * OBJECT_WORDS + OBJECT_MODEL] != NO_MODEL:
-            record = record_for(objects, seen, number, apart_max)
-            if record == NOWHERE:
-                lost = lost + 1
-            else:
-                copy_object(seen, number, objects, record)
+        at = number * OBJECT_WORDS
+        model = i32(seen[at + OBJECT_MODEL])
+        if model != NO_MODEL:
+            only: i32 = NOWHERE
+            if is_goal(models, model) != 0:
+                only = only_record(objects, model)
+            to = only * OBJECT_WORDS
+            if only == NOWHERE:
+                record = record_for(objects, seen, number, apart_max)
+                if record == NOWHERE:
+                    lost = lost + 1
+                else:
+                    copy_object(seen, number, objects, record)
+            elif objects[to + OBJECT_AGE] > 0 or objects[to + OBJECT_ACCURACY] < seen[at + OBJECT_ACCURACY]:
+                copy_object(seen, number, objects, only)
     return lost
 
 

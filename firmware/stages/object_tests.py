@@ -54,8 +54,10 @@ from firmware.strategy.models import (
     MODEL_COLOURS,
     MODEL_FLOOR,
     MODEL_HEIGHT,
+    MODEL_NUMBER,
     MODEL_SHAPE,
     MODEL_WIDTH,
+    MODEL_WORDS,
     Shape,
 )
 
@@ -76,6 +78,15 @@ SIZE_UNITS = 16
 
 AREA_BITS = 8
 DISC_AREA = 201  # of its square: pi/4 (T §2.2.2)
+
+
+@kernel
+def is_goal(models: i32[:], number: i32) -> i32:
+    """Return 1 if the model with a number is a goal; else 0."""
+    for at in range(0, len(models), MODEL_WORDS):
+        if models[at + MODEL_NUMBER] == number and models[at + MODEL_SHAPE] == GOAL:
+            return 1
+    return 0
 
 
 @kernel

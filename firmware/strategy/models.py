@@ -52,7 +52,8 @@ class Shape(IntEnum):
 
     BALL = 1
     GOAL = 2
-    """Its bottom line and its posts go out separately too (T §6.4)."""
+    """There is one of a model on the field: the rules give each goal a colour of its own (T §2.3). Its bottom line and its posts
+    go out separately too (T §6.4)."""
     MARKER = 3
 
 

@@ -8,7 +8,7 @@ objects and lines.
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel, u16
-from firmware.stages.object_tests import GOAL
+from firmware.stages.object_tests import is_goal
 from firmware.stores.lines import LINE_WORDS, LINE_X0
 from firmware.stores.objects import (
     NO_MODEL,
@@ -33,7 +33,6 @@ from firmware.stores.rectangles import (
     RECTANGLE_WORDS,
 )
 from firmware.strategy.framing import HEADER_WORDS, RESULTS, SYNC, crc16_byte
-from firmware.strategy.models import MODEL_NUMBER, MODEL_SHAPE, MODEL_WORDS
 
 COUNTS_WORDS = 7  # of the payload: frame number, objects, lines, refusal, corner of the area
 PLACE_WORDS = OBJECT_HEIGHT - OBJECT_X + 1  # position, image, size: as they are in t_Object
@@ -75,15 +74,6 @@ def pack_line(message: u16[:], words: i32, model: i32, side: i32, lines: i16[:],
         message[to + 1 + word] = lines[line * LINE_WORDS + LINE_X0 + word]
     message[HEADER_WORDS + 3] = message[HEADER_WORDS + 3] + 1
     return words + LINE_REPORT_WORDS
-
-
-@kernel
-def is_goal(models: i32[:], number: i32) -> i32:
-    """Return 1 if the model with a number is a goal; else 0."""
-    for at in range(0, len(models), MODEL_WORDS):
-        if models[at + MODEL_NUMBER] == number and models[at + MODEL_SHAPE] == GOAL:
-            return 1
-    return 0
 
 
 @kernel

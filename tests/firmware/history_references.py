@@ -5,7 +5,7 @@ Records are dictionaries by the names of their words.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from fractions import Fraction
 
 from tests.firmware.object_references import BASELINE, FARTHEST, FOCAL, Record, rounded
@@ -102,9 +102,12 @@ def _by_disparity(both: Record, disparity: int, geometry: Sequence[int], off: in
 
 
 def remembered(
-    history: Sequence[Record], seen: Sequence[Record], age_max: int, apart_max: int
+    history: Sequence[Record], seen: Sequence[Record], goals: Collection[int], age_max: int, apart_max: int
 ) -> tuple[list[Record], int]:
-    """The history after a frame with the objects seen, free records too, and how many found no room."""
+    """The history after a frame with the objects seen, free records too, and how many found no room.
+
+    `goals`: the numbers of the models that there is one thing of.
+    """
     records = [
         each | {"age": each["age"] + 1, "model": each["model"] if each["age"] < age_max else 0}
         if each["model"]
@@ -114,6 +117,11 @@ def remembered(
     lost = 0
     for one in seen:
         if not one["model"]:
+            continue
+        only = [number for number, each in enumerate(records) if each["model"] == one["model"]]
+        if one["model"] in goals and only:
+            was = records[only[0]]
+            records[only[0]] = max(was, one, key=lambda each: each["accuracy"]) if was["age"] == 0 else one
             continue
         old = [number for number, each in enumerate(records) if each["model"] and each["age"] > 0]
         near = [

@@ -9,10 +9,13 @@ from hypothesis import strategies as st
 
 from firmware.stages.object_history import AREA_WORDS, age_objects, move_images, remember_objects
 from firmware.stores.objects import NO_MODEL
+from firmware.strategy.models import MODELS, Shape
 from tests.firmware import history_references as references
-from tests.firmware.object_rig import THRESHOLDS, as_dicts, object_words
+from tests.firmware.object_rig import THRESHOLDS, as_dicts, models_of, object_words
 
 HERE = {"model": 1, "x": 100, "y": 0, "z": 1000, "accuracy": 200}
+GOAL = HERE | {"model": 2, "accuracy": 96}
+GOALS = {each.number for each in MODELS if each.shape == Shape.GOAL}
 ROOM = 3
 
 
@@ -23,8 +26,9 @@ def remember(history, *frames) -> list[dict[str, int]]:
         now = object_words(*seen)
         before = as_dicts(table)
         age_objects(table, THRESHOLDS.age_max)
-        lost = remember_objects(table, now, THRESHOLDS.apart_max)
-        wanted = references.remembered(before, as_dicts(now), THRESHOLDS.age_max, THRESHOLDS.apart_max)
+        lost = remember_objects(table, now, models_of(), THRESHOLDS.apart_max)
+        ranges = THRESHOLDS.age_max, THRESHOLDS.apart_max
+        wanted = references.remembered(before, as_dicts(now), GOALS, *ranges)
         assert (as_dicts(table), lost) == wanted
     return [each for each in as_dicts(table) if each["model"] != NO_MODEL]
 
@@ -65,6 +69,27 @@ def test_two_at_one_place_stay_two() -> None:
     assert len(remember([], [HERE, HERE], [HERE, HERE])) == 2
 
 
+@pytest.mark.parametrize(("accuracy", "x"), [(97, 900), (96, 100), (95, 100)])
+def test_there_is_one_goal_of_a_model(accuracy: int, x: int) -> None:
+    """Of two in a frame, however far apart, the more accurate one is it, or else the first, which the left camera sees."""
+    (found,) = remember([], [GOAL, GOAL | {"x": 900, "accuracy": accuracy}])
+    assert (found["x"], found["age"]) == (x, 0)
+
+
+def test_a_goal_is_where_it_is_seen_now() -> None:
+    """However far from there, and however accurate, it was before; a goal of another model is another."""
+    (found,) = remember([], [GOAL], [GOAL | {"x": 900, "accuracy": 64}])
+    assert (found["x"], found["age"]) == (900, 0)
+    assert len(remember([], [GOAL], [GOAL | {"model": 3}])) == 2
+
+
+def test_a_goal_finds_its_record_in_a_crowd() -> None:
+    """Nothing is lost when it is seen again, and nothing else makes way."""
+    balls = [HERE, HERE | {"x": 900}]
+    found = remember([], [*balls, GOAL], [GOAL, GOAL | {"x": 900}])
+    assert [each["age"] for each in found] == [1, 1, 0]
+
+
 def test_the_oldest_makes_way() -> None:
     """When there is no free record; and what is of this frame never does."""
     crowd = [HERE | {"x": x} for x in (-2000, 0, 2000)]
@@ -79,6 +104,7 @@ objects = st.fixed_dictionaries(
         "x": st.integers(-32768, 32767),
         "y": st.integers(-32768, 32767),
         "z": st.integers(0, 4000),
+        "accuracy": st.integers(0, 3),
     }
 )
 
