@@ -100,7 +100,8 @@ class Accesses(Calls):
 
     def halved(self, each: Instruction) -> str | None:
         """What the index of an address is half of, if the elements have two bytes."""
-        if each.opcode != "getelementptr" or pointee_nbytes(each) != 2:
+        fitted = self.context.profile.applies(Learnt.CLEARED_BIT)
+        if not fitted or each.opcode != "getelementptr" or pointee_nbytes(each) != 2:
             return None
         shift = self.flow.instruction(each.operands[-1])
         if shift is None or shift.opcode not in ("ashr", "lshr") or shift.operands[1] != "1":
@@ -108,7 +109,7 @@ class Accesses(Calls):
         return shift.operands[0]
 
     def _at_even_distance(self, each: Instruction, halved: str) -> None:
-        """Half of a number, times two bytes, is the number with its last bit cleared [combine; andsi3 in bfin.md: BITCLR].
+        """Half of a number, times two bytes, is the number with its last bit cleared [andsi3 in bfin.md: BITCLR].
 
         Only data registers can do it, so that the base goes there and the address back.
         """
