@@ -27,6 +27,7 @@ from benchmarks.twins import (
     rows,
     samples,
     signals,
+    sorted_rows,
     sorting,
     tables,
     tallies,
@@ -36,21 +37,8 @@ from benchmarks.twins import (
 )
 
 SUBJECTS = (
-    *(angles, bits, codes, digits, drawing, exchanges, fills, filters, grids, heaps, integers),
-    *(
-        labels,
-        lines,
-        lookups,
-        mixture,
-        neighbours,
-        ordering,
-        patches,
-        pictures,
-        pixels,
-        regions,
-        rows,
-        samples,
-    ),
-    *(signals, sorting, tables, tallies, text, transforms, words),
-)
+    angles, bits, codes, digits, drawing, exchanges, fills, filters, grids, heaps, integers,
+    labels, lines, lookups, mixture, neighbours, ordering, patches, pictures, pixels, regions, rows,
+    samples, signals, sorted_rows, sorting, tables, tallies, text, transforms, words,
+)  # fmt: skip
 CASES = tuple(case for subject in SUBJECTS for case in subject.CASES)

@@ -30,6 +30,7 @@ class Learnt(StrEnum):
     LEAVING_SIDE = (
         "of two equally likely sides of a test in a loop, the one that may leave the loop is not in line"
     )
+    CLEARED_BIT = "half of a number that is the index of half-words is the number with its last bit cleared"
     KNOWN_SIGN = "a value known to be positive is divided by a constant with the signed routine"
 
 
@@ -49,5 +50,6 @@ LEARNT_FROM: dict[Learnt, tuple[str, ...]] = {
     Learnt.DIFFERENCE: ("sad_search",),
     Learnt.COMMON_LOADS: ("cordic_atan",),
     Learnt.LEAVING_SIDE: ("grow_segments",),
+    Learnt.CLEARED_BIT: ("lower_bound", "table_search", "quick_sort"),
     Learnt.KNOWN_SIGN: ("digits",),
 }

@@ -71,7 +71,31 @@ class _Ends:
         self.result.saved_data = min(max(data, 0), 4)
         self.result.saved_pointers = min(max(pointers, 0), 3)
         self.result.saves_frame_pointer = pointers > 3
+        self._results()
         self._parameters(across)
+
+    def _results(self) -> None:
+        """The next call destroys R0: a result that is wanted behind it moves to a register that survives."""
+        kept = self._kept_results()
+        for label, block in self.steps.of.items():
+            moved: list[Step] = []
+            for step in block:
+                moved.append(step)
+                if step.op is Op.CALL and step.result in kept:
+                    moved.append(Step(Op.MOVE, step.line, None, Bank.ANY))
+            self.steps.of[label] = moved
+
+    def _kept_results(self) -> set[str]:
+        """Values that are alive across a call."""
+        kept: set[str] = set()
+        for label, block in self.steps.of.items():
+            alive = set(self.webs.live.out[label])
+            for step in reversed(block):
+                alive.discard(step.result or "")
+                if step.op is Op.CALL and step.code_bytes:  # not what a library routine calls itself
+                    kept |= alive
+                alive.update(name for name, _ in step.uses)
+        return kept
 
     def _parameters(self, across: dict[Bank, set[str]]) -> None:
         used = {name for block in self.steps.of.values() for step in block for name, _ in step.uses}

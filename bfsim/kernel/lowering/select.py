@@ -93,6 +93,9 @@ class _Selector(Accesses):
             self.step(Op.ALU, each, each.result, ANY, (left, ANY), (right, ANY))
 
     def shift(self, each: Instruction) -> None:
+        users = self.flow.users.get(each.result or "", [])
+        if users and all(self.halved(user) is not None for user in users):
+            return
         if self.context.needs.in_shift_add(each) or self._is_half_extension(each):
             return
         value, amount = each.operands[:2]
