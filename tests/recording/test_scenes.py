@@ -22,6 +22,7 @@ from bfsim.recording.scenes.distances import BALL_DISTANCES_MM, BOX_DISTANCES_MM
 from bfsim.recording.scenes.lens import Lens, Misfit
 from bfsim.recording.scenes.objects import Ball, FieldArc
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
+from bfsim.recording.scenes.renderer import Renderer
 from bfsim.recording.scenes.scene import Scene
 from bfsim.recording.scenes.shapes import scene_shapes
 from bfsim.recording.scenes.truth import disparity, frame_truth
@@ -218,6 +219,13 @@ class TestRendered:
         u = np.repeat(YuvPlanes.from_uyvy(frame.left).u, 2, axis=1)
         assert (u[hit] < 118).mean() > 0.9
         assert (u[~hit] < 118).mean() < 0.05
+
+    def test_a_scene_looks_the_same_each_time(self) -> None:
+        """Two lamps alike stay two: what chance does to their order must not be seen."""
+        scene = scenes_named("ball-distances", [400.0], None)["ball-distances"]
+        camera = scene.poses[0].cameras(scene.geometry)["left"]
+        looks = [Renderer(scene_shapes(scene)).look(camera, samples=1, seed=1) for _ in range(25)]
+        assert all(np.array_equal(each, looks[0]) for each in looks)
 
     def test_distorted_recording_has_the_truth_of_the_rectified(self, tmp_path: Path) -> None:
         """Rectification tables of the true lens bring the ball's outline to where the truth has it."""
