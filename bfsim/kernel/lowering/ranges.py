@@ -58,10 +58,9 @@ def _range(flow: Flow, first: str, second: str) -> Range | None:
 def _neither(flow: Flow, first: str, second: str) -> Range | None:
     """The test for one of two numbers side by side, of which 255 and 0 are two if the value is a byte."""
     ways = flow.blocks[first].successors
-    tests = [flow.instruction(flow.blocks[label].terminator.operands[0]) for label in (first, second)]
-    if not all(test is not None and test.opcode == "icmp" and predicate(test) == "eq" for test in tests):
+    one, other = (_test(flow, label) for label in (first, second))
+    if one is None or other is None or not predicate(one) == predicate(other) == "eq":
         return None
-    one, other = (test for test in tests if test is not None)
     hit, miss = flow.blocks[second].successors
     if ways != (hit, second) or _plain(flow, one) != _plain(flow, other):
         return None
@@ -78,9 +77,8 @@ def _neither(flow: Flow, first: str, second: str) -> Range | None:
 
 def _bound(flow: Flow, label: str, holds: bool) -> tuple[str, str, int] | None:
     """(value, low or high, bound) that the test at the end of a block sets if it comes out as `holds`."""
-    branch = flow.blocks[label].terminator
-    test = flow.instruction(branch.operands[0]) if branch.opcode == "br" and branch.operands else None
-    if test is None or test.opcode != "icmp" or len(flow.users.get(test.result or "", [])) > 1:
+    test = _test(flow, label)
+    if test is None or len(flow.users.get(test.result or "", [])) > 1:
         return None
     relation, bound = predicate(test)[-2:], test.operands[1]
     if relation not in OPPOSITE or not bound.lstrip("-").isdigit():
@@ -88,6 +86,13 @@ def _bound(flow: Flow, label: str, holds: bool) -> tuple[str, str, int] | None:
     relation = relation if holds else OPPOSITE[relation]
     number = int(bound) + {"lt": -1, "gt": 1}.get(relation, 0)
     return _plain(flow, test), "low" if relation[0] == "g" else "high", number
+
+
+def _test(flow: Flow, label: str) -> Instruction | None:
+    """The comparison that decides at the end of a block, if there is one."""
+    branch = flow.blocks[label].terminator
+    test = flow.instruction(branch.operands[0]) if branch.opcode == "br" and branch.operands else None
+    return test if test is not None and test.opcode == "icmp" else None
 
 
 def _plain(flow: Flow, test: Instruction) -> str:
