@@ -72,6 +72,21 @@ def test_a_range_is_one_test(tmp_path: Path) -> None:
     assert lowered(text.format("c == 3 or c == 5"), tmp_path)[Op.COMPARE] == 2
 
 
+def test_the_second_part_of_a_condition_may_end_in_no_test(tmp_path: Path) -> None:
+    """LLVM knows that p < p is false, and leaves a block that only goes on: no range, and no mistake."""
+    text = (
+        "def f(a: u8[:], x: i32) -> i32:\n"
+        "    p = 1\n"
+        "    for i in range(-p & 15):\n"
+        "        p = a[p & 15]\n"
+        "    k = 0\n"
+        "    while k < 2 and (p < p or p < x):\n"
+        "        k += 1\n"
+        "    return p + p | p ^ p\n"
+    )
+    assert not context(text, tmp_path).ranges
+
+
 def test_both_ends_of_a_range_are_found(tmp_path: Path) -> None:
     """However the tests are written, the range is 48 to 57."""
     text = "def f(c: i32, x: i32) -> i32:\n    if 47 < c and c < 58:\n        x = x * 7\n    return x\n"
