@@ -6,17 +6,14 @@ import difflib
 import hashlib
 import importlib
 import sys
-import traceback
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
 from bfsim.errors import BfsimError, FirmwareError
 from bfsim.kernel import Kernel
+from bfsim.machine.firmware_lines import line_of
 from bfsim.machine.program import Firmware
-
-OWN_FOLDER = Path(__file__).parent
-"""Where the lines are that no user has written."""
 
 NEAREST_NAMES = 5
 """As many names are offered to who asked for one that there is not."""
@@ -107,13 +104,8 @@ def _import(package: str) -> ModuleType:
 
 def _failed(package: str, error: BaseException) -> FirmwareError:
     """Say what went wrong while `package` was imported, and on which of its lines."""
-    if isinstance(error, SyntaxError):
-        place = f"{error.filename}:{error.lineno}"
-    else:
-        frames = traceback.extract_tb(error.__traceback__)
-        last = [each for each in frames if not Path(each.filename).is_relative_to(OWN_FOLDER)][-1]
-        place = f"{last.filename}:{last.lineno}"
-    message = f"importing {package} failed with {type(error).__name__}: {error} ({place})"
+    place = f" ({error.filename}:{error.lineno})" if isinstance(error, SyntaxError) else line_of(error)
+    message = f"importing {package} failed with {type(error).__name__}: {error}{place}"
     return FirmwareError(f"--firmware: {message}")
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -36,6 +35,7 @@ from bfsim.machine.detailed.bus import DetailedBus
 from bfsim.machine.dma.checks import DmaSpace
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.memory_dma import Dma
+from bfsim.machine.firmware_lines import line_of
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.program import Buffer, Buffers, Firmware, FrameSize
 from bfsim.machine.simulation import Simulation
@@ -109,8 +109,7 @@ def _called(firmware: Firmware, size: FrameSize) -> Buffers:
     except BfsimError:
         raise
     except Exception as error:
-        last = traceback.extract_tb(error.__traceback__)[-1]
-        what = f"{type(error).__name__}: {error} ({last.filename}:{last.lineno})"
+        what = f"{type(error).__name__}: {error}{line_of(error)}"
         raise FirmwareError(f"buffers for pictures of {size} failed with {what}") from error
     if not isinstance(buffers, Mapping):
         raise FirmwareError(f"buffers must come as a dict of those of each core, not as {buffers!r}")
