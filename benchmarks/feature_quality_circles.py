@@ -22,10 +22,10 @@ from rich.table import Table
 
 from benchmarks.seen_circles import Seen, see
 from bfsim.recording import RecordingReader
-from firmware.stages.blob_detection import hues
-from firmware.stores.circles import CENTRE_PASSED, CIRCLE_EDGES, CIRCLE_TESTS, RADIUS_PASSED
-from firmware.stores.lines import SUBPIXELS
-from firmware.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES, Mode
+from tinyphoon.stages.blob_detection import hues
+from tinyphoon.stores.circles import CENTRE_PASSED, CIRCLE_EDGES, CIRCLE_TESTS, RADIUS_PASSED
+from tinyphoon.stores.lines import SUBPIXELS
+from tinyphoon.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES, Mode
 
 # The hues of all balls in the rendered scenes: magenta, blue, cyan, green, yellow, orange.
 COLOURS = (hues(0, 2), hues(9, 11), hues(12, 13), hues(14, 16), hues(21, 23), hues(24, 25))

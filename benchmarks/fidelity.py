@@ -31,7 +31,7 @@ from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
 from bfsim.trace import REST
-from firmware import tinyphoon
+from tinyphoon import tinyphoon
 
 # the aims
 MOST_FRAME_PERCENT, MOST_STAGE_PERCENT, LEAST_RATIO = 2, 5, 20

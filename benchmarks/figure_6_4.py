@@ -20,8 +20,8 @@ from bfsim.report.ldf.drawing import FAINT, INK, Box, Sheet, Words
 from bfsim.report.ldf.picture import format_of
 from bfsim.report.tables import new_table
 from bfsim.terminal import print_report
-from firmware.geometry import depth_mm, geometry_buffer
-from firmware.stores.lines import SUBPIXELS
+from tinyphoon.geometry import depth_mm, geometry_buffer
+from tinyphoon.stores.lines import SUBPIXELS
 
 LEAST_PX, MOST_PX = 4, 60
 MOST_MM, MOST_PERCENT = 3000, 40

@@ -27,7 +27,7 @@ from bfsim.recording.scenes.lens import Lens, turned
 from bfsim.report.tables import new_table, percent
 from bfsim.run import BUILT_IN_RECORDING
 from bfsim.terminal import print_report
-from firmware import tinyphoon
+from tinyphoon import tinyphoon
 
 FOCAL_PX = 386.0  # T §6.2
 LENS = Lens(-0.25, 0.08)

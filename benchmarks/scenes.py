@@ -28,7 +28,7 @@ from bfsim.report.tables import new_table
 from bfsim.run import simulate
 from bfsim.seen import SeenFrame, SeenObject
 from bfsim.terminal import print_report, progress_bar
-from firmware.strategy.models import MODELS, Shape
+from tinyphoon.strategy.models import MODELS, Shape
 
 PLACED_BY = {Shape.GOAL: "mouth_mm", Shape.MARKER: "mark_corners_mm", Shape.BALL: "centre_mm"}
 """What of the ground truth tells where a thing is, and with it what it is."""

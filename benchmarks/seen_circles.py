@@ -13,11 +13,11 @@ from benchmarks.playing import play
 from bfsim.api import Buffer, Core, Firmware, FrameSize, Readout
 from bfsim.chip.boards import CM_BF561
 from bfsim.recording import StereoFrame
-from firmware import ROWS
-from firmware.buffers import buffers
-from firmware.features import features
-from firmware.stores.circles import CIRCLE_WORDS
-from firmware.strategy.modes import Mode
+from tinyphoon import ROWS
+from tinyphoon.buffers import buffers
+from tinyphoon.features import features
+from tinyphoon.stores.circles import CIRCLE_WORDS
+from tinyphoon.strategy.modes import Mode
 
 SIDES = {"A": "left", "B": "right"}
 SHAPE_ROW = "Shape detection"

@@ -15,15 +15,15 @@ from bfsim.api import Core, Firmware, Readout
 from bfsim.machine.spi.protocol import decode, message_nbytes
 from bfsim.recording import RecordingReader
 from bfsim.run import calibration_of
-from firmware import ROWS
-from firmware.buffers import buffers, calibration_buffers
-from firmware.features import features
-from firmware.stages.object_detection import left_sight, object_detection, right_sight
-from firmware.stores.objects import NO_MODEL, OBJECT_MODEL, OBJECT_WORDS
-from firmware.strategy.decoding import Results, decode_results
-from firmware.strategy.models import model_words
-from firmware.strategy.modes import INDOOR_FIELD, Mode
-from firmware.strategy.report import report
+from tinyphoon import ROWS
+from tinyphoon.buffers import buffers, calibration_buffers
+from tinyphoon.features import features
+from tinyphoon.stages.object_detection import left_sight, object_detection, right_sight
+from tinyphoon.stores.objects import NO_MODEL, OBJECT_MODEL, OBJECT_WORDS
+from tinyphoon.strategy.decoding import Results, decode_results
+from tinyphoon.strategy.models import model_words
+from tinyphoon.strategy.modes import INDOOR_FIELD, Mode
+from tinyphoon.strategy.report import report
 
 Records = NDArray[np.int16]
 """Rows of t_Object."""

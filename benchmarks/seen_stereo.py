@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from benchmarks.playing import play
 from bfsim.api import BudgetRow, Calibration, Core, Firmware, Frame, Readout
 from bfsim.recording import StereoFrame
-from firmware.buffers import buffers, calibration_buffers
-from firmware.exchange import share_lines
-from firmware.stages.edge_detection import edge_detection
-from firmware.stages.line_detection import line_detection
-from firmware.stages.line_refinement import line_refinement
-from firmware.stages.rectification import rectification
-from firmware.stages.stereo_lines import stereo_lines
-from firmware.stores.lines3d import LINE3D_WORDS, LINE3D_X0, LINE3D_Z1
-from firmware.strategy.modes import Mode
+from tinyphoon.buffers import buffers, calibration_buffers
+from tinyphoon.exchange import share_lines
+from tinyphoon.stages.edge_detection import edge_detection
+from tinyphoon.stages.line_detection import line_detection
+from tinyphoon.stages.line_refinement import line_refinement
+from tinyphoon.stages.rectification import rectification
+from tinyphoon.stages.stereo_lines import stereo_lines
+from tinyphoon.stores.lines3d import LINE3D_WORDS, LINE3D_X0, LINE3D_Z1
+from tinyphoon.strategy.modes import Mode
 
 STAGES = ("Edge detection", "Line detection", "3-D lines")
 

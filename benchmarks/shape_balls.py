@@ -27,8 +27,8 @@ from bfsim.recording.scenes.objects import Ball
 from bfsim.recording.scenes.scene import Scene
 from bfsim.recording.scenes.soccer_data import FLOOR, SOCCER, YELLOW
 from bfsim.recording.scenes.studio import record_scene
-from firmware.stores.circles import CENTRE_PASSED, CIRCLE_TESTS, RADIUS_PASSED
-from firmware.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES
+from tinyphoon.stores.circles import CENTRE_PASSED, CIRCLE_TESTS, RADIUS_PASSED
+from tinyphoon.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES
 
 MOST_BALLS = 6
 # Six of these stand side by side in both pictures, 17 px in radius and 14 px apart.

@@ -33,9 +33,9 @@ from rich.table import Table
 from benchmarks.seen_objects import Records, Seen, see
 from bfsim.report.tables import new_table
 from bfsim.terminal import print_report
-from firmware.stages.blob_detection import hues
-from firmware.stores.lines import SUBPIXELS
-from firmware.stores.objects import (
+from tinyphoon.stages.blob_detection import hues
+from tinyphoon.stores.lines import SUBPIXELS
+from tinyphoon.stores.objects import (
     AREA_TEST,
     CENTRE_TEST,
     COLOUR_TEST,
@@ -45,8 +45,8 @@ from firmware.stores.objects import (
     OBJECT_TESTS,
     SIZE_TEST,
 )
-from firmware.strategy.models import MODELS, Shape, colour_groups
-from firmware.strategy.modes import INDOOR_FIELD, Mode
+from tinyphoon.strategy.models import MODELS, Shape, colour_groups
+from tinyphoon.strategy.modes import INDOOR_FIELD, Mode
 
 BALL_CLASS = "0"
 BALL_MM = 220  # a football of size 5, the ball of RoboCup's middle-size league

@@ -28,8 +28,8 @@ from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.report.tables import new_table
 from bfsim.run import calibration_of
 from bfsim.terminal import print_report, progress_bar
-from firmware.stages.stereo_lines import Correspondence
-from firmware.strategy.modes import INDOOR_FIELD, Mode
+from tinyphoon.stages.stereo_lines import Correspondence
+from tinyphoon.strategy.modes import INDOOR_FIELD, Mode
 
 PLAIN = replace(
     INDOOR_FIELD,

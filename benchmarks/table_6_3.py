@@ -20,9 +20,9 @@ from rich.table import Table
 from benchmarks.seen_objects import Records, Seen, see
 from bfsim.report.tables import new_table
 from bfsim.terminal import print_report, progress_bar
-from firmware.stores.objects import OBJECT_MEASURES, OBJECT_MODEL, OBJECT_Z
-from firmware.strategy.models import MODELS, Shape
-from firmware.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES
+from tinyphoon.stores.objects import OBJECT_MEASURES, OBJECT_MODEL, OBJECT_Z
+from tinyphoon.strategy.models import MODELS, Shape
+from tinyphoon.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES
 
 BALL = next(each.number for each in MODELS if each.shape == Shape.BALL)
 

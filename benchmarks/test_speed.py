@@ -22,7 +22,7 @@ from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
-from firmware import tinyphoon
+from tinyphoon import tinyphoon
 
 STEREO_FRAMES = 40
 MOST_EVENTS_PER_FRAME = 50_000  # issue: at most so many SimPy events per stereo frame

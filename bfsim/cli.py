@@ -70,7 +70,7 @@ _RUN_PARAMETERS = (
     click.option(
         "--firmware",
         metavar="PACKAGE:NAME",
-        default="firmware:tinyphoon",
+        default="tinyphoon:tinyphoon",
         show_default=True,
         help="Firmware to run: NAME in the importable PACKAGE.",
     ),

@@ -31,7 +31,7 @@ class _Size(click.ParamType[tuple[int, int]]):
 @click.option(
     "--firmware",
     metavar="PACKAGE:NAME",
-    default="firmware:tinyphoon",
+    default="tinyphoon:tinyphoon",
     show_default=True,
     help="Firmware to place: NAME in the importable PACKAGE.",
 )

@@ -35,7 +35,7 @@ def load_firmware(name: str) -> LoadedFirmware:
     """
     package, _, attribute = name.partition(":")
     if not all(each.isidentifier() for each in (*package.split("."), attribute)):
-        raise FirmwareError(f"--firmware must be PACKAGE:NAME, such as firmware:tinyphoon, not {name!r}")
+        raise FirmwareError(f"--firmware must be PACKAGE:NAME, such as tinyphoon:tinyphoon, not {name!r}")
     module = _import(package)
     firmware = getattr(module, attribute, None)
     if not isinstance(firmware, Firmware):

@@ -35,7 +35,7 @@ DEFAULT_LDF = {"ADSP-BF561": THESIS_LDF, "ADSP-BF533": PLACEMENTS / "cm-bf533.ld
 def simulate(
     recording: Path | None = None,
     *,
-    firmware: str = "firmware:tinyphoon",
+    firmware: str = "tinyphoon:tinyphoon",
     board: str = "cm-bf561",
     ldf: Path | None = None,
     frames: int | None = None,

@@ -17,7 +17,7 @@ from tests.report.records import edge_run
 
 BLIND = """
 from dataclasses import replace
-from firmware import tinyphoon
+from tinyphoon import tinyphoon
 
 blind = replace(tinyphoon, view=None)
 dazed = replace(tinyphoon, view=lambda readout: readout.values("no such buffer"))

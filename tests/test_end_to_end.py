@@ -249,7 +249,7 @@ def test_unknown_names_are_refused(tmp_path: Path) -> None:
     """A board or firmware that does not exist is refused with what there is."""
     assert "cm-bf561" in refused("run", "--board", "cm-bf562")
     assert "no_such_package" in refused("run", "--firmware", "no_such_package:tinyphoon")
-    assert "no_such_name" in refused("run", "--firmware", "firmware:no_such_name")
+    assert "no_such_name" in refused("run", "--firmware", "tinyphoon:no_such_name")
     (tmp_path / "broken_firmware.py").write_text("import bfsim.api\n\nraise ValueError('not today')\n")
     message = refused("run", "--firmware", "broken_firmware:main", cwd=tmp_path)
     assert "broken_firmware.py:3" in message

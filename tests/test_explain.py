@@ -70,7 +70,7 @@ def test_without_optimisation_every_variable_is_on_the_stack() -> None:
 
 def test_totals_are_those_of_the_records(run: RunRecord) -> None:
     """After a run, the lines' cycles add up to the kernel's issue and stall cycles, and the calls are the records'."""
-    explanation = explain_named("sobel_row", "firmware:tinyphoon", "vdsp-O2", run)
+    explanation = explain_named("sobel_row", "tinyphoon:tinyphoon", "vdsp-O2", run)
     records = [each for each in run.kernels if each.kernel == "sobel_row"]
     expected = sum(line.issue_cclk + line.stall_cclk for each in records for line in each.lines)
     assert sum(each.total_cclk or 0 for each in explanation.lines) == expected > 0
@@ -92,7 +92,7 @@ def test_a_kernel_that_did_not_run_is_told(run: RunRecord) -> None:
             "Sobel_rwo",
             r"Sobel_rwo must name one kernel, but names none; the nearest of \d+ are sobel_row, \w+, ",
         ),
-        ("firmware:tinyphoon", r"must name one kernel, but names none; the nearest of \d+ are"),
+        ("tinyphoon:tinyphoon", r"must name one kernel, but names none; the nearest of \d+ are"),
         (
             "clear_labels",
             r"names 2; write firmware\.\w+\.blob_detection:clear_labels or firmware\..*:clear_labels",
@@ -104,7 +104,7 @@ def test_a_kernel_that_did_not_run_is_told(run: RunRecord) -> None:
 def test_an_unknown_kernel_is_told(name: str, what: str) -> None:
     """The message has what is spelt nearly so, and no more of the two hundred."""
     with pytest.raises(FirmwareError, match=what):
-        explain_named(name, "firmware:tinyphoon", "vdsp-O2")
+        explain_named(name, "tinyphoon:tinyphoon", "vdsp-O2")
 
 
 def test_an_unknown_profile_is_told() -> None:
@@ -112,7 +112,7 @@ def test_an_unknown_profile_is_told() -> None:
     with pytest.raises(
         ConfigError, match="the compiler profile must be one of gcc-O0, gcc-O2, vdsp-O2, not 'gcc-O3'"
     ):
-        explain_named("sobel_row", "firmware:tinyphoon", "gcc-O3")
+        explain_named("sobel_row", "tinyphoon:tinyphoon", "gcc-O3")
 
 
 def bfsim(*arguments: str) -> subprocess.CompletedProcess[str]:

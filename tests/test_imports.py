@@ -105,7 +105,7 @@ def test_a_file_imports_only_the_rooms_below_it(path: Path) -> None:
     room = room_of(path)
     for module in imported_modules(path):
         parts = module.split(".")
-        assert parts[0] != "firmware", f"{path} imports {module}"
+        assert parts[0] != "tinyphoon", f"{path} imports {module}"
         if module == "bfsim.__version__":
             assert room in READ_VERSION, f"{path} imports {module}"
         elif parts[0] == "bfsim":
@@ -137,6 +137,6 @@ def test_simpy_stays_in_the_machine(path: Path) -> None:
 )
 def test_firmware_imports_only_the_api(path: Path) -> None:
     """Firmware imports bfsim.api, numpy, itself and the standard library."""
-    allowed = {"numpy", "firmware", *sys.stdlib_module_names}
+    allowed = {"numpy", "tinyphoon", *sys.stdlib_module_names}
     for module in imported_modules(path):
         assert module == "bfsim.api" or module.split(".")[0] in allowed, f"{path} imports {module}"

@@ -65,7 +65,7 @@ def test_a_module_in_a_package_is_found(write: Write) -> None:
 def test_what_is_no_package_and_name_is_refused(name: str) -> None:
     """Nothing is imported for it."""
     with pytest.raises(
-        FirmwareError, match="--firmware must be PACKAGE:NAME, such as firmware:tinyphoon, not '"
+        FirmwareError, match="--firmware must be PACKAGE:NAME, such as tinyphoon:tinyphoon, not '"
     ):
         load_firmware(name)
 

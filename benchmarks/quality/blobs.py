@@ -10,8 +10,8 @@ import cv2
 import numpy as np
 
 from benchmarks.quality.seen import Seen
-from firmware.stores.blobs import ACROSS, COLOURS, DOWN, PIXELS, SUM_X, SUM_Y
-from firmware.strategy.modes import INDOOR_FIELD
+from tinyphoon.stores.blobs import ACROSS, COLOURS, DOWN, PIXELS, SUM_X, SUM_Y
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 TITLE = "Blobs beside cv2.connectedComponentsWithStats"
 COLUMNS = "ours", "OpenCV", "rectangle", "pixels", "centre", "lost", "runs lost"

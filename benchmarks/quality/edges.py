@@ -13,7 +13,7 @@ import numpy as np
 
 from benchmarks.quality.seen import Picture, Seen
 from bfsim.report.tables import percent
-from firmware.strategy.modes import INDOOR_FIELD
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 TITLE = f"Edges beside cv2.Canny {cv2.__version__}"
 COLUMNS = "ours", "OpenCV", "precision %", "recall %", "same %", "lost"

@@ -16,9 +16,9 @@ from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.run import calibration_of
 from bfsim.terminal import progress_bar
 from bfsim.trace import FrameRecord
-from firmware import tinyphoon
-from firmware.stores.blobs import BLOB_WORDS
-from firmware.stores.lines import LINE_WORDS, LINE_X0, LINE_Y1, SUBPIXELS
+from tinyphoon import tinyphoon
+from tinyphoon.stores.blobs import BLOB_WORDS
+from tinyphoon.stores.lines import LINE_WORDS, LINE_X0, LINE_Y1, SUBPIXELS
 
 Picture = NDArray[np.uint8]
 """Grey, `height` x `width`, or bytes U Y V Y, twice as wide."""

@@ -10,12 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from firmware.stages.blob_detection import LABELS, hues
-from firmware.stages.circle_detection import CircleThresholds, circle_buffers, circle_detection
-from firmware.stores.blobs import BLOB_WORDS
-from firmware.stores.circles import CIRCLE_WORDS
-from firmware.strategy.modes import INDOOR_FIELD
-from firmware.tables import arctangent_table
 from tests.firmware import references
 from tests.firmware.blob_references import segments
 from tests.firmware.circle_references import Blob, Edge
@@ -23,6 +17,12 @@ from tests.firmware.circle_references import circle as reference_circle
 from tests.firmware.edge_references import hysteresis, hysteresis_store
 from tests.firmware.line_rig import GARBAGE, BareCore
 from tests.firmware.references import luma
+from tinyphoon.stages.blob_detection import LABELS, hues
+from tinyphoon.stages.circle_detection import CircleThresholds, circle_buffers, circle_detection
+from tinyphoon.stores.blobs import BLOB_WORDS
+from tinyphoon.stores.circles import CIRCLE_WORDS
+from tinyphoon.strategy.modes import INDOOR_FIELD
+from tinyphoon.tables import arctangent_table
 
 YELLOW = hues(21, 23)
 """The colours of the ball."""

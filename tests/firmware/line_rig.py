@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 
 from bfsim.api import FrameSize
-from firmware.stages.hysteresis import LABELS
-from firmware.stages.line_detection import LineThresholds, line_buffers, line_detection
-from firmware.stages.line_segments import SEGMENT_CAPACITY, SEGMENT_WORDS
-from firmware.stores.edges import EDGE_CAPACITY
-from firmware.stores.lines import LINE_WORDS
-from firmware.strategy.modes import INDOOR_FIELD
-from firmware.tables import arctangent_table
 from tests.firmware import edge_references, references
 from tests.firmware.line_references import Row
+from tinyphoon.stages.hysteresis import LABELS
+from tinyphoon.stages.line_detection import LineThresholds, line_buffers, line_detection
+from tinyphoon.stages.line_segments import SEGMENT_CAPACITY, SEGMENT_WORDS
+from tinyphoon.stores.edges import EDGE_CAPACITY
+from tinyphoon.stores.lines import LINE_WORDS
+from tinyphoon.strategy.modes import INDOOR_FIELD
+from tinyphoon.tables import arctangent_table
 
 GARBAGE = 77
 """What the stage's memory holds before."""

@@ -9,13 +9,13 @@ import numpy as np
 from hypothesis import strategies as st
 
 from bfsim.recording import StereoGeometry
-from firmware.geometry import geometry_buffer
-from firmware.stores import objects as object_store
-from firmware.stores.circles import CIRCLE_WORDS
-from firmware.stores.objects import OBJECT_WORDS
-from firmware.stores.rectangles import RECTANGLE_WORDS
-from firmware.strategy.models import MODELS, ObjectModel, model_words
-from firmware.strategy.modes import INDOOR_FIELD
+from tinyphoon.geometry import geometry_buffer
+from tinyphoon.stores import objects as object_store
+from tinyphoon.stores.circles import CIRCLE_WORDS
+from tinyphoon.stores.objects import OBJECT_WORDS
+from tinyphoon.stores.rectangles import RECTANGLE_WORDS
+from tinyphoon.strategy.models import MODELS, ObjectModel, model_words
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 WIDTH, HEIGHT = 320, 240
 THRESHOLDS = INDOOR_FIELD.objects

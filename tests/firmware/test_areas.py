@@ -19,13 +19,13 @@ from bfsim.machine.spi.protocol import MessageType
 from bfsim.machine.spi.strategy import ScriptedMessage
 from bfsim.recording import StereoFrame
 from bfsim.run import PLACEMENTS, THESIS_LDF
-from firmware import tinyphoon
-from firmware.areas import Area, area_in, principal_shift
-from firmware.strategy.payloads import mode_payload
 from tests.firmware.lenses import rectified
 from tests.firmware.pictures import Bytes
 from tests.firmware.test_rectification import tables
 from tests.firmware.whole_pictures import buffer, check_core, random_frames
+from tinyphoon import tinyphoon
+from tinyphoon.areas import Area, area_in, principal_shift
+from tinyphoon.strategy.payloads import mode_payload
 
 
 def order(names: dict[str, Any], after_frames: int = 0) -> ScriptedMessage:

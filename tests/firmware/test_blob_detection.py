@@ -15,15 +15,6 @@ from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
-from firmware.stages.blob_detection import (
-    LABELS,
-    RECYCLE_AT,
-    BlobThresholds,
-    blob_buffers,
-    blob_detection,
-)
-from firmware.stores.blobs import BLOB_WORDS
-from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware import references
 from tests.firmware.blob_references import labelled, segments
 from tests.firmware.colour_pictures import (
@@ -36,6 +27,15 @@ from tests.firmware.colour_pictures import (
     dots,
     scattered,
 )
+from tinyphoon.stages.blob_detection import (
+    LABELS,
+    RECYCLE_AT,
+    BlobThresholds,
+    blob_buffers,
+    blob_detection,
+)
+from tinyphoon.stores.blobs import BLOB_WORDS
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 ROW = "Blob detection"
 EVERY_SEGMENT = BlobThresholds(colour_groups=GROUPS, min_pixels=1, max_pixels=2**32 - 1, max_blobs=LABELS - 1)

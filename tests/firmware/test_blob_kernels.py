@@ -13,7 +13,21 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from firmware.stages.blob_detection import (
+from tests.firmware import references
+from tests.firmware.blob_references import Blob, labelled, segments
+from tests.firmware.colour_pictures import (
+    BLUE,
+    GROUPS,
+    HARD_PICTURES,
+    OTHER,
+    PINK,
+    RED,
+    Words,
+    comb,
+    dots,
+    words_of,
+)
+from tinyphoon.stages.blob_detection import (
     COLOUR_GROUPS,
     LABELS,
     RECYCLE_AT,
@@ -29,21 +43,7 @@ from firmware.stages.blob_detection import (
     store_group,
     unite_segments,
 )
-from firmware.stores.blobs import BLOB_WORDS, add_run, add_segment, close_blob, move_segment, open_segment
-from tests.firmware import references
-from tests.firmware.blob_references import Blob, labelled, segments
-from tests.firmware.colour_pictures import (
-    BLUE,
-    GROUPS,
-    HARD_PICTURES,
-    OTHER,
-    PINK,
-    RED,
-    Words,
-    comb,
-    dots,
-    words_of,
-)
+from tinyphoon.stores.blobs import BLOB_WORDS, add_run, add_segment, close_blob, move_segment, open_segment
 
 GARBAGE = 170
 """What tables hold before: nothing may depend on the picture before."""

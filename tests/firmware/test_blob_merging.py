@@ -10,14 +10,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from firmware.stages.blob_detection import LABELS
-from firmware.stages.blob_merging import blob_merging
-from firmware.stores.blobs import BLOB_WORDS, CENTRE, POSITION
-from firmware.stores.circles import CIRCLE_BLOB, CIRCLE_WORDS
-from firmware.strategy.models import BLUE, MODELS, RED, YELLOW, ObjectModel
 from tests.firmware import merging_references as references
 from tests.firmware.line_rig import BareCore
 from tests.firmware.object_rig import blob_words, circle_words, models_of
+from tinyphoon.stages.blob_detection import LABELS
+from tinyphoon.stages.blob_merging import blob_merging
+from tinyphoon.stores.blobs import BLOB_WORDS, CENTRE, POSITION
+from tinyphoon.stores.circles import CIRCLE_BLOB, CIRCLE_WORDS
+from tinyphoon.strategy.models import BLUE, MODELS, RED, YELLOW, ObjectModel
 
 Box = dict[str, int]
 

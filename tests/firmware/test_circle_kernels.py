@@ -9,8 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from firmware.stages.circle_detection import share_of, sixteenths
-from firmware.stages.circle_edges import (
+from tests.firmware import circle_references as expected
+from tests.firmware.circle_references import Edge
+from tests.firmware.pictures import random_uyvy
+from tinyphoon.stages.circle_detection import share_of, sixteenths
+from tinyphoon.stages.circle_edges import (
     AREA_WORDS,
     looks_at,
     middle_beyond,
@@ -18,10 +21,10 @@ from firmware.stages.circle_edges import (
     open_area,
     select_edges_row,
 )
-from firmware.stages.circle_fit import FIT_WORDS, REFINED, arc_of, fit_circle
-from firmware.stages.circle_outline import LUMA_LINES, clear_points, luma_row, refine_row
-from firmware.stages.circle_radius import edges_round, fill_histogram, find_radius, mean_radius
-from firmware.stages.circle_votes import (
+from tinyphoon.stages.circle_fit import FIT_WORDS, REFINED, arc_of, fit_circle
+from tinyphoon.stages.circle_outline import LUMA_LINES, clear_points, luma_row, refine_row
+from tinyphoon.stages.circle_radius import edges_round, fill_histogram, find_radius, mean_radius
+from tinyphoon.stages.circle_votes import (
     clear_votes,
     draw_lines,
     find_peak,
@@ -29,10 +32,7 @@ from firmware.stages.circle_votes import (
     mean_offset,
     votes_round,
 )
-from firmware.tables import arctangent_table, tangent_table
-from tests.firmware import circle_references as expected
-from tests.firmware.circle_references import Edge
-from tests.firmware.pictures import random_uyvy
+from tinyphoon.tables import arctangent_table, tangent_table
 
 ATAN, TANGENTS = arctangent_table(), tangent_table()
 SIZE = 64

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from benchmarks.seen_circles import see
 from bfsim.recording import StereoFrame
-from firmware.stages.circle_detection import CIRCLE_CAPACITY, CircleThresholds
-from firmware.stores.circles import CIRCLE_ARC, CIRCLE_CENTRE, CIRCLE_EDGES, CIRCLE_RADIUS_SHARE
-from firmware.strategy.modes import FITTED_CIRCLES, INDOOR_FIELD, PLAIN_CIRCLES
 from tests.firmware.circle_rig import FLOOR_RGB, WHITE_RGB, YELLOW, Circles, Drawing, Seen, circles_of, seen
 from tests.firmware.pictures import random_uyvy
+from tinyphoon.stages.circle_detection import CIRCLE_CAPACITY, CircleThresholds
+from tinyphoon.stores.circles import CIRCLE_ARC, CIRCLE_CENTRE, CIRCLE_EDGES, CIRCLE_RADIUS_SHARE
+from tinyphoon.strategy.modes import FITTED_CIRCLES, INDOOR_FIELD, PLAIN_CIRCLES
 
 BOTH = pytest.mark.parametrize("mode", [FITTED_CIRCLES, PLAIN_CIRCLES], ids=["fitted", "thesis"])
 PASSED, CENTRE_ONLY, FAILED = 3, 1, 0

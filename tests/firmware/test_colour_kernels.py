@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from firmware.stages.colour_reduction import BLACK, WHITE, colour_row
-from firmware.stages.open_closing import dilate_row, erode_row
-from firmware.strategy.modes import INDOOR_FIELD
-from firmware.tables import arctangent_table
 from tests.firmware import references
 from tests.firmware.pictures import WIDTHS, Bytes, random_uyvy
+from tinyphoon.stages.colour_reduction import BLACK, WHITE, colour_row
+from tinyphoon.stages.open_closing import dilate_row, erode_row
+from tinyphoon.strategy.modes import INDOOR_FIELD
+from tinyphoon.tables import arctangent_table
 
 THRESHOLDS = [(INDOOR_FIELD.edges.eps_black, INDOOR_FIELD.edges.eps_white), (-40, 60), (-182, 255), (60, 59)]
 ANY_WORDS = st.integers(2, 30).flatmap(

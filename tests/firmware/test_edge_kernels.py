@@ -11,8 +11,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from firmware.arithmetic import isqrt32
-from firmware.stages.edge_detection import (
+from tests.firmware import references
+from tests.firmware.pictures import WIDTHS, Bytes, random_uyvy, three_rows
+from tinyphoon.arithmetic import isqrt32
+from tinyphoon.stages.edge_detection import (
     direction_row,
     gauss3_row,
     grey_row,
@@ -20,10 +22,8 @@ from firmware.stages.edge_detection import (
     sobel_row,
     suppress_row,
 )
-from firmware.stores.edges import store_edges_row
-from firmware.tables import arctangent_table
-from tests.firmware import references
-from tests.firmware.pictures import WIDTHS, Bytes, random_uyvy, three_rows
+from tinyphoon.stores.edges import store_edges_row
+from tinyphoon.tables import arctangent_table
 
 ROWS = [rows for width in WIDTHS for rows in three_rows(width)]
 ANY_ROWS = st.integers(2, 40).flatmap(lambda width: arrays(np.uint8, (3, width)))

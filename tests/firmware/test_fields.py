@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.api import FirmwareError
-from firmware.fields import (
+from tinyphoon.fields import (
     HIGHEST,
     LOWEST,
     Word,

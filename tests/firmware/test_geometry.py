@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from bfsim.api import Calibration, FirmwareError, FrameSize
 from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
 from bfsim.run import calibration_of
-from firmware import one_eye, tinyphoon
-from firmware.geometry import FARTHEST_MM, GEOMETRY_WORDS, beside_mm, depth_mm, geometry_buffer, look_at
-from firmware.stages.object_places import depth_by_floor
-from firmware.stores.lines import SUBPIXELS
 from tests.firmware.whole_pictures import buffer, random_frames, run
+from tinyphoon import one_eye, tinyphoon
+from tinyphoon.geometry import FARTHEST_MM, GEOMETRY_WORDS, beside_mm, depth_mm, geometry_buffer, look_at
+from tinyphoon.stages.object_places import depth_by_floor
+from tinyphoon.stores.lines import SUBPIXELS
 
 THESIS = [386 * 16, 30470, 120 * 16, 1820, 2845, 16135, 0, 0, 386 * 16]
 """T §6.2, §6.4, in the units of the buffer; 10 degrees are 1820.4 steps, with a sine of 2845.0 / 16384."""

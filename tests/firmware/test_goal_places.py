@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from firmware.stores.objects import BY_FLOOR
-from firmware.strategy.models import BLUE, MODELS
-from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware.object_rig import HEIGHT, THESIS, WIDTH
 from tests.firmware.test_object_sight import see
+from tinyphoon.stores.objects import BY_FLOOR
+from tinyphoon.strategy.models import BLUE, MODELS
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 GOAL = MODELS[1]
 FOCAL, UP_MM, TILT = THESIS.focal_px, THESIS.height_mm, np.radians(THESIS.tilt_deg)

@@ -8,11 +8,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from firmware.stages.edge_detection import gauss5_row
-from firmware.stages.hysteresis import group_edges_row, group_of, join_groups, keep_edges_row, label_edges_row
-from firmware.stores.edges import store_edges_row
 from tests.firmware import edge_references as references
 from tests.firmware.pictures import Bytes
+from tinyphoon.stages.edge_detection import gauss5_row
+from tinyphoon.stages.hysteresis import (
+    group_edges_row,
+    group_of,
+    join_groups,
+    keep_edges_row,
+    label_edges_row,
+)
+from tinyphoon.stores.edges import store_edges_row
 
 WEAK, STRONG = 8, 16
 GARBAGE = 170

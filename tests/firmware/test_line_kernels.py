@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from firmware.stages.line_fit import foot, slope, spread
-from firmware.stages.line_segments import turn_between
-from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware import line_references, references
 from tests.firmware.line_references import Row, Thresholds
 from tests.firmware.line_rig import edge_across, edges_of, find_lines
+from tinyphoon.stages.line_fit import foot, slope, spread
+from tinyphoon.stages.line_segments import turn_between
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 
 def check(rows: list[Row], width: int, *, capacity: int = 192, **thresholds: int) -> int:

@@ -11,13 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bfsim.api import Frame
-from firmware.stages.line_refinement import RefinementThresholds, line_refinement
-from firmware.stages.line_segments import SEGMENT_WORDS
-from firmware.stores.lines import LINE_WORDS
-from firmware.strategy.modes import INDOOR_FIELD
-from firmware.tables import arctangent_table
 from tests.firmware import refinement_references as references
 from tests.firmware.line_rig import BareCore, edges_of, find_lines
+from tinyphoon.stages.line_refinement import RefinementThresholds, line_refinement
+from tinyphoon.stages.line_segments import SEGMENT_WORDS
+from tinyphoon.stores.lines import LINE_WORDS
+from tinyphoon.strategy.modes import INDOOR_FIELD
+from tinyphoon.tables import arctangent_table
 
 GARBAGE = 77
 REACH, MIN_STEP = INDOOR_FIELD.refinement.reach, INDOOR_FIELD.refinement.min_step

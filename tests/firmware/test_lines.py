@@ -10,12 +10,12 @@ import pytest
 
 from benchmarks.quality.seen import see_pictures
 from benchmarks.table_6_1 import SQUARES, differences, sides, squares_picture, turned_squares
-from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware.line_references import Row
 from tests.firmware.line_rig import edge_across, edges_of, find_lines
 from tests.firmware.pictures import random_uyvy
 from tests.firmware.references import luma
 from tests.firmware.refinement_references import refined
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 THESIS_MEAN_PX = 2.11  # T Table 6.1
 

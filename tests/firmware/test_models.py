@@ -11,7 +11,7 @@ from bfsim.api import FirmwareError
 from bfsim.recording.scenes.soccer_data import BALL as TRUE_BALL
 from bfsim.recording.scenes.soccer_data import GOAL as TRUE_GOAL
 from bfsim.recording.scenes.soccer_data import ROBOT as TRUE_ROBOT
-from firmware.strategy.models import (
+from tinyphoon.strategy.models import (
     ALL_COLOURS,
     BLUE,
     MODEL_CAPACITY,
@@ -25,7 +25,7 @@ from firmware.strategy.models import (
     rectangular_colours,
     spherical_colours,
 )
-from firmware.strategy.modes import INDOOR_FIELD
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 BALL, BLUE_GOAL, YELLOW_GOAL, MARKER = MODELS
 

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from firmware.stages.object_history import AREA_WORDS, age_objects, move_images, remember_objects
-from firmware.stores.objects import NO_MODEL
-from firmware.strategy.models import MODELS, Shape
 from tests.firmware import history_references as references
 from tests.firmware.object_rig import THRESHOLDS, as_dicts, models_of, object_words
+from tinyphoon.stages.object_history import AREA_WORDS, age_objects, move_images, remember_objects
+from tinyphoon.stores.objects import NO_MODEL
+from tinyphoon.strategy.models import MODELS, Shape
 
 HERE = {"model": 1, "x": 100, "y": 0, "z": 1000, "accuracy": 200}
 GOAL = HERE | {"model": 2, "accuracy": 96}

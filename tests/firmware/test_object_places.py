@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.recording import StereoGeometry
-from firmware.geometry import FARTHEST_MM
-from firmware.stages.object_places import (
+from tests.firmware.object_rig import HEIGHT, WIDTH, as_dicts, geometries, geometry_words, object_words
+from tinyphoon.geometry import FARTHEST_MM
+from tinyphoon.stages.object_places import (
     depth_by_floor,
     depth_by_size,
     depth_of_sphere,
@@ -19,8 +20,7 @@ from firmware.stages.object_places import (
     place_object,
     principal,
 )
-from firmware.stores.objects import DIRECTION_Z
-from tests.firmware.object_rig import HEIGHT, WIDTH, as_dicts, geometries, geometry_words, object_words
+from tinyphoon.stores.objects import DIRECTION_Z
 
 
 @given(geometries, st.integers(1, 4000), st.integers(1, 10_000))

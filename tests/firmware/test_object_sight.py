@@ -12,20 +12,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.recording import StereoGeometry
-from firmware.stages.object_detection import ObjectThresholds
-from firmware.stages.object_sight import place_for, see_objects
-from firmware.stores.objects import (
-    AREA_TEST,
-    BY_FLOOR,
-    BY_SIZE,
-    CENTRE_TEST,
-    COLOUR_TEST,
-    DIMENSION_TEST,
-    OBJECT_WORDS,
-    SEEN_LEFT,
-    SIZE_TEST,
-)
-from firmware.strategy.models import BLUE, MODELS, RED, YELLOW
 from tests.firmware import object_references as references
 from tests.firmware.object_rig import (
     HEIGHT,
@@ -41,6 +27,20 @@ from tests.firmware.object_rig import (
     rectangle_words,
 )
 from tests.firmware.test_rectangles import line_words
+from tinyphoon.stages.object_detection import ObjectThresholds
+from tinyphoon.stages.object_sight import place_for, see_objects
+from tinyphoon.stores.objects import (
+    AREA_TEST,
+    BY_FLOOR,
+    BY_SIZE,
+    CENTRE_TEST,
+    COLOUR_TEST,
+    DIMENSION_TEST,
+    OBJECT_WORDS,
+    SEEN_LEFT,
+    SIZE_TEST,
+)
+from tinyphoon.strategy.models import BLUE, MODELS, RED, YELLOW
 
 BALL, BLUE_GOAL, YELLOW_GOAL, MARKER = MODELS
 OFTEN = COLOUR_TEST | DIMENSION_TEST | AREA_TEST

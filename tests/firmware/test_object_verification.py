@@ -6,8 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from firmware.stages.object_verification import verify_objects
-from firmware.stores.objects import (
+from tests.firmware import history_references as references
+from tests.firmware.object_rig import THESIS, THRESHOLDS, as_dicts, geometry_words, object_words
+from tinyphoon.stages.object_verification import verify_objects
+from tinyphoon.stores.objects import (
     BY_DISPARITY,
     BY_FLOOR,
     BY_SIZE,
@@ -17,8 +19,6 @@ from firmware.stores.objects import (
     SIZE_TEST,
     VERIFIED,
 )
-from tests.firmware import history_references as references
-from tests.firmware.object_rig import THESIS, THRESHOLDS, as_dicts, geometry_words, object_words
 
 ROWS, FARTHEST_APART = 16 * THRESHOLDS.row_range, 16 * THRESHOLDS.disparity_max
 OFF = 16 * THRESHOLDS.disparity_range

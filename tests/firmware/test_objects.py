@@ -10,7 +10,7 @@ import pytest
 from benchmarks.scenes import place_of
 from benchmarks.seen_objects import Seen, see
 from bfsim.run import BUILT_IN_RECORDING, simulate
-from firmware.stores.objects import (
+from tinyphoon.stores.objects import (
     BY_DISPARITY,
     BY_FLOOR,
     BY_SIZE,
@@ -19,9 +19,9 @@ from firmware.stores.objects import (
     SEEN_RIGHT,
     VERIFIED,
 )
-from firmware.strategy.decoding import ReportedObject
-from firmware.strategy.models import MODELS, Shape
-from firmware.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES
+from tinyphoon.strategy.decoding import ReportedObject
+from tinyphoon.strategy.models import MODELS, Shape
+from tinyphoon.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES
 
 NUMBERS = {each.shape: each.number for each in MODELS if each.name != "yellow goal"}
 THESIS_MS = 1.0  # T Table 6.4
@@ -96,7 +96,7 @@ def test_each_camera_has_its_own_frame(frames: list[Seen]) -> None:
 
 def test_it_costs_what_the_thesis_allows() -> None:
     """On either core, and on a board with one."""
-    for firmware, board in (("firmware:tinyphoon", "cm-bf561"), ("firmware:one_eye", "cm-bf533")):
+    for firmware, board in (("tinyphoon:tinyphoon", "cm-bf561"), ("tinyphoon:one_eye", "cm-bf533")):
         record = simulate(firmware=firmware, board=board, frames=1)
         for core in record.frames[0].cores:
             (stage,) = (each for each in core.stages if each.stage == "Object detection")

@@ -9,11 +9,11 @@ import pytest
 
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING, calibration_of
-from firmware import tinyphoon
-from firmware.stores.objects import BY_SIZE, SEEN_LEFT, SEEN_RIGHT
 from tests.firmware.object_rig import as_dicts
 from tests.firmware.test_areas import run
 from tests.firmware.whole_pictures import buffer
+from tinyphoon import tinyphoon
+from tinyphoon.stores.objects import BY_SIZE, SEEN_LEFT, SEEN_RIGHT
 
 AREA = (20, 36, 260, 190)
 PLACE = ("x", "y", "z")

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from bfsim.api import FirmwareError
 from bfsim.machine.spi.protocol import MessageType
-from firmware.fields import to_words
-from firmware.strategy import order_checks as checks
-from firmware.strategy.models import MODELS, ObjectModel, Shape, check_models
-from firmware.strategy.order_checks import WHICH_BIT
-from firmware.strategy.orders import mode_in, store_order
-from firmware.strategy.payloads import models_payload, payload
 from tests.firmware.order_messages import GOOD, framed, model, refusal_of_models
+from tinyphoon.fields import to_words
+from tinyphoon.strategy import order_checks as checks
+from tinyphoon.strategy.models import MODELS, ObjectModel, Shape, check_models
+from tinyphoon.strategy.order_checks import WHICH_BIT
+from tinyphoon.strategy.orders import mode_in, store_order
+from tinyphoon.strategy.payloads import models_payload, payload
 
 
 def test_models_there_and_back() -> None:

@@ -13,13 +13,13 @@ from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.spi.protocol import MessageType
 from bfsim.machine.spi.strategy import ScriptedBytes, ScriptedMessage
 from bfsim.run import THESIS_LDF
-from firmware import tinyphoon
-from firmware.fields import to_words
-from firmware.strategy import order_checks as checks
-from firmware.strategy.decoding import decode_results
-from firmware.strategy.models import MODELS
-from firmware.strategy.payloads import mode_payload, models_payload
 from tests.firmware.whole_pictures import buffer, random_frames
+from tinyphoon import tinyphoon
+from tinyphoon.fields import to_words
+from tinyphoon.strategy import order_checks as checks
+from tinyphoon.strategy.decoding import decode_results
+from tinyphoon.strategy.models import MODELS
+from tinyphoon.strategy.payloads import mode_payload, models_payload
 
 
 def run(script: Sequence[ScriptedMessage | ScriptedBytes], frames: int) -> tuple[Board, Outcome]:

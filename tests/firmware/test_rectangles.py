@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from firmware.stages.rectangle_detection import find_rectangles, rectangle_buffers, rectangle_detection
-from firmware.stores.lines import LINE_WORDS
-from firmware.stores.rectangles import NO_LINE, RECTANGLE_CAPACITY, RECTANGLE_WORDS
-from firmware.strategy.models import BLUE, YELLOW
-from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware import object_references as references
 from tests.firmware.line_rig import BareCore
 from tests.firmware.object_rig import blob_words
+from tinyphoon.stages.rectangle_detection import find_rectangles, rectangle_buffers, rectangle_detection
+from tinyphoon.stores.lines import LINE_WORDS
+from tinyphoon.stores.rectangles import NO_LINE, RECTANGLE_CAPACITY, RECTANGLE_WORDS
+from tinyphoon.strategy.models import BLUE, YELLOW
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 LIMITS = INDOOR_FIELD.rectangles
 BOX = {"colours": BLUE, "pixels": 2400, "left": 100, "right": 180, "top": 60, "bottom": 100}

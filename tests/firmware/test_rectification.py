@@ -13,17 +13,17 @@ from hypothesis.extra.numpy import arrays
 from bfsim.api import Calibration, FirmwareError, SourcePixels
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
-from firmware import tinyphoon
-from firmware.stages.rectification import (
+from tests.firmware.lenses import bilinear, nearest, rectified, source_points
+from tests.firmware.pictures import random_uyvy
+from tests.firmware.whole_pictures import buffer, check_core, random_frames, run
+from tinyphoon import tinyphoon
+from tinyphoon.stages.rectification import (
     BLACK_PAIR,
     places_in_window,
     rectification_buffers,
     rectify_row,
     window_lines,
 )
-from tests.firmware.lenses import bilinear, nearest, rectified, source_points
-from tests.firmware.pictures import random_uyvy
-from tests.firmware.whole_pictures import buffer, check_core, random_frames, run
 
 GARBAGE = 170
 CAMERA = {"barrel": 0.06, "turn_deg": 1.0, "down_px": 2.5}

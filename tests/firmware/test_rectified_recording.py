@@ -16,9 +16,9 @@ from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.scenes.chessboard import write_chessboards
 from bfsim.recording.scenes.lens import Lens, Misfit
 from bfsim.run import calibration_of, simulate
-from firmware import tinyphoon
 from tests.firmware.lenses import rectified
 from tests.firmware.whole_pictures import buffer, check_core, run
+from tinyphoon import tinyphoon
 
 GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
 MISFIT = Misfit(Lens(-0.25, 0.08, 0.001, -0.0008), (0.8, -1.2, 0.6), (0.3, 0.5, -0.4))

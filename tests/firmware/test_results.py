@@ -12,14 +12,16 @@ from hypothesis import strategies as st
 
 from bfsim.api import FirmwareError
 from bfsim.machine.spi.protocol import SYNC, Message, MessageType, decode, encode, message_nbytes
-from firmware.exchange import load_word, store_word
-from firmware.stores.objects import BY_FLOOR, NO_OUTLINE, OBJECT_CAPACITY
-from firmware.stores.rectangles import NO_LINE
-from firmware.strategy import framing
-from firmware.strategy.decoding import GoalLine, ReportedObject, Results, Side, decode_results
-from firmware.strategy.framing import crc16_byte
-from firmware.strategy.models import MODELS
-from firmware.strategy.results import (
+from tests.firmware.object_rig import models_of, object_words, rectangle_words
+from tests.firmware.test_rectangles import line_words
+from tinyphoon.exchange import load_word, store_word
+from tinyphoon.stores.objects import BY_FLOOR, NO_OUTLINE, OBJECT_CAPACITY
+from tinyphoon.stores.rectangles import NO_LINE
+from tinyphoon.strategy import framing
+from tinyphoon.strategy.decoding import GoalLine, ReportedObject, Results, Side, decode_results
+from tinyphoon.strategy.framing import crc16_byte
+from tinyphoon.strategy.models import MODELS
+from tinyphoon.strategy.results import (
     COUNTS_WORDS,
     LINE_CAPACITY,
     MESSAGE_WORDS,
@@ -28,8 +30,6 @@ from firmware.strategy.results import (
     pack_goal_lines,
     pack_objects,
 )
-from tests.firmware.object_rig import models_of, object_words, rectangle_words
-from tests.firmware.test_rectangles import line_words
 
 SEQUENCES = st.integers(0, 0xFFFF)
 BALL, BLUE_GOAL, *_ = MODELS

@@ -14,10 +14,6 @@ from bfsim.api import Core
 from bfsim.errors import LinkError
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING, calibration_of
-from firmware import tinyphoon
-from firmware.stages.edge_detection import edge_detection
-from firmware.stores.edges import EDGE_CAPACITY
-from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware.lenses import rectified
 from tests.firmware.pictures import EXTREMES
 from tests.firmware.whole_pictures import (
@@ -29,6 +25,10 @@ from tests.firmware.whole_pictures import (
     run,
     stereo,
 )
+from tinyphoon import tinyphoon
+from tinyphoon.stages.edge_detection import edge_detection
+from tinyphoon.stores.edges import EDGE_CAPACITY
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 
 @pytest.mark.parametrize("count", [1, 2])

@@ -12,15 +12,15 @@ from hypothesis import strategies as st
 
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
-from firmware.exchange import copy_words, pack_edge_rows
-from firmware.geometry import GEOMETRY_WORDS
-from firmware.stages.stereo_edges import StereoEdgeThresholds, is_level, stereo_edges_row, take_right_row
-from firmware.stages.stereo_lines import Correspondence
-from firmware.stores.lines import LINE_WORDS
-from firmware.stores.lines3d import EDGE3D_CAPACITY, EDGE3D_WORDS
-from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware.stereo_references import Edge, EdgeLimits, Rig, edges_3d
 from tests.firmware.whole_pictures import buffer, random_frames, run, stereo
+from tinyphoon.exchange import copy_words, pack_edge_rows
+from tinyphoon.geometry import GEOMETRY_WORDS
+from tinyphoon.stages.stereo_edges import StereoEdgeThresholds, is_level, stereo_edges_row, take_right_row
+from tinyphoon.stages.stereo_lines import Correspondence
+from tinyphoon.stores.lines import LINE_WORDS
+from tinyphoon.stores.lines3d import EDGE3D_CAPACITY, EDGE3D_WORDS
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 GARBAGE = 77
 Row = Sequence[Edge]

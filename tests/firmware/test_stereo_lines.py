@@ -14,17 +14,17 @@ from benchmarks.seen_stereo import see_stereo
 from bfsim.api import Calibration
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
-from firmware.arithmetic import angle8
-from firmware.geometry import GEOMETRY_WORDS
-from firmware.stages.line_correspondence import line_slopes
-from firmware.stages.stereo_lines import Correspondence, StereoLineThresholds, mutual_lines, nearest_lines
-from firmware.stores.lines import LINE_WORDS
-from firmware.stores.lines3d import LINE3D_WORDS
-from firmware.strategy.modes import INDOOR_FIELD
-from firmware.tables import arctangent_table
 from tests.firmware import stereo_references as references
 from tests.firmware.stereo_references import Line3D, Rig, Words
 from tests.firmware.whole_pictures import buffer, run
+from tinyphoon.arithmetic import angle8
+from tinyphoon.geometry import GEOMETRY_WORDS
+from tinyphoon.stages.line_correspondence import line_slopes
+from tinyphoon.stages.stereo_lines import Correspondence, StereoLineThresholds, mutual_lines, nearest_lines
+from tinyphoon.stores.lines import LINE_WORDS
+from tinyphoon.stores.lines3d import LINE3D_WORDS
+from tinyphoon.strategy.modes import INDOOR_FIELD
+from tinyphoon.tables import arctangent_table
 
 GARBAGE = 77
 ATAN = arctangent_table()

@@ -15,16 +15,16 @@ from bfsim.recording import RecordingReader
 from bfsim.report.digest import cycle_digest
 from bfsim.run import BUILT_IN_RECORDING, simulate
 from bfsim.seen import SeenFrame, Solid
-from firmware.areas import Area
-from firmware.fields import to_words
-from firmware.stages.blob_detection import hues
-from firmware.stages.colour_reduction import BLACK, WHITE
-from firmware.stores import objects as object_store
-from firmware.stores.circles import CENTRE_PASSED, RADIUS_PASSED
-from firmware.strategy import models
-from firmware.strategy.modes import INDOOR_FIELD, Mode
-from firmware.view.colours import colour_of
-from firmware.view.view import view
+from tinyphoon.areas import Area
+from tinyphoon.fields import to_words
+from tinyphoon.stages.blob_detection import hues
+from tinyphoon.stages.colour_reduction import BLACK, WHITE
+from tinyphoon.stores import objects as object_store
+from tinyphoon.stores.circles import CENTRE_PASSED, RADIUS_PASSED
+from tinyphoon.strategy import models
+from tinyphoon.strategy.modes import INDOOR_FIELD, Mode
+from tinyphoon.view.colours import colour_of
+from tinyphoon.view.view import view
 
 FRAMES = 2
 

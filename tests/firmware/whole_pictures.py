@@ -14,16 +14,6 @@ from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.program import FrameSize
 from bfsim.recording import StereoFrame
 from bfsim.run import THESIS_LDF
-from firmware import tinyphoon
-from firmware.stages.blob_detection import LABELS as BLOB_LABELS
-from firmware.stages.blob_detection import RECYCLE_AT
-from firmware.stages.edge_detection import ROOM_WORTH_A_PASS, EdgeThresholds
-from firmware.stages.hysteresis import LABELS
-from firmware.stages.line_segments import SEGMENT_CAPACITY
-from firmware.stores.blobs import BLOB_WORDS
-from firmware.stores.edges import EDGE_CAPACITY
-from firmware.stores.lines import LINE_WORDS
-from firmware.strategy.modes import INDOOR_FIELD
 from tests.firmware import (
     blob_references,
     edge_references,
@@ -32,6 +22,16 @@ from tests.firmware import (
     refinement_references,
 )
 from tests.firmware.pictures import Bytes, random_uyvy
+from tinyphoon import tinyphoon
+from tinyphoon.stages.blob_detection import LABELS as BLOB_LABELS
+from tinyphoon.stages.blob_detection import RECYCLE_AT
+from tinyphoon.stages.edge_detection import ROOM_WORTH_A_PASS, EdgeThresholds
+from tinyphoon.stages.hysteresis import LABELS
+from tinyphoon.stages.line_segments import SEGMENT_CAPACITY
+from tinyphoon.stores.blobs import BLOB_WORDS
+from tinyphoon.stores.edges import EDGE_CAPACITY
+from tinyphoon.stores.lines import LINE_WORDS
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 
 def board_for(width: int, height: int, firmware: Firmware = tinyphoon) -> Board:

@@ -20,11 +20,11 @@ from bfsim.machine.calls.caches import caches_of
 from bfsim.machine.dma.config import DmaConfig
 from bfsim.machine.program import FrameSize
 from bfsim.trace import StallReason
-from firmware import tinyphoon
 from tests.machine.kernels import copy, fill, first, spin, total
 from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, in_work, play
 from tests.machine.placements import changed, shipped
 from tests.machine.rig import Play, every_frame, noise, of_core, see_all, stage_of
+from tinyphoon import tinyphoon
 
 CACHE = CHIP.cache
 LINE, WAYS = CACHE.line_bytes, CACHE.data_ways

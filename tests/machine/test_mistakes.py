@@ -13,9 +13,9 @@ from bfsim.api import Buffer, Core, Frame, FrameSize, i8, u8
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, KernelError
 from bfsim.machine.board import symbols_of
 from bfsim.run import simulate
-from firmware import tinyphoon
 from tests.machine.kernels import first, spin
 from tests.machine.rig import Play, board_of, every_frame, load, noise, run, see_all
+from tinyphoon import tinyphoon
 
 
 def work_in_the_dark(core: Core, frame: Frame) -> Play:

@@ -24,7 +24,7 @@ from bfsim.trace import (
 IDENTITY = Identity(
     recording="soccer",
     recording_digest="1" * 64,
-    firmware="firmware:tinyphoon",
+    firmware="tinyphoon:tinyphoon",
     firmware_digest="2" * 64,
     board="cm-bf561",
     board_digest="3" * 64,

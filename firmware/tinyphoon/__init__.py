@@ -1,0 +1,42 @@
+"""The vision firmware of the robot Tinyphoon for both cores of its ADSP-BF561. T is the thesis it follows."""
+
+from __future__ import annotations
+
+from bfsim.api import BudgetRow, Firmware
+from tinyphoon.buffers import buffers, calibration_buffers, one_core_buffers
+from tinyphoon.core_a import core_a
+from tinyphoon.core_b import core_b
+from tinyphoon.one_core import one_core
+from tinyphoon.strategy.payloads import BY_NAME
+from tinyphoon.view.view import view
+
+ROWS = (
+    BudgetRow(stage="Edge detection", thesis_ms=87.0),  # T Table 6.4, average
+    BudgetRow(stage="Rectification", thesis_ms=None, within="Edge detection"),
+    BudgetRow(stage="Open & closing", thesis_ms=26.0),
+    BudgetRow(stage="Blob detection", thesis_ms=68.0),
+    BudgetRow(stage="Line detection", thesis_ms=19.0),  # 3-D lines and edges included
+    BudgetRow(stage="Shape detection", thesis_ms=18.0),
+    BudgetRow(stage="Object detection", thesis_ms=1.0),
+)
+
+tinyphoon = Firmware(
+    mains={"A": core_a, "B": core_b},
+    buffers=buffers,
+    camera="camera",
+    rows=ROWS,
+    calibration=calibration_buffers,
+    orders=BY_NAME,
+    view=view,
+)
+
+one_eye = Firmware(
+    mains={"A": one_core},
+    buffers=one_core_buffers,
+    camera="camera",
+    rows=ROWS,
+    calibration=calibration_buffers,
+    orders=BY_NAME,
+    view=view,
+)
+"""The same stages for a board with one core and one camera, such as cm-bf533."""

@@ -1,0 +1,102 @@
+"""The buffers of the firmware and where they go: line rings and the edge store in L1, pictures in SDRAM.
+
+Each core's camera and each core's working images have an SDRAM bank of their own. For pictures of w x h
+pixels L1 bank A holds 46 w bytes and bank B 11 w + 6 h + 17 KB: 640x480 fits, beside heap and stack.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from bfsim.api import Buffer, Buffers, Calibration, FrameSize, i16, u8, u16, u32
+from tinyphoon.exchange import exchange_buffers
+from tinyphoon.geometry import geometry_buffer, thesis_geometry_buffer
+from tinyphoon.stages.blob_detection import blob_buffers
+from tinyphoon.stages.circle_detection import circle_buffers
+from tinyphoon.stages.hysteresis import hysteresis_buffers
+from tinyphoon.stages.line_detection import line_buffers
+from tinyphoon.stages.object_detection import (
+    left_object_buffers,
+    object_buffers,
+    shared_object_buffers,
+)
+from tinyphoon.stages.rectangle_detection import rectangle_buffers
+from tinyphoon.stages.rectification import rectification_buffers
+from tinyphoon.stages.stereo_edges import stereo_edge_buffers
+from tinyphoon.stages.stereo_lines import stereo_line_buffers
+from tinyphoon.stores.edges import EDGE_CAPACITY
+from tinyphoon.strategy.models import model_buffers
+from tinyphoon.strategy.orders import order_buffers, shared_order_buffers
+from tinyphoon.strategy.results import MESSAGE_WORDS
+from tinyphoon.tables import arctangent_table
+
+CAMERA_FRAMES = 3  # one that is worked on, one that waits, one that is filled
+
+
+def buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
+    """Return the buffers of each core for pictures of `size`."""
+    return {
+        "A": (*_left_buffers(size), *stereo_line_buffers(), *stereo_edge_buffers()),
+        "B": _core_buffers(size, camera="sdram_bank1", images="sdram_bank3"),
+        "shared": (
+            *exchange_buffers(size),
+            *shared_object_buffers(),
+            *shared_order_buffers(size, "l2_shared"),
+        ),
+    }
+
+
+def one_core_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
+    """Return the buffers for pictures of `size` of a board with one core."""
+    return {"A": (*_left_buffers(size), *shared_order_buffers(size, "data1"))}
+
+
+def calibration_buffers(calibration: Calibration) -> Buffers:
+    """Return the buffers that depend on the cameras of a recording: tables where it has them, and the geometry."""
+    geometry = tuple(geometry_buffer(each) for each in calibration.geometries)
+    tables = rectification_buffers(calibration.sources)
+    return {core: (*tables.get(core, ()), *geometry) for core in ("A", "B")}
+
+
+def _left_buffers(size: FrameSize) -> Sequence[Buffer]:
+    return (
+        *_core_buffers(size, camera="sdram_bank0", images="sdram_bank2"),
+        *left_object_buffers(),
+        Buffer("results", u16, MESSAGE_WORDS, "data1"),
+    )
+
+
+def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buffer]:
+    width, height = size.width_px, size.height_px
+    return (
+        Buffer("camera", u8, 2 * width, camera, rows=CAMERA_FRAMES * height),
+        Buffer("colour_image", u32, width, images, rows=height),
+        Buffer("edge_image", u8, width, images, rows=height),
+        Buffer("opened_image", u32, width, images, rows=height),
+        # rings of DMA lines: one row more than the stage uses at a time
+        Buffer("camera_ring", u8, 2 * width, "L1_data_a", rows=2),
+        Buffer("colour_ring", u32, width, "L1_data_a", rows=4),
+        Buffer("opened_ring", u32, width, "L1_data_a", rows=2),
+        Buffer("edge_ring", u8, width, "L1_data_b", rows=2),
+        # rings between kernels
+        Buffer("grey_ring", u8, width, "L1_data_a", rows=3),
+        Buffer("smooth_ring", u8, width, "L1_data_a", rows=3),
+        Buffer("eroded_ring", u32, width, "L1_data_a", rows=3),
+        Buffer("magnitude_ring", u8, width, "L1_data_b", rows=3),
+        Buffer("direction_ring", u8, width, "L1_data_b", rows=2),
+        Buffer("gx", i16, width, "L1_data_b"),
+        Buffer("gy", i16, width, "L1_data_b"),
+        thesis_geometry_buffer(size),
+        Buffer("atan", u8, 257, "L1_data_b", values=arctangent_table()),
+        Buffer("edge_data", u32, EDGE_CAPACITY, "L1_data_b"),
+        Buffer("edge_index", u32, height, "L1_data_b"),
+        Buffer("edge_counts", u16, height, "L1_data_b"),
+        *hysteresis_buffers(),
+        *blob_buffers(size),
+        *line_buffers(size),
+        *circle_buffers(),
+        *rectangle_buffers(),
+        *object_buffers(),
+        *order_buffers(),
+        *model_buffers(),
+    )

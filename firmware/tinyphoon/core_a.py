@@ -1,0 +1,38 @@
+"""Core A: the left camera, and the results of both."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import Any
+
+from bfsim.api import Core
+from tinyphoon.features import features
+from tinyphoon.stages.object_detection import left_sight, object_detection
+from tinyphoon.stages.object_history import follow_area
+from tinyphoon.stages.stereo_edges import stereo_edges
+from tinyphoon.stages.stereo_lines import stereo_lines
+from tinyphoon.strategy.orders import halvings_of, read_mode, see_by, take_orders
+from tinyphoon.strategy.report import report
+
+
+def core_a(core: Core) -> Generator[Any, Any, None]:
+    """See every picture of the left camera, and depth where core B's right one shows the same.
+
+    Core B writes its results again only when core A is done with them: the cores take the same next pair.
+    """
+    while (frame := (yield from core.next_frame())) is not None:
+        mode = yield from read_mode(core)
+        area = yield from see_by(core, frame, mode)
+        found = yield from features(core, frame, mode, area)
+        with core.stage("Object detection"):
+            yield from left_sight(core, found.frame, found.outlines, mode.objects)
+        yield from core.wait("core B is done")
+        with core.stage("Line detection"):
+            yield from stereo_lines(core, found.frame, found.lines, mode.stereo_lines)
+            yield from stereo_edges(core, found.frame, mode.stereo_edges)
+        with core.stage("Object detection"):
+            yield from follow_area(core, area, halvings_of(core, frame))
+            yield from object_detection(core, mode.objects)
+        refused = yield from take_orders(core)  # for the next frame; core B reads them when core A is done
+        yield from core.post("core A is done")
+        yield from report(core, frame, area, refused)

@@ -1,0 +1,56 @@
+"""From a picture to features: the stages that every core plays on the picture of its own camera."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass
+from typing import Any
+
+from bfsim.api import Core, Frame
+from tinyphoon.areas import WHOLE_PICTURE, Area
+from tinyphoon.stages.blob_detection import blob_detection
+from tinyphoon.stages.blob_merging import blob_merging
+from tinyphoon.stages.circle_detection import circle_detection
+from tinyphoon.stages.edge_detection import edge_detection
+from tinyphoon.stages.line_detection import line_detection
+from tinyphoon.stages.line_refinement import line_refinement
+from tinyphoon.stages.object_detection import Outlines
+from tinyphoon.stages.open_closing import open_closing
+from tinyphoon.stages.rectangle_detection import rectangle_detection
+from tinyphoon.stages.rectification import rectification
+from tinyphoon.strategy.modes import Mode
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Features:
+    """How many features of each kind an area of a picture has in the core's memories. `frame`: the area as a picture."""
+
+    frame: Frame
+    edges: int
+    lines: int
+    outlines: Outlines
+
+
+def features(
+    core: Core, frame: Frame, mode: Mode, area: Area = WHOLE_PICTURE
+) -> Generator[Any, Any, Features]:
+    """Leave edges, colours, blobs, lines and outlines of an area in the core's memories, in its coordinates."""
+    with core.stage("Edge detection"):
+        with core.stage("Rectification"):
+            frame = yield from rectification(core, frame, area)
+        edges = yield from edge_detection(core, frame, mode.edges)
+    with core.stage("Open & closing"):
+        yield from open_closing(core, frame)
+    with core.stage("Blob detection"):
+        blobs = yield from blob_detection(core, frame, mode.blobs)
+    with core.stage("Line detection"):
+        lines = yield from line_detection(core, frame, mode.lines)
+        yield from line_refinement(core, frame, lines, mode.refinement)
+    with core.stage("Shape detection"):
+        circles = yield from circle_detection(core, frame, blobs, mode.ball_colours, mode.circles)
+        blobs = yield from blob_merging(core, blobs, circles, mode.blobs.merged)
+        rectangles = yield from rectangle_detection(
+            core, blobs, lines, mode.rectangle_colours, mode.rectangles
+        )
+    outlines = Outlines(blobs=blobs, circles=circles, rectangles=rectangles)
+    return Features(frame=frame, edges=edges, lines=lines, outlines=outlines)

@@ -1,0 +1,143 @@
+"""Where the cameras are, as the kernels read it: the buffer `geometry` of each core, a struct of 32-bit words.
+
+It comes with the recording. The pictures are rectified, the cameras equal and parallel, and the principal point is
+the middle of the picture, of which the stages may see an area only.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from bfsim.api import Buffer, FirmwareError, FrameSize, Geometry, i16, i32, kernel
+from tinyphoon.stores.lines import SUBPIXELS
+
+GEOMETRY_FOCAL = 0  # focal length, 1/16 px
+GEOMETRY_BASELINE = 1  # distance of the optical centres, µm
+GEOMETRY_HEIGHT = 2  # above the floor, 1/16 mm
+GEOMETRY_TILT = 3  # how far the cameras look down, 1/65536 of a turn
+GEOMETRY_SINE = 4  # of the tilt, 1/16384
+GEOMETRY_COSINE = 5
+# Of an area of interest, and of smaller pictures than the recorded ones; see `look_at`.
+GEOMETRY_SHIFT_X = 6  # how far the principal point is from the middle of the area, 1/16 px
+GEOMETRY_SHIFT_Y = 7
+GEOMETRY_FULL_FOCAL = 8  # focal length in the recorded pictures, 1/16 px
+GEOMETRY_WORDS = 9
+
+MICROMETRES = 1000
+HEIGHT_STEPS = 16
+TILT_STEPS = 65536
+SINE_BITS = 14
+
+DEEPEST = (1 << 31) - MICROMETRES
+"""Focal length times baseline, in the units above, must stay below: it is what all depths are made of."""
+
+HIGHEST = 1 << 31
+"""Focal length times height, in the units above, must stay below: depths on the floor are made of it."""
+
+FARTHEST_MM = 32767
+"""A point that is farther away does not go into a 16-bit word."""
+
+
+def geometry_buffer(geometry: Geometry) -> Buffer:
+    """Return the geometry of a recording as a buffer."""
+    return _buffer(geometry.focal_px, geometry.baseline_mm, geometry.height_mm, geometry.tilt_deg)
+
+
+def thesis_geometry_buffer(size: FrameSize) -> Buffer:
+    """Return the geometry of the thesis's robot (T §6.2, §6.4), for recordings that do not say theirs.
+
+    Raises FirmwareError for pictures so large that nothing can be computed with its cameras.
+    """
+    focal_px = 386.0 * size.width_px / 320  # measured in pictures of 320x240
+    try:
+        return _buffer(focal_px, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
+    except FirmwareError as error:
+        raise FirmwareError(
+            f"a recording of {size} pixels must say its geometry (bfsim record import --geometry), "
+            f"for with the thesis's {error}"
+        ) from error
+
+
+def _buffer(focal_px: float, baseline_mm: float, height_mm: float, tilt_deg: float) -> Buffer:
+    _check(focal_px, baseline_mm, height_mm)
+    words = (
+        round(SUBPIXELS * focal_px),
+        round(MICROMETRES * baseline_mm),
+        round(HEIGHT_STEPS * height_mm),
+        round(TILT_STEPS * tilt_deg / 360),
+        round((1 << SINE_BITS) * math.sin(math.radians(tilt_deg))),
+        round((1 << SINE_BITS) * math.cos(math.radians(tilt_deg))),
+        0,
+        0,
+        round(SUBPIXELS * focal_px),
+    )
+    return Buffer("geometry", i32, GEOMETRY_WORDS, "data1", values=np.array(words))
+
+
+def _check(focal_px: float, baseline_mm: float, height_mm: float) -> None:
+    """Raise FirmwareError unless 32 bits can compute with the cameras."""
+    if focal_px < 1:
+        raise FirmwareError(f"focal length of the cameras must be at least 1 px, not {focal_px:g} px")
+    if baseline_mm < 1 / MICROMETRES:
+        raise FirmwareError(f"baseline of the cameras must be at least 0.001 mm, not {baseline_mm:g} mm")
+    for name, mm, limit in (
+        ("baseline", baseline_mm, DEEPEST / (SUBPIXELS * MICROMETRES)),
+        ("height", abs(height_mm), HIGHEST / (SUBPIXELS * HEIGHT_STEPS)),
+    ):
+        if focal_px * mm >= limit:
+            raise FirmwareError(
+                f"focal length times {name} of the cameras must be below {limit:.0f} px mm, "
+                f"not {focal_px:g} px times {mm:g} mm"
+            )
+
+
+@kernel
+def look_at(geometry: i32[:], shift_x: i32, shift_y: i32, halvings: i32) -> None:
+    """Set what depends on the mode: where the principal point is, in 1/16 px, and how often the pictures are halved."""
+    geometry[GEOMETRY_SHIFT_X] = shift_x
+    geometry[GEOMETRY_SHIFT_Y] = shift_y
+    geometry[GEOMETRY_FOCAL] = geometry[GEOMETRY_FULL_FOCAL] >> halvings
+
+
+@kernel
+def depth_mm(geometry: i32[:], disparity: i32) -> i32:
+    """Return how far away a point is along the axis of the cameras, Z of T Eq. 3.16, in mm, rounded.
+
+    `disparity` is in 1/16 px. Without a positive one the point is nowhere, and beyond FARTHEST_MM too far: 0.
+    """
+    if disparity <= 0:
+        return 0
+    reach = geometry[GEOMETRY_FOCAL] * geometry[GEOMETRY_BASELINE]
+    depth = (reach // disparity + MICROMETRES // 2) // MICROMETRES
+    return depth if depth <= FARTHEST_MM else 0
+
+
+@kernel
+def beside_mm(geometry: i32[:], depth: i32, off_axis: i32) -> i32:
+    """Return how far beside the axis a point is, X or Y of T Eq. 3.17, in mm, rounded.
+
+    `depth` is its Z in mm, `off_axis` how far from the principal point the picture shows it, in 1/16 px.
+    """
+    focal = geometry[GEOMETRY_FOCAL]
+    return (2 * depth * off_axis + focal) // (2 * focal)
+
+
+@kernel
+def store_point(
+    geometry: i32[:], x: i32, y: i32, disparity: i32, width: i32, height: i32, words: i16[:], at: i32
+) -> i32:
+    """Store X, Y and Z of a point of the left picture of width x height pixels at word `at`; returns 1.
+
+    `x`, `y` and `disparity` are in 1/16 px. Of a point that is nowhere or too far away nothing is stored: 0.
+    """
+    depth = depth_mm(geometry, disparity)
+    across = beside_mm(geometry, depth, x - SUBPIXELS * (width - 1) // 2 - geometry[GEOMETRY_SHIFT_X])
+    down = beside_mm(geometry, depth, y - SUBPIXELS * (height - 1) // 2 - geometry[GEOMETRY_SHIFT_Y])
+    if depth == 0 or abs(across) > FARTHEST_MM or abs(down) > FARTHEST_MM:
+        return 0
+    words[at] = across
+    words[at + 1] = down
+    words[at + 2] = depth
+    return 1

@@ -1,0 +1,303 @@
+"""Circle detection (T §5.2.4): centre and radius of the ball that a blob may be, from the edges round it.
+
+Votes along the gradients find the centre, a histogram of distances the radius; two tests judge them. Where a ball
+is hidden in part, or cut by the picture's border, the edges that are left decide. The sphere's image is taken as a circle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel, u8, u16, u32
+from tinyphoon.fields import allowed
+from tinyphoon.scan_lines import window
+from tinyphoon.stages.circle_edges import (
+    AREA_WORDS,
+    FINE,
+    MASS_X,
+    MASS_Y,
+    NONE,
+    REACH,
+    next_blob,
+    open_area,
+    rows_of,
+    select_edges_row,
+)
+from tinyphoon.stages.circle_fit import CENTRE_X, CENTRE_Y, FIT_WORDS, RADIUS, arc_of, fit_circle
+from tinyphoon.stages.circle_outline import LUMA_LINES, REACH_LINES, clear_points, luma_row, refine_row
+from tinyphoon.stages.circle_radius import edges_round, fill_histogram, find_radius, mean_radius
+from tinyphoon.stages.circle_votes import clear_votes, draw_lines, find_peak, mean_offset, votes_round
+from tinyphoon.stores.blobs import BLOB_WORDS, PIXELS, SUM_X, SUM_Y
+from tinyphoon.stores.circles import (
+    CENTRE_PASSED,
+    CIRCLE_ARC,
+    CIRCLE_BLOB,
+    CIRCLE_CENTRE,
+    CIRCLE_EDGES,
+    CIRCLE_RADIUS,
+    CIRCLE_RADIUS_SHARE,
+    CIRCLE_TESTS,
+    CIRCLE_WORDS,
+    CIRCLE_X,
+    CIRCLE_Y,
+    RADIUS_PASSED,
+)
+from tinyphoon.stores.edges import EDGE_CAPACITY
+from tinyphoon.stores.lines import SUBPIXELS
+from tinyphoon.tables import tangent_table
+
+CIRCLE_CAPACITY = 64  # 1 KB; as many as there are blobs in the modes
+LARGEST_REACH = 32  # of the patch: 65 x 65 votes lie over the segments of the line detection
+LARGEST_FIT_RANGE = 8  # the fit's sums over all edges of a picture 640 wide have 32 bits
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CircleThresholds:
+    """Thresholds of the circle detection. Angles in 1/256 of a turn, lengths in pixels, shares of all edges in 1/256.
+
+    `border`: how far from the blob's rectangle edges are taken. `angle_range`: how far a gradient may point past
+    the centre of mass (eps_angle). `dark_balls`: gradients may point away from it too. `patch_reach`: how far
+    the centre is looked for to each side of the centre of mass, 0..32, and not further than half the blob.
+    `peak_reach`: how many cells round a peak belong to it; 0 is the thesis, whole pixels.
+    `min_edges`, `centre_share`: of the centre test T_c (T Eq. 5.6). `min_peak`, `radius_share`: of the radius test
+    T_r (T Eq. 5.7). `fit_rounds`: how often centre and radius are fitted to the outline; 0 is the thesis.
+    `fit_range`: how far from the circle that is looked for, 1..8.
+    """
+
+    border: int = allowed(0, 64)
+    angle_range: int = allowed(0, 128)
+    dark_balls: bool
+    patch_reach: int = allowed(0, LARGEST_REACH)
+    peak_reach: int = allowed(0, LARGEST_REACH, at_most="patch_reach")
+    min_edges: int = allowed(1, EDGE_CAPACITY)
+    centre_share: int = allowed(0, 256)
+    min_peak: int = allowed(1, EDGE_CAPACITY)
+    radius_share: int = allowed(0, 256)
+    fit_rounds: int = allowed(0, 16)
+    fit_range: int = allowed(1, LARGEST_FIT_RANGE)
+
+    def __post_init__(self) -> None:
+        if not self.peak_reach <= self.patch_reach <= LARGEST_REACH:
+            raise ValueError(
+                f"patch_reach must be peak_reach ({self.peak_reach}) to {LARGEST_REACH}, not {self.patch_reach}"
+            )
+        if not 1 <= self.fit_range <= LARGEST_FIT_RANGE:
+            raise ValueError(f"fit_range must be 1 to {LARGEST_FIT_RANGE}, not {self.fit_range}")
+
+
+def circle_buffers() -> Sequence[Buffer]:
+    """Return the buffers of the stage for a core. What it works on lies over the rings of the stages before."""
+    return (
+        Buffer("circles", i16, CIRCLE_WORDS * CIRCLE_CAPACITY, "data1"),
+        Buffer("tangents", u16, 33, "L1_data", values=tangent_table()),
+        Buffer("circle_area", i32, AREA_WORDS, "L1_scratch"),
+        Buffer("circle_fit", i32, FIT_WORDS, "L1_scratch"),
+    )
+
+
+@kernel
+def share_of(part: i32, whole: i32) -> i32:
+    """Return a part of a positive whole in 1/256, 255 at most."""
+    return min((part << 8) // whole, 255)
+
+
+@kernel
+def sixteenths(sum: u32, pixels: u32) -> i32:
+    """Return the mean coordinate of a blob's pixels in 1/16 px, without leaving 32 bits."""
+    whole = sum // pixels
+    rest = sum - whole * pixels
+    return i32(whole * SUBPIXELS + (2 * SUBPIXELS * rest + pixels) // (2 * pixels))
+
+
+@kernel
+def open_circle(blob_data: u32[:], blob: i32, edges: i32, circles: i16[:], number: i32) -> None:
+    """Begin the record of a circle with its blob's centre of mass, and no test passed yet."""
+    at = number * CIRCLE_WORDS
+    base = blob * BLOB_WORDS
+    circles[at + CIRCLE_X] = sixteenths(blob_data[base + SUM_X], blob_data[base + PIXELS])
+    circles[at + CIRCLE_Y] = sixteenths(blob_data[base + SUM_Y], blob_data[base + PIXELS])
+    circles[at + CIRCLE_RADIUS] = 0
+    circles[at + CIRCLE_BLOB] = blob
+    circles[at + CIRCLE_EDGES] = edges
+    circles[at + CIRCLE_CENTRE] = 0
+    circles[at + CIRCLE_RADIUS_SHARE] = 0
+    circles[at + CIRCLE_TESTS] = 0
+    circles[at + CIRCLE_ARC] = 0
+
+
+@kernel
+def judge_centre(
+    votes: u16[:],
+    area: i32[:],
+    edges: i32,
+    peak_reach: i32,
+    centre_share: i32,
+    fit: i32[:],
+    circles: i16[:],
+    number: i32,
+) -> i32:
+    """Find the peak of the votes of `edges` edges and return 1 if it passes T_c; else 0 (T Eq. 5.6).
+
+    `fit` gets the centre. A line through the middle of a square leaves a vote in each of its columns or rows, so
+    the peak counts as its votes by its side.
+    """
+    side = 2 * area[REACH] + 1
+    reach = min(peak_reach, area[REACH])
+    peak = find_peak(votes, area[REACH], reach)
+    size = votes_round(votes, side, peak, reach)
+    share = share_of(size, edges * (2 * reach + 1))
+    circles[number * CIRCLE_WORDS + CIRCLE_CENTRE] = share
+    if size == 0 or share < centre_share:
+        return 0
+    x = area[MASS_X] - area[REACH] + peak % side
+    y = area[MASS_Y] - area[REACH] + peak // side
+    fit[CENTRE_X] = FINE * x + mean_offset(votes, peak, 1, side, reach)
+    fit[CENTRE_Y] = FINE * y + mean_offset(votes, peak, side, 1, reach)
+    circles[number * CIRCLE_WORDS + CIRCLE_TESTS] = CENTRE_PASSED
+    return 1
+
+
+@kernel
+def judge_radius(
+    histogram: u16[:],
+    edges: i32,
+    peak_reach: i32,
+    min_peak: i32,
+    radius_share: i32,
+    fit: i32[:],
+    circles: i16[:],
+    number: i32,
+) -> i32:
+    """Find the peak of the distances of `edges` edges and return 1 if it passes T_r; else 0 (T Eq. 5.7).
+
+    `fit` gets the radius.
+    """
+    at = number * CIRCLE_WORDS
+    radius = find_radius(histogram, peak_reach)
+    size = edges_round(histogram, radius, peak_reach)
+    fit[RADIUS] = 0
+    if size == 0:
+        return 0
+    fit[RADIUS] = mean_radius(histogram, radius, peak_reach)
+    share = share_of(size, edges)
+    circles[at + CIRCLE_RADIUS_SHARE] = share
+    if size < min_peak or share < radius_share:
+        return 0
+    circles[at + CIRCLE_TESTS] = CENTRE_PASSED | RADIUS_PASSED
+    return 1
+
+
+@kernel
+def judge_arc(points: u32[:], fit: i32[:], atan: u8[:], circles: i16[:], number: i32) -> None:
+    """Store how much of a circle has outline on it."""
+    circles[number * CIRCLE_WORDS + CIRCLE_ARC] = arc_of(points, fit, atan)
+
+
+@kernel
+def close_circle(fit: i32[:], circles: i16[:], number: i32) -> None:
+    """Store centre and radius in 1/16 px."""
+    at = number * CIRCLE_WORDS
+    part = FINE // SUBPIXELS
+    circles[at + CIRCLE_X] = (fit[CENTRE_X] + part // 2) // part
+    circles[at + CIRCLE_Y] = (fit[CENTRE_Y] + part // 2) // part
+    circles[at + CIRCLE_RADIUS] = (fit[RADIUS] + part // 2) // part
+
+
+def circle_detection(
+    core: Core, frame: Frame, blobs: int, colours: int, thresholds: CircleThresholds
+) -> Generator[Any, Any, int]:
+    """Look for a circle round each of the first `blobs` blobs that has some of `colours`. Leaves them in `circles`.
+
+    Returns how many records there are, failed ones included, and publishes it as `circles`. Also publishes
+    `circles_lost`, how many had no room, and `circle_edges_lost`, the edges that found no room in the working memory.
+    """
+    blob_data, circles = core.array("blob_data"), core.array("circles")
+    room = len(core.rows("eroded_ring")) * frame.width
+    selected = core.overlay("eroded_ring", u32, room)[0]
+    number = lost = edges_lost = 0
+    blob = yield core.run(next_blob, blob_data, 0, blobs, colours)
+    while blob != NONE:
+        if number < CIRCLE_CAPACITY:
+            found = yield from _select_edges(core, frame, blob, colours, thresholds, selected)
+            count = min(found, room)
+            edges_lost += found - count
+            yield core.run(open_circle, blob_data, blob, count, circles, number)
+            if count >= max(thresholds.min_edges, 1):
+                yield from _measure(core, frame, selected, count, thresholds, number)
+            number += 1
+        else:
+            lost += 1
+        blob = yield core.run(next_blob, blob_data, blob + 1, blobs, colours)
+    core.publish(circles=number, circles_lost=lost, circle_edges_lost=edges_lost)
+    return number
+
+
+def _select_edges(
+    core: Core, frame: Frame, blob: int, colours: int, thresholds: CircleThresholds, selected: Row
+) -> Generator[Any, Any, int]:
+    """Select the edges of a blob's outline; returns how many there are. Its lines come through the opening's ring."""
+    area, atan = core.array("circle_area"), core.array("atan")
+    limits = thresholds.border, thresholds.patch_reach, frame.width, frame.height
+    top, bottom = ends((yield core.run(open_area, core.array("blob_data"), blob, area, *limits)))
+    first = max(top - 1, 0)
+    image = core.rows("opened_image")[first : min(bottom + 2, frame.height)]
+    lines = core.input_ring(image, "colour_ring")
+    store = core.array("edge_data"), core.array("edge_index"), core.array("edge_counts")
+    filters = area, thresholds.angle_range, int(thresholds.dark_balls), atan
+    found = 0
+    for ahead in range(first, bottom + 2):
+        if ahead < frame.height:
+            yield from lines.line()
+        y = ahead - 1
+        if top <= y:
+            near = window(lines, y - first, len(image))
+            found = yield core.run(select_edges_row, *store, y, *near, colours, *filters, selected, found)
+    return found
+
+
+def _measure(
+    core: Core, frame: Frame, selected: Row, count: int, thresholds: CircleThresholds, number: int
+) -> Generator[Any, Any, None]:
+    """Find centre and radius of circle `number` from its edges, and test them."""
+    area, fit, circles = core.array("circle_area"), core.array("circle_fit"), core.array("circles")
+    votes = core.overlay("segments", u16, (2 * LARGEST_REACH + 1) ** 2)[0]
+    histogram = core.overlay("magnitude_ring", u16, frame.width)[0]
+    reach = thresholds.peak_reach
+    yield core.run(clear_votes, votes, area)
+    yield core.run(draw_lines, selected, count, votes, area, core.array("tangents"))
+    result = fit, circles, number
+    if (yield core.run(judge_centre, votes, area, count, reach, thresholds.centre_share, *result)):
+        yield core.run(fill_histogram, selected, count, fit, histogram)
+        judged = histogram, count, reach, thresholds.min_peak, thresholds.radius_share
+        passed = yield core.run(judge_radius, *judged, *result)
+        if passed and thresholds.fit_rounds:
+            yield from _refine(core, frame, selected, count, thresholds)
+            yield core.run(judge_arc, selected, fit, core.array("atan"), circles, number)
+        yield core.run(close_circle, *result)
+
+
+def _refine(
+    core: Core, frame: Frame, selected: Row, count: int, thresholds: CircleThresholds
+) -> Generator[Any, Any, None]:
+    """Fit centre and radius to the outline in the camera's lines, which come through the ring of the edge detection."""
+    area, fit = core.array("circle_area"), core.array("circle_fit")
+    luma = core.overlay("colour_ring", u8, LUMA_LINES * frame.width)[0]
+    top, bottom = ends((yield core.run(rows_of, area)))
+    first, height = max(top - REACH_LINES, 0), frame.height
+    lines = core.input_ring(frame.rows[first : min(bottom + 1 + REACH_LINES, height)], "camera_ring")
+    yield core.run(clear_points, fit)
+    for ahead in range(first, bottom + 1 + REACH_LINES):
+        if ahead < height:
+            line = yield from lines.line()
+            yield core.run(luma_row, line, luma, ahead, area)
+        y = ahead - REACH_LINES
+        if top <= y:
+            yield core.run(refine_row, selected, count, y, luma, height, fit, thresholds.fit_range)
+    yield core.run(fit_circle, selected, fit, thresholds.fit_range, thresholds.fit_rounds)
+
+
+def ends(rows: int) -> tuple[int, int]:
+    """Return the two shorts of a word."""
+    return rows & 0xFFFF, rows >> 16

@@ -1,0 +1,171 @@
+"""The edges of a ball's outline: those near its blob that pass the two filters of T §5.2.4.
+
+Filter 1 asks for the erosion of the opened image at an edge. There is none in memory, and the opening's own erosion
+is that of the noisy image. So the opened image comes back by DMA, only the lines of the blob, and only where
+an edge lies are its nine pixels looked at: a tenth of the pixels at most, and nothing is written.
+
+A selected edge is one word: direction in bits 0..7, y in 8..19, x in 20..31.
+"""
+
+from __future__ import annotations
+
+from bfsim.api import i32, kernel, u8, u16, u32
+from tinyphoon.arithmetic import angle8
+from tinyphoon.stages.line_segments import turn_between
+from tinyphoon.stores.blobs import (
+    ACROSS,
+    BLOB_WORDS,
+    CENTRE,
+    COLOURS,
+    DOWN,
+    extent_of,
+    is_cut_before,
+    is_cut_behind,
+)
+
+NONE = -1
+
+# Parts of a pixel in which centre and radius are worked out: a picture 640 wide, squared, stays below 32 bits.
+FINE = 64
+
+# Where to look for the outline: pixels, both ends included.
+LEFT = 0
+RIGHT = 1
+TOP = 2
+BOTTOM = 3
+MASS_X = 4  # blob.cc, or where the middle is of a disc that the picture shows less than half of
+MASS_Y = 5
+REACH = 6  # the centre is looked for so far from there to each side
+AREA_WORDS = 7
+
+HALF_TURN = 128
+
+
+@kernel
+def edge_x(edge: u32) -> i32:
+    """Return the column of a selected edge."""
+    return i32(edge >> 20)
+
+
+@kernel
+def edge_y(edge: u32) -> i32:
+    """Return the row of a selected edge."""
+    return i32(edge >> 8 & 0xFFF)
+
+
+@kernel
+def next_blob(blob_data: u32[:], blob: i32, blobs: i32, colours: u32) -> i32:
+    """Return the first blob from number `blob` on that has some of `colours`, or NONE."""
+    while blob < blobs:
+        if blob_data[blob * BLOB_WORDS + COLOURS] & colours != 0:
+            return blob
+        blob = blob + 1
+    return NONE
+
+
+@kernel
+def rows_of(area: i32[:]) -> i32:
+    """Return the first row and the last, as a pair of shorts."""
+    return area[TOP] | area[BOTTOM] << 16
+
+
+@kernel
+def middle_beyond(span: u32, chord: i32, pixels: i32, mass: i32) -> i32:
+    """Return where the middle of a disc is along an axis of which the picture has `pixels`, given its centre of mass.
+
+    Of a disc that the picture's border cuts, so that less than half of it is seen, the part seen and the chord at the border
+    tell the radius; of less than a seventh they hardly do.
+    """
+    seen = extent_of(span)
+    before = is_cut_before(span)
+    if before == is_cut_behind(span, pixels) or 2 * seen >= chord or 7 * seen < chord:
+        return mass
+    radius = (chord * chord + 4 * seen * seen) // (8 * seen)
+    if before != 0:
+        return i32(span >> 16) - radius
+    return i32(span & 0xFFFF) + radius
+
+
+@kernel
+def open_area(
+    blob_data: u32[:], blob: i32, area: i32[:], border: i32, patch_reach: i32, width: i32, height: i32
+) -> i32:
+    """Describe where the outline of a blob is looked for, and return the first row and the last, as a pair of shorts."""
+    across = blob_data[blob * BLOB_WORDS + ACROSS]
+    down = blob_data[blob * BLOB_WORDS + DOWN]
+    left = i32(across & 0xFFFF)
+    right = i32(across >> 16)
+    top = i32(down & 0xFFFF)
+    bottom = i32(down >> 16)
+    area[LEFT] = max(left - border, 0)
+    area[RIGHT] = min(right + border, width - 1)
+    area[TOP] = max(top - border, 0)
+    area[BOTTOM] = min(bottom + border, height - 1)
+    centre = blob_data[blob * BLOB_WORDS + CENTRE]
+    area[MASS_X] = middle_beyond(across, extent_of(down), width, i32(centre & 0xFFFF))
+    area[MASS_Y] = middle_beyond(down, extent_of(across), height, i32(centre >> 16))
+    area[REACH] = min(max(right - left, bottom - top) + 1 >> 1, patch_reach)
+    return rows_of(area)
+
+
+@kernel
+def is_overlaid(above: u32[:], here: u32[:], below: u32[:], x: i32, colours: u32) -> i32:
+    """Return 1 if the pixel at `x` and its eight neighbours all have one of `colours`; else 0 (filter 1).
+
+    The colours count as one, as in the segmentation. No edge lies in the first or the last column.
+    """
+    for column in range(x - 1, x + 2):
+        if above[column] & colours == 0 or here[column] & colours == 0 or below[column] & colours == 0:
+            return 0
+    return 1
+
+
+@kernel
+def looks_at(direction: i32, dx: i32, dy: i32, angle_range: i32, dark_too: i32, atan: u8[:]) -> i32:
+    """Return 1 if a gradient points to what lies (dx, dy) from it, to `angle_range` 1/256 of a turn; else 0 (filter 2).
+
+    That is a bright ball on a dark ground; with `dark_too` it may also point the other way.
+    """
+    turn = abs(turn_between(direction, angle8(dx, dy, atan)))
+    if turn <= angle_range:
+        return 1
+    if dark_too != 0 and turn >= HALF_TURN - angle_range:
+        return 1
+    return 0
+
+
+@kernel
+def select_edges_row(
+    edge_data: u32[:],
+    edge_index: u32[:],
+    edge_counts: u16[:],
+    y: i32,
+    above: u32[:],
+    here: u32[:],
+    below: u32[:],
+    colours: u32,
+    area: i32[:],
+    angle_range: i32,
+    dark_too: i32,
+    atan: u8[:],
+    selected: u32[:],
+    found: i32,
+) -> i32:
+    """Append the edges of row `y` that pass both filters to the `found` ones before; returns how many there are then.
+
+    `above`, `here` and `below` are lines of the opened image. Edges beyond the length of `selected` are counted,
+    not stored.
+    """
+    first = i32(edge_index[y])
+    for position in range(first, first + edge_counts[y]):
+        edge = edge_data[position]
+        x = i32(edge >> 16)
+        if area[LEFT] <= x <= area[RIGHT] and is_overlaid(above, here, below, x, colours) == 0:
+            direction = edge >> 8 & 255
+            dx = area[MASS_X] - x
+            dy = area[MASS_Y] - y
+            if looks_at(i32(direction), dx, dy, angle_range, dark_too, atan) != 0:
+                if found < len(selected):
+                    selected[found] = direction | u32(y << 8) | u32(x << 20)
+                found = found + 1
+    return found

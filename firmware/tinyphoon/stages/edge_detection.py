@@ -1,0 +1,203 @@
+"""Edge detection: the scan-line Canny (T §2.1.4, §5.2.1), with the colour reduction.
+
+Every kernel makes one row. The task reads the picture once, top to bottom; each step lags behind the step that it
+reads from. The fifth step is in `hysteresis.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from bfsim.api import Core, Frame, i16, i32, kernel, u8, u32
+from tinyphoon.arithmetic import angle8, isqrt32
+from tinyphoon.fields import allowed
+from tinyphoon.scan_lines import line_ring, window
+from tinyphoon.stages.colour_reduction import colour_row
+from tinyphoon.stages.hysteresis import LABELS, EdgeGroups, hysteresis
+from tinyphoon.stores.edges import EDGE_CAPACITY, store_edges_row
+
+# Making room takes a pass over the store. It is worth it again when so many edges have come since.
+ROOM_WORTH_A_PASS = EDGE_CAPACITY // 8
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EdgeThresholds:
+    """Thresholds of the edge detection and the colour reduction.
+
+    `gauss_px`: size of the Gauss before the edge detection, 3 or 5. `edge_threshold`: the tau_e and the tau_l of
+    T §2.1.4 in one, and `strong_threshold`: its tau_h, that one edge of a group must reach; both in stored gradient
+    units, a quarter of a Sobel gradient; 1..255.
+    `eps_black`, `eps_white`: limits of luma minus chroma in grey levels (T Eq. 5.2); -182..255. A pixel
+    below the first is black, above the second white, and has a hue between them.
+    """
+
+    gauss_px: Literal[3, 5]
+    edge_threshold: int = allowed(1, 255, at_most="strong_threshold")
+    strong_threshold: int = allowed(1, 255)
+    eps_black: int = allowed(-182, 255, at_most="eps_white")
+    eps_white: int = allowed(-182, 255)
+
+
+@kernel
+def grey_row(uyvy: u8[:], grey: u8[:]) -> None:
+    """Take the luma of one UYVY row: `2 * width` bytes to `width` grey levels."""
+    for x in range(len(grey)):
+        grey[x] = uyvy[2 * x + 1]
+
+
+@kernel
+def gauss3_row(above: u8[:], here: u8[:], below: u8[:], smooth: u8[:]) -> None:
+    """Smooth one row with the 3x3 binomial 1-2-1 by 1-2-1; the two border pixels stay as they are."""
+    last = len(here) - 1
+    smooth[0] = here[0]
+    for x in range(1, last):
+        top = above[x - 1] + 2 * above[x] + above[x + 1]
+        middle = here[x - 1] + 2 * here[x] + here[x + 1]
+        bottom = below[x - 1] + 2 * below[x] + below[x + 1]
+        smooth[x] = top + 2 * middle + bottom >> 4
+    smooth[last] = here[last]
+
+
+@kernel
+def across5(line: u8[:], x: i32) -> i32:
+    """Return 1-4-6-4-1 times the pixels round `x`."""
+    return line[x - 2] + line[x + 2] + 4 * (line[x - 1] + line[x + 1]) + 6 * line[x]
+
+
+@kernel
+def gauss5_row(
+    second_above: u8[:], above: u8[:], here: u8[:], below: u8[:], second_below: u8[:], smooth: u8[:]
+) -> None:
+    """Smooth one row with the 5x5 binomial 1-4-6-4-1 by itself; the two pixels at each border stay as they are."""
+    last = len(here) - 1
+    for x in range(2):
+        smooth[x] = here[x]
+        smooth[last - x] = here[last - x]
+    for x in range(2, last - 1):
+        outer = across5(second_above, x) + across5(second_below, x)
+        inner = across5(above, x) + across5(below, x)
+        smooth[x] = outer + 4 * inner + 6 * across5(here, x) >> 8
+
+
+@kernel
+def sobel_row(above: u8[:], here: u8[:], below: u8[:], gx: i16[:], gy: i16[:]) -> None:
+    """Sobel gradients of one row, -1020..1020: gx grows to the right, gy downwards; 0 at both borders.
+
+    T Eq. 2.1 has the y axis upwards; here it runs with the lines, as x, y and angle do everywhere.
+    """
+    last = len(here) - 1
+    gx[0] = 0
+    gy[0] = 0
+    for x in range(1, last):
+        left = above[x - 1] + 2 * here[x - 1] + below[x - 1]
+        right = above[x + 1] + 2 * here[x + 1] + below[x + 1]
+        top = above[x - 1] + 2 * above[x] + above[x + 1]
+        bottom = below[x - 1] + 2 * below[x] + below[x + 1]
+        gx[x] = right - left
+        gy[x] = bottom - top
+    gx[last] = 0
+    gy[last] = 0
+
+
+@kernel
+def magnitude_row(gx: i16[:], gy: i16[:], magnitude: u8[:]) -> None:
+    """Gradient magnitude of one row (T Eq. 2.3), a quarter of it, 255 at most.
+
+    A Sobel gradient can be 255 * sqrt(20) = 1140 long, but only at a corner: an edge of 255 grey levels has
+    1020, and 765 behind the Gauss. So a quarter is the finest unit that 8 bits hold.
+    """
+    for x in range(len(magnitude)):
+        square = gx[x] * gx[x] + gy[x] * gy[x]
+        magnitude[x] = min(i32(isqrt32(u32(square))) >> 2, 255)
+
+
+@kernel
+def direction_row(gx: i16[:], gy: i16[:], atan: u8[:], direction: u8[:]) -> None:
+    """Gradient direction of one row (T Eq. 2.4) as an 8-bit angle: 0 looks to the right, 64 down."""
+    for x in range(len(direction)):
+        direction[x] = angle8(gx[x], gy[x], atan)
+
+
+@kernel
+def suppress_row(
+    above: u8[:], here: u8[:], below: u8[:], direction: u8[:], edges: u8[:], edge_threshold: i32
+) -> None:
+    """Keep the magnitudes of one row that reach the threshold and are a maximum across their edge, else 0.
+
+    The neighbours are those along the gradient, by eighths of a turn. Of two equal ones the second in that
+    order stays, so that an edge is one pixel wide. Border pixels are 0. (T §2.1.4, steps 3 and 4.)
+    """
+    last = len(here) - 1
+    edges[0] = 0
+    for x in range(1, last):
+        octant = (direction[x] + 16 >> 5) & 3
+        if octant == 0:
+            before = here[x - 1]
+            after = here[x + 1]
+        elif octant == 1:
+            before = above[x - 1]
+            after = below[x + 1]
+        elif octant == 2:
+            before = above[x]
+            after = below[x]
+        else:
+            before = above[x + 1]
+            after = below[x - 1]
+        if here[x] >= edge_threshold and here[x] >= before and here[x] > after:
+            edges[x] = here[x]
+        else:
+            edges[x] = 0
+    edges[last] = 0
+
+
+def edge_detection(core: Core, frame: Frame, thresholds: EdgeThresholds) -> Generator[Any, Any, int]:
+    """Detect the edges of a picture and reduce its colours, in one pass of DMA lines (T Figure 5.3).
+
+    Leaves `edge_image` (gradients) and `colour_image` in SDRAM and the edge store in L1; returns how many edges are
+    stored and publishes it as `edges`. Also publishes `edges_lost`, how many had no room in the store, and
+    `edge_groups_shared`, how many groups had to share a label.
+    """
+    camera = core.input_ring(frame.rows, "camera_ring")
+    colours = core.output_ring("colour_ring", core.rows("colour_image"))
+    height, reach = frame.height, thresholds.gauss_px // 2
+    # the opening comes later: two lines of its ring are enough for the larger Gauss
+    grey = line_ring((*core.rows("grey_ring"), *core.overlay("opened_ring", u8, frame.width)[:2]), height)
+    smooth, magnitude, direction = (
+        line_ring(core.rows(name), height) for name in ("smooth_ring", "magnitude_ring", "direction_ring")
+    )
+    edges = core.rows("edge_ring")[0]
+    gx, gy, atan = core.array("gx"), core.array("gy"), core.array("atan")
+    groups = EdgeGroups.of(core, frame.width)
+    found = given = lost = 0
+    crowded = EDGE_CAPACITY - frame.width  # from here on a line may have more edges than there is room for
+    for y in range(height + reach + 2):
+        if y < height:
+            line = yield from camera.line()
+            yield core.run(grey_row, line, grey[y])
+            row = yield from colours.row()
+            yield core.run(colour_row, line, atan, row, thresholds.eps_black, thresholds.eps_white)
+            colours.send()
+        # Gauss, Sobel and suppression each need lines below theirs
+        smoothed, sloped, done = y - reach, y - reach - 1, y - reach - 2
+        if 0 <= smoothed < height:
+            gauss_row = gauss3_row if reach == 1 else gauss5_row
+            yield core.run(gauss_row, *window(grey, smoothed, height, reach), smooth[smoothed])
+        if 0 <= sloped < height:
+            yield core.run(sobel_row, *window(smooth, sloped, height), gx, gy)
+            yield core.run(magnitude_row, gx, gy, magnitude[sloped])
+            yield core.run(direction_row, gx, gy, atan, direction[sloped])
+        if done >= 0:
+            near = window(magnitude, done, height)
+            yield core.run(suppress_row, *near, direction[done], edges, thresholds.edge_threshold)
+            found = yield core.run(store_edges_row, edges, direction[done], *groups.store, done, found)
+            lost, found = lost + max(0, found - EDGE_CAPACITY), min(found, EDGE_CAPACITY)
+            given = yield from groups.add(done, given)
+            if found >= crowded:
+                found, given = yield from groups.make_room(done + 1, thresholds.strong_threshold, edges)
+                crowded = max(crowded, found + ROOM_WORTH_A_PASS)
+    yield from colours.flush()
+    kept = yield from hysteresis(groups, height, thresholds.strong_threshold)
+    core.publish(edges=kept, edges_lost=lost, edge_groups_shared=max(0, given - LABELS + 1))
+    return kept

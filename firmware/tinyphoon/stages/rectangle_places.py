@@ -1,0 +1,249 @@
+"""Where a rectangle is, by the floor below its bottom (T §4.1.2): a mark over the floor, and a goal.
+
+A goal is a box open to the front, so that its back fills most of its blob, and seen at an angle it is no rectangle
+(T §6.4). What stands on the floor at its mouth are its posts: the feet at both ends of its blob are a goal's width apart,
+and the middle of the mouth is between them [ours].
+"""
+
+from __future__ import annotations
+
+from bfsim.api import i16, i32, kernel, u8, u32
+from tinyphoon.arithmetic import isqrt32
+from tinyphoon.geometry import (
+    GEOMETRY_COSINE,
+    GEOMETRY_SHIFT_X,
+    GEOMETRY_SHIFT_Y,
+    GEOMETRY_SINE,
+    SINE_BITS,
+    beside_mm,
+)
+from tinyphoon.stages.object_places import HALF_PIXEL, depth_by_floor, floor_extent, place_object, principal
+from tinyphoon.stages.object_tests import GOAL
+from tinyphoon.stages.rectangle_detection import crossing
+from tinyphoon.stores.blobs import (
+    ACROSS,
+    BLOB_WORDS,
+    DOWN,
+    extent_of,
+    is_cut,
+    is_cut_before,
+    is_cut_behind,
+    wider,
+)
+from tinyphoon.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
+from tinyphoon.stores.objects import (
+    BY_FLOOR,
+    DIMENSION_TEST,
+    NO_OUTLINE,
+    OBJECT_EXTENT,
+    OBJECT_IMAGE_X,
+    OBJECT_MEASURES,
+    OBJECT_OUTLINE,
+    OBJECT_WORDS,
+    OBJECT_X,
+    OBJECT_Y,
+    OBJECT_Z,
+)
+from tinyphoon.stores.rectangles import NO_LINE, RECTANGLE_BOTTOM, RECTANGLE_WORDS
+from tinyphoon.strategy.models import LARGEST_MM, MODEL_FLOOR, MODEL_HEIGHT, MODEL_SHAPE, MODEL_WIDTH
+
+NO_PART = -1
+OPENING_LOSS = SUBPIXELS  # so far above its bottom line the opening may end a blob [ours]
+FLOOR_LINE = 4 * SUBPIXELS  # so far below the feet the line may be that is painted along the goal [ours]
+FAR_APART = 4 * LARGEST_MM  # mm: farther than any goal is wide; three squares of it stay in 32 bits
+
+
+@kernel
+def bottom_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], column: i32) -> i32:
+    """Return where a rectangle ends below at `column`, in 1/16 px: at its bottom line, or else at the end of its blob.
+
+    `down` are the rows of its blob, or of the part of it that is there.
+    """
+    if rectangle != NO_OUTLINE:
+        line = i32(rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_BOTTOM])
+        if line != NO_LINE:
+            at = line * LINE_WORDS
+            x = i32(lines[at + LINE_X0])
+            y = i32(lines[at + LINE_Y0])
+            return crossing(x, y, i32(lines[at + LINE_X1]), i32(lines[at + LINE_Y1]), column)
+    return SUBPIXELS * i32(down >> 16) + HALF_PIXEL
+
+
+@kernel
+def foot_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], column: i32, cut: i32) -> i32:
+    """Return where a goal stands on the floor at an end of its blob, in 1/16 px; `down` are the rows of the part that is there.
+
+    That is its bottom line, unless the part ends a little above it: then it is the foot of a post, and the line one on the
+    floor, whose front edge is nearer, and blurred further down the thinner it looks. Where the picture has `cut` the part
+    off there is no foot.
+    """
+    end = bottom_row(down, rectangles, NO_OUTLINE, lines, column)
+    line = bottom_row(down, rectangles, rectangle, lines, column)
+    return end if end + OPENING_LOSS < line <= end + FLOOR_LINE and cut == 0 else line
+
+
+@kernel
+def is_above(across: u32, other: u32) -> i32:
+    """Return 1 if two blobs have half the columns of the narrower one in common: one stands above the other; else 0."""
+    common = min(i32(across >> 16), i32(other >> 16)) + 1 - max(i32(across & 0xFFFF), i32(other & 0xFFFF))
+    return 1 if 2 * common >= min(extent_of(across), extent_of(other)) else 0
+
+
+@kernel
+def rows_at_end(blob_data: u32[:], parents: u8[:], blob: i32, is_right: i32) -> u32:
+    """Return the rows of the part of a blob that reaches farthest to the left or to the right, with those that it stands on.
+
+    A blob without parts has its own rows. Parts come before the blob.
+    """
+    across = blob_data[blob * BLOB_WORDS + ACROSS]
+    rows = blob_data[blob * BLOB_WORDS + DOWN]
+    end: i32 = NO_PART
+    for part in range(blob):
+        apart = blob_data[part * BLOB_WORDS + ACROSS] ^ across
+        if parents[part] == blob and (apart >> 16 if is_right != 0 else apart & 0xFFFF) == 0:
+            end = part
+            rows = blob_data[part * BLOB_WORDS + DOWN]
+    if end != NO_PART:
+        across = blob_data[end * BLOB_WORDS + ACROSS]
+        for part in range(blob):
+            down = blob_data[part * BLOB_WORDS + DOWN]
+            if parents[part] == blob and is_above(across, blob_data[part * BLOB_WORDS + ACROSS]) != 0:
+                rows = wider(rows, i32(down & 0xFFFF), i32(down >> 16))
+    return rows
+
+
+@kernel
+def scaled(height_mm: i32, fraction: i32) -> i32:
+    """Return a fraction, with SINE_BITS, of half a height, rounded."""
+    return (height_mm * fraction >> SINE_BITS) + 1 >> 1
+
+
+@kernel
+def on_the_way(from_mm: i32, to_mm: i32, part: i32, whole: i32) -> i32:
+    """Return the place `part` of `whole` on the way from one place to another along an axis, rounded."""
+    return from_mm + (2 * (to_mm - from_mm) * part + whole) // (2 * whole)
+
+
+@kernel
+def lift(geometry: i32[:], models: i32[:], model: i32, row: i32, objects: i16[:], number: i32) -> None:
+    """Move an object from its lower border, seen in `row`, up to its middle; its place has been measured by the floor."""
+    at = number * OBJECT_WORDS
+    up = models[model + MODEL_HEIGHT]
+    objects[at + OBJECT_Y] = objects[at + OBJECT_Y] - scaled(up, geometry[GEOMETRY_COSINE])
+    objects[at + OBJECT_Z] = objects[at + OBJECT_Z] - scaled(up, geometry[GEOMETRY_SINE])
+    objects[at + OBJECT_MEASURES] = BY_FLOOR
+    objects[at + OBJECT_EXTENT] = abs(floor_extent(geometry, row))
+
+
+@kernel
+def stand_at(geometry: i32[:], depth: i32, column: i32, row: i32, objects: i16[:], number: i32) -> None:
+    """Place an object's lower border where it is seen at a depth; `column` and `row` count from the principal point."""
+    at = number * OBJECT_WORDS
+    objects[at + OBJECT_X] = beside_mm(geometry, depth, column)
+    objects[at + OBJECT_Y] = beside_mm(geometry, depth, row)
+    objects[at + OBJECT_Z] = depth
+
+
+@kernel
+def distance_of(across: i32, down: i32, deep: i32) -> i32:
+    """Return how far apart two points are, FAR_APART if more than that along an axis."""
+    if abs(across) >= FAR_APART or abs(down) >= FAR_APART or abs(deep) >= FAR_APART:
+        return FAR_APART
+    return i32(isqrt32(u32(across * across) + u32(down * down) + u32(deep * deep)))
+
+
+@kernel
+def stand_between_feet(
+    geometry: i32[:],
+    wide: i32,
+    left: i32,
+    left_row: i32,
+    right: i32,
+    right_row: i32,
+    cut_left: i32,
+    cut_right: i32,
+    objects: i16[:],
+    number: i32,
+) -> None:
+    """Place the lower border of a goal `wide` mm wide, whose lower corners are seen at left and right, on the floor.
+
+    Between feet that are its width apart to a quarter it is in the middle. Where the picture cuts it, half its width from
+    the foot that is seen towards what is seen of the other side, if that is a quarter of it. Else something hides
+    it, and only the nearer foot tells how deep it is. Columns and rows in 1/16 px from the principal point.
+    """
+    at = number * OBJECT_WORDS
+    left_z = depth_by_floor(geometry, left_row, 0)
+    right_z = depth_by_floor(geometry, right_row, 0)
+    if left_z == 0 or right_z == 0:
+        return
+    left_x = beside_mm(geometry, left_z, left)
+    left_y = beside_mm(geometry, left_z, left_row)
+    right_x = beside_mm(geometry, right_z, right)
+    right_y = beside_mm(geometry, right_z, right_row)
+    apart = distance_of(right_x - left_x, right_y - left_y, right_z - left_z)
+    if 4 * apart > 5 * wide or 4 * apart < wide or (cut_left == cut_right and 4 * apart < 3 * wide):
+        if left_z <= right_z:
+            stand_at(geometry, left_z, left + right >> 1, left_row, objects, number)
+        else:
+            stand_at(geometry, right_z, left + right >> 1, right_row, objects, number)
+        return
+    # how far from the left corner the middle is, as a part of the way to the right one
+    part = apart
+    if cut_left < cut_right:
+        part = wide
+    elif cut_left > cut_right:
+        part = 2 * apart - wide
+    objects[at + OBJECT_X] = on_the_way(left_x, right_x, part, 2 * apart)
+    objects[at + OBJECT_Y] = on_the_way(left_y, right_y, part, 2 * apart)
+    objects[at + OBJECT_Z] = on_the_way(left_z, right_z, part, 2 * apart)
+
+
+@kernel
+def see_rectangle(
+    blob_data: u32[:],
+    parents: u8[:],
+    blob: i32,
+    models: i32[:],
+    model: i32,
+    rectangles: i16[:],
+    lines: i16[:],
+    tests: i32,
+    geometry: i32[:],
+    refined: i32,
+    seen: i16[:],
+    place: i32,
+    width: i32,
+    height: i32,
+) -> None:
+    """Set where the centre of a rectangle is: by the floor below its bottom, or else the way to its blob's middle.
+
+    The floor tells only if the blob has the dimension of the model and is seen down to its bottom. The centre of a goal is
+    that of its mouth if `refined`.
+    """
+    at = place * OBJECT_WORDS
+    across = blob_data[blob * BLOB_WORDS + ACROSS]
+    down = blob_data[blob * BLOB_WORDS + DOWN]
+    column = i32(seen[at + OBJECT_IMAGE_X])
+    rectangle = i32(seen[at + OBJECT_OUTLINE])
+    middle_x = principal(width) + geometry[GEOMETRY_SHIFT_X]
+    middle_y = principal(height) + geometry[GEOMETRY_SHIFT_Y]
+    row = bottom_row(down, rectangles, rectangle, lines, column) - middle_y
+    depth = depth_by_floor(geometry, row, models[model + MODEL_FLOOR])
+    if depth == 0 or tests & DIMENSION_TEST == 0 or is_cut(down, height) != 0:
+        place_object(geometry, seen, place, 0, width, height)
+        return
+    stand_at(geometry, depth, column - middle_x, row, seen, place)
+    if refined != 0 and models[model + MODEL_SHAPE] == GOAL:
+        left = SUBPIXELS * i32(across & 0xFFFF) - HALF_PIXEL
+        right = SUBPIXELS * i32(across >> 16) + HALF_PIXEL
+        left_down = rows_at_end(blob_data, parents, blob, 0)
+        right_down = rows_at_end(blob_data, parents, blob, 1)
+        cut_left = is_cut_before(across)
+        cut_right = is_cut_behind(across, width)
+        left_row = foot_row(left_down, rectangles, rectangle, lines, left, cut_left) - middle_y
+        right_row = foot_row(right_down, rectangles, rectangle, lines, right, cut_right) - middle_y
+        wide = models[model + MODEL_WIDTH]
+        left = left - middle_x
+        right = right - middle_x
+        stand_between_feet(geometry, wide, left, left_row, right, right_row, cut_left, cut_right, seen, place)
+    lift(geometry, models, model, row, seen, place)

@@ -1,0 +1,172 @@
+"""Modes and models of the strategy unit: taken in, checked word by word, and obeyed from the next frame on (T §5.2.6).
+
+Core A takes the messages at the end of a frame. The words of a good one go to L2, where both cores copy them from when
+they begin a frame; a bad one is counted, told to the strategy unit with the reason, and changes nothing. A mode is all
+its words, and a table of models all its models; how many words those are is the version of the format.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.api import Buffer, Core, Frame, FrameSize, Row, i32, kernel, u16
+from tinyphoon.areas import LEAST_AREA_PX, Area, principal_shift, see
+from tinyphoon.fields import Word, from_words, to_words, words_of
+from tinyphoon.geometry import look_at
+from tinyphoon.strategy.framing import FRAME_BYTES, MODE, message_type
+from tinyphoon.strategy.models import (
+    MODEL_CAPACITY,
+    MODEL_NUMBER,
+    MODEL_WORDS,
+    MODELS,
+    ObjectModel,
+    colour_groups,
+    model_words,
+)
+from tinyphoon.strategy.modes import INDOOR_FIELD, Mode
+from tinyphoon.strategy.order_checks import (
+    LIMIT_WORDS,
+    frame_refusal,
+    models_refusal,
+    order_word,
+    picture_refusal,
+    words_refusal,
+)
+from tinyphoon.strategy.order_texts import refusal_text
+
+ORDER_WORDS = 256  # of 16 bits: room for a message of the strategy unit
+HALVINGS = 2  # of the pictures' size, as sensors do: VGA to QQVGA
+
+MODE_WORDS = words_of(Mode)
+MODEL_FIELDS = words_of(ObjectModel)
+assert FRAME_BYTES + 4 * max(len(MODE_WORDS), MODEL_CAPACITY * MODEL_WORDS) <= 2 * ORDER_WORDS
+_NAMES = [each.name for each in MODE_WORDS]
+CAMERA, AREA = _NAMES.index("camera.width"), _NAMES.index("area.x")
+
+
+def shared_order_buffers(size: FrameSize, section: str) -> Sequence[Buffer]:
+    """Return the buffers of the orders in force, which both cores read, of what may be ordered, and of what comes in."""
+    return (
+        Buffer("orders", u16, ORDER_WORDS, section),
+        Buffer("ordered_mode", i32, len(MODE_WORDS), section, values=np.array(to_words(INDOOR_FIELD))),
+        Buffer("ordered_models", i32, MODEL_CAPACITY * MODEL_WORDS, section, values=model_words(MODELS)),
+        _limits("mode_limits", MODE_WORDS),
+        _limits("model_limits", MODEL_FIELDS),
+        Buffer("full_size", i32, 2, section, values=np.array([size.width_px, size.height_px])),
+    )
+
+
+def order_buffers() -> Sequence[Buffer]:
+    """Return a core's own copy of the mode. That of the models is in `models.py`."""
+    return (Buffer("mode", i32, len(MODE_WORDS), "data1"),)
+
+
+def _limits(name: str, words: Sequence[Word]) -> Buffer:
+    """Return the limits of words, in the SDRAM of the images: they are read only when a message has come."""
+    names = [each.name for each in words]
+    limits = [(each.lowest, each.highest, each.step, names.index(each.at_most), each.total) for each in words]
+    return Buffer(name, i32, LIMIT_WORDS * len(words), "sdram_bank2", values=np.ravel(limits))
+
+
+@kernel
+def store_order(message: u16[:], words: i32[:]) -> None:
+    """Store the words of an order that is obeyed; the rest of `words` is 0."""
+    count = i32(message[3]) >> 2
+    for word in range(count):
+        words[word] = order_word(message, word)
+    for word in range(count, len(words)):
+        words[word] = 0
+
+
+@kernel
+def copy_order(words: i32[:], copy: i32[:]) -> None:
+    """Copy words that both cores share to a core's own."""
+    for word in range(len(words)):
+        copy[word] = words[word]
+
+
+def take_orders(core: Core) -> Generator[Any, Any, int]:
+    """Take the messages that wait, and let the good ones be in force; returns why the last bad one is refused, or 0.
+
+    Publishes how many `orders_taken` and `orders_refused`, and remarks on each that is refused.
+    """
+    message = core.array("orders")
+    taken = refused = last = 0
+    while nbytes := (yield from core.receive(message)):
+        refusal = yield from _obey(core, message, nbytes)
+        taken += not refusal
+        refused += bool(refusal)
+        if refusal:
+            last = refusal
+            words = MODE_WORDS, MODEL_FIELDS
+            core.remark(refusal_text(refusal, message.array, nbytes, *words, _full_size(core)))
+    core.publish(orders_taken=taken, orders_refused=refused)
+    return last
+
+
+def _obey(core: Core, message: Row, nbytes: int) -> Generator[Any, Any, int]:
+    """Check a message and store its words if it is good; returns why it is refused, or 0."""
+    refusal: int = yield core.run(frame_refusal, message, nbytes)
+    if refusal:
+        return refusal
+    is_mode = (yield core.run(message_type, message)) == MODE
+    limits, most = (core.array("mode_limits"), 1) if is_mode else (core.array("model_limits"), MODEL_CAPACITY)
+    refusal = yield core.run(words_refusal, message, limits, most)
+    if refusal:
+        return refusal
+    if is_mode:
+        # tables of a recording are for one size of pictures
+        halvings = 0 if core.has_buffer("camera_window") else HALVINGS
+        full = core.array("full_size")
+        refusal = yield core.run(picture_refusal, message, CAMERA, AREA, full, halvings, LEAST_AREA_PX)
+    else:
+        refusal = yield core.run(models_refusal, message)
+    if not refusal:
+        yield core.run(store_order, message, core.array("ordered_mode" if is_mode else "ordered_models"))
+    return refusal
+
+
+def see_by(core: Core, frame: Frame, mode: Mode) -> Generator[Any, Any, Area]:
+    """Look at what of a picture the mode wants, and set the camera for the next ones; returns the area that is seen."""
+    full = _full_size(core)
+    area = see(core, frame, mode.camera, mode.area, full)
+    halvings = halvings_of(core, frame)
+    yield core.run(look_at, core.array("geometry"), *principal_shift(frame, area, halvings), halvings)
+    return area
+
+
+def halvings_of(core: Core, frame: Frame) -> int:
+    """Return how often the size of a picture was halved from that of the recorded ones."""
+    return (_full_size(core).width_px // frame.width).bit_length() - 1
+
+
+def _full_size(core: Core) -> FrameSize:
+    return FrameSize(*core.array("full_size").array.tolist())
+
+
+def read_mode(core: Core) -> Generator[Any, Any, Mode]:
+    """Copy the orders in force into the core's own memory, for this frame, and return them."""
+    own = core.array("mode"), core.array("models")
+    for name, copy in zip(("ordered_mode", "ordered_models"), own, strict=True):
+        yield core.run(copy_order, core.array(name), copy)
+    return mode_in(*(each.array for each in own))
+
+
+def mode_in(mode: NDArray[np.int32], models: NDArray[np.int32]) -> Mode:
+    """Return the mode and the models that are in memory."""
+    known = tuple(_model(each) for each in models.reshape(-1, MODEL_WORDS) if each[MODEL_NUMBER])
+    ordered = from_words(INDOOR_FIELD, mode.tolist())
+    blobs = replace(ordered.blobs, colour_groups=colour_groups(known))
+    return replace(ordered, blobs=blobs, models=known)
+
+
+def _model(words: NDArray[np.int32]) -> ObjectModel:
+    number = int(words[MODEL_NUMBER])
+    names = {each.number: each.name for each in MODELS}
+    named = replace(MODELS[0], name=names.get(number, f"model {number}"))
+    return from_words(named, words.tolist())
