@@ -11,8 +11,8 @@ from bfsim.linker import LinkerScript, link
 from bfsim.loading import load_firmware
 from bfsim.machine.board import PROCESSORS, symbols_of
 from bfsim.machine.program import Buffer, Firmware, FrameSize
-from bfsim.report.ldf.layout import Memories, memory_map
 from bfsim.report.ldf.map import Kind, MemoryMap
+from bfsim.report.ldf.map_builder import BoardMemories, memory_map
 from bfsim.run import read_placement
 
 
@@ -40,7 +40,7 @@ def map_memory(
     return memory_map(
         script,
         link_map,
-        Memories(board=spec.name, regions=spec.chip.regions, bank_bytes=spec.sdram.bank_bytes),
+        BoardMemories(board=spec.name, regions=spec.chip.regions, bank_bytes=spec.sdram.bank_bytes),
         _kinds(program, size) if fits else {},
         firmware=firmware if fits else "",
         width_px=width_px,

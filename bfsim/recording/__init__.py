@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.recording.calibration import Calibration, calibrate_recording
+from bfsim.recording.calibration import StereoCalibration, calibrate_recording
 from bfsim.recording.frames import (
     DisparityImage,
     RectificationTables,
@@ -19,7 +19,6 @@ from bfsim.recording.writer import RecordingWriter
 
 __all__ = [
     "SOURCE_FORMATS",
-    "Calibration",
     "CameraTiming",
     "DisparityImage",
     "ImportSummary",
@@ -29,6 +28,7 @@ __all__ = [
     "RectificationTables",
     "SeenWriter",
     "SourceFormat",
+    "StereoCalibration",
     "StereoFrame",
     "StereoGeometry",
     "UyvyImage",

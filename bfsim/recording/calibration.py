@@ -31,7 +31,7 @@ FEWEST_PAIRS = 5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Calibration:
+class StereoCalibration:
     """What the chessboards tell of the cameras.
 
     reprojection_px is the RMS distance of the corners found from those of the fitted cameras; vertical_rms_px and
@@ -66,7 +66,7 @@ def calibrate_recording(
     *,
     corners: tuple[int, int],
     square_mm: float,
-) -> Calibration:
+) -> StereoCalibration:
     """Write `recording` with the rectification tables of its cameras to `output`, or in its own place.
 
     The folder `chessboards` holds pictures left* and right*, in pairs by the order of their names, of a board with
@@ -115,7 +115,7 @@ def calibrate(
     corners: tuple[int, int],
     square_mm: float,
     focal_px: float | None = None,
-) -> Calibration:
+) -> StereoCalibration:
     """Calibrate two cameras with pictures of `size` (width, height) from a folder of chessboard pairs.
 
     `focal_px` is the focal length to rectify to; without it, the mean of the left camera's. Raises RecordingError.
@@ -143,7 +143,7 @@ def calibrate(
     after = np.concatenate(
         [(_rectify(cv2, a, left, target) - _rectify(cv2, b, right, target))[:, 1] for a, b in pairs]
     )
-    return Calibration(
+    return StereoCalibration(
         tables=RectificationTables(_table(cv2, left, target, size), _table(cv2, right, target, size)),
         pair_count=len(pairs),
         reprojection_px=error_px,

@@ -45,7 +45,7 @@ def _nearest_rank(ranked: Sequence[int], percent: int) -> int:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Row:
+class StageRow:
     """One row of one core's budget. `issue_cclk`, `stall_cclk` and `idle_cclk` are totals over all frames.
 
     `within` is the row that this one is a part of, and that holds its cycles too.
@@ -65,15 +65,15 @@ class CoreBudget:
     """The rows of one core, and `frame`, which those that are no part of another sum to."""
 
     core: str
-    rows: tuple[Row, ...]
-    frame: Row
+    rows: tuple[StageRow, ...]
+    frame: StageRow
 
     @property
-    def all_rows(self) -> tuple[Row, ...]:
+    def all_rows(self) -> tuple[StageRow, ...]:
         """The rows, and the frame as the last one."""
         return (*self.rows, self.frame)
 
-    def share(self, row: Row) -> float:
+    def share(self, row: StageRow) -> float:
         """Share of the frame time that `row` took over the whole run, 0..1."""
         return row.elapsed_cclk.total / self.frame.elapsed_cclk.total
 
@@ -150,12 +150,12 @@ def _core_budget(frames: Sequence[CoreFrame], rows: Sequence[BudgetRow]) -> Core
     )
 
 
-def _row(row: BudgetRow, costs: Sequence[Sequence[StageCost]]) -> Row:
+def _row(row: BudgetRow, costs: Sequence[Sequence[StageCost]]) -> StageRow:
     """Sum up a row whose costs are given for each frame."""
     stall: Counter[StallReason] = Counter()
     for cost in chain(*costs):
         stall.update(cost.stall_cclk)
-    return Row(
+    return StageRow(
         name=row.stage,
         within=row.within,
         thesis_ms=row.thesis_ms,

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from bfsim.errors import ConfigError
 from bfsim.report.baseline import Baseline, MeasuredOn, RowLimits, measured_by, measured_on
-from bfsim.report.budget import Budget, Row
+from bfsim.report.budget import Budget, StageRow
 from bfsim.trace import RunRecord
 
 
@@ -81,7 +81,7 @@ def check(run: RunRecord, budget: Budget, baseline: Baseline, path: Path) -> Che
     return Check(verdicts=tuple(verdicts), notes=tuple(_notes(run, baseline, rows)))
 
 
-def _listed(rows: dict[str, dict[str, Row]]) -> str:
+def _listed(rows: dict[str, dict[str, StageRow]]) -> str:
     return "; ".join(f"core {core}: {', '.join(names)}" for core, names in rows.items())
 
 
@@ -122,7 +122,7 @@ def _run_verdicts(run: RunRecord, budget: Budget, baseline: Baseline) -> Iterato
     )
 
 
-def _row_verdicts(core: str, row: Row, limits: RowLimits, tolerance_percent: float) -> Iterator[Verdict]:
+def _row_verdicts(core: str, row: StageRow, limits: RowLimits, tolerance_percent: float) -> Iterator[Verdict]:
     tolerance = _first(limits.tolerance_percent, tolerance_percent)
     measured = row.elapsed_cclk
     for quantity, limit_cclk, measured_cclk in (
@@ -148,7 +148,7 @@ def _raised(limit: int, tolerance_percent: float) -> int:
     return int(limit * (1 + Fraction(str(tolerance_percent)) / 100))
 
 
-def _notes(run: RunRecord, baseline: Baseline, rows: dict[str, dict[str, Row]]) -> Iterator[str]:
+def _notes(run: RunRecord, baseline: Baseline, rows: dict[str, dict[str, StageRow]]) -> Iterator[str]:
     then, now = baseline.measured_by, measured_by(run.identity)
     if then != now:
         yield (

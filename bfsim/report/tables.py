@@ -13,8 +13,8 @@ from bfsim.report.budget import (
     FRAME,
     Budget,
     CoreBudget,
-    Row,
     Spread,
+    StageRow,
     budget_of,
     budget_rows,
     costs_of,
@@ -121,7 +121,7 @@ def _budget_table(core: CoreBudget, hz: float) -> Table:
     return table
 
 
-def _name(row: Row) -> str:
+def _name(row: StageRow) -> str:
     """Return the name of a row; that of a part stands in from the row before, which holds it."""
     return row.name if row.within is None else f"  {row.name}"
 
@@ -130,7 +130,7 @@ def _columns(spread: Spread) -> tuple[int, int, int, int]:
     return spread.minimum, spread.median, spread.p95, spread.maximum
 
 
-def _split(row: Row) -> tuple[int, int, int]:
+def _split(row: StageRow) -> tuple[int, int, int]:
     return row.issue_cclk, sum(row.stall_cclk.values()), row.idle_cclk
 
 
@@ -162,7 +162,9 @@ def _stall_table(budget: Budget, frames: int, hz: float) -> Iterator[Table]:
         yield table
 
 
-def _stall_cells(core: CoreBudget, row: Row, reason: StallReason, frames: int, hz: float) -> tuple[str, str]:
+def _stall_cells(
+    core: CoreBudget, row: StageRow, reason: StallReason, frames: int, hz: float
+) -> tuple[str, str]:
     cclk = row.stall_cclk.get(reason, 0)
     return f"{milliseconds(cclk, hz) / frames:.2f}", percent(cclk, core.frame.elapsed_cclk.total)
 

@@ -20,7 +20,7 @@ from bfsim.recording import (
     StereoGeometry,
     calibrate_recording,
 )
-from bfsim.recording.calibration import Calibration, calibrate
+from bfsim.recording.calibration import StereoCalibration, calibrate
 from bfsim.recording.scenes.chessboard import write_chessboards
 from bfsim.recording.scenes.drive import Pose
 from bfsim.recording.scenes.lens import Lens, Misfit, rectified
@@ -40,7 +40,7 @@ def chessboards(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def found(chessboards: Path) -> Calibration:
+def found(chessboards: Path) -> StereoCalibration:
     """What calibration makes of them."""
     pytest.importorskip("cv2", reason="calibration needs OpenCV")
     return calibrate(chessboards, SIZE, corners=CORNERS, square_mm=SQUARE_MM, focal_px=386.0)
@@ -71,7 +71,7 @@ def true_sources(side: str) -> Vector:
     return np.stack([bent[..., 1], bent[..., 0]])
 
 
-def test_errors_are_a_fraction_of_a_pixel(found: Calibration) -> None:
+def test_errors_are_a_fraction_of_a_pixel(found: StereoCalibration) -> None:
     """Corners fit the cameras found, and rows agree after rectification though they were five pixels apart."""
     assert found.pair_count == 27
     assert found.reprojection_px < 0.2
@@ -80,14 +80,14 @@ def test_errors_are_a_fraction_of_a_pixel(found: Calibration) -> None:
     assert found.vertical_worst_px < 0.5
 
 
-def test_baseline_is_measured(found: Calibration) -> None:
+def test_baseline_is_measured(found: StereoCalibration) -> None:
     """The distance of the optical centres comes out to half a percent, the shift of the right one included."""
     left, right = real_pair().values()
     assert found.baseline_mm == pytest.approx(np.linalg.norm(right.position_mm - left.position_mm), rel=0.005)
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
-def test_tables_point_where_the_light_fell(found: Calibration, side: str) -> None:
+def test_tables_point_where_the_light_fell(found: StereoCalibration, side: str) -> None:
     """Tables are those of the true cameras to a pixel; they hold whole numbers, so 0.25 px on average is theirs."""
     table, truth = getattr(found.tables, side), true_sources(side)
     seen = table[0] >= 0
@@ -100,7 +100,7 @@ def test_tables_point_where_the_light_fell(found: Calibration, side: str) -> Non
     assert not seen[outside].any()
 
 
-def test_straight_lines_are_straight_again(found: Calibration) -> None:
+def test_straight_lines_are_straight_again(found: StereoCalibration) -> None:
     """The image of a wall's edge bends by pixels in the recorded picture, and by under one in the rectified."""
     real, ideal = real_pair()["left"], rectified(real_pair())["left"]
     edge_mm = np.linspace([500, 240, 150], [500, -200, 150], 60)
@@ -119,7 +119,7 @@ def test_straight_lines_are_straight_again(found: Calibration) -> None:
 
 
 def test_tables_reach_the_recording_and_nothing_else_changes(
-    chessboards: Path, recording: Path, found: Calibration
+    chessboards: Path, recording: Path, found: StereoCalibration
 ) -> None:
     """In place: tables and the measured baseline are new; pictures, stamps, truth, description stay."""
     command = ["calibrate", str(chessboards), str(recording)]

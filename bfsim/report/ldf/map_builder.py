@@ -32,7 +32,7 @@ CACHE_BYTES = 16 * KIB
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Memories:
+class BoardMemories:
     """What the map must know of a board: its memories, and how its SDRAM is divided."""
 
     board: str
@@ -43,7 +43,7 @@ class Memories:
 def memory_map(
     script: LinkerScript,
     link_map: LinkMap | None,
-    memories: Memories,
+    memories: BoardMemories,
     kinds: Mapping[tuple[str | None, str], Kind],
     *,
     firmware: str,
@@ -72,7 +72,7 @@ class _Builder:
 
     script: LinkerScript
     link_map: LinkMap | None
-    memories: Memories
+    memories: BoardMemories
     kinds: Mapping[tuple[str | None, str], Kind]
 
     def segment(self, segment: Segment) -> MapSegment:

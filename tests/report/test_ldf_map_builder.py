@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from bfsim.chip.memory_map import CM_BF561_REGIONS
 from bfsim.linker import Symbol, link, parse_ldf
-from bfsim.report.ldf.layout import Memories, memory_map
 from bfsim.report.ldf.map import SHARED, Kind, MemoryMap
+from bfsim.report.ldf.map_builder import BoardMemories, memory_map
 
 TEXT = """
 ARCHITECTURE(ADSP-BF561)
@@ -40,7 +40,7 @@ PROCESSOR p0
 }
 PROCESSOR p1 { SECTIONS { other { INPUT_SECTIONS($OBJECTS(program slow)) } > L2 } }
 """
-MEMORIES = Memories(board="test-board", regions=CM_BF561_REGIONS, bank_bytes=8 * 1024**2)
+MEMORIES = BoardMemories(board="test-board", regions=CM_BF561_REGIONS, bank_bytes=8 * 1024**2)
 
 
 def mapped(
