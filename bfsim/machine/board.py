@@ -20,7 +20,7 @@ from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.traffic import traffic_records
 from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches, written_through
-from bfsim.machine.calls.calls import CallBook
+from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.calls.conflicts import SubBanks
 from bfsim.machine.calls.fetch import CodeCache, CodeOutside
 from bfsim.machine.calls.records import kernel_records
@@ -143,7 +143,7 @@ class Board:
             if self.fidelity is Fidelity.DETAILED
             else Bus(self._env, self.spec, self._memories, self.weave)
         )
-        self._calls: dict[str, CallBook] = {}
+        self._calls: dict[str, CallCache] = {}
         self._frames: list[FrameRecord] = []
         self._seen: list[tuple[int, tuple[Seen, ...]]] = []
         self._on_seen: OnSeen | None = None
@@ -293,7 +293,7 @@ class Board:
         places = code_outside_l1(self.link_map, PROCESSORS[name], chip.regions, memories)
         code = CodeOutside(places, CodeCache(chip.cache) if caches.code else None)
         subbanks = SubBanks(chip, memories, self._bus.words)
-        book = self._calls[name] = CallBook(
+        cache = self._calls[name] = CallCache(
             name, self.profile, follower, code, subbanks, sanitize=self.sanitize
         )
         inward, outward = (MdmaStream(self._bus, self.spec, each) for each in MDMA_MASTERS[index])
@@ -302,7 +302,7 @@ class Board:
             name,
             self.spec,
             layouts=Layouts(name, memories, self._buffers[name], self.size, partial(self._declared, name)),
-            calls=book,
+            calls=cache,
             bus=self._bus,
             number=index,
             follower=follower,
@@ -341,7 +341,7 @@ class Board:
             missed=tuple(sorted(capture.missed)),
             interrupted=interrupted,
             kernels=tuple(
-                each for name, book in self._calls.items() for each in kernel_records(name, book.groups())
+                each for name, calls in self._calls.items() for each in kernel_records(name, calls.groups())
             ),
             traffic=traffic_records(self._bus.words, self.spec.clocks.cclk_ticks),
             code=code_records(self.link_map, PROCESSORS, self.spec.chip.regions),

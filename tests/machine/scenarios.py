@@ -15,9 +15,9 @@ from random import Random
 
 from bfsim.chip.boards import board_named
 from bfsim.kernel.followers import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
-from bfsim.machine.bus import bursts, core_requests, dma_requests
+from bfsim.machine.bus import core_requests, dma_requests, runs
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Pace, Plan, Transfer, Walk
+from bfsim.machine.bus.bus import Pace, Transfer, TransferPlan, Walk
 from bfsim.machine.bus.weave import Weave, compiled_weave, plain_weave
 from tests.machine.rig import Bench, Call, Play
 
@@ -68,7 +68,7 @@ class Scene:
         steps = [size * step for step in (1, 1, 1, 2, 5)]
         return Walk(first, x_count, chance.choice(steps), chance.choice(steps))
 
-    def _copy(self, chance: Random) -> Plan:
+    def _copy(self, chance: Random) -> TransferPlan:
         size, lines = chance.choice([4, 4, 4, 2, 1]), chance.randint(1, 3)
         x_count = chance.choice([chance.randint(1, 8), chance.randint(20, 120)])
         return self.bench.bus.plan_copy(
@@ -86,7 +86,7 @@ class Scene:
             begin + chance.randint(0, 500), words, word_ticks, words * word_ticks + chance.randint(0, 200)
         )
 
-    def _receive(self, chance: Random, master: int, begin: int) -> Plan:
+    def _receive(self, chance: Random, master: int, begin: int) -> TransferPlan:
         words, lines = chance.randint(1, 25), chance.randint(1, 5)
         outside = Walk(self.bench.memories.outside + master * OUTSIDE // 2, words, 4, 4)
         return self.bench.bus.plan_receive(
@@ -98,7 +98,7 @@ class Scene:
             pace=self._pace(chance, words, begin),
         )
 
-    def _send(self, chance: Random, begin: int) -> Plan:
+    def _send(self, chance: Random, begin: int) -> TransferPlan:
         words = chance.randint(1, 40)
         outside = Walk(self.bench.memories.outside, words, 2, 2)
         return self.bench.bus.plan_send(
@@ -118,7 +118,7 @@ class Scene:
             accesses.append((stamp, chance.choice(KINDS), place))
         return accesses
 
-    def _post(self, plan: Plan, tick: int) -> Play:
+    def _post(self, plan: TransferPlan, tick: int) -> Play:
         yield self.bench.env.timeout(tick)
         self.transfers.append(self.bench.bus.post(plan))
 
@@ -139,7 +139,7 @@ class Scene:
         bus = self.bench.bus
         self.bench.env.process(self._settle(stops))
         self.bench.play()
-        words = bus.words[: w.SUBBANKS_AT].tolist()  # which slot a transfer had means nothing
+        words = bus.words[: w.SUBBANKS_AT].tolist()  # which place a transfer had means nothing
         for word in OF_THE_LAST_ACCESS:
             words[word] = 0
         return {
@@ -173,7 +173,7 @@ def record_grants() -> list[tuple[int, int]]:
         grants.append((before, int(state[w.COMMAND_FREE])))
         return through
 
-    for module in (bursts, dma_requests, core_requests):
+    for module in (runs, dma_requests, core_requests):
         module.access, module.stream = watched, watched_stream
     return grants
 

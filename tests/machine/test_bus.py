@@ -161,7 +161,7 @@ def test_a_request_against_the_direction_waits_until_it_is_urgent() -> None:
     assert written_at(bench, turned_round(bench, half)) == 1
     assert written_at(bench, turned_round(bench, half) + bench.sclk(6)) == 7
     bench.play()
-    assert bench.bus.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.LOST] == 0
+    assert bench.bus.words[w.TRANSFERS_AT + transfer.place * w.TRANSFER_WORDS + w.LOST] == 0
 
 
 def test_a_period_ends() -> None:
@@ -282,7 +282,7 @@ def test_an_event_comes_at_the_end_and_not_before() -> None:
 def test_too_many_transfers_are_refused() -> None:
     """Whoever never waits for the DMA is told so."""
     bench = Bench()
-    for _ in range(w.SLOTS):
+    for _ in range(w.MAX_TRANSFERS):
         write_all(bench, 4)
     with pytest.raises(FirmwareError, match="DMA must have at most 256 transfers to do at a time"):
         write_all(bench, 4)
@@ -293,6 +293,6 @@ def test_too_many_transfers_are_refused() -> None:
 def test_transfers_that_are_done_make_room() -> None:
     """Long after each is over there is a next one; nobody has asked for any of them."""
     bench = Bench()
-    for number in range(w.SLOTS + 1):
+    for number in range(w.MAX_TRANSFERS + 1):
         bench.env.run(until=LONG * (number + 1))
         write_all(bench, 4)

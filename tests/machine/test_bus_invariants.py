@@ -61,16 +61,18 @@ def test_the_bus_is_busy_for_its_words_and_never_for_longer_than_it_is(seed: int
 
 @given(seed=chances)
 def test_everything_comes_to_an_end(seed: int) -> None:
-    """Nobody is forgotten, no slot is lost, no store stays in a buffer, and no end is before its begin."""
+    """Nobody is forgotten, no place is lost, no store stays in a buffer, and no end is before its begin."""
     scene = Scene(Random(seed))
     scene.play()
     words = scene.bench.bus.words
     assert None not in [each.end for each in (*scene.transfers, *scene.calls)]
-    assert words[w.FREE_SLOTS] == w.SLOTS
-    assert sorted(words[w.FREE_AT_STACK : w.FREE_AT_STACK + w.SLOTS]) == list(range(w.SLOTS))
+    assert words[w.FREE_TRANSFERS] == w.MAX_TRANSFERS
+    assert sorted(words[w.FREE_PLACES_AT : w.FREE_PLACES_AT + w.MAX_TRANSFERS]) == list(
+        range(w.MAX_TRANSFERS)
+    )
     for master in range(w.MASTERS):
         assert words[w.MASTERS_AT + w.READY + master] == w.NEVER
-        assert words[w.MASTERS_AT + w.SLOT + master] == w.NONE
+        assert words[w.MASTERS_AT + w.TRANSFER + master] == w.NONE
     for core in range(w.CORES):
         job = w.JOBS_AT + core * w.JOB_WORDS
         assert (words[job + w.STATE], words[job + w.STORES]) == (w.IDLE, 0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from bfsim.chip.dma_registers import Flow, IrqStatus, WdSize
-from bfsim.machine.dma.channel import DmaChannel, Fetch, Step
+from bfsim.machine.dma.channel import ChannelStep, DmaChannel, Fetch
 from bfsim.machine.dma.config import DmaConfig
 from bfsim.machine.dma.descriptors import write_descriptor
 from tests.machine.dma_rig import DESCRIPTORS, L1_A, SDRAM, Memory, channel_on, program
@@ -14,7 +14,7 @@ DONE, ERR, DFETCH, RUN = IrqStatus.DMA_DONE, IrqStatus.DMA_ERR, IrqStatus.DFETCH
 STOP = DmaConfig(WNR=True)
 
 
-def start_of(step: Step) -> int:
+def start_of(step: ChannelStep) -> int:
     """The first address of the step's work unit."""
     assert step.unit is not None
     return step.unit.start_address
@@ -33,7 +33,7 @@ def test_stop_ends_after_one_unit() -> None:
     assert first.fetch is None
     assert (first.unit.words, first.unit.write) == (160, True)
     assert channel.IRQ_STATUS == RUN
-    assert channel.unit_done() == Step(None)
+    assert channel.unit_done() == ChannelStep(None)
     assert not channel.IRQ_STATUS
 
 
@@ -63,7 +63,7 @@ def test_autobuffer_goes_on_without_fetching() -> None:
     first = channel.start(DmaConfig(FLOW=Flow.AUTO, DI_EN=True))
     for _ in range(3):
         again = channel.unit_done()
-        assert again == Step(first.unit, fetch=None, interrupt=True)
+        assert again == ChannelStep(first.unit, fetch=None, interrupt=True)
         assert channel.IRQ_STATUS == RUN | DONE
     channel.stop()
     assert channel.IRQ_STATUS == DONE
@@ -144,7 +144,7 @@ def test_a_chain_that_stopped_goes_on_with_its_next_descriptor() -> None:
     memory.put(DESCRIPTORS + 10, write_descriptor(Flow.LARGE, NEXT_DESC_PTR=0, START_ADDR=L1_A, **last))
     channel = program(channel_on(memory), NEXT_DESC_PTR=DESCRIPTORS)
     assert start_of(channel.start(config)) == SDRAM
-    assert channel.unit_done() == Step(None)
+    assert channel.unit_done() == ChannelStep(None)
     assert start_of(channel.start(config)) == L1_A
 
 
@@ -154,7 +154,7 @@ def test_a_descriptor_without_dmaen_stops_the_channel() -> None:
     off = DmaConfig(DMAEN=False, FLOW=Flow.ARRAY, NDSIZE=3)
     memory.put(DESCRIPTORS, write_descriptor(Flow.ARRAY, START_ADDR=SDRAM, CONFIG=off.encode()))
     channel = program(channel_on(memory), CURR_DESC_PTR=DESCRIPTORS)
-    assert channel.start(DmaConfig(FLOW=Flow.ARRAY, NDSIZE=3)) == Step(None, Fetch(DESCRIPTORS, 3))
+    assert channel.start(DmaConfig(FLOW=Flow.ARRAY, NDSIZE=3)) == ChannelStep(None, Fetch(DESCRIPTORS, 3))
     assert not channel.IRQ_STATUS
 
 
@@ -169,7 +169,7 @@ def test_a_descriptor_can_change_the_shape_of_the_next_ones() -> None:
     first = channel.start(DmaConfig(FLOW=Flow.LARGE, NDSIZE=5))
     assert first.unit is not None
     assert (first.unit.word_bytes, first.unit.words) == (2, 160)
-    assert channel.unit_done() == Step(first.unit)
+    assert channel.unit_done() == ChannelStep(first.unit)
 
 
 def test_rows_and_their_interrupts() -> None:
@@ -182,7 +182,7 @@ def test_rows_and_their_interrupts() -> None:
         assert current(channel) == (address, 4, rows_left)
         assert channel.IRQ_STATUS == RUN | DONE
         channel.acknowledge(DONE)
-    assert channel.unit_done() == Step(None, interrupt=True)
+    assert channel.unit_done() == ChannelStep(None, interrupt=True)
     assert current(channel) == (SDRAM + 80, 0, 1)
     assert channel.IRQ_STATUS == DONE
 

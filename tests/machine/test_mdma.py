@@ -85,13 +85,13 @@ def test_the_known_cycles_of_a_line() -> None:
 
 
 def test_a_copy_between_banks_fills_and_empties_its_fifo() -> None:
-    """Four words in, their latency, the turn-round, four words out: 12 cycles a lot; both pages are opened once."""
+    """Four words in, their latency, the turn-round, four words out: 12 cycles a burst; both pages are opened once."""
     bench = Bench()
     sdram, dma = bench.spec.sdram, bench.spec.chip.dma
-    lot = dma.fifo_words + sdram.nCL + sdram.turn_round_sclk + dma.fifo_words
+    burst = dma.fifo_words + sdram.nCL + sdram.turn_round_sclk + dma.fifo_words
     # the write's page opens in the turn-round and a cycle more
     opening = sdram.nRCD + max(sdram.nRCD - sdram.turn_round_sclk, 0)
-    expected = dma.startup_sclk + opening + 160 // dma.fifo_words * lot
+    expected = dma.startup_sclk + opening + 160 // dma.fifo_words * burst
     assert bench.ends(copy(bench, SDRAM, OTHER_BANK)) == [bench.sclk(expected)]
     traffic = bench.traffic(w.MDMA1_0)
     assert (traffic.read_bytes, traffic.written_bytes) == (640, 640)
@@ -204,7 +204,7 @@ def stream(bench: Bench, source: int, target: int, rounds: int = 12) -> int:
     [
         (SDRAM, L1, 1.1),
         (L1, SDRAM, 1.0),
-        (SDRAM, OTHER_BANK, 3.0),  # in lots of four: 4 + 3 + 1 + 4 cycles
+        (SDRAM, OTHER_BANK, 3.0),  # in bursts of four: 4 + 3 + 1 + 4 cycles
         (L1, L1_B, 1.0),
         (L1, L2, 1.0),
         (L2, L1, 1.0),
@@ -274,7 +274,7 @@ def test_a_stream_that_reads_leaves_its_pauses_to_the_other() -> None:
     read_end, write_end = both(bench, reading, writing)
     sdram = bench.spec.sdram
     assert 15 + 1024 <= write_end < read_end + sdram.nRCD + 512
-    # of each pause of 4 cycles, the write uses some and delays the read by less than a lot
+    # of each pause of 4 cycles, the write uses some and delays the read by less than a burst
     pauses = pauses_sclk(bench, 512) // 4
     assert read_end - read_sclk(bench, 2048) <= pauses * (sdram.nCL + sdram.turn_round_sclk) + sdram.nRCD
 

@@ -124,7 +124,7 @@ def receive(
 
 def lost(bench: Bench, transfer: Transfer) -> int:
     """Words that a transfer lost."""
-    return bench.bus.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.LOST]
+    return bench.bus.words[w.TRANSFERS_AT + transfer.place * w.TRANSFER_WORDS + w.LOST]
 
 
 def block(bench: Bench, until: int) -> None:

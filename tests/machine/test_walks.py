@@ -129,7 +129,7 @@ def test_the_end_of_each_line_can_wake_somebody() -> None:
     source, target = bench.row(PLACES["L1"], 640), bench.row(PLACES["SDRAM"], 640)
     walk = Walk(source.offset, 40, 4, 4), Walk(target.offset, 40, 4, 4)
     transfer = bench.bus.post(bench.bus.plan_copy(w.MDMA1_0, *walk, 160, element_bytes=4, setup=0))
-    bench.bus.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.WAKE] = w.AT_ROWS
+    bench.bus.words[w.TRANSFERS_AT + transfer.place * w.TRANSFER_WORDS + w.WAKE] = w.AT_ROWS
     bench.bus._await(transfer.number)
     ends = []
     for _ in range(4):

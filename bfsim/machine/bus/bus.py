@@ -25,7 +25,7 @@ from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
 
-SLOT = struct.Struct(f"@{w.SLOT_WORDS}q")
+TRANSFER_LAYOUT = struct.Struct(f"@{w.TRANSFER_WORDS}q")
 
 # Ranks of DMA: HRM of the BF537, 5-50 to 5-54 (lower channel first, memory DMA last); DMA1 before DMA2 [assumed].
 RANKS = {
@@ -57,8 +57,8 @@ class Pace:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
-    """A transfer of one master, ready to be posted as often as needed. `words`: the slot's, from SETUP on."""
+class TransferPlan:
+    """A transfer of one master, ready to be posted as often as needed. `words`: its own in `bus.state`, from SETUP on."""
 
     master: int
     words: tuple[int, ...]
@@ -100,8 +100,8 @@ class Bus:
         self._state[: w.SDRAM_WORDS] = new_sdram(board)
         self._set_up(board, memories)
         self._set_masters(board)
-        free = np.arange(w.SLOTS)[::-1]
-        self._state[w.FREE_AT_STACK : w.FREE_AT_STACK + w.SLOTS] = free
+        free = np.arange(w.MAX_TRANSFERS)[::-1]
+        self._state[w.FREE_PLACES_AT : w.FREE_PLACES_AT + w.MAX_TRANSFERS] = free
         env.follow(self)
 
     def _set_up(self, board: BoardSpec, memories: Memories) -> None:
@@ -122,9 +122,9 @@ class Bus:
             w.DEB_PERIOD: board.deb_period_transfers,
             w.MDMA_PERIOD: board.mdma_period_transfers,
             w.LINE_BYTES: chip.cache.line_bytes,
-            w.LOT: chip.dma.fifo_words,
+            w.BURST_WORDS: chip.dma.fifo_words,
             w.LAST_CORE: w.NONE,
-            w.FREE_SLOTS: w.SLOTS,
+            w.FREE_TRANSFERS: w.MAX_TRANSFERS,
         }
         for word, value in bus.items():
             self._state[word] = value
@@ -138,7 +138,7 @@ class Bus:
         partners = dict(PARTNERS) | {other: one for one, other in PARTNERS}
         for number, rank in ranks.items():
             fields = {
-                w.RANK: rank, w.READY: w.NEVER, w.SLOT: w.NONE, w.LAST_SLOT: w.NONE, w.PARTNER: partners.get(number, w.NONE),
+                w.RANK: rank, w.READY: w.NEVER, w.TRANSFER: w.NONE, w.LAST_TRANSFER: w.NONE, w.PARTNER: partners.get(number, w.NONE),
                 w.FIFO: chip.dma.fifo_words + (chip.ppi_fifo_words if number in (w.PPI0, w.PPI1) else 0),
                 w.GAP_NUMERATOR: gap.numerator, w.GAP_DENOMINATOR: gap.denominator * chip.dma.fifo_words,
             }  # fmt: skip
@@ -172,7 +172,7 @@ class Bus:
 
     def plan_copy(
         self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, setup: int
-    ) -> Plan:
+    ) -> TransferPlan:
         """Plan to move `count` elements by a memory DMA that takes `setup` ticks to start."""
         end = self.words[w.SDRAM_END]
         reads, writes = source.offset < end, destination.offset < end
@@ -190,19 +190,19 @@ class Bus:
 
     def plan_receive(
         self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, pace: Pace
-    ) -> Plan:
+    ) -> TransferPlan:
         """Plan to write `count` elements as a device delivers them."""
         return self._plan(master, w.PACED_IN, source, destination, count, element_bytes, 0, pace)
 
     def plan_send(
         self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, pace: Pace
-    ) -> Plan:
+    ) -> TransferPlan:
         """Plan to read `count` elements as a device takes them."""
         return self._plan(master, w.PACED_OUT, source, destination, count, element_bytes, 0, pace)
 
     def _plan(
         self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, setup: int, pace: Pace
-    ) -> Plan:  # fmt: skip
+    ) -> TransferPlan:  # fmt: skip
         for side in (source, destination):
             if count % side.x_count:
                 raise FirmwareError(
@@ -210,7 +210,7 @@ class Bus:
                 )
         parts = lcm(pace.element_ticks.denominator, pace.line_ticks.denominator)
         element, line = int(pace.element_ticks * parts), int(pace.line_ticks * parts)
-        return Plan(
+        return TransferPlan(
             master,
             (
                 setup, 0, mode, element_bytes.bit_length() - 1, count, 0, 0,
@@ -220,23 +220,23 @@ class Bus:
             ),
         )  # fmt: skip
 
-    def post(self, plan: Plan, at: int = 0) -> Transfer:
+    def post(self, plan: TransferPlan, at: int = 0) -> Transfer:
         """Put a transfer behind those that its master has already; it begins at tick `at` or later."""
         words, now = self.words, self._env.tick
-        top = words[w.FREE_SLOTS] - 1
+        top = words[w.FREE_TRANSFERS] - 1
         if top < 0:
             self.settle()  # those that are over make room
-            top = words[w.FREE_SLOTS] - 1
+            top = words[w.FREE_TRANSFERS] - 1
         if top < 0:
-            raise FirmwareError(f"DMA must have at most {w.SLOTS} transfers to do at a time")
-        words[w.FREE_SLOTS] = top
-        place = words[w.FREE_AT_STACK + top]
+            raise FirmwareError(f"DMA must have at most {w.MAX_TRANSFERS} transfers to do at a time")
+        words[w.FREE_TRANSFERS] = top
+        place = words[w.FREE_PLACES_AT + top]
         number = self._transfers
         self._transfers = number + 1
         words[w.ENDS_AT + number % w.ENDS] = w.NONE
         # the bus may still be behind the simulated time; the transfer is not
-        SLOT.pack_into(
-            words, 8 * (w.SLOTS_AT + place * w.SLOT_WORDS), number, w.NONE, max(at, now), *plan.words
+        TRANSFER_LAYOUT.pack_into(
+            words, 8 * (w.TRANSFERS_AT + place * w.TRANSFER_WORDS), number, w.NONE, max(at, now), *plan.words
         )
         posted = words[w.POSTED]
         words[w.POSTS_AT + 2 * posted], words[w.POSTS_AT + 2 * posted + 1] = plan.master, place
@@ -245,17 +245,17 @@ class Bus:
 
     def when_done(self, transfer: Transfer) -> simpy.Event:
         """Return the event at a transfer's end, which must not be known yet."""
-        self.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.WAKE] = w.AT_END
+        self.words[w.TRANSFERS_AT + transfer.place * w.TRANSFER_WORDS + w.WAKE] = w.AT_END
         return self._await(transfer.number)
 
     def when_row(self, transfer: Transfer) -> simpy.Event:
         """Return the event at the end of the next row that a transfer writes, or at its own end; neither is known yet."""
-        self.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.WAKE] = w.AT_ROWS
+        self.words[w.TRANSFERS_AT + transfer.place * w.TRANSFER_WORDS + w.WAKE] = w.AT_ROWS
         return self._await(transfer.number)
 
     def moved_by(self, transfer: Transfer) -> int:
         """Return how many elements a transfer that is not over has moved."""
-        return int(self.words[w.SLOTS_AT + transfer.place * w.SLOT_WORDS + w.MOVED])
+        return int(self.words[w.TRANSFERS_AT + transfer.place * w.TRANSFER_WORDS + w.MOVED])
 
     def _await(self, number: int) -> simpy.Event:
         event = self._waiting.get(number)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from bfsim.kernel.compiled import compiled
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bursts import burst, take_turn
-from bfsim.machine.bus.pacing import aligned, arrival, lose, lot_of, next_paced, step_device
+from bfsim.machine.bus.pacing import aligned, arrival, burst_of, lose, next_paced, step_device
+from bfsim.machine.bus.runs import move_run, take_turn
 from bfsim.machine.bus.sdram import access, stream
 from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.traffic import count_access, count_traffic
@@ -13,10 +13,10 @@ from bfsim.machine.bus.transfers import after_move, moved, next_on_chip
 
 
 @compiled
-def access_lot(state: State, number: int, at: int, offset: int, step: int, count: int, write: bool) -> int:
+def access_burst(state: State, number: int, at: int, offset: int, step: int, count: int, write: bool) -> int:
     """Access `count` elements, `step` bytes apart, one after the other; return when the last one is through."""
-    slot = w.SLOTS_AT + state[w.MASTERS_AT + number + w.SLOT] * w.SLOT_WORDS
-    beats = max(1, 1 << state[slot + w.ELEMENT_BITS] >> state[w.WORD_BITS])
+    transfer = w.TRANSFERS_AT + state[w.MASTERS_AT + number + w.TRANSFER] * w.TRANSFER_WORDS
+    beats = max(1, 1 << state[transfer + w.ELEMENT_BITS] >> state[w.WORD_BITS])
     through = at
     for element in range(count):
         through = access(state, at, offset + element * step, write)
@@ -30,22 +30,24 @@ def access_lot(state: State, number: int, at: int, offset: int, step: int, count
 def exchange(state: State, memory: Memory, number: int, at: int) -> int:
     """Move an element within SDRAM, into the FIFO or out of it: when that is full, all of it is written again."""
     master = w.MASTERS_AT + number
-    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
+    transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
     if state[master + w.WRITES]:
-        through = access_lot(state, number, at, state[slot + w.TO], 0, 1, True)
-        count_traffic(state, number, w.IN_SDRAM, True, 1 << state[slot + w.ELEMENT_BITS])
+        through = access_burst(state, number, at, state[transfer + w.TO], 0, 1, True)
+        count_traffic(state, number, w.IN_SDRAM, True, 1 << state[transfer + w.ELEMENT_BITS])
         state[master + w.IN_FIFO] -= 1
         state[master + w.WRITES] = state[master + w.IN_FIFO] > 0
         state[master + w.READY] = state[w.COMMAND_FREE]
-        moved(state, memory, slot, 1)
-        return after_move(state, master, slot, through)
-    offset = state[slot + w.FROM] + state[master + w.IN_FIFO] * state[slot + w.FROM_X_MODIFY]
-    through = access_lot(state, number, at, offset, 0, 1, False)
-    count_traffic(state, number, w.IN_SDRAM, False, 1 << state[slot + w.ELEMENT_BITS])
+        moved(state, memory, transfer, 1)
+        return after_move(state, master, transfer, through)
+    offset = state[transfer + w.FROM] + state[master + w.IN_FIFO] * state[transfer + w.FROM_X_MODIFY]
+    through = access_burst(state, number, at, offset, 0, 1, False)
+    count_traffic(state, number, w.IN_SDRAM, False, 1 << state[transfer + w.ELEMENT_BITS])
     take_turn(state, master, 1)
     state[master + w.IN_FIFO] += 1
     state[master + w.READY] = state[w.COMMAND_FREE]
-    if state[master + w.IN_FIFO] == min(state[w.LOT], state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT]):
+    if state[master + w.IN_FIFO] == min(
+        state[w.BURST_WORDS], state[transfer + w.FROM_X_LEFT], state[transfer + w.TO_X_LEFT]
+    ):
         state[master + w.WRITES] = 1
         state[master + w.READY] = aligned(through, state[w.SCLK])
     return w.NONE
@@ -55,41 +57,41 @@ def exchange(state: State, memory: Memory, number: int, at: int) -> int:
 def copy_on_chip(state: State, memory: Memory, number: int, at: int) -> int:
     """End a row of a transfer between L1 and L2: all of it moves at its end."""
     master = w.MASTERS_AT + number
-    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
+    transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
     first, end = state[w.L2_FIRST], state[w.L2_END]
-    left = state[slot + w.TO_X_LEFT]
-    nbytes = left << state[slot + w.ELEMENT_BITS]
-    if first <= state[slot + w.FROM] < end:
+    left = state[transfer + w.TO_X_LEFT]
+    nbytes = left << state[transfer + w.ELEMENT_BITS]
+    if first <= state[transfer + w.FROM] < end:
         count_traffic(state, number, w.IN_L2, False, nbytes)
-    if first <= state[slot + w.TO] < end:
+    if first <= state[transfer + w.TO] < end:
         count_traffic(state, number, w.IN_L2, True, nbytes)
     while left:
-        count = min(state[slot + w.FROM_X_LEFT], left)
-        moved(state, memory, slot, count)
+        count = min(state[transfer + w.FROM_X_LEFT], left)
+        moved(state, memory, transfer, count)
         left -= count
-    if state[slot + w.LEFT]:
-        next_on_chip(state, master, slot)
-    return after_move(state, master, slot, at)
+    if state[transfer + w.LEFT]:
+        next_on_chip(state, master, transfer)
+    return after_move(state, master, transfer, at)
 
 
 @compiled
 def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> int:
-    """Move the next lot to or from a device that sets the pace, and lose what came too late."""
+    """Move the next burst to or from a device that sets the pace, and lose what came too late."""
     master = w.MASTERS_AT + number
-    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
-    write = state[slot + w.MODE] == w.PACED_IN
+    transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
+    write = state[transfer + w.MODE] == w.PACED_IN
     if write and at > state[master + w.READY]:
-        lose(state, memory, master, slot, at)
-    count = lot_of(state, slot)
-    offset = state[slot + w.TO] if write else state[slot + w.FROM]
-    through, nbytes = at, count << state[slot + w.ELEMENT_BITS]
+        lose(state, memory, master, transfer, at)
+    count = burst_of(state, transfer)
+    offset = state[transfer + w.TO] if write else state[transfer + w.FROM]
+    through, nbytes = at, count << state[transfer + w.ELEMENT_BITS]
     if state[master + w.USES_BUS]:
-        through = access_lot(
+        through = access_burst(
             state,
             number,
             at,
             offset,
-            state[slot + (w.TO_X_MODIFY if write else w.FROM_X_MODIFY)],
+            state[transfer + (w.TO_X_MODIFY if write else w.FROM_X_MODIFY)],
             count,
             write,
         )
@@ -98,24 +100,24 @@ def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> 
         count_traffic(state, number, w.IN_L2, write, nbytes)
     if not write:
         # a link that has nothing to send holds its clock until it has
-        state[slot + w.START] += max(0, through - arrival(state, slot, -1))
-        through = arrival(state, slot, count - 1)
-    moved(state, memory, slot, count)
-    step_device(state, slot, count)
-    if state[slot + w.LEFT]:
-        next_paced(state, master, slot)
-    return after_move(state, master, slot, through)
+        state[transfer + w.START] += max(0, through - arrival(state, transfer, -1))
+        through = arrival(state, transfer, count - 1)
+    moved(state, memory, transfer, count)
+    step_device(state, transfer, count)
+    if state[transfer + w.LEFT]:
+        next_paced(state, master, transfer)
+    return after_move(state, master, transfer, through)
 
 
 @compiled
 def serve_dma(state: State, memory: Memory, number: int, at: int, until: int) -> int:
     """Grant the request of a DMA at tick `at`; return the number of the transfer that wakes somebody, or NONE."""
     where = w.MASTERS_AT + number
-    mode = state[w.SLOTS_AT + state[where + w.SLOT] * w.SLOT_WORDS + w.MODE]
+    mode = state[w.TRANSFERS_AT + state[where + w.TRANSFER] * w.TRANSFER_WORDS + w.MODE]
     if mode == w.BOTH:
         return exchange(state, memory, number, at)
     if mode == w.ON_CHIP:
         return copy_on_chip(state, memory, number, at)
     if mode in (w.PACED_IN, w.PACED_OUT):
         return exchange_with_device(state, memory, number, at)
-    return burst(state, memory, number, at, until)
+    return move_run(state, memory, number, at, until)

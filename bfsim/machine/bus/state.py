@@ -40,11 +40,11 @@ BUS_AT = SDRAM_WORDS
 (
     CCLK, SDRAM_END, L2_FIRST, L2_END, L1_FIRST, SUBBANK_BITS, L2_READ, L2_NEXT, L2_PORT_BITS, CORE_SYNC, STORE_DEPTH,
     DEB_PERIOD, MDMA_PERIOD, LINE_BYTES,
-    LOT,            # words that a DMA moves at once, from or to its FIFO
+    BURST_WORDS,    # words that a DMA moves at once, from or to its FIFO
     L2_FREE,        # when the port of L2 is free
     DEB_LEFT,       # transfers in the present direction that still have preference
     LAST_CORE,      # the core that had the bus last: the other one comes first
-    FREE_SLOTS,     # how many slots are on the stack
+    FREE_TRANSFERS, # how many transfers can still be posted
     DONE_AT,        # tick of the completion that `advance` returned with
     POSTED,         # transfers that were posted since
 ) = range(BUS_AT, BUS_AT + 21)  # fmt: skip
@@ -62,8 +62,8 @@ MASTERS = 13
     READY,          # when its next request can be granted, NEVER if it has none
     USES_BUS,       # whether that request needs the SDRAM bus
     WRITES,         # whether it writes
-    SLOT,           # the transfer it works on, or NONE
-    LAST_SLOT,      # the last one in its queue
+    TRANSFER,       # place of the transfer it works on, or NONE
+    LAST_TRANSFER,  # place of the last one in its queue
     FREE_AT,        # when its last transfer ended
     FIFO,           # elements that wait in it before any is lost
     GAP_NUMERATOR, GAP_DENOMINATOR,  # cycles beyond one a word that a memory DMA takes to read, as a fraction
@@ -75,10 +75,10 @@ MASTERS = 13
 ) = range(0, 15 * MASTERS, MASTERS)  # fmt: skip
 MASTER_WORDS = 15
 
-# ---- A slot: one transfer of a DMA.
+# ---- A transfer of a DMA, at one of MAX_TRANSFERS places.
 (
     IDENTITY,       # number of the transfer
-    NEXT,           # slot of the next transfer of the same master, or NONE
+    NEXT,           # place of the next transfer of the same master, or NONE
     AT,             # it begins at this tick or later,
     SETUP,          # and takes so many ticks to start
     WAKE,           # whom it wakes: AT_END, AT_ROWS
@@ -93,8 +93,8 @@ MASTER_WORDS = 15
     START, PARTS, ELEMENT, LINE, LINE_ELEMENTS,
     PLACE, LINE_BEGAN,  # where the next element is: in its line, and when that began, in parts from the start
 ) = range(27)  # fmt: skip
-SLOT_WORDS = 27
-SLOTS = 256
+TRANSFER_WORDS = 27
+MAX_TRANSFERS = 256
 ENDS = 1 << 16
 """Transfers whose end is remembered: the latest so many."""
 
@@ -142,10 +142,10 @@ MASTERS_AT = BUS_AT + BUS_WORDS
 JOBS_AT = MASTERS_AT + MASTERS * MASTER_WORDS
 TRAFFIC_AT = JOBS_AT + CORES * JOB_WORDS
 SUBBANKS_AT = TRAFFIC_AT + MASTERS * MEMORIES * TRAFFIC_WORDS
-SLOTS_AT = SUBBANKS_AT + MAX_SUBBANKS
-FREE_AT_STACK = SLOTS_AT + SLOTS * SLOT_WORDS
-POSTS_AT = FREE_AT_STACK + SLOTS  # master and slot of each transfer that was posted
-ENDS_AT = POSTS_AT + 2 * SLOTS
+TRANSFERS_AT = SUBBANKS_AT + MAX_SUBBANKS
+FREE_PLACES_AT = TRANSFERS_AT + MAX_TRANSFERS * TRANSFER_WORDS
+POSTS_AT = FREE_PLACES_AT + MAX_TRANSFERS  # master and place of each transfer that was posted
+ENDS_AT = POSTS_AT + 2 * MAX_TRANSFERS
 LOGS_AT = ENDS_AT + ENDS
 LOG_ENTRIES = 1 << 23
 """Accesses outside L1 that one kernel call may make; the host has memory for those that are made only."""

@@ -15,80 +15,83 @@ def accept(state: State) -> None:
     """Put the transfers that were posted behind those of their masters; a master that has none begins at once."""
     for post in range(state[w.POSTED]):
         master, place = w.MASTERS_AT + state[w.POSTS_AT + 2 * post], state[w.POSTS_AT + 2 * post + 1]
-        if state[master + w.SLOT] == w.NONE:
-            state[master + w.SLOT] = place
-            begin(state, master, w.SLOTS_AT + place * w.SLOT_WORDS, state[master + w.FREE_AT])
+        if state[master + w.TRANSFER] == w.NONE:
+            state[master + w.TRANSFER] = place
+            begin(state, master, w.TRANSFERS_AT + place * w.TRANSFER_WORDS, state[master + w.FREE_AT])
         else:
-            state[w.SLOTS_AT + state[master + w.LAST_SLOT] * w.SLOT_WORDS + w.NEXT] = place
-        state[master + w.LAST_SLOT] = place
+            state[w.TRANSFERS_AT + state[master + w.LAST_TRANSFER] * w.TRANSFER_WORDS + w.NEXT] = place
+        state[master + w.LAST_TRANSFER] = place
     state[w.POSTED] = 0
 
 
 @compiled
-def begin(state: State, master: int, slot: int, at: int) -> None:
+def begin(state: State, master: int, transfer: int, at: int) -> None:
     """Start a transfer at tick `at`, or at its own time if that is later."""
-    mode, end = state[slot + w.MODE], state[w.SDRAM_END]
-    start = aligned(max(at, state[slot + w.AT]) + state[slot + w.SETUP], state[w.SCLK])
+    mode, end = state[transfer + w.MODE], state[w.SDRAM_END]
+    start = aligned(max(at, state[transfer + w.AT]) + state[transfer + w.SETUP], state[w.SCLK])
     state[master + w.USES_BUS] = 1
     state[master + w.WRITES] = mode == w.WRITE
     state[master + w.IN_FIFO] = 0
     if mode == w.PACED_IN:
-        state[master + w.USES_BUS] = state[slot + w.TO] < end
+        state[master + w.USES_BUS] = state[transfer + w.TO] < end
         state[master + w.WRITES] = 1
-        next_paced(state, master, slot)
+        next_paced(state, master, transfer)
     elif mode == w.PACED_OUT:
-        state[master + w.USES_BUS] = state[slot + w.FROM] < end
-        next_paced(state, master, slot)
+        state[master + w.USES_BUS] = state[transfer + w.FROM] < end
+        next_paced(state, master, transfer)
     elif mode == w.ON_CHIP:
         state[master + w.USES_BUS] = 0
-        state[slot + w.START] = start
-        next_on_chip(state, master, slot)
+        state[transfer + w.START] = start
+        next_on_chip(state, master, transfer)
     else:
         state[master + w.READY] = start
 
 
 @compiled
-def next_on_chip(state: State, master: int, slot: int) -> None:
+def next_on_chip(state: State, master: int, transfer: int) -> None:
     """Note when the next row between L1 and L2 is through."""
-    parts = (state[slot + w.MOVED] + state[slot + w.TO_X_LEFT]) * state[slot + w.ELEMENT]
+    parts = (state[transfer + w.MOVED] + state[transfer + w.TO_X_LEFT]) * state[transfer + w.ELEMENT]
     state[master + w.READY] = (
-        state[slot + w.START] + (parts + state[slot + w.PARTS] - 1) // state[slot + w.PARTS]
+        state[transfer + w.START] + (parts + state[transfer + w.PARTS] - 1) // state[transfer + w.PARTS]
     )
 
 
 @compiled
-def moved(state: State, memory: Memory, slot: int, count: int) -> None:
+def moved(state: State, memory: Memory, transfer: int, count: int) -> None:
     """Move the bytes of `count` elements, and count what goes to and from the sub-banks of L1."""
-    count_subbanks(state, slot + w.FROM, count)
-    count_subbanks(state, slot + w.TO, count)
-    move(state, memory, slot, count)
+    count_subbanks(state, transfer + w.FROM, count)
+    count_subbanks(state, transfer + w.TO, count)
+    move(state, memory, transfer, count)
 
 
 @compiled
-def after_move(state: State, master: int, slot: int, through: int) -> int:
+def after_move(state: State, master: int, transfer: int, through: int) -> int:
     """See whether the transfer is done, or a row of it, with the elements that just moved; return who is woken."""
-    if state[slot + w.LEFT] == 0:
-        return finish(state, master, slot, through)
-    if state[slot + w.WAKE] == w.AT_ROWS and state[slot + w.TO_X_LEFT] == state[slot + w.TO_X_COUNT]:
+    if state[transfer + w.LEFT] == 0:
+        return finish(state, master, transfer, through)
+    if (
+        state[transfer + w.WAKE] == w.AT_ROWS
+        and state[transfer + w.TO_X_LEFT] == state[transfer + w.TO_X_COUNT]
+    ):
         state[w.DONE_AT] = through
-        return state[slot + w.IDENTITY]
+        return state[transfer + w.IDENTITY]
     return w.NONE
 
 
 @compiled
-def finish(state: State, master: int, slot: int, at: int) -> int:
+def finish(state: State, master: int, transfer: int, at: int) -> int:
     """End a transfer at tick `at` and begin the next one; return its number if it wakes somebody."""
-    number, wakes = state[slot + w.IDENTITY], state[slot + w.WAKE]
+    number, wakes = state[transfer + w.IDENTITY], state[transfer + w.WAKE]
     state[w.ENDS_AT + number % w.ENDS] = at
     state[master + w.FREE_AT] = at
-    state[w.FREE_AT_STACK + state[w.FREE_SLOTS]] = state[master + w.SLOT]
-    state[w.FREE_SLOTS] += 1
-    state[master + w.SLOT] = state[slot + w.NEXT]
-    if state[slot + w.NEXT] == w.NONE:
-        state[master + w.LAST_SLOT] = w.NONE
+    state[w.FREE_PLACES_AT + state[w.FREE_TRANSFERS]] = state[master + w.TRANSFER]
+    state[w.FREE_TRANSFERS] += 1
+    state[master + w.TRANSFER] = state[transfer + w.NEXT]
+    if state[transfer + w.NEXT] == w.NONE:
+        state[master + w.LAST_TRANSFER] = w.NONE
         state[master + w.READY] = w.NEVER
     else:
-        begin(state, master, w.SLOTS_AT + state[slot + w.NEXT] * w.SLOT_WORDS, at)
+        begin(state, master, w.TRANSFERS_AT + state[transfer + w.NEXT] * w.TRANSFER_WORDS, at)
     if wakes == 0:
         return w.NONE
     state[w.DONE_AT] = at

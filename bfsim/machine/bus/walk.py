@@ -31,10 +31,10 @@ def copy_element(memory: Memory, source: int, target: int, bits: int) -> None:
 
 
 @compiled
-def move(state: State, memory: Memory, slot: int, count: int) -> None:
+def move(state: State, memory: Memory, transfer: int, count: int) -> None:
     """Move `count` elements, none beyond the end of either side's line, and step both sides on."""
-    source, target, bits = state[slot + w.FROM], state[slot + w.TO], state[slot + w.ELEMENT_BITS]
-    source_step, target_step = state[slot + w.FROM_X_MODIFY], state[slot + w.TO_X_MODIFY]
+    source, target, bits = state[transfer + w.FROM], state[transfer + w.TO], state[transfer + w.ELEMENT_BITS]
+    source_step, target_step = state[transfer + w.FROM_X_MODIFY], state[transfer + w.TO_X_MODIFY]
     if bits == WORD_BITS and source_step == target_step == WORD_BYTES:
         source, target = source >> WORD_BITS, target >> WORD_BITS
         for word in range(count):
@@ -44,7 +44,7 @@ def move(state: State, memory: Memory, slot: int, count: int) -> None:
             copy_element(memory, source, target, bits)
             source += source_step
             target += target_step
-    go_on(state, slot + w.FROM, count)
-    go_on(state, slot + w.TO, count)
-    state[slot + w.MOVED] += count
-    state[slot + w.LEFT] -= count
+    go_on(state, transfer + w.FROM, count)
+    go_on(state, transfer + w.TO, count)
+    state[transfer + w.MOVED] += count
+    state[transfer + w.LEFT] -= count

@@ -39,11 +39,11 @@ def rank_of(state: State, number: int, at: int) -> int:
         rank += AGAINST
     if state[master + w.PARTNER] != w.NONE and 0 < state[w.MDMA_PERIOD] <= state[master + w.SERVED]:
         rank += HAD_ITS_TURN
-    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
+    transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
     half = state[master + w.FIFO] // 2
-    if state[slot + w.MODE] == w.PACED_IN and arrival(state, slot, half) <= at:
+    if state[transfer + w.MODE] == w.PACED_IN and arrival(state, transfer, half) <= at:
         rank += URGENT  # more than half of the FIFO waits
-    elif state[slot + w.MODE] == w.PACED_OUT and arrival(state, slot, -1 - half) <= at:
+    elif state[transfer + w.MODE] == w.PACED_OUT and arrival(state, transfer, -1 - half) <= at:
         rank += URGENT  # less than half of the FIFO is left
     return rank
 

@@ -15,7 +15,7 @@ from bfsim.kernel.followers import Follower
 from bfsim.kernel.types import Number
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
-from bfsim.machine.calls.calls import CallBook
+from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.cameras.capture import Capture
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.layouts import Layouts
@@ -64,7 +64,7 @@ class Core(SynchronisedCore):
         board: BoardSpec,
         *,
         layouts: Layouts,
-        calls: CallBook,
+        calls: CallCache,
         bus: Bus,
         number: int,
         follower: Follower,

@@ -11,7 +11,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, FirmwareError
 from bfsim.kernel import Kernel, Work
 from bfsim.machine.bus.bus import Bus
-from bfsim.machine.calls.calls import CallBook, DeferredWork
+from bfsim.machine.calls.call_cache import CallCache, DeferredWork
 from bfsim.machine.core.clock import CoreClock
 from bfsim.machine.core.interrupts import Handler, Interrupts
 from bfsim.machine.firmware_lines import line_at, line_of
@@ -39,7 +39,7 @@ class PlayingCore(CoreClock):
         bus: Bus,
         number: int,
         stages: tuple[str, ...],
-        calls: CallBook,
+        calls: CallCache,
         interrupts: Interrupts,
     ) -> None:
         super().__init__(env, name, board, bus, stages)

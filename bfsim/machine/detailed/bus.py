@@ -1,6 +1,6 @@
 """The bus of the detailed mode: every transaction an event, every master a process. Slow, and the judge of the fast mode.
 
-It does what `Bus` does and keeps the same counters, but nothing of it is compiled and nothing is done in lots.
+It does what `Bus` does and keeps the same counters, but nothing of it is compiled and no two words move at once.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ import simpy
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import followers
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import RANKS, Bus, Pace, Plan, Transfer, Walk
+from bfsim.machine.bus.bus import RANKS, Bus, Pace, Transfer, TransferPlan, Walk
 from bfsim.machine.bus.weave import plain_weave
 from bfsim.machine.detailed.arbiter import L2Port, SdramArbiter
 from bfsim.machine.detailed.core import CorePort
-from bfsim.machine.detailed.dma import DetailedPlan, DmaChannel, Errand
+from bfsim.machine.detailed.dma import DetailedPlan, DetailedTransfer, DmaMaster
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
 
@@ -28,12 +28,12 @@ class DetailedBus(Bus):
         super().__init__(env, board, memories, plain_weave)
         sdram, l2 = SdramArbiter(env, board, self.words), L2Port(env, board, self.words)
         self._channels = {
-            master: DmaChannel(env, board, memories, sdram, self.words, master) for master in RANKS
+            master: DmaMaster(env, board, memories, sdram, self.words, master) for master in RANKS
         }
         self._ports = [
             CorePort(env, board, sdram, l2, memories.sdram_end, number) for number in range(w.CORES)
         ]
-        self._errands: dict[int, Errand] = {}
+        self._on_their_way: dict[int, DetailedTransfer] = {}
 
     # ---- time: nothing here is ever behind the simulation
 
@@ -53,38 +53,38 @@ class DetailedBus(Bus):
 
     def _plan(
         self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, setup: int, pace: Pace
-    ) -> Plan:  # fmt: skip
+    ) -> TransferPlan:  # fmt: skip
         return DetailedPlan(master, (), mode, source, destination, count, element_bytes, setup, pace)
 
-    def post(self, plan: Plan, at: int = 0) -> Transfer:
+    def post(self, plan: TransferPlan, at: int = 0) -> Transfer:
         """Put a transfer behind those that its master has already; it begins at tick `at` or later."""
         assert isinstance(plan, DetailedPlan), "a plan belongs to the bus that made it"
         number = self._transfers
         self._transfers = number + 1
         self.words[w.ENDS_AT + number % w.ENDS] = w.NONE
-        errand = Errand(number, plan, max(at, self._env.tick), self._env.event())
-        self._errands[number] = errand
-        assert errand.done.callbacks is not None
-        errand.done.callbacks.append(lambda _event: self._forget(number))
-        self._channels[plan.master].post(errand)
+        transfer = DetailedTransfer(number, plan, max(at, self._env.tick), self._env.event())
+        self._on_their_way[number] = transfer
+        assert transfer.done.callbacks is not None
+        transfer.done.callbacks.append(lambda _event: self._forget(number))
+        self._channels[plan.master].post(transfer)
         return Transfer(self, number, w.NONE)
 
     def _forget(self, number: int) -> None:
-        del self._errands[number]
+        del self._on_their_way[number]
 
     def when_done(self, transfer: Transfer) -> simpy.Event:
         """Return the event at a transfer's end, which must not be known yet."""
-        return self._errands[transfer.number].done
+        return self._on_their_way[transfer.number].done
 
     def when_row(self, transfer: Transfer) -> simpy.Event:
         """Return the event at the end of the next row that a transfer writes, or at its own end; neither is known yet."""
         event = self._env.event()
-        self._errands[transfer.number].rows.append(event)
+        self._on_their_way[transfer.number].rows.append(event)
         return event
 
     def moved_by(self, transfer: Transfer) -> int:
         """Return how many elements a transfer that is not over has moved."""
-        return self._errands[transfer.number].moved
+        return self._on_their_way[transfer.number].moved
 
     def lost_by(self, master: int) -> int:
         """Return how many elements of a device found the FIFO of its DMA full."""

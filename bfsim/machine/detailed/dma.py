@@ -16,7 +16,7 @@ import simpy
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Pace, Plan, Walk
+from bfsim.machine.bus.bus import Pace, TransferPlan, Walk
 from bfsim.machine.detailed.arbiter import Grant, SdramArbiter, count_bytes, wait_until
 from bfsim.machine.detailed.fifo import Element, Fifo
 from bfsim.machine.memories import Memories
@@ -26,8 +26,8 @@ Play = Generator[simpy.Event, Any, None]
 
 
 @dataclass(frozen=True, slots=True)
-class DetailedPlan(Plan):
-    """A transfer in plain words, not in those of a slot."""
+class DetailedPlan(TransferPlan):
+    """A transfer in plain words, not in those of `bus.state`."""
 
     mode: int
     source: Walk
@@ -39,7 +39,7 @@ class DetailedPlan(Plan):
 
 
 @dataclass(slots=True)
-class Errand:
+class DetailedTransfer:
     """A plan on its way, from tick `at` on. `done` happens at its end; `rows` at the end of the next row that it writes."""
 
     number: int
@@ -50,7 +50,7 @@ class Errand:
     moved: int = 0
 
     def tell_row(self, moved: int) -> None:
-        """Tell those who wait for a row, if the last of `moved` elements ended one. The last row ends with the errand."""
+        """Tell those who wait for a row, if the last of `moved` elements ended one. The last row ends with the transfer."""
         self.moved = moved
         if moved % self.plan.destination.x_count == 0 and moved < self.plan.count:
             self.tell()
@@ -79,8 +79,8 @@ def arrival(pace: Pace, number: int) -> int:
     return pace.start + ceil(line * pace.line_ticks + (place + 1) * pace.element_ticks)
 
 
-class DmaChannel:
-    """One master with its queue of errands. `lost`: elements of a device that found the FIFO full."""
+class DmaMaster:
+    """One master with its queue of transfers. `lost`: elements of a device that found the FIFO full."""
 
     def __init__(
         self,
@@ -104,21 +104,21 @@ class DmaChannel:
         self.lost = 0
         env.process(self._play())
 
-    def post(self, errand: Errand) -> None:
-        """Put an errand behind the others."""
-        self._queue.put(errand)
+    def post(self, transfer: DetailedTransfer) -> None:
+        """Put a transfer behind the others."""
+        self._queue.put(transfer)
 
     def _play(self) -> Generator[simpy.Event, Any, None]:
         while True:
-            errand = yield self._queue.get()
-            plan = errand.plan
-            yield from wait_until(self._env, self._edge(max(self._env.tick, errand.at) + plan.setup))
+            transfer = yield self._queue.get()
+            plan = transfer.plan
+            yield from wait_until(self._env, self._edge(max(self._env.tick, transfer.at) + plan.setup))
             fifo = Fifo(self._env, self._depth(), takes_turns=plan.mode == w.BOTH)
             self._env.process(self._source(plan, fifo))
-            yield self._env.process(self._sink(errand, fifo))
-            self._words[w.ENDS_AT + errand.number % w.ENDS] = self._env.tick
-            errand.tell()
-            errand.done.succeed()
+            yield self._env.process(self._sink(transfer, fifo))
+            self._words[w.ENDS_AT + transfer.number % w.ENDS] = self._env.tick
+            transfer.tell()
+            transfer.done.succeed()
 
     def _edge(self, tick: int) -> int:
         return -(-tick // self._sclk) * self._sclk
@@ -136,14 +136,14 @@ class DmaChannel:
             yield from self._read_on_chip(plan, fifo)
         fifo.close()
 
-    def _sink(self, errand: Errand, fifo: Fifo) -> Play:
-        plan = errand.plan
+    def _sink(self, transfer: DetailedTransfer, fifo: Fifo) -> Play:
+        plan = transfer.plan
         if plan.mode == w.PACED_OUT:
-            yield from self._send(errand, fifo)
+            yield from self._send(transfer, fifo)
         elif plan.destination.offset < self._memories.sdram_end:
-            yield from self._write_sdram(errand, fifo)
+            yield from self._write_sdram(transfer, fifo)
         else:
-            yield from self._write_on_chip(errand, fifo)
+            yield from self._write_on_chip(transfer, fifo)
 
     # ---- sides in SDRAM
 
@@ -173,8 +173,8 @@ class DmaChannel:
             pause = self._pause(dma.read_word_sclk) if plan.mode == w.READ else 0
             yield from wait_until(self._env, grant.free + pause)
 
-    def _write_sdram(self, errand: Errand, fifo: Fifo) -> Play:
-        plan = errand.plan
+    def _write_sdram(self, transfer: DetailedTransfer, fifo: Fifo) -> Play:
+        plan = transfer.plan
         for number, offset in enumerate(offsets(plan.destination, plan.count)):
             if not (yield from self._next(fifo)):
                 return
@@ -182,14 +182,14 @@ class DmaChannel:
             self._store(plan, offset, fifo.first.value)
             fifo.take()
             yield from wait_until(self._env, grant.through)
-            errand.tell_row(number + 1)
+            transfer.tell_row(number + 1)
             yield from wait_until(self._env, grant.free)
 
     def _pause(self, word_sclk: Fraction) -> int:
         """Add up what a word takes beyond a cycle; return the ticks that are due, always those of a FIFO of words."""
-        lot = self._board.chip.dma.fifo_words
+        burst = self._board.chip.dma.fifo_words
         self._late += word_sclk - 1
-        cycles = int(self._late / lot) * lot
+        cycles = int(self._late / burst) * burst
         self._late -= cycles
         return cycles * self._sclk
 
@@ -215,14 +215,14 @@ class DmaChannel:
                 yield fifo.changed()
             fifo.put(Element(self._load(plan, offset), self._env.tick))
 
-    def _write_on_chip(self, errand: Errand, fifo: Fifo) -> Play:
-        plan = errand.plan
+    def _write_on_chip(self, transfer: DetailedTransfer, fifo: Fifo) -> Play:
+        plan = transfer.plan
         for number, offset in enumerate(offsets(plan.destination, plan.count)):
             if not (yield from self._next(fifo)):
                 return
             self._store(plan, offset, fifo.first.value)
             fifo.take()
-            errand.tell_row(number + 1)
+            transfer.tell_row(number + 1)
 
     # ---- sides that are devices
 
@@ -234,14 +234,14 @@ class DmaChannel:
             else:
                 self.lost += 1
 
-    def _send(self, errand: Errand, fifo: Fifo) -> Play:
-        plan = errand.plan
+    def _send(self, transfer: DetailedTransfer, fifo: Fifo) -> Play:
+        plan = transfer.plan
         for number, offset in enumerate(offsets(plan.destination, plan.count)):
             yield from wait_until(self._env, arrival(plan.pace, number))
             yield from self._next(fifo)
             self._store(plan, offset, fifo.first.value)
             fifo.take()
-            errand.tell_row(number + 1)
+            transfer.tell_row(number + 1)
 
     # ---- bytes
 

@@ -32,7 +32,7 @@ class Access:
 
 
 @dataclass(slots=True)
-class Bank:
+class SdramBank:
     """One internal bank. From tick `precharge_from` its open page may be closed."""
 
     is_open: bool = False
@@ -47,7 +47,7 @@ class SdramBanks:
         self._spec = sdram
         self._sclk = clocks.sclk_ticks
         self._interval = sdram.refresh_interval_sclk(clocks.sclk_hz) * self._sclk
-        self._banks = [Bank() for _ in range(sdram.banks)]
+        self._banks = [SdramBank() for _ in range(sdram.banks)]
         self.command_from = 0
         """Earliest tick of the next command."""
         self._data_from = 0

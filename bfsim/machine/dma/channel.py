@@ -39,7 +39,7 @@ class Fetch:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class ChannelStep:
     """What a channel does next: its work unit, or None when it has stopped, and the descriptor it came from, if any.
 
     `interrupt`: the channel asks for its interrupt, for the work unit that has ended.
@@ -101,7 +101,7 @@ class DmaChannel:
         check_value(name, value, REGISTERS[register].lowest, REGISTERS[register].highest, where)
         setattr(self, register, value)
 
-    def start(self, config: DmaConfig | int, place: str = "") -> Step:
+    def start(self, config: DmaConfig | int, place: str = "") -> ChannelStep:
         """Write CONFIG with DMAEN set, at `place` of the firmware, and return the first step."""
         where = _at("set", place)
         with self._flagging():
@@ -128,7 +128,7 @@ class DmaChannel:
         self.CURR_ADDR = self.unit.row_address(self._row)
         return self._interrupt(self.unit.row_interrupt)
 
-    def unit_done(self) -> Step:
+    def unit_done(self) -> ChannelStep:
         """Note the end of the work unit, and its FIFO empty; return the next step."""
         done = self.unit
         assert done is not None, "a stopped channel has no work unit"
@@ -137,7 +137,7 @@ class DmaChannel:
         self.CURR_ADDR, self.CURR_X_COUNT, self.CURR_Y_COUNT = done.end_address, 0, 1
         if self.config.FLOW is Flow.STOP:
             self.stop()
-            return Step(None, interrupt=interrupt)
+            return ChannelStep(None, interrupt=interrupt)
         with self._flagging():
             return self._next(interrupt)
 
@@ -155,19 +155,19 @@ class DmaChannel:
             self.IRQ_STATUS |= IrqStatus.DMA_DONE
         return wanted
 
-    def _next(self, interrupt: bool) -> Step:
+    def _next(self, interrupt: bool) -> ChannelStep:
         """Fetch a descriptor where FLOW asks for one, and begin the work unit that the registers say."""
         fetch = self._fetch() if self.config.FLOW in DESCRIPTOR_ELEMENTS else None
         if not self.config.DMAEN:  # only a descriptor can have cleared it
             self.stop()
-            return Step(None, fetch, interrupt)
+            return ChannelStep(None, fetch, interrupt)
         unit = WorkUnit.programmed(
             self.config, self.START_ADDR, self.X_COUNT, self.X_MODIFY, self.Y_COUNT, self.Y_MODIFY
         )
         check_unit(self.spec, unit, self._space, self.where)
         self.unit, self._row = unit, 0
         self.CURR_ADDR, self.CURR_X_COUNT, self.CURR_Y_COUNT = self.START_ADDR, self.X_COUNT, self.Y_COUNT
-        return Step(unit, fetch, interrupt)
+        return ChannelStep(unit, fetch, interrupt)
 
     def _fetch(self) -> Fetch:
         """Load registers from the next descriptor. Lists go on at NEXT_DESC_PTR, arrays where the last one ended."""

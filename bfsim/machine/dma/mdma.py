@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.machine.bus.bus import Bus, Plan, Transfer, Walk
+from bfsim.machine.bus.bus import Bus, Transfer, TransferPlan, Walk
 from bfsim.machine.memories import Row
 
 
@@ -23,7 +23,7 @@ class MdmaStream:
         self._master = master
         self._startup_ticks = board.chip.dma.startup_sclk * board.clocks.sclk_ticks
         self._word_bytes = board.chip.dma.word_bytes
-        self._plans: dict[tuple[Row, Row], Plan] = {}
+        self._plans: dict[tuple[Row, Row], TransferPlan] = {}
 
     def copy(self, source: Row, destination: Row, at: int) -> Transfer:
         """Copy `source` to `destination`, not before tick `at`, after all copies asked for before.
@@ -35,7 +35,7 @@ class MdmaStream:
             plan = self._plans[source, destination] = self._plan(source, destination)
         return self._bus.post(plan, at)
 
-    def _plan(self, source: Row, destination: Row) -> Plan:
+    def _plan(self, source: Row, destination: Row) -> TransferPlan:
         size = element_bytes(self._word_bytes, source.offset, destination.offset, source.nbytes)
         count = source.nbytes // size
         inward, outward = (Walk(each.offset, count, size, size) for each in (source, destination))

@@ -12,7 +12,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus, Walk
-from bfsim.machine.dma.channel import DmaChannel, Step, check_pair
+from bfsim.machine.dma.channel import ChannelStep, DmaChannel, check_pair
 from bfsim.machine.dma.checks import DmaSpace
 from bfsim.machine.dma.config import DmaConfig
 from bfsim.machine.dma.unit import WorkUnit
@@ -111,7 +111,7 @@ class MemoryDma:
         """Stall until the work that was started is done; with FLOW=AUTO it is after a `stop` only."""
         yield from self.core.wait_event(self.done, f"{self.name}")
 
-    def _run(self, source: Step, destination: Step) -> Generator[Any, Any, None]:
+    def _run(self, source: ChannelStep, destination: ChannelStep) -> Generator[Any, Any, None]:
         """Move one work unit after the other, until one of the channels stops."""
         while source.unit and destination.unit:
             transfer, rows = self._post(source, destination), destination.unit.y_count
@@ -143,7 +143,7 @@ class MemoryDma:
         self.source.stop()
         self.destination.stop()
 
-    def _post(self, source: Step, destination: Step) -> Any:
+    def _post(self, source: ChannelStep, destination: ChannelStep) -> Any:
         assert source.unit is not None
         assert destination.unit is not None
         elements = sum(step.fetch.elements for step in (source, destination) if step.fetch)

@@ -37,7 +37,7 @@ def preferred_until(state: State, number: int, until: int) -> int:
 
 
 @compiled
-def run_ahead(state: State, number: int, slot: int, ahead: int, ticks: int, until: int) -> int:
+def run_ahead(state: State, number: int, transfer: int, ahead: int, ticks: int, until: int) -> int:
     """How many of `ahead` more elements of `ticks` each, all page hits, nobody can come between.
 
     Where nobody else wants the bus the pauses of a memory DMA that reads are part of the run; else a run ends with the first.
@@ -45,15 +45,15 @@ def run_ahead(state: State, number: int, slot: int, ahead: int, ticks: int, unti
     master = w.MASTERS_AT + number
     if state[w.DEB_PERIOD] or state[w.MDMA_PERIOD]:
         return 0
-    ahead = min(ahead, min(state[slot + w.FROM_X_LEFT], state[slot + w.TO_X_LEFT]) - 1)
-    reads = state[slot + w.MODE] == w.READ and state[master + w.GAP_NUMERATOR] > 0
+    ahead = min(ahead, min(state[transfer + w.FROM_X_LEFT], state[transfer + w.TO_X_LEFT]) - 1)
+    reads = state[transfer + w.MODE] == w.READ and state[master + w.GAP_NUMERATOR] > 0
     if not reads:
         room = preferred_until(state, number, until) - state[w.COMMAND_FREE]
         return max(0, min(ahead, (room + ticks - 1) // ticks))
     parts = state[master + w.GAP_DENOMINATOR]
     room = alone_until(state, number, until) - state[w.COMMAND_FREE]
-    longest = ticks * parts + state[w.LOT] * state[w.SCLK] * state[master + w.GAP_NUMERATOR]
-    alone = max(0, min(ahead, (room - state[w.LOT] * state[w.SCLK]) * parts // longest))
+    longest = ticks * parts + state[w.BURST_WORDS] * state[w.SCLK] * state[master + w.GAP_NUMERATOR]
+    alone = max(0, min(ahead, (room - state[w.BURST_WORDS] * state[w.SCLK]) * parts // longest))
     if alone:
         return alone
     room = preferred_until(state, number, until) - state[w.COMMAND_FREE]
@@ -68,9 +68,9 @@ def pause(state: State, master: int, elements: int) -> int:
     It pauses for as long as another stream moves a FIFO of words ([assumed]; the sum of the pauses is data of the chip).
     """
     state[master + w.GAP] += elements * state[master + w.GAP_NUMERATOR]
-    lots = state[master + w.GAP] // state[master + w.GAP_DENOMINATOR]
-    state[master + w.GAP] -= lots * state[master + w.GAP_DENOMINATOR]
-    return lots * state[w.LOT] * state[w.SCLK]
+    bursts = state[master + w.GAP] // state[master + w.GAP_DENOMINATOR]
+    state[master + w.GAP] -= bursts * state[master + w.GAP_DENOMINATOR]
+    return bursts * state[w.BURST_WORDS] * state[w.SCLK]
 
 
 @compiled
@@ -84,20 +84,20 @@ def take_turn(state: State, master: int, count: int) -> None:
 
 
 @compiled
-def burst(state: State, memory: Memory, number: int, at: int, until: int) -> int:
+def move_run(state: State, memory: Memory, number: int, at: int, until: int) -> int:
     """Move the next elements of a memory DMA with one side in SDRAM; return who is woken."""
     master = w.MASTERS_AT + number
-    slot = w.SLOTS_AT + state[master + w.SLOT] * w.SLOT_WORDS
-    write = state[slot + w.MODE] == w.WRITE
-    offset, step = state[slot + w.FROM], state[slot + w.FROM_X_MODIFY]
+    transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
+    write = state[transfer + w.MODE] == w.WRITE
+    offset, step = state[transfer + w.FROM], state[transfer + w.FROM_X_MODIFY]
     if write:
-        offset, step = state[slot + w.TO], state[slot + w.TO_X_MODIFY]
-    beats = max(1, 1 << state[slot + w.ELEMENT_BITS] >> state[w.WORD_BITS])
+        offset, step = state[transfer + w.TO], state[transfer + w.TO_X_MODIFY]
+    beats = max(1, 1 << state[transfer + w.ELEMENT_BITS] >> state[w.WORD_BITS])
     through = access(state, at, offset, write)
     if beats > 1:
         through = stream(state, beats - 1, write, offset)
     ahead = hits_ahead(state, offset + step, step)
-    more = run_ahead(state, number, slot, ahead, beats * state[w.SCLK], until)
+    more = run_ahead(state, number, transfer, ahead, beats * state[w.SCLK], until)
     paused = 0
     if more:
         paused = 0 if write else pause(state, master, more)
@@ -107,11 +107,11 @@ def burst(state: State, memory: Memory, number: int, at: int, until: int) -> int
     state[master + w.READY] = state[w.COMMAND_FREE] + (0 if write else pause(state, master, 1))
     count_access(state, number, 1 + more)
     state[w.TRAFFIC_AT + (number * w.MEMORIES + w.IN_SDRAM) * w.TRAFFIC_WORDS + w.BUSY] -= paused
-    nbytes = (1 + more) << state[slot + w.ELEMENT_BITS]
+    nbytes = (1 + more) << state[transfer + w.ELEMENT_BITS]
     count_traffic(state, number, w.IN_SDRAM, write, nbytes)
-    on_chip = state[slot + w.FROM] if write else state[slot + w.TO]
+    on_chip = state[transfer + w.FROM] if write else state[transfer + w.TO]
     if state[w.L2_FIRST] <= on_chip < state[w.L2_END]:
         count_traffic(state, number, w.IN_L2, not write, nbytes)
-    moved(state, memory, slot, 1 + more)
+    moved(state, memory, transfer, 1 + more)
     take_turn(state, master, 1 + more)
-    return after_move(state, master, slot, through)
+    return after_move(state, master, transfer, through)

@@ -16,7 +16,7 @@ from bfsim.machine.memories import Row
 from bfsim.trace import REST
 
 
-class Call(Protocol):
+class BoundCall(Protocol):
     """A kernel bound to its rows, ready to run."""
 
     @property
@@ -31,7 +31,7 @@ class Call(Protocol):
 class CheckedCall:
     """A call that is checked before it runs."""
 
-    call: Call
+    call: BoundCall
     kernel: Kernel
 
     @property
@@ -50,7 +50,7 @@ class DeferredWork(Work):
 
     __slots__ = ("_arguments", "_call")
 
-    def __init__(self, call: Call, arguments: tuple[Row | int, ...]) -> None:
+    def __init__(self, call: BoundCall, arguments: tuple[Row | int, ...]) -> None:
         super().__init__(0, 0)
         self._call = call
         self._arguments = arguments
@@ -60,7 +60,7 @@ class DeferredWork(Work):
         return self._call.run(self._arguments)
 
 
-class CallBook:
+class CallCache:
     """Runs kernels for one core, and counts them under the stage that was entered last."""
 
     def __init__(
@@ -80,7 +80,7 @@ class CallBook:
         self._subbanks = subbanks
         self._sanitize = sanitize
         self._groups: dict[tuple[str, Kernel, tuple[str, ...]], CallGroup] = {}
-        self._calls: dict[str, dict[tuple[Kernel, object], Call]] = {}
+        self._calls: dict[str, dict[tuple[Kernel, object], BoundCall]] = {}
         self.enter(REST)
 
     def enter(self, stage: str) -> None:
@@ -95,7 +95,7 @@ class CallBook:
             (each for each in self._groups.values() if each.stage == self.stage), elapsed_cclk
         )
 
-    def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> Call:
+    def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> BoundCall:
         """Prepare a call for the first time, and know it from now on. Rows outside of L1 are followed."""
         if not isinstance(kernel, Kernel):
             name = getattr(kernel, "__name__", repr(kernel))
@@ -107,7 +107,7 @@ class CallBook:
         """Return every group of calls, in the order of their first call."""
         return self._groups.values()
 
-    def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> Call:
+    def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> BoundCall:
         kernel.check(arguments)
         rows = []
         for position in kernel.array_positions:
@@ -123,7 +123,7 @@ class CallBook:
         for seen, row in zip(group.subbanks, rows, strict=True):
             seen.update(self._subbanks.of(row))
         follower = self._follower if followed else None
-        call: Call = kernel.prepare(group.code, [each.array for each in rows], group.totals, follower)
+        call: BoundCall = kernel.prepare(group.code, [each.array for each in rows], group.totals, follower)
         if outside := self._code.of(group.code.counters):
             call = FetchedCall(
                 call, outside, group.code.counters, group.totals, self._follower, self._code.cache
