@@ -29,7 +29,7 @@ from bfsim.errors import BfsimError
 from bfsim.linker import LinkMap, link, parse_ldf
 from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
+from bfsim.run import BUILT_IN_RECORDING, DEFAULT_LDF
 from bfsim.trace import REST
 from tinyphoon import tinyphoon
 
@@ -113,7 +113,7 @@ def recordings(frames: int) -> Iterator[Comparison]:
     with RecordingReader(BUILT_IN_RECORDING) as reader:
         size, taken = FrameSize(reader.width, reader.height), list(islice(reader.frames(), frames))
     symbols = symbols_of(tinyphoon, size)
-    for path in sorted(THESIS_LDF.parent.glob("*.ldf")):
+    for path in sorted(DEFAULT_LDF.parent.glob("*.ldf")):
         try:
             places = link(parse_ldf(path), symbols, CM_BF561.chip.regions)
         except BfsimError:  # of another chip, or a part that others include
@@ -125,7 +125,7 @@ def recordings(frames: int) -> Iterator[Comparison]:
 
 def random_traffic(frames: int, seeds: int) -> Iterator[Comparison]:
     """Compare on random traffic, seed by seed."""
-    script = parse_ldf(THESIS_LDF)
+    script = parse_ldf(DEFAULT_LDF)
     for seed in range(seeds):
         places = link(script, symbols_of(hammer(seed), SIZE), CM_BF561.chip.regions)
         yield compare(

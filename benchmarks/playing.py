@@ -11,7 +11,7 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, symbols_of
 from bfsim.recording import StereoFrame
-from bfsim.run import THESIS_LDF
+from bfsim.run import DEFAULT_LDF
 from bfsim.trace import FrameRecord
 
 Taken = TypeVar("Taken")
@@ -51,7 +51,7 @@ def play(
     height, double_width = frames[0].left.shape
     size = FrameSize(double_width // 2, height)
     firmware = replace(firmware, view=view)
-    places = link(parse_ldf(THESIS_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
+    places = link(parse_ldf(DEFAULT_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
     board = Board(CM_BF561, firmware, size, places)
     outcome = board.run(iter(frames), on_frame, on_seen=lambda _index, _seen: None)
     return [

@@ -82,7 +82,7 @@ def hammer(seed: int) -> Firmware:
         mains={core: _main(Random(f"{seed} {core}")) for core in ("A", "B")},
         buffers=lambda size: _buffers(size, Random(seed)),
         camera="camera",
-        rows=tuple(BudgetRow(stage=each, thesis_ms=None) for each in STAGES),
+        rows=tuple(BudgetRow(stage=each) for each in STAGES),
     )
 
 

@@ -13,7 +13,7 @@ from benchmarks.playing import play
 from bfsim.api import Buffer, Core, Firmware, FrameSize, Readout
 from bfsim.chip.boards import CM_BF561
 from bfsim.recording import StereoFrame
-from tinyphoon import ROWS
+from tinyphoon import ROWS, THESIS
 from tinyphoon.buffers import buffers
 from tinyphoon.features import features
 from tinyphoon.stores.circles import CIRCLE_WORDS
@@ -42,7 +42,9 @@ def see(frames: Iterable[StereoFrame], mode: Mode) -> list[Seen]:
             yield from features(core, frame, mode)
 
     shots = list(frames)
-    firmware = Firmware(mains=dict.fromkeys(SIDES, main), buffers=_own_buffers, camera="camera", rows=ROWS)
+    firmware = Firmware(
+        mains=dict.fromkeys(SIDES, main), buffers=_own_buffers, camera="camera", rows=ROWS, reference=THESIS
+    )
     return [
         Seen(shot, SIDES[core], words, frame.results(core), _in_ms(frame.stages_cclk(core)))
         for shot, frame in zip(shots, play(shots, firmware, _circles), strict=True)

@@ -15,7 +15,7 @@ from bfsim.api import Core, Firmware, Readout
 from bfsim.machine.spi.protocol import decode, message_nbytes
 from bfsim.recording import RecordingReader
 from bfsim.run import calibration_of
-from tinyphoon import ROWS
+from tinyphoon import ROWS, THESIS
 from tinyphoon.buffers import buffers, calibration_buffers
 from tinyphoon.features import features
 from tinyphoon.stages.object_detection import left_sight, object_detection, right_sight
@@ -72,6 +72,7 @@ def see(path: Path, mode: Mode = INDOOR_FIELD, frames: int | None = None) -> lis
         buffers=buffers,
         camera="camera",
         rows=ROWS,
+        reference=THESIS,
         calibration=calibration_buffers,
     )
     with RecordingReader(path) as reader:

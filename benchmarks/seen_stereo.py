@@ -68,7 +68,7 @@ def see_stereo(
         mains={"A": core_a, "B": core_b},
         buffers=buffers,
         camera="camera",
-        rows=tuple(BudgetRow(stage=name, thesis_ms=None) for name in STAGES),
+        rows=tuple(BudgetRow(stage=name) for name in STAGES),
         calibration=calibration_buffers,
     ).calibrated(calibration)
     played = play(frames, firmware, _lines_mm)

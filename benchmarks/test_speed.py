@@ -21,7 +21,7 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.run import BUILT_IN_RECORDING, THESIS_LDF
+from bfsim.run import BUILT_IN_RECORDING, DEFAULT_LDF
 from tinyphoon import tinyphoon
 
 STEREO_FRAMES = 40
@@ -38,7 +38,7 @@ def frames() -> list[StereoFrame]:
 def run_simulated(frames: list[StereoFrame]) -> Outcome:
     """Run the firmware on the simulated board, as `bfsim run` does."""
     size = FrameSize(320, 240)
-    places = link(parse_ldf(THESIS_LDF), symbols_of(tinyphoon, size))
+    places = link(parse_ldf(DEFAULT_LDF), symbols_of(tinyphoon, size))
     return Board(CM_BF561, tinyphoon, size, places).run(iter(frames))
 
 

@@ -30,11 +30,11 @@ from bfsim.seen import (
     Solid,
     no_edges_3d,
 )
-from bfsim.trace import BudgetRow
+from bfsim.trace import BudgetRow, Reference
 
 __all__ = [
     "BudgetRow", "Buffer", "Buffers", "Calibration", "CameraSettings", "Colour", "Core", "DmaConfig", "Firmware", "FirmwareError", "Flow", "Frame",
-    "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "OutputRing", "PpiStatusBit", "Readout", "Row", "Seen", "SeenBlob",
+    "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "OutputRing", "PpiStatusBit", "Readout", "Reference", "Row", "Seen", "SeenBlob",
     "SeenCircle", "SeenEdges", "SeenEdges3D", "SeenGeometry", "SeenLine", "SeenLine3D", "SeenObject", "SeenRectangle", "Solid", "SourcePixels",
     "WdSize", "Work", "f32", "i8", "i16", "i32", "kernel", "no_edges_3d", "sqrt", "u8", "u16", "u32", "write_descriptor",
 ]  # fmt: skip

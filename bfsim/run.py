@@ -28,8 +28,8 @@ from bfsim.trace import Identity, RunRecord
 # Both stand beside the installed package: in a checkout and in site-packages alike.
 BUILT_IN_RECORDING = Path(__file__).parent / "recording" / "builtin" / "soccer.mcap"
 PLACEMENTS = Path(__file__).parent.parent / "ldf"
-THESIS_LDF = PLACEMENTS / "thesis.ldf"
-DEFAULT_LDF = {"ADSP-BF561": THESIS_LDF, "ADSP-BF533": PLACEMENTS / "cm-bf533.ldf"}
+DEFAULT_LDF = PLACEMENTS / "thesis.ldf"
+DEFAULT_LDFS = {"ADSP-BF561": DEFAULT_LDF, "ADSP-BF533": PLACEMENTS / "cm-bf533.ldf"}
 
 
 def simulate(
@@ -107,7 +107,7 @@ def has_view(firmware: str) -> bool:
 def read_placement(ldf: Path | None, spec: BoardSpec) -> LinkerScript:
     """Read an LDF, or the shipped one that suits the board's chip, for the SDRAM of the board."""
     return parse_ldf(
-        ldf or DEFAULT_LDF[spec.chip.name], defines={"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes)}
+        ldf or DEFAULT_LDFS[spec.chip.name], defines={"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes)}
     )
 
 
@@ -197,6 +197,7 @@ def _record(
     return RunRecord(
         identity=identity,
         rows=loaded.firmware.rows,
+        reference=loaded.firmware.reference,
         frames=outcome.frames,
         missed=outcome.missed,
         interrupted=outcome.interrupted,
@@ -210,4 +211,4 @@ def _record(
     )
 
 
-__all__ = ["BUILT_IN_RECORDING", "THESIS_LDF", "Feed", "Fidelity", "simulate"]
+__all__ = ["BUILT_IN_RECORDING", "DEFAULT_LDF", "Feed", "Fidelity", "simulate"]

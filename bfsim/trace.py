@@ -129,14 +129,25 @@ class TrafficRecord:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Reference:
+    """Measurements from elsewhere that the budget stands beside, such as those of a real board.
+
+    `name` heads their column in the report, `about` says in one sentence what they are and where they come from.
+    """
+
+    name: str
+    about: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class BudgetRow:
-    """A row of the budget: a stage of the firmware, and what the thesis measured for it (T Table 6.4), if it did.
+    """A row of the budget: a stage of the firmware, and its milliseconds in the firmware's `Reference`, if they are known.
 
     `within` is the stage that this one is a part of; its row holds the cycles of its parts too. One level is all.
     """
 
     stage: str
-    thesis_ms: float | None
+    reference_ms: float | None = None
     within: str | None = None
 
 
@@ -199,11 +210,13 @@ class RunRecord:
     """One run. `messages` went over SPI; `interrupts` were taken, by core and source. `missed` are the recording's frames that came while the firmware was busy.
 
     `untaken` are the entries of the strategy script that the firmware did not take: after how many frames each was due.
+    `reference` says what the `reference_ms` of `rows` are, None where the firmware has no reference.
     When `interrupted` by Ctrl-C, `kernels` and `traffic` also hold what was done of the frame that was not finished.
     """
 
     identity: Identity
     rows: tuple[BudgetRow, ...]
+    reference: Reference | None
     frames: tuple[FrameRecord, ...]
     missed: tuple[int, ...]
     interrupted: bool

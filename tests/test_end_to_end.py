@@ -204,7 +204,7 @@ def buffers(size):
     rows = {"A": "sdram_bank0", "B": "sdram_bank1"}
     return {core: [Buffer("camera", u8, 2 * size.width_px, bank, rows=2 * size.height_px)] for core, bank in rows.items()}
 
-fw = Firmware(mains={"A": main, "B": main}, buffers=buffers, camera="camera", rows=(BudgetRow(stage="S", thesis_ms=None),))
+fw = Firmware(mains={"A": main, "B": main}, buffers=buffers, camera="camera", rows=(BudgetRow(stage="S"),))
 """
 
 

@@ -10,9 +10,9 @@ from click.testing import CliRunner, Result
 from PIL import Image
 
 from bfsim.cli import main
-from bfsim.run import THESIS_LDF
+from bfsim.run import DEFAULT_LDF
 
-FOLDER = THESIS_LDF.parent
+FOLDER = DEFAULT_LDF.parent
 
 # a single core of another chip, as its default LDF begins
 BF533 = """

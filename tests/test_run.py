@@ -63,7 +63,7 @@ def buffers(size):
     return {"A": of_core(0), "B": of_core(1), "shared": shared}
 
 eyes = Firmware(mains={"A": main, "B": main}, buffers=buffers, camera="camera", rows=(BudgetRow("Threshold", None),))
-'''.replace('BudgetRow("Threshold", None)', 'BudgetRow(stage="Threshold", thesis_ms=None)')
+'''.replace('BudgetRow("Threshold", None)', 'BudgetRow(stage="Threshold")')
 
 DIGESTS = """\
 import json, sys

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from bfsim.errors import FirmwareError
 from bfsim.kernel.types import FloatType, Number
 from bfsim.seen import Seen
-from bfsim.trace import BudgetRow
+from bfsim.trace import BudgetRow, Reference
 
 if TYPE_CHECKING:
     from bfsim.machine.core.core import Core
@@ -133,8 +133,8 @@ class Firmware:
     """A program for the whole chip.
 
     `mains`: the main loop of each core. `buffers`: size of the pictures → buffers. `camera`: the buffer of each core
-    that the PPI fills, a whole number of frames. `rows`: the stages in the order of the budget. `calibration`: what a
-    recording knows of its cameras → the buffers that it takes, beside the others or in place of those of the same name.
+    that the PPI fills, a whole number of frames. `rows`: the stages in the order of the budget. `reference`: what the
+    `reference_ms` of the rows are, which must be said where a row has some. `calibration`: what a recording knows of its cameras → the buffers that it takes, beside the others or in place of those of the same name.
     `orders`: what the strategy unit may order by name ("mode", "models") → the payload of that message; raises a
     FirmwareError that names the field and what it must be.
     `view`: what a core has in memory at the end of a frame → what it saw, for people and files, if there is anything to
@@ -146,10 +146,18 @@ class Firmware:
     buffers: Callable[[FrameSize], Buffers]
     camera: str
     rows: tuple[BudgetRow, ...]
+    reference: Reference | None = None
     calibration: Callable[[Calibration], Buffers] | None = None
     orders: Mapping[str, Callable[[Any], bytes]] = field(default_factory=dict)
     view: Callable[[Readout], Seen | None] | None = None
     write_through: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        known = [each.stage for each in self.rows if each.reference_ms is not None]
+        if known and self.reference is None:
+            raise FirmwareError(
+                f"reference must say what the reference_ms of {known[0]} is, but there is none"
+            )
 
     def calibrated(self, calibration: Calibration) -> Firmware:
         """Return this firmware for the cameras of a recording."""

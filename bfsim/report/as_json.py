@@ -13,7 +13,7 @@ from bfsim.report.budget import budget_of
 from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.trace import RunRecord
 
-SCHEMA = "bfsim.run/1"
+SCHEMA = "bfsim.run/2"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
 
 

@@ -53,7 +53,7 @@ class StageRow:
 
     name: str
     within: str | None
-    thesis_ms: float | None
+    reference_ms: float | None
     elapsed_cclk: Spread
     issue_cclk: int
     stall_cclk: Mapping[StallReason, int]
@@ -115,7 +115,7 @@ def stage_names(run: RunRecord) -> tuple[str, ...]:
 def budget_rows(run: RunRecord) -> tuple[BudgetRow, ...]:
     """The rows of the budget, with those that the firmware did not declare."""
     declared = {row.stage: row for row in run.rows}
-    return tuple(declared.get(name, BudgetRow(stage=name, thesis_ms=None)) for name in stage_names(run))
+    return tuple(declared.get(name, BudgetRow(stage=name)) for name in stage_names(run))
 
 
 def costs_of(frame: CoreFrame, row: BudgetRow, rows: Sequence[BudgetRow]) -> list[StageCost]:
@@ -141,8 +141,8 @@ def budget_of(run: RunRecord) -> Budget:
 
 
 def _core_budget(frames: Sequence[CoreFrame], rows: Sequence[BudgetRow]) -> CoreBudget:
-    known_ms = [row.thesis_ms for row in rows if row.thesis_ms is not None]
-    whole = BudgetRow(stage=FRAME, thesis_ms=sum(known_ms) if known_ms else None)
+    known_ms = [row.reference_ms for row in rows if row.reference_ms is not None]
+    whole = BudgetRow(stage=FRAME, reference_ms=sum(known_ms) if known_ms else None)
     return CoreBudget(
         core=frames[0].core,
         rows=tuple(_row(row, [costs_of(frame, row, rows) for frame in frames]) for row in rows),
@@ -158,7 +158,7 @@ def _row(row: BudgetRow, costs: Sequence[Sequence[StageCost]]) -> StageRow:
     return StageRow(
         name=row.stage,
         within=row.within,
-        thesis_ms=row.thesis_ms,
+        reference_ms=row.reference_ms,
         elapsed_cclk=Spread.of([elapsed_cclk(each) for each in costs]),
         issue_cclk=sum(cost.issue_cclk for cost in chain(*costs)),
         stall_cclk={reason: stall[reason] for reason in StallReason if stall[reason]},

@@ -23,7 +23,7 @@ from bfsim.report.budget import (
     milliseconds,
 )
 from bfsim.report.digest import cycle_digest, identity_digest
-from bfsim.trace import REST, BudgetRow, CodeRecord, FrameRecord, RunRecord, StallReason
+from bfsim.trace import REST, BudgetRow, CodeRecord, FrameRecord, Reference, RunRecord, StallReason
 
 SHOWN_AT_EACH_END = 4
 """Frames listed at the beginning and at the end of a long run."""
@@ -41,7 +41,8 @@ def run_report(run: RunRecord) -> RenderableType:
     hz = run.identity.cclk_hz
     return stacked(
         headline(run, budget),
-        *(_budget_table(core, hz) for core in budget.cores),
+        *(_budget_table(core, hz, run.reference) for core in budget.cores),
+        *_reference_note(run),
         *_start_up_note(run, budget),
         *_stall_table(budget, len(run.frames), hz),
         *(_cycle_table(core) for core in budget.cores),
@@ -101,8 +102,9 @@ def percent(part: float, whole: float) -> str:
     return f"{100 * part / whole:.1f}" if whole else "0.0"
 
 
-def _budget_table(core: CoreBudget, hz: float) -> Table:
-    columns = ("min", "median", "p95", "max", "thesis", "share", "issue", "stall", "idle")
+def _budget_table(core: CoreBudget, hz: float, reference: Reference | None) -> Table:
+    beside = () if reference is None else (reference.name,)
+    columns = ("min", "median", "p95", "max", *beside, "share", "issue", "stall", "idle")
     table = new_table(
         f"Core {core.core}: ms per frame; share, issue, stall and idle in %",
         "Stage",
@@ -112,7 +114,7 @@ def _budget_table(core: CoreBudget, hz: float) -> Table:
         table.add_row(
             _name(row),
             *(f"{milliseconds(cclk, hz):.2f}" for cclk in _columns(row.elapsed_cclk)),
-            "" if row.thesis_ms is None else f"{row.thesis_ms:g}",
+            *("" if row.reference_ms is None else f"{row.reference_ms:g}" for _ in beside),
             percent(core.share(row), 1),
             *(percent(part, row.elapsed_cclk.total) for part in _split(row)),
             end_section=row is core.rows[-1],
@@ -132,6 +134,12 @@ def _columns(spread: Spread) -> tuple[int, int, int, int]:
 
 def _split(row: StageRow) -> tuple[int, int, int]:
     return row.issue_cclk, sum(row.stall_cclk.values()), row.idle_cclk
+
+
+def _reference_note(run: RunRecord) -> Iterator[Text]:
+    """Say what the reference in the budget is, if there is one."""
+    if run.reference is not None:
+        yield Text(f"{run.reference.name}: {run.reference.about}")
 
 
 def _start_up_note(run: RunRecord, budget: Budget) -> Iterator[Text]:

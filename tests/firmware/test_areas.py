@@ -18,7 +18,7 @@ from bfsim.machine.cameras.skipping import skipped
 from bfsim.machine.spi.protocol import MessageType
 from bfsim.machine.spi.strategy import ScriptedMessage
 from bfsim.recording import StereoFrame
-from bfsim.run import PLACEMENTS, THESIS_LDF
+from bfsim.run import DEFAULT_LDF, PLACEMENTS
 from tests.firmware.lenses import rectified
 from tests.firmware.pictures import Bytes
 from tests.firmware.test_rectification import tables
@@ -37,7 +37,7 @@ def run(
     frames: Sequence[StereoFrame],
     *names: dict[str, Any],
     firmware: Firmware = tinyphoon,
-    ldf: Any = THESIS_LDF,
+    ldf: Any = DEFAULT_LDF,
 ) -> tuple[Board, Outcome]:
     """Play the frames; mode number n of `names` comes in frame n, to be in force in the next one."""
     height, double_width = frames[0].left.shape

@@ -12,7 +12,7 @@ from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.spi.protocol import MessageType
 from bfsim.machine.spi.strategy import ScriptedBytes, ScriptedMessage
-from bfsim.run import THESIS_LDF
+from bfsim.run import DEFAULT_LDF
 from tests.firmware.whole_pictures import buffer, random_frames
 from tinyphoon import tinyphoon
 from tinyphoon.fields import to_words
@@ -25,7 +25,7 @@ from tinyphoon.strategy.payloads import mode_payload, models_payload
 def run(script: Sequence[ScriptedMessage | ScriptedBytes], frames: int) -> tuple[Board, Outcome]:
     """Play noise of 64x48 to the firmware while the strategy unit sends a script."""
     size = FrameSize(64, 48)
-    link_map = link(parse_ldf(THESIS_LDF), symbols_of(tinyphoon, size), CM_BF561.chip.regions)
+    link_map = link(parse_ldf(DEFAULT_LDF), symbols_of(tinyphoon, size), CM_BF561.chip.regions)
     board = Board(CM_BF561, tinyphoon, size, link_map, script=script)
     return board, board.run(iter(random_frames(64, 48, frames)))
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from bfsim.chip.bf561 import BF561
-from bfsim.run import THESIS_LDF, simulate
+from bfsim.run import DEFAULT_LDF, simulate
 from bfsim.trace import StallReason
 
-PLACEMENTS = THESIS_LDF.parent
+PLACEMENTS = DEFAULT_LDF.parent
 SEMAPHORES_PER_FRAME = 2  # each core posts one and takes one
 MIXED = "Object detection"
 """A kernel there is called with arrays of different memories; what it reads is counted as the first call's."""

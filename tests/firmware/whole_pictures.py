@@ -13,7 +13,7 @@ from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.program import FrameSize
 from bfsim.recording import StereoFrame
-from bfsim.run import THESIS_LDF
+from bfsim.run import DEFAULT_LDF
 from tests.firmware import (
     blob_references,
     edge_references,
@@ -37,7 +37,7 @@ from tinyphoon.strategy.modes import INDOOR_FIELD
 def board_for(width: int, height: int, firmware: Firmware = tinyphoon) -> Board:
     """A board with the firmware in it, linked for pictures of that size."""
     size = FrameSize(width, height)
-    link_map = link(parse_ldf(THESIS_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
+    link_map = link(parse_ldf(DEFAULT_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
     return Board(CM_BF561, firmware, size, link_map)
 
 

@@ -10,9 +10,9 @@ import pytest
 from bfsim.mapping import map_memory
 from bfsim.report.ldf.lint import lint
 from bfsim.report.ldf.map import Kind, MemoryMap
-from bfsim.run import THESIS_LDF
+from bfsim.run import DEFAULT_LDF
 
-FOLDER = THESIS_LDF.parent
+FOLDER = DEFAULT_LDF.parent
 SIZES = [(160, 120), (320, 240), (640, 480)]
 KIB = 1024
 CACHE_BYTES = 16 * KIB

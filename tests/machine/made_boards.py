@@ -58,7 +58,7 @@ def made_board(
         mains=dict(zip(spec.chip.cores, (main_a, main_b), strict=False)),
         buffers=all_buffers,
         camera="camera",
-        rows=tuple(BudgetRow(stage=each, thesis_ms=None) for each in STAGES),
+        rows=tuple(BudgetRow(stage=each) for each in STAGES),
         write_through=write_through,
     )
     link_map = link(ldf or thesis_ldf(), symbols_of(firmware, size), spec.chip.regions)

@@ -30,7 +30,7 @@ from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.program import Main
 from bfsim.machine.simulation import END_OF_TIME, Simulation
-from bfsim.run import THESIS_LDF
+from bfsim.run import DEFAULT_LDF
 from bfsim.trace import CoreFrame, FrameRecord, StageCost, StallReason
 
 SIZE = FrameSize(16, 8)
@@ -95,7 +95,7 @@ def _core_buffers(size: FrameSize, number: int) -> Sequence[Buffer]:
 @cache
 def thesis_ldf() -> LinkerScript:
     """Return the thesis's placement, read once."""
-    return parse_ldf(THESIS_LDF)
+    return parse_ldf(DEFAULT_LDF)
 
 
 def see_all(core: Core) -> Play:
@@ -129,7 +129,7 @@ def load(main_a: Main, main_b: Main = see_all, size: FrameSize = SIZE, **how: An
         mains={"A": main_a, "B": main_b},
         buffers=buffers,
         camera="camera",
-        rows=tuple(BudgetRow(stage=each, thesis_ms=None) for each in STAGES),
+        rows=tuple(BudgetRow(stage=each) for each in STAGES),
     )
     return board_of(firmware, size, **how)
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bfsim.api import Buffer, Core, Firmware, Frame, FrameSize, i16, u8
+from bfsim.api import BudgetRow, Buffer, Core, Firmware, Frame, FrameSize, i16, u8
 from bfsim.chip.boards import BOARDS, board_named
 from bfsim.errors import ConfigError, FirmwareError, LinkError
 from bfsim.linker import LinkMap
@@ -215,6 +215,12 @@ def test_firmware_that_does_not_fit_the_board_is_refused(program: Firmware, mess
     """Before the first picture, with the name of what is wrong."""
     with pytest.raises(FirmwareError, match=message):
         board_of(program).run(iter(noise(1)))
+
+
+def test_numbers_of_a_reference_need_a_word_about_it() -> None:
+    """Milliseconds of unknown origin are not reported."""
+    with pytest.raises(FirmwareError, match="reference must say what the reference_ms of Work is"):
+        firmware(rows=(BudgetRow(stage="Work", reference_ms=3.5),))
 
 
 def test_a_camera_buffer_of_16_bit_elements_holds_the_same_bytes() -> None:

@@ -32,6 +32,9 @@ def test_json_keeps_every_record_and_adds_the_budget() -> None:
     assert plain["traffic"][0]["master"] == "MDMA1"
     assert plain["missed"] == [2]
     assert plain["identity"]["cclk_hz"] == 1_000_000.0
+    assert plain["rows"][0] == {"stage": "Edge detection", "reference_ms": 87.0, "within": None}
+    assert plain["reference"] == {"name": "board", "about": "means of 100 frames on a board."}
+    assert plain["budget"]["cores"][0]["frame"]["reference_ms"] == 113.0
 
 
 def test_json_is_plain_whatever_mapping_the_machine_used() -> None:

@@ -34,8 +34,8 @@ def test_p95_of_a_hundred_and_one_values_rounds_its_rank_up() -> None:
     assert Spread.of(range(1, 102)).p95 == 96
 
 
-def test_rows_carry_the_split_and_the_thesis() -> None:
-    """Issue, stalls by reason and idle are added over frames; the thesis's numbers stand beside and are summed."""
+def test_rows_carry_the_split_and_the_reference() -> None:
+    """Issue, stalls by reason and idle are added over frames; the reference's numbers stand beside and are summed."""
     stalls = {StallReason.RING_EMPTY: 30, StallReason.SDRAM_PAGE_MISS: 20}
     first = core_frame("A", 0, cost("Edge detection", 100, stalls), cost(REST, 5, idle_cclk=45))
     second = core_frame("A", 200, cost("Edge detection", 110, {StallReason.RING_EMPTY: 10}))
@@ -45,7 +45,7 @@ def test_rows_carry_the_split_and_the_thesis() -> None:
     assert (edge.issue_cclk, edge.idle_cclk, edge.elapsed_cclk.total) == (210, 0, 270)
     assert edge.stall_cclk == {StallReason.RING_EMPTY: 40, StallReason.SDRAM_PAGE_MISS: 20}
     assert (closing.elapsed_cclk.maximum, rest.elapsed_cclk.minimum, rest.elapsed_cclk.maximum) == (0, 0, 50)
-    assert (edge.thesis_ms, rest.thesis_ms, core.frame.thesis_ms) == (87.0, None, 113.0)
+    assert (edge.reference_ms, rest.reference_ms, core.frame.reference_ms) == (87.0, None, 113.0)
     assert core.share(edge) == 270 / 320
 
 
@@ -58,7 +58,7 @@ def test_stage_that_no_row_declares_is_still_listed_before_the_rest() -> None:
 
 def test_a_part_is_a_row_of_its_own_and_in_the_row_of_its_stage() -> None:
     """A part's cycles count in its stage, frame by frame, and once in the frame."""
-    part = BudgetRow(stage="Rectification", thesis_ms=None, within="Edge detection")
+    part = BudgetRow(stage="Rectification", within="Edge detection")
     stall = {StallReason.RING_EMPTY: 3}
     first = core_frame("A", 0, cost("Edge detection", 100), cost("Rectification", 7, stall))
     second = core_frame("A", 110, cost("Edge detection", 50), cost("Rectification", 20))

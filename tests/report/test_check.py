@@ -120,7 +120,7 @@ def test_update_keeps_comments_and_tolerances(baseline: Path) -> None:
 
 def test_update_removes_rows_that_are_gone(baseline: Path) -> None:
     """A stage that the firmware no longer has loses its limits; before that, a check refuses to guess."""
-    run = replace(edge_run(950, 1050), rows=(BudgetRow(stage="Edge detection", thesis_ms=87.0),))
+    run = replace(edge_run(950, 1050), rows=(BudgetRow(stage="Edge detection", reference_ms=87.0),))
     with pytest.raises(ConfigError, match=r'core\.A\."Open & closing" must be a row of the run, .*--update'):
         hold(run, baseline)
     write(baseline, run)
@@ -131,7 +131,7 @@ def test_new_row_passes_with_a_note(baseline: Path) -> None:
     """A stage without a limit is named; its cost still shows in the frame."""
     run = edge_run(950, 1050)
     outcome = hold(
-        replace(run, rows=(*run.rows, BudgetRow(stage="Blob detection", thesis_ms=68.0))), baseline
+        replace(run, rows=(*run.rows, BudgetRow(stage="Blob detection", reference_ms=68.0))), baseline
     )
     assert outcome.passed
     assert outcome.notes == (

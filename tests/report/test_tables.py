@@ -56,13 +56,26 @@ def test_report_begins_with_the_frame_rate() -> None:
     assert lines[2] == "Frames done: 2, missed: 2 (1, 4)"
 
 
-def test_budget_row_has_spread_thesis_share_and_split() -> None:
+def test_budget_row_has_spread_reference_share_and_split() -> None:
     """100 ms and 90 ms of edge detection in 250 ms: 170 issued, 20 stalled, nothing idle."""
     lines = printed(run_report(busy_run()))
     assert squeezed(row_of(lines, "Edge")) == (
         "Edge detection 90.00 90.00 100.00 100.00 87 76.0 89.5 10.5 0.0"
     )
     assert squeezed(row_of(lines, "Frame ")) == "Frame 90.00 90.00 160.00 160.00 113 100.0 68.0 8.0 24.0"
+
+
+def test_the_reference_has_the_name_that_the_firmware_gives_it() -> None:
+    """The head of its column, and what it is below the tables; firmware without one has no such column."""
+    run = edge_run(100)
+    lines = printed(run_report(run))
+    heads = "Stage min median p95 max board share issue stall idle"
+    assert [*map(squeezed, lines)].count(heads) == 2
+    assert "board: means of 100 frames on a board." in lines
+    rows = tuple(replace(each, reference_ms=None) for each in run.rows)
+    lines = printed(run_report(replace(run, rows=rows, reference=None)))
+    assert [*map(squeezed, lines)].count(heads.replace("board ", "")) == 2
+    assert not any("board: " in each for each in lines)
 
 
 def test_only_stalls_that_occurred_are_listed() -> None:
@@ -128,7 +141,7 @@ def test_reports_fit_with_all_seven_rows(width: int) -> None:
     run = replace(
         run,
         identity=replace(run.identity, cclk_hz=600e6),
-        rows=tuple(BudgetRow(stage=name, thesis_ms=87.5) for name in names),
+        rows=tuple(BudgetRow(stage=name, reference_ms=87.5) for name in names),
         kernels=(
             kernel(
                 names[0],
