@@ -114,7 +114,7 @@ class BareCore:
         key = (kernel, kernel.arrays_of(arguments))
         call = self._calls.get(key)
         if call is None:
-            code = kernel.compiled(VDSP_O2, counted=False)
+            code = kernel.compile(VDSP_O2, counted=False)
             rows = [arguments[each].array for each in kernel.array_positions]
             call = self._calls[key] = kernel.prepare(code, rows, code.new_totals())
         return call.run(arguments)

@@ -95,7 +95,7 @@ def our_loop(kernel: Any, arguments: tuple[Any, ...], *, counted: bool) -> Calla
     """Return a machine-code loop of our kernel on these arguments."""
     from bfsim.kernel import VDSP_O2
 
-    code = kernel.compiled(VDSP_O2, counted=counted)
+    code = kernel.compile(VDSP_O2, counted=counted)
     arrays = [each for each in arguments if isinstance(each, np.ndarray)]
     call = kernel.prepare(code, arrays, code.new_totals())
     call.run(arguments)  # puts the integers and the argument block in place
@@ -130,12 +130,12 @@ def measure(case: Any) -> Timing:
     from bfsim.kernel import VDSP_O2, costs, jit
 
     start = time.perf_counter()
-    case.kernel.compiled(VDSP_O2)
+    case.kernel.compile(VDSP_O2)
     cold = time.perf_counter() - start
     jit.compiled.cache_clear()
     costs.counters_of.cache_clear()
     start = time.perf_counter()
-    case.kernel.compiled(VDSP_O2)
+    case.kernel.compile(VDSP_O2)
     warm = time.perf_counter() - start
     arguments = arguments_of(case)
 
@@ -165,7 +165,7 @@ def main() -> None:
     from bfsim.kernel import VDSP_O2
 
     known = measured()
-    CASES[0].kernel.compiled(VDSP_O2, counted=False)  # LLVM itself starts up once
+    CASES[0].kernel.compile(VDSP_O2, counted=False)  # LLVM itself starts up once
     rows = [measure(case) for case in CASES if known[case.name].role is Role.REFERENCE]
     table = Table(box=None, padding=(0, 1, 0, 0))
     for name in (

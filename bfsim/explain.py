@@ -10,8 +10,8 @@ from collections.abc import Iterable, Sequence
 
 from bfsim.errors import ConfigError
 from bfsim.kernel import CompilerProfile, Kernel, profile_named, tree
+from bfsim.kernel.counters import Counter
 from bfsim.kernel.isa import MNEMONICS, Op
-from bfsim.kernel.schedule import Counter
 from bfsim.loading import load_kernel
 from bfsim.trace import ExplainedLine, ExplainedOperation, Explanation, KernelRecord, RunRecord
 

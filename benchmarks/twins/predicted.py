@@ -21,7 +21,7 @@ class Predicted:
 
 def predict(case: Case, profile: CompilerProfile) -> Predicted:
     """Run a twin and add up what its operations cost."""
-    kernel, code = case.kernel, case.kernel.compiled(profile)
+    kernel, code = case.kernel, case.kernel.compile(profile)
     totals = code.new_totals()
 
     def run(*arguments: Any) -> int | None:

@@ -14,6 +14,7 @@ from typing import Any
 import llvmlite.binding as llvm
 
 from bfsim.kernel import store, tree
+from bfsim.kernel.counters import Counter, cost
 from bfsim.kernel.emit import emit
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import Op
@@ -21,7 +22,6 @@ from bfsim.kernel.lowering.charges import Charge
 from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.unrolled import marked
 from bfsim.kernel.profile import GENERIC_FEATURES, GENERIC_TRIPLE, CompilerProfile
-from bfsim.kernel.schedule import Counter, cost
 
 UNROLLED_NESTING = 3  # loops in loops that are written out, the inner ones first
 CLEANING = (
@@ -60,7 +60,7 @@ def optimised(function: tree.Function, profile: CompilerProfile, *, checked: boo
     machine = _generic_machine()
     module = emit(function, checked=checked)
     module.triple, module.data_layout = GENERIC_TRIPLE, str(machine.target_data)
-    # "no-builtins": a loop that fills or copies stays a loop, whose turns can be counted. "optforfuzzing": branches
+    # "no-builtins": a loop that fills or copies stays a loop, whose iterations can be counted. "optforfuzzing": branches
     # stay branches; what a compiler for the Blackfin makes of them is for the lowering to say
     parsed = llvm.parse_assembly(str(module).replace(" noinline", ' noinline optforfuzzing "no-builtins"'))
     if not profile.optimises:

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
 from bfsim.kernel import sanitizer, tree
+from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.costs import counters_of
+from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import FIRST_ARGUMENT
-from bfsim.kernel.followers import Follower
-from bfsim.kernel.jit import Compiled, compiled
+from bfsim.kernel.jit import CompiledKernel, compile_kernel
 from bfsim.kernel.language import read_kernel
 from bfsim.kernel.profile import VDSP_O2, CompilerProfile
-from bfsim.kernel.schedule import Counter
 from bfsim.kernel.types import ArrayType, FloatType, IntType
 from bfsim.kernel.work import PreparedCall, is_single
 
@@ -56,13 +56,15 @@ class Kernel:
         """Which parameters are single floats."""
         return tuple(i for i, each in enumerate(self.function.parameters) if isinstance(each.type, FloatType))
 
-    def compiled(self, profile: CompilerProfile, *, followed: bool = False, counted: bool = True) -> Compiled:
+    def compile(
+        self, profile: CompilerProfile, *, traced: bool = False, counted: bool = True
+    ) -> CompiledKernel:
         """Compile for `profile`, or take it from the cache on disk. See `jit.compiled`.
 
         Raises KernelError where the kernel has floats and the profile has no library for them.
         """
         self._refuse_floats(profile)
-        return compiled(self.function, profile, followed=followed, counted=counted)
+        return compile_kernel(self.function, profile, traced=traced, counted=counted)
 
     def counters(self, profile: CompilerProfile) -> tuple[Counter, ...]:
         """Return what is counted in a run and what it costs, callees included. Raises KernelError as `compiled`."""
@@ -78,10 +80,10 @@ class Kernel:
 
     def prepare(
         self,
-        code: Compiled,
+        code: CompiledKernel,
         arrays: Sequence[NDArray[Any]],
         totals: NDArray[np.int64],
-        follower: Follower | None = None,
+        access_trace: AccessTrace | None = None,
     ) -> PreparedCall:
         """Bind `arrays`, in the order of the array parameters. Raises KernelError when one does not fit its type."""
         slots = self._slots()
@@ -93,7 +95,7 @@ class Kernel:
         floats = [(slots[each], each) for each in self.float_positions]
         result = self.function.result
         return PreparedCall(
-            code, bound, integers, floats, self.check, result=result, follower=follower, totals=totals
+            code, bound, integers, floats, self.check, result=result, access_trace=access_trace, totals=totals
         )
 
     def _refuse_floats(self, profile: CompilerProfile) -> None:
@@ -186,7 +188,7 @@ class Kernel:
             )
         self.check(arguments)
         arrays = [arguments[each] for each in self.array_positions]
-        code = self.compiled(VDSP_O2)
+        code = self.compile(VDSP_O2)
         return self.prepare(code, arrays, code.new_totals()).run(arguments).value
 
 

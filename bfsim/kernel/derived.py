@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from bfsim.kernel.counters import Counter
 from bfsim.kernel.ir_text import Routine
-from bfsim.kernel.loops import Flow
-from bfsim.kernel.schedule import Counter
+from bfsim.kernel.loops import ControlFlow
 
 Sum = tuple[tuple[int, int], ...]
 """(factor, number of a counter) of each term."""
@@ -19,7 +19,7 @@ Sum = tuple[tuple[int, int], ...]
 
 def derived(routine: Routine, counters: Sequence[Counter]) -> dict[int, Sum]:
     """Return, by the number of a counter of `routine`, the sum of counted ones that it is."""
-    flow = Flow(routine)
+    flow = ControlFlow(routine)
     blocks = {
         each.label: number
         for number, each in enumerate(counters)
@@ -35,7 +35,7 @@ def derived(routine: Routine, counters: Sequence[Counter]) -> dict[int, Sum]:
     return found
 
 
-def _like_blocks_before(flow: Flow, blocks: dict[str, int]) -> dict[int, Sum]:
+def _like_blocks_before(flow: ControlFlow, blocks: dict[str, int]) -> dict[int, Sum]:
     """Blocks of one loop of which each way through the first passes the second, and the other way round."""
     found: dict[int, Sum] = {}
     always_behind = _post_dominators(flow)
@@ -50,7 +50,7 @@ def _like_blocks_before(flow: Flow, blocks: dict[str, int]) -> dict[int, Sum]:
     return found
 
 
-def _side(flow: Flow, label: str, counted: dict[str, Sum]) -> Sum | None:
+def _side(flow: ControlFlow, label: str, counted: dict[str, Sum]) -> Sum | None:
     """How often the condition at the end of a block is true."""
     ways = flow.blocks[label].successors
     if len(set(ways)) != 2:
@@ -63,7 +63,7 @@ def _side(flow: Flow, label: str, counted: dict[str, Sum]) -> Sum | None:
     return None
 
 
-def _post_dominators(flow: Flow) -> dict[str, frozenset[str]]:
+def _post_dominators(flow: ControlFlow) -> dict[str, frozenset[str]]:
     """Of each block: the blocks that every way from it passes."""
     every = frozenset(flow.blocks)
     found = {label: every if flow.blocks[label].successors else frozenset({label}) for label in flow.blocks}

@@ -85,7 +85,7 @@ class _Emitter:
     scope: ir.values.MDValue = field(init=False)
     slots: dict[str, ir.Value] = field(init=False, default_factory=dict)
     arrays: dict[str, tuple[ir.Value, ir.Value]] = field(init=False, default_factory=dict)
-    loops: list[tuple[ir.Block, ir.Block]] = field(init=False, default_factory=list)
+    loops: list[tuple[ir.BasicBlock, ir.BasicBlock]] = field(init=False, default_factory=list)
     """Of each open loop: where `continue` and where `break` go."""
     weights: tuple[int, int] = field(init=False, default=EVEN)
     """How likely the `if` whose condition is being emitted is true, and false."""
@@ -206,10 +206,10 @@ class _Emitter:
         self.builder.position_at_end(after)
 
     def _for(self, node: tree.For) -> None:
-        """The counter is hidden: what the body assigns to the loop's name does not change the turns, as in Python."""
+        """The counter is hidden: what the body assigns to the loop's name does not change the iterations, as in Python."""
         builder = self.builder
         start, stop = self.value(node.start), self.value(node.stop)
-        counter = self._entry_slot(f"{node.name}.turn")
+        counter = self._entry_slot(f"{node.name}.iteration")
         builder.store(start, counter)
         test, body, step, after = (
             builder.append_basic_block(name) for name in ("for", "body", "step", "after")
@@ -231,7 +231,7 @@ class _Emitter:
         builder.position_at_end(after)
 
     @contextmanager
-    def _loop(self, again: ir.Block, after: ir.Block) -> Iterator[None]:
+    def _loop(self, again: ir.BasicBlock, after: ir.BasicBlock) -> Iterator[None]:
         self.loops.append((again, after))
         yield
         self.loops.pop()
@@ -240,7 +240,7 @@ class _Emitter:
         with self.builder.goto_entry_block():
             return self.builder.alloca(I32, name=name)
 
-    def _fall_to(self, block: ir.Block) -> None:
+    def _fall_to(self, block: ir.BasicBlock) -> None:
         if not self.builder.block.is_terminated:
             self.builder.branch(block)
 
@@ -389,7 +389,7 @@ class _Emitter:
         self.builder.position_at_end(after)
         return self.builder.load(slot, typ=register_type(node.type))
 
-    def _call(self, node: tree.Call) -> ir.Value:
+    def _kernelcall(self, node: tree.KernelCall) -> ir.Value:
         arguments: list[ir.Value] = []
         for each in node.arguments:
             arguments.extend(self.arrays[each] if isinstance(each, str) else [self.value(each)])

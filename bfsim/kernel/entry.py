@@ -3,7 +3,7 @@
 An entry takes nothing and returns the issue and interlock cycles of one call in one word, because a C call without arguments is the
 cheapest that Python has. It finds its argument block through the cell `cell_name(entry)`, a pointer: an array of
 64-bit words with the address of the totals (one word per counter), then pointer and length of each array,
-each integer (or the bits of a float), the follower's state (followed kernels only), and last a word for the kernel's result.
+each integer (or the bits of a float), the access_trace's state (traced kernels only), and last a word for the kernel's result.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from bfsim.kernel import tree
-from bfsim.kernel.schedule import Counter
+from bfsim.kernel.counters import Counter
 from bfsim.kernel.types import ArrayType, FloatType
 
 FIRST_ARGUMENT = 1  # word 0 of the block is the address of the totals
@@ -26,14 +26,14 @@ def cell_name(entry: str) -> str:
     return f"{entry}_arguments"
 
 
-def globals_of(counters: Sequence[Counter], entry: str, *, followed: bool) -> str:
+def globals_of(counters: Sequence[Counter], entry: str, *, traced: bool) -> str:
     """Return the variables of a counted module: the cell, the totals and the cycles."""
     rows = [
         f"@{cell_name(entry)} = global ptr null",
         "@bfsim.totals = internal global ptr null",
         "@bfsim.cclk = internal global i64 0",
     ]
-    if followed:
+    if traced:
         rows += ["@bfsim.state = internal global ptr null", "@bfsim.clock = internal global i64 0"]
     return "\n".join(rows)
 
@@ -57,7 +57,7 @@ def settle(counters: Sequence[tuple[int, Counter, str]], place: str) -> list[str
     return [*rows, f"  store i64 %{place}.cclk.{len(counters)}, ptr @bfsim.cclk"]
 
 
-def entry_point(function: tree.Function, counters: Sequence[Counter], entry: str, *, followed: bool) -> str:
+def entry_point(function: tree.Function, counters: Sequence[Counter], entry: str, *, traced: bool) -> str:
     """Return the entry point of `function`: call it, settle what its callees counted, return the cycles."""
     rows = [
         f"  %arguments = load ptr, ptr @{cell_name(entry)}",
@@ -97,7 +97,7 @@ def entry_point(function: tree.Function, counters: Sequence[Counter], entry: str
         values.append(f"i32 {word}.low")
         refused = f"{word}.refused"
     rows += [f"  br i1 {refused}, label %refuse, label %run", "refuse:", f"  ret i64 {REFUSED}", "run:"]
-    if followed:
+    if traced:
         rows.append(f"  store ptr {take('ptr')}, ptr @bfsim.state")
         rows.append("  store i64 0, ptr @bfsim.clock")
     called = [number for number, each in enumerate(counters) if each.routine != function.symbol]

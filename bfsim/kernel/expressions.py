@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 
 from bfsim.kernel import tree
 from bfsim.kernel.operators import BINARY, COMPARE, FOLD, ON_FLOATS, in_words
-from bfsim.kernel.refusal import Source
+from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.types import (
     BOOL,
     ArrayType,
@@ -35,7 +35,7 @@ class Expressions:
     Calls are read in `calls`. `own` are all names that Python keeps for the function `kernel` itself, wherever it assigns them.
     """
 
-    source: Source
+    source: KernelSource
     outer: Mapping[str, object]
     kernel: str
     own: tuple[str, ...]

@@ -61,7 +61,7 @@ class Instruction:
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class BasicBlock:
     """A basic block: phi nodes, other instructions, terminator last. Labels are written without %."""
 
     label: str
@@ -89,7 +89,7 @@ class Routine:
 
     symbol: str
     parameters: tuple[str, ...]
-    blocks: tuple[Block, ...]
+    blocks: tuple[BasicBlock, ...]
 
 
 def read_module(text: str) -> tuple[Routine, ...]:
@@ -130,8 +130,8 @@ def _joined(body: list[str]) -> list[str]:
 
 def _blocks(
     rows: list[str], lines_of: dict[str, int], weights_of: dict[str, tuple[int, ...]]
-) -> tuple[Block, ...]:
-    blocks: list[Block] = []
+) -> tuple[BasicBlock, ...]:
+    blocks: list[BasicBlock] = []
     label, instructions, line = "", list[Instruction](), 0
     for row in rows:
         if found := LABEL.match(row):
@@ -143,7 +143,7 @@ def _blocks(
             hint = PROFILE.search(row)
             instructions.append(_instruction(row, line, weights_of.get(hint.group(1), ()) if hint else ()))
             if instructions[-1].opcode in ("br", "ret", "switch", "unreachable"):
-                blocks.append(Block(label, tuple(instructions)))
+                blocks.append(BasicBlock(label, tuple(instructions)))
     return tuple(blocks)
 
 

@@ -15,17 +15,17 @@ from numpy.typing import NDArray
 
 from bfsim.kernel import store, tree
 from bfsim.kernel.costs import counters_of, optimised
-from bfsim.kernel.counters import instrument
+from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import cell_name
+from bfsim.kernel.instrument import instrument
 from bfsim.kernel.profile import CompilerProfile
-from bfsim.kernel.schedule import Counter
 
 ENTRY = ctypes.CFUNCTYPE(ctypes.c_int64)
 HOST_SPEED_LEVEL = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Compiled:
+class CompiledKernel:
     """A kernel ready to run. `entry()` returns the cycles of a call (see `entry`); `cell` holds the address of its arguments."""
 
     entry: ctypes._CFunctionType
@@ -38,22 +38,20 @@ class Compiled:
 
 
 @cache
-def compiled(
-    function: tree.Function, profile: CompilerProfile, *, followed: bool = False, counted: bool = True
-) -> Compiled:
+def compile_kernel(
+    function: tree.Function, profile: CompilerProfile, *, traced: bool = False, counted: bool = True
+) -> CompiledKernel:
     """Compile `function`, or take it from the cache on disk; once per process.
 
-    `followed` kernels report every access to the memory followers; without `counted` there are no counters
+    `traced` kernels report every access to the memory followers; without `counted` there are no counters
     (the floor that benchmarks compare with) and every call costs 0 cycles.
     """
-    key = store.key(function, profile, f"followed={followed} counted={counted}")
+    key = store.key(function, profile, f"traced={traced} counted={counted}")
     entry = _entry_name(key)
     counters = counters_of(function, profile) if counted else ()
     code = store.load(key)
     if code is None:
-        code = host_code(
-            instrument(optimised(function, profile), function, counters, entry, followed=followed)
-        )
+        code = host_code(instrument(optimised(function, profile), function, counters, entry, traced=traced))
         store.save(key, code)
     return load(code, entry, counters)
 
@@ -93,10 +91,10 @@ def _engine() -> llvm.ExecutionEngine:
     return llvm.create_mcjit_compiler(llvm.parse_assembly(""), _host_machine())
 
 
-def load(code: bytes, entry: str, counters: tuple[Counter, ...]) -> Compiled:
+def load(code: bytes, entry: str, counters: tuple[Counter, ...]) -> CompiledKernel:
     """Add an object file to this process and return the kernel in it."""
     add(code)
-    return Compiled(
+    return CompiledKernel(
         ENTRY(address_of(entry)), ctypes.c_int64.from_address(address_of(cell_name(entry))), counters
     )
 

@@ -18,9 +18,9 @@ from typing import Any
 
 from bfsim.errors import KernelError
 from bfsim.kernel import tree
-from bfsim.kernel.calls import Scope
 from bfsim.kernel.operators import BINARY
-from bfsim.kernel.refusal import Source
+from bfsim.kernel.refusal import KernelSource
+from bfsim.kernel.scope import KernelScope
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, f32, i32, u32
 
 SCALARS = (i32, u32, f32)
@@ -31,7 +31,7 @@ def read_kernel(python: Callable[..., Any]) -> tree.Function:
     """Read the source of `python` as a kernel. Raises KernelError where it leaves the language."""
     source, definition = _definition(python)
     _check_names(source, definition, python)
-    scope = Scope(
+    scope = KernelScope(
         source, {**vars(builtins), **python.__globals__}, definition.name, python.__code__.co_varnames
     )
     parameters = _parameters(scope, definition)
@@ -63,7 +63,7 @@ def read_kernel(python: Callable[..., Any]) -> tree.Function:
     return function
 
 
-def _definition(python: Callable[..., Any]) -> tuple[Source, ast.FunctionDef]:
+def _definition(python: Callable[..., Any]) -> tuple[KernelSource, ast.FunctionDef]:
     if not inspect.isfunction(python) or hasattr(python, "__wrapped__"):
         raise KernelError(f"@kernel must stand directly above a plain `def`, not on {python!r}")
     try:
@@ -73,7 +73,7 @@ def _definition(python: Callable[..., Any]) -> tuple[Source, ast.FunctionDef]:
             f"{python!r} must be a function in a file, so that its source can be read"
         ) from reason
     text = "".join(lines)
-    source = Source(inspect.getsourcefile(python) or "?", first_line, text)
+    source = KernelSource(inspect.getsourcefile(python) or "?", first_line, text)
     if not isinstance(node := _parsed(text), ast.FunctionDef) or node.name != python.__name__:
         source.refuse(node, "a kernel must be a plain `def`", "write def, not lambda or async def")
     return source, node
@@ -90,7 +90,7 @@ def _parsed(text: str) -> ast.AST:
     return within.body[0] if isinstance(within, ast.If) else within
 
 
-def _check_names(source: Source, definition: ast.FunctionDef, python: Callable[..., Any]) -> None:
+def _check_names(source: KernelSource, definition: ast.FunctionDef, python: Callable[..., Any]) -> None:
     """Refuse names that the machine code cannot have: those of an outer function, and non-ASCII ones."""
     code = python.__code__
     if code.co_freevars:
@@ -109,7 +109,7 @@ def _check_names(source: Source, definition: ast.FunctionDef, python: Callable[.
             )
 
 
-def _check_callees(source: Source, definition: ast.FunctionDef, function: tree.Function) -> None:
+def _check_callees(source: KernelSource, definition: ast.FunctionDef, function: tree.Function) -> None:
     """Refuse two kernels of one name in one program: their machine code could not be told apart."""
     known = {function.symbol: function}
     for each in function.callees():
@@ -122,7 +122,7 @@ def _check_callees(source: Source, definition: ast.FunctionDef, function: tree.F
             )
 
 
-def _parameters(scope: Scope, definition: ast.FunctionDef) -> tuple[tree.Parameter, ...]:
+def _parameters(scope: KernelScope, definition: ast.FunctionDef) -> tuple[tree.Parameter, ...]:
     arguments = definition.args
     if arguments.vararg or arguments.kwarg or arguments.kwonlyargs or arguments.defaults:
         scope.source.refuse(
@@ -159,7 +159,7 @@ def _annotation(outer: Mapping[str, object], node: ast.expr | None) -> Number | 
     return None
 
 
-def _result_type(scope: Scope, definition: ast.FunctionDef) -> Number | None:
+def _result_type(scope: KernelScope, definition: ast.FunctionDef) -> Number | None:
     node = definition.returns
     if node is None or (isinstance(node, ast.Constant) and node.value is None):
         return None
@@ -183,7 +183,7 @@ def _without_docstring(body: list[ast.stmt]) -> list[ast.stmt]:
 class _Reader:
     """Reads statements. `ended`: no way leads past the statement just read."""
 
-    scope: Scope
+    scope: KernelScope
     result: Number | None
     ended: bool = False
     breaks: list[bool] = field(default_factory=list)
@@ -263,7 +263,7 @@ class _Reader:
         return [tree.Assign(target.id, result, target.lineno)]
 
     def _expr(self, node: ast.Expr) -> list[tree.Stmt]:
-        if isinstance(call := self.scope.expression(node.value), tree.Call):
+        if isinstance(call := self.scope.expression(node.value), tree.KernelCall):
             return [tree.Evaluate(call, node.lineno)]
         self.scope.source.refuse(node, "this line does nothing", "assign the result, or remove the line")
 

@@ -1,7 +1,7 @@
 """Loops of an optimised routine: which there are, which count, and which values walk along with them.
 
 A compiler for the Blackfin turns a counted loop into a hardware loop and an address that moves by a
-constant per turn into a post-incremented pointer; this file finds both.
+constant per iteration into a post-incremented pointer; this file finds both.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from bfsim.kernel.ir_text import Block, Instruction, Routine
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine
 
 NEAR_OVERFLOW = (1 << 31) - (
     1 << 16
@@ -34,13 +34,13 @@ class Loop:
 
 
 @dataclass
-class Flow:
+class ControlFlow:
     """Control flow of one routine."""
 
     routine: Routine
 
     @cached_property
-    def blocks(self) -> dict[str, Block]:
+    def blocks(self) -> dict[str, BasicBlock]:
         """Blocks by label."""
         return {each.label: each for each in self.routine.blocks}
 
@@ -123,7 +123,7 @@ class Flow:
         return next((loop for loop in self.loops if label in loop.blocks), None)
 
     def is_invariant(self, value: str, loop: Loop) -> bool:
-        """Whether `value` stays the same while `loop` turns."""
+        """Whether `value` stays the same while `loop` iterates."""
         return value not in self.defined or self.defined[value][0] not in loop.blocks
 
     def instruction(self, value: str) -> Instruction | None:
@@ -148,7 +148,7 @@ class Flow:
                 open_visits.append((following, iter(reversed(self.blocks[following].successors))))
         return tuple(reversed(found))
 
-    def is_overflow_guard(self, block: Block) -> bool:
+    def is_overflow_guard(self, block: BasicBlock) -> bool:
         """Whether a block only tests if a sum would wrap: in C, where signed sums may not, there is no such test."""
         operands = block.terminator.operands
         test = self.instruction(operands[0]) if block.terminator.opcode == "br" and operands else None
@@ -199,8 +199,8 @@ class Flow:
             pointer = names[1 if instruction.opcode == "select" else 0] if names else pointer
         return pointer
 
-    def every_turn(self, label: str, loop: Loop) -> bool:
-        """Whether a block runs once in each turn of `loop`."""
+    def every_iteration(self, label: str, loop: Loop) -> bool:
+        """Whether a block runs once in each iteration of `loop`."""
         return label in self.dominators[loop.latch] and self.innermost(label) is loop
 
 

@@ -19,7 +19,7 @@ GENERIC_TRIPLE, GENERIC_FEATURES = "riscv32-unknown-elf", "+m"
 
 
 @dataclass(frozen=True, slots=True)
-class Routine:
+class LibraryRoutine:
     """A routine of the run-time library: cycles from its first operation to its return, the call not included.
 
     `mix` tells how often each kind of operation runs, where that is known.
@@ -41,10 +41,10 @@ class Fill:
 class Library:
     """Integer division. Remainders come from routines of their own. `fill` is None where loops that fill stay loops."""
 
-    divide_signed: Routine
-    divide_unsigned: Routine
-    remainder_signed: Routine
-    remainder_unsigned: Routine
+    divide_signed: LibraryRoutine
+    divide_unsigned: LibraryRoutine
+    remainder_signed: LibraryRoutine
+    remainder_unsigned: LibraryRoutine
     fill: Fill | None
 
 
@@ -52,14 +52,14 @@ class Library:
 class FloatLibrary:
     """Soft floats: the Blackfin has no floating-point unit."""
 
-    add: Routine
-    subtract: Routine
-    multiply: Routine
-    divide: Routine
-    compare: Routine
-    from_integer: Routine
-    to_integer: Routine
-    square_root: Routine
+    add: LibraryRoutine
+    subtract: LibraryRoutine
+    multiply: LibraryRoutine
+    divide: LibraryRoutine
+    compare: LibraryRoutine
+    from_integer: LibraryRoutine
+    to_integer: LibraryRoutine
+    square_root: LibraryRoutine
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,41 +99,41 @@ DIV_MIX = (
 )  # fmt: skip
 
 LIBGCC = Library(
-    divide_unsigned=Routine(170, UDIV_MIX),  # [libgcc] lib1funcs.S: 32 turns of five operations, whatever the operands
-    divide_signed=Routine(196, DIV_MIX),     # [libgcc] the signs, and a call of the former
-    remainder_unsigned=Routine(183, (*UDIV_MIX, (Op.PUSH, 1), (Op.POP, 1), (Op.MOVE, 1), (Op.CALL, 1), (Op.RETURN, 1))),
-    remainder_signed=Routine(
+    divide_unsigned=LibraryRoutine(170, UDIV_MIX),  # [libgcc] lib1funcs.S: 32 iterations of five operations, whatever the operands
+    divide_signed=LibraryRoutine(196, DIV_MIX),     # [libgcc] the signs, and a call of the former
+    remainder_unsigned=LibraryRoutine(183, (*UDIV_MIX, (Op.PUSH, 1), (Op.POP, 1), (Op.MOVE, 1), (Op.CALL, 1), (Op.RETURN, 1))),
+    remainder_signed=LibraryRoutine(
         216, (*DIV_MIX, (Op.PUSH, 3), (Op.POP, 3), (Op.MUL32, 1), (Op.ALU, 1), (Op.CALL, 1), (Op.RETURN, 1))
     ),
     fill=Fill(90, 3),   # [libgcc] memset of newlib, by length: 1 byte 59, 16 bytes 114, 256 bytes 189, 2000 bytes 734 cycles; up to 15 more unaligned
 )  # fmt: skip
 ADI = Library(
-    divide_signed=Routine(47),       # [VLIB] ___div32: 25 to 91 cycles with the call, 52 on average
-    divide_unsigned=Routine(47),     # [assumed] as signed
-    remainder_signed=Routine(51),    # [assumed] a division, a multiplication and a subtraction
-    remainder_unsigned=Routine(51),  # [assumed] the same
+    divide_signed=LibraryRoutine(47),       # [VLIB] ___div32: 25 to 91 cycles with the call, 52 on average
+    divide_unsigned=LibraryRoutine(47),     # [assumed] as signed
+    remainder_signed=LibraryRoutine(51),    # [assumed] a division, a multiplication and a subtraction
+    remainder_unsigned=LibraryRoutine(51),  # [assumed] the same
     fill=None,                       # [assumed] no word of such a call in ADI's compiler manual
 )  # fmt: skip
 
 LIBGCC_FLOATS = FloatLibrary(  # [libgcc] means of 2000 operands of magnitudes 2**-8 to 2**12, both signs; (least, most)
-    add=Routine(318),          # (298, 401) ___addsf3
-    subtract=Routine(321),     # (301, 412) ___subsf3
-    multiply=Routine(367),     # (356, 412) ___mulsf3
-    divide=Routine(599),       # (542, 658) ___divsf3
-    compare=Routine(163),      # (154, 181) ___ltsf2 and its like
-    from_integer=Routine(200), # (199, 203) ___floatsisf
-    to_integer=Routine(77),    # (72, 82) ___fixsfsi
-    square_root=Routine(545),  # (531, 554) sqrtf of newlib
+    add=LibraryRoutine(318),          # (298, 401) ___addsf3
+    subtract=LibraryRoutine(321),     # (301, 412) ___subsf3
+    multiply=LibraryRoutine(367),     # (356, 412) ___mulsf3
+    divide=LibraryRoutine(599),       # (542, 658) ___divsf3
+    compare=LibraryRoutine(163),      # (154, 181) ___ltsf2 and its like
+    from_integer=LibraryRoutine(200), # (199, 203) ___floatsisf
+    to_integer=LibraryRoutine(77),    # (72, 82) ___fixsfsi
+    square_root=LibraryRoutine(545),  # (531, 554) sqrtf of newlib
 )  # fmt: skip
 ADI_FLOATS = FloatLibrary(     # the manual counts the call: 5 cycles less here
-    add=Routine(68),           # [VLIB] __float32_add: 30 to 103 cycles, 73 on average
-    subtract=Routine(68),      # [assumed] as an addition
-    multiply=Routine(66),      # [VLIB] __float32_mul: 41 to 146 cycles, typically 71
-    divide=Routine(235),       # [measured] 240 cycles on a BF561, as reported by a user of VisualDSP++
-    compare=Routine(30),       # [VLIB] 34 to 36 cycles
-    from_integer=Routine(25),  # [assumed] 20 to 40 cycles
-    to_integer=Routine(25),    # [assumed] the same
-    square_root=Routine(395),  # [assumed] 300 to 500 cycles
+    add=LibraryRoutine(68),           # [VLIB] __float32_add: 30 to 103 cycles, 73 on average
+    subtract=LibraryRoutine(68),      # [assumed] as an addition
+    multiply=LibraryRoutine(66),      # [VLIB] __float32_mul: 41 to 146 cycles, typically 71
+    divide=LibraryRoutine(235),       # [measured] 240 cycles on a BF561, as reported by a user of VisualDSP++
+    compare=LibraryRoutine(30),       # [VLIB] 34 to 36 cycles
+    from_integer=LibraryRoutine(25),  # [assumed] 20 to 40 cycles
+    to_integer=LibraryRoutine(25),    # [assumed] the same
+    square_root=LibraryRoutine(395),  # [assumed] 300 to 500 cycles
 )  # fmt: skip
 
 GCC_O0 = CompilerProfile(

@@ -11,7 +11,7 @@ from bfsim.errors import KernelError
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class KernelSource:
     """The text of one kernel, as it stands in `file` from line `first_line` on."""
 
     file: str

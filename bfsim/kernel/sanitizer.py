@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from bfsim.errors import KernelError
 from bfsim.kernel import jit, tree
 from bfsim.kernel.costs import optimised
-from bfsim.kernel.counters import instrument
 from bfsim.kernel.emit import TRAP, TRAP_WORDS
+from bfsim.kernel.instrument import instrument
 from bfsim.kernel.profile import VDSP_O2
 from bfsim.kernel.types import ArrayType, FloatType
 from bfsim.kernel.work import BITS, FLOAT
@@ -56,9 +56,9 @@ def _report(function: tree.Function, line: int, number: int, position: int, inde
 
 
 @cache
-def _checked(function: tree.Function) -> tuple[jit.Compiled, Any]:
+def _checked(function: tree.Function) -> tuple[jit.CompiledKernel, Any]:
     """Compile the checked build; return it and the words of its trap."""
     name = f"checked_{function.symbol}_{id(function):x}"
     text = optimised(function, VDSP_O2, checked=True).replace(f"@{TRAP}", f"@trap_{name}")
-    code = jit.load(jit.host_code(instrument(text, function, (), name, followed=False)), name, ())
+    code = jit.load(jit.host_code(instrument(text, function, (), name, traced=False)), name, ())
     return code, (ctypes.c_int64 * TRAP_WORDS).from_address(jit.address_of(f"trap_{name}"))

@@ -114,7 +114,7 @@ class Cast:
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class KernelCall:
     """A call of another kernel; array arguments are names."""
 
     callee: Function
@@ -123,7 +123,7 @@ class Call:
     line: int
 
 
-Expr = Const | Local | Load | Length | Binary | Unary | Compare | Logic | Not | Choose | Cast | Call
+Expr = Const | Local | Load | Length | Binary | Unary | Compare | Logic | Not | Choose | Cast | KernelCall
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +179,7 @@ class Return:
 class Evaluate:
     """A call made for its effect."""
 
-    call: Call
+    call: KernelCall
     line: int
 
 
@@ -221,7 +221,7 @@ class Function:
 
     def first_float(self) -> int | None:
         """Line of the first float in the kernel itself, counted like every `line`; None without floats."""
-        kinds = (Const, Local, Load, Binary, Unary, Choose, Cast, Call)
+        kinds = (Const, Local, Load, Binary, Unary, Choose, Cast, KernelCall)
         lines = [
             each.line
             for each in _parts(self.body)
@@ -245,9 +245,9 @@ def _callees(function: Function) -> tuple[Function, ...]:
     return tuple(found)
 
 
-def calls_in(node: object) -> list[Call]:
+def calls_in(node: object) -> list[KernelCall]:
     """Every call of a kernel in `node`, a part of a tree; the outer one of `f(g(x))` first."""
-    return [each for each in _parts(node) if isinstance(each, Call)]
+    return [each for each in _parts(node) if isinstance(each, KernelCall)]
 
 
 def written_arrays(function: Function) -> frozenset[str]:
@@ -255,7 +255,7 @@ def written_arrays(function: Function) -> frozenset[str]:
     parts = list(_parts(function.body))
     written = {each.array for each in parts if isinstance(each, Store)}
     for call in parts:
-        if isinstance(call, Call):
+        if isinstance(call, KernelCall):
             inner = written_arrays(call.callee)
             pairs = zip(call.callee.parameters, call.arguments, strict=True)
             written |= {

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.entry import FIRST_ARGUMENT, STALL_SHIFT
-from bfsim.kernel.followers import Follower
-from bfsim.kernel.jit import Compiled
+from bfsim.kernel.jit import CompiledKernel
 from bfsim.kernel.types import FloatType, Number
 
 FLOAT, BITS = struct.Struct("<f"), struct.Struct("<I")
@@ -34,7 +34,7 @@ class Work:
     """One kernel call, done natively: pixels are written already, time has not passed yet.
 
     `stall_cclk` are interlocks: cycles in which one operation waits for another. `value` is what the kernel returned. `accesses`
-    is how many accesses outside L1 the follower logged for it.
+    is how many accesses outside L1 the access_trace logged for it.
     """
 
     __slots__ = ("accesses", "issue_cclk", "stall_cclk", "value")
@@ -55,21 +55,31 @@ class PreparedCall:
     """
 
     __slots__ = (
-        "_at", "_block", "_cell", "_check", "_count", "_entry", "_floats", "_follower", "_integers", "_is_float",
-        "_is_plain", "_kept",
+        "_access_trace",
+        "_at",
+        "_block",
+        "_cell",
+        "_check",
+        "_count",
+        "_entry",
+        "_floats",
+        "_integers",
+        "_is_float",
+        "_is_plain",
+        "_kept",
         "_value_word",
     )  # fmt: skip
 
     def __init__(
         self,
-        compiled: Compiled,
+        compiled: CompiledKernel,
         arrays: Sequence[tuple[int, NDArray[Any]]],
         integers: Sequence[tuple[int, int]],
         floats: Sequence[tuple[int, int]],
         check: Callable[[Sequence[object]], None],
         *,
         result: Number | None,
-        follower: Follower | None,
+        access_trace: AccessTrace | None,
         totals: NDArray[np.int64],
     ) -> None:
         """`arrays`: (word, array); `integers`, `floats`: (word, position); `totals`: one word per counter.
@@ -79,28 +89,28 @@ class PreparedCall:
         scalars = len(integers) + len(floats)
         self._count = len(arrays) + scalars
         words = FIRST_ARGUMENT + 2 * len(arrays) + scalars
-        self._value_word = words + (follower is not None) if result else 0
+        self._value_word = words + (access_trace is not None) if result else 0
         self._is_float = isinstance(result, FloatType)
         self._block = (ctypes.c_int64 * (words + 2))()
         self._block[0] = totals.ctypes.data
         for word, array in arrays:
             self._block[word], self._block[word + 1] = array.ctypes.data, len(array)
         self._kept = (arrays, totals)  # the block has their addresses only
-        if follower:
-            self._block[words] = follower.address()
+        if access_trace:
+            self._block[words] = access_trace.address()
         self._at = ctypes.addressof(self._block)
         self._cell = compiled.cell
         self._entry = compiled.entry
         self._integers = tuple(integers)
         self._floats = tuple(floats)
         self._check = check
-        self._follower = follower
-        self._is_plain = result is None and follower is None
+        self._access_trace = access_trace
+        self._is_plain = result is None and access_trace is None
 
     @property
     def stays_in_l1(self) -> bool:
         """Whether no access of it can leave L1."""
-        return self._follower is None
+        return self._access_trace is None
 
     def run(self, arguments: Sequence[Any]) -> Work:
         """Run the kernel now and say what it cost. Of `arguments`, only the integers are read."""
@@ -121,7 +131,7 @@ class PreparedCall:
             cycles & ISSUE_MASK,
             cycles >> STALL_SHIFT,
             value,
-            self._follower.take_count() if self._follower else 0,
+            self._access_trace.take_count() if self._access_trace else 0,
         )
 
     def _put_floats(self, arguments: Sequence[Any]) -> None:

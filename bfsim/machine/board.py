@@ -13,7 +13,7 @@ import simpy
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, DeadlockError, FirmwareError
 from bfsim.kernel import VDSP_O2, CompilerProfile
-from bfsim.kernel.followers import Follower
+from bfsim.kernel.access_trace import AccessTrace
 from bfsim.linker import LinkMap, Symbol
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
@@ -283,7 +283,7 @@ class Board:
 
     def _core(self, index: int, name: str, capture: Capture, on_finished: Callable[[], None]) -> Core:
         chip, memories, caches = self.spec.chip, self._memories, self._caches[name]
-        follower = Follower(
+        access_trace = AccessTrace(
             memories.arena,
             memories.l2_end,
             self._bus.room_of(index),
@@ -294,7 +294,7 @@ class Board:
         code = CodeOutside(places, CodeCache(chip.cache) if caches.code else None)
         subbanks = SubBanks(chip, memories, self._bus.words)
         cache = self._calls[name] = CallCache(
-            name, self.profile, follower, code, subbanks, sanitize=self.sanitize
+            name, self.profile, access_trace, code, subbanks, sanitize=self.sanitize
         )
         inward, outward = (MdmaStream(self._bus, self.spec, each) for each in MDMA_MASTERS[index])
         return Core(
@@ -305,7 +305,7 @@ class Board:
             calls=cache,
             bus=self._bus,
             number=index,
-            follower=follower,
+            access_trace=access_trace,
             capture=capture,
             streams=(inward, outward),
             dma=self._dma,

@@ -7,16 +7,19 @@ from typing import Any
 import numpy as np
 
 from bfsim.kernel import VDSP_O2, CompilerProfile, Kernel, Work
-from bfsim.kernel.followers import Follower
+from bfsim.kernel.access_trace import AccessTrace
 
 
 def run(
-    kernel: Kernel, *arguments: Any, profile: CompilerProfile = VDSP_O2, follower: Follower | None = None
+    kernel: Kernel,
+    *arguments: Any,
+    profile: CompilerProfile = VDSP_O2,
+    access_trace: AccessTrace | None = None,
 ) -> Work:
     """Run `kernel` once, counted, and return what it cost."""
-    code = kernel.compiled(profile, followed=follower is not None)
+    code = kernel.compile(profile, traced=access_trace is not None)
     arrays = [each for each in arguments if isinstance(each, np.ndarray)]
-    return kernel.prepare(code, arrays, code.new_totals(), follower).run(arguments)
+    return kernel.prepare(code, arrays, code.new_totals(), access_trace).run(arguments)
 
 
 def cclk(kernel: Kernel, *arguments: Any) -> int:
@@ -26,7 +29,7 @@ def cclk(kernel: Kernel, *arguments: Any) -> int:
 
 def line_executions(kernel: Kernel, *arguments: Any) -> dict[int, int]:
     """Return how often each line of `kernel` ran, counted from its decorator; lines without code are missing."""
-    code = kernel.compiled(VDSP_O2)
+    code = kernel.compile(VDSP_O2)
     totals = code.new_totals()
     kernel.prepare(code, [each for each in arguments if isinstance(each, np.ndarray)], totals).run(arguments)
     found: dict[int, int] = {}

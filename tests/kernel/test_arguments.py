@@ -91,7 +91,7 @@ def test_an_unsigned_result_is_not_negative(import_kernels: Any) -> None:
 
 def test_a_prepared_call_keeps_its_arrays_alive() -> None:
     """A call that was prepared with arrays that nobody else has runs on them, and adds up its counts."""
-    code = total.compiled(VDSP_O2)
+    code = total.compile(VDSP_O2)
     calls = [total.prepare(code, [np.full(10_000, n, np.uint8)], code.new_totals()) for n in range(8)]
     gc.collect()
     np.zeros(80_000, np.uint8)
@@ -100,7 +100,7 @@ def test_a_prepared_call_keeps_its_arrays_alive() -> None:
 
 def test_totals_add_up_over_calls() -> None:
     """The totals that a call was prepared with hold the events of all its runs; each run reports its own cycles."""
-    code = total.compiled(VDSP_O2)
+    code = total.compile(VDSP_O2)
     totals = code.new_totals()
     row = np.zeros(32, np.uint8)
     call = total.prepare(code, [row], totals)

@@ -27,7 +27,7 @@ compiles = []
 compile_it = jit.host_code
 jit.host_code = lambda text: compiles.append(1) or compile_it(text)
 a = np.arange(64, dtype=np.uint8); b = a.copy()
-code = f.compiled(VDSP_O2)
+code = f.compile(VDSP_O2)
 work = f.prepare(code, [a, b], code.new_totals()).run((a, b))
 assert (b == a // 3).all()
 print(work.issue_cclk, len(compiles))
@@ -101,7 +101,7 @@ def test_a_kernel_is_compiled_once(folder: Path, compiles: list[str], tmp_path: 
     first: Kernel = import_text(TEXT, tmp_path, "same").f
     second: Kernel = import_text("# moved down\n\n" + TEXT, tmp_path, "same").f
     assert cost_of(first) == cost_of(second)
-    assert first.compiled(VDSP_O2).counters == second.compiled(VDSP_O2).counters
+    assert first.compile(VDSP_O2).counters == second.compile(VDSP_O2).counters
     assert compiles == ["f"]
     assert len(entries(folder)) == 2
 
@@ -112,7 +112,7 @@ def test_a_changed_source_is_compiled_again(
 ) -> None:
     """A kernel that reads differently never meets the entry of what it was."""
     for text in (TEXT, TEXT.replace(old, new)):
-        import_text(text, tmp_path, "same").f.compiled(VDSP_O2)
+        import_text(text, tmp_path, "same").f.compile(VDSP_O2)
     assert compiles == ["f", "f"]
     assert len(entries(folder)) == 2 * 2
 
@@ -124,8 +124,8 @@ def test_what_is_never_run_is_never_compiled(
     kernel: Kernel = import_text(TEXT, tmp_path, "same").f
     assert sum(kernel.code_bytes(VDSP_O2).values()) > 0
     assert (compiles, costings, len(entries(folder))) == ([], ["same_f"], 1)
-    for followed in (False, True):
-        assert kernel.compiled(VDSP_O2, followed=followed).counters == kernel.counters(VDSP_O2)
+    for traced in (False, True):
+        assert kernel.compile(VDSP_O2, traced=traced).counters == kernel.counters(VDSP_O2)
     assert (compiles, costings, len(entries(folder))) == (["f", "f"], ["same_f"], 3)
 
 
@@ -137,9 +137,9 @@ def test_a_changed_callee_profile_or_variant_is_compiled_again(
         text = f"@kernel\ndef g(x: i32) -> i32:\n    return x * {factor}\n@kernel\ndef f(x: i32) -> i32:\n    return g(x)\n"
         module = import_text(text, tmp_path, "same")
         assert module.f(5) == 5 * factor
-    module.f.compiled(replace(VDSP_O2, parallel_issue=False))
-    module.f.compiled(VDSP_O2, counted=False)
-    module.f.compiled(VDSP_O2, followed=True)
+    module.f.compile(replace(VDSP_O2, parallel_issue=False))
+    module.f.compile(VDSP_O2, counted=False)
+    module.f.compile(VDSP_O2, traced=True)
     assert compiles == ["f"] * 5
     assert costings == ["same_g", "same_f"] * 3
     assert len(entries(folder)) == 5 + 3
@@ -202,26 +202,30 @@ def test_processes_share_the_cache_and_agree_on_the_cycles(tmp_path: Path) -> No
     assert len(entries(cache)) == 2
 
 
-FOLLOW = "from bfsim.kernel.follow import follow; print(follow.address() > 0)"
+TRACE_ACCESS = "from bfsim.kernel.traced_access import trace_access; print(trace_access.address() > 0)"
 
 
-def follower_in(folder: Path, *, limit_bytes: int = resource.RLIM_INFINITY) -> None:
-    """Compile the follower in a process that can write files of a limited size, or take it from the cache."""
+def trace_accesses_in(folder: Path, *, limit_bytes: int = resource.RLIM_INFINITY) -> None:
+    """Compile the tracing of accesses in a process that can write files of a limited size, or take it from the cache."""
     limit = f"import resource as r; r.setrlimit(r.RLIMIT_FSIZE, ({limit_bytes}, {limit_bytes})); "
     surroundings = {**os.environ, "BFSIM_CACHE_DIR": str(folder)}
     done = subprocess.run(
-        [sys.executable, "-c", limit + FOLLOW], capture_output=True, check=False, env=surroundings, text=True
+        [sys.executable, "-c", limit + TRACE_ACCESS],
+        capture_output=True,
+        check=False,
+        env=surroundings,
+        text=True,
     )
     assert (done.stdout, done.stderr) == ("True\n", "")
 
 
 def test_a_damaged_or_full_cache_of_the_follower_is_no_obstacle(folder: Path) -> None:
     """It is compiled again, and kept if there is room."""
-    follower_in(folder, limit_bytes=1024)
+    trace_accesses_in(folder, limit_bytes=1024)
     assert entries(folder) == []
-    follower_in(folder)
+    trace_accesses_in(folder)
     (entry,) = entries(folder)
     good = entry.read_bytes()
     entry.write_bytes(good[:50])
-    follower_in(folder)
+    trace_accesses_in(folder)
     assert entry.read_bytes() == good

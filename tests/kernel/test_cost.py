@@ -37,7 +37,7 @@ def test_an_empty_kernel_only_returns() -> None:
 
 
 def test_a_copy_loop_costs_a_load_and_a_store_per_word() -> None:
-    """A counted loop without branches is a hardware loop: two cycles a word, nothing per turn."""
+    """A counted loop without branches is a hardware loop: two cycles a word, nothing per iteration."""
     cost = {n: cclk(cost_kernels.copy_words, words(n), words(n)) for n in (1, 2, 320)}
     assert cost[2] - cost[1] == 2
     assert cost[320] - cost[1] == 2 * 319
@@ -54,7 +54,7 @@ def test_two_nested_counted_loops_are_hardware_loops() -> None:
 
 
 def test_a_loop_whose_end_is_empty_counts_in_a_register() -> None:
-    """A hardware loop needs an operation before its end: the outer loop, which only turns the inner one, has none."""
+    """A hardware loop needs an operation before its end: the outer loop, which only repeats the inner one, has none."""
     row = words(50)
     per_line = cclk(cost_kernels.flip_grid, row, 9, 20) - cclk(cost_kernels.flip_grid, row, 8, 20)
     guard = 1 + 1  # whether there are columns is known before: CC gets it back; branch not taken
@@ -64,35 +64,35 @@ def test_a_loop_whose_end_is_empty_counts_in_a_register() -> None:
 
 def test_the_third_loop_is_not_a_hardware_loop() -> None:
     """The chip has two sets of loop registers: a third level counts in a register and branches back."""
-    counters = cost_kernels.flip_cube.compiled(GCC_O2).counters
+    counters = cost_kernels.flip_cube.compile(GCC_O2).counters
     operations = [each.op for counter in counters for each in counter.charges]
     assert operations.count(Op.LOOP_SETUP) == 2
     back = [each for each in counters if each.value is not None and each.issue_cclk == 9 - 1]
     assert len(back) == 1  # taken 9 instead of not taken 1
 
 
-def test_a_loop_that_waits_for_data_branches_every_turn() -> None:
+def test_a_loop_that_waits_for_data_branches_every_iteration() -> None:
     """A `while` on data is no hardware loop: load, compare, increment, and the branch back, predicted taken."""
     row = np.arange(40, dtype=np.uint8)
     cost = [cclk(cost_kernels.find, row, n) for n in range(10)]
-    per_turn = {b - a for a, b in itertools.pairwise(cost)}
-    assert per_turn == {1 + 1 + 1 + SKIP}
+    per_iteration = {b - a for a, b in itertools.pairwise(cost)}
+    assert per_iteration == {1 + 1 + 1 + SKIP}
 
 
 def test_a_loop_on_a_square_is_not_counted() -> None:
-    """`root * root < n` has no number of turns before it starts, so every turn pays its branch."""
-    per_turn = cclk(cost_kernels.square_root, 101) - cclk(cost_kernels.square_root, 100)
+    """`root * root < n` has no number of iterations before it starts, so every iteration pays its branch."""
+    per_iteration = cclk(cost_kernels.square_root, 101) - cclk(cost_kernels.square_root, 100)
     product = 1 + COSTS[Op.MUL32].cclk  # R *= R overwrites its operand, which is still needed: a copy first
-    assert per_turn == product + 1 + 1 + SKIP  # compare, increment, branch back
+    assert per_iteration == product + 1 + 1 + SKIP  # compare, increment, branch back
 
 
 def test_a_loop_with_a_call_branches_and_pays_the_call() -> None:
-    """A loop that calls is no hardware loop; a turn costs CALL, the callee with its RTS, and the branch."""
+    """A loop that calls is no hardware loop; an iteration costs CALL, the callee with its RTS, and the branch."""
     row = np.zeros(20, np.uint8)
     callee = cclk(cost_kernels.store_three, row, 3)
-    per_turn = cclk(cost_kernels.store_each, row, 9) - cclk(cost_kernels.store_each, row, 8)
+    per_iteration = cclk(cost_kernels.store_each, row, 9) - cclk(cost_kernels.store_each, row, 8)
     arguments = 2  # moved to R0 and R1
-    assert per_turn == arguments + COSTS[Op.CALL].cclk + callee + 1 + 1 + SKIP  # increment, compare
+    assert per_iteration == arguments + COSTS[Op.CALL].cclk + callee + 1 + 1 + SKIP  # increment, compare
 
 
 def test_registers_are_saved_as_the_profile_says() -> None:
@@ -152,7 +152,7 @@ def test_a_product_takes_a_load_along_where_the_compiler_bundles() -> None:
     """In vdsp-O2 a 16-bit product and a load of the next operands share an instruction of 64 bits."""
 
     def operations(profile: Any) -> list[int]:
-        counters = cost_kernels.energies.compiled(profile).counters
+        counters = cost_kernels.energies.compile(profile).counters
         return [each.issue_cclk for counter in counters for each in counter.charges if each.op is Op.LOAD16]
 
     assert 0 not in operations(GCC_O2)
@@ -175,7 +175,7 @@ def test_a_table_made_by_the_optimiser_is_costed_and_belongs_to_no_array() -> No
     assert cclk(cost_kernels.translate, row, out) > 0
     assert out.tolist() == [10, 77, 5, 1234, 99, 33, 0, 0]
     names = {
-        name for each in cost_kernels.translate.compiled(VDSP_O2).counters for name, _, _ in each.accesses
+        name for each in cost_kernels.translate.compile(VDSP_O2).counters for name, _, _ in each.accesses
     }
     assert names == {"row", "out"}
 
@@ -191,7 +191,7 @@ def test_every_line_is_counted_as_often_as_it_ran() -> None:
 
 def test_accesses_are_counted_per_array() -> None:
     """A kernel's reads and writes of each array follow from its counts."""
-    code = cost_kernels.copy_words.compiled(VDSP_O2)
+    code = cost_kernels.copy_words.compile(VDSP_O2)
     totals = code.new_totals()
     cost_kernels.copy_words.prepare(code, [words(17), words(17)], totals).run((words(17), words(17)))
     found: dict[str, tuple[int, int]] = {}
@@ -216,7 +216,7 @@ def test_counting_does_not_change_the_pixels() -> None:
     rows = list(random.integers(0, 256, (4, 64), np.uint8))
     counted, bare = np.zeros(64, np.uint8), np.zeros(64, np.uint8)
     cost_kernels.suppress(*rows, counted)
-    code = cost_kernels.suppress.compiled(VDSP_O2, counted=False)
+    code = cost_kernels.suppress.compile(VDSP_O2, counted=False)
     assert code.counters == ()
     arguments = (*rows, bare)
     assert cost_kernels.suppress.prepare(code, arguments, code.new_totals()).run(arguments).issue_cclk == 0

@@ -49,7 +49,7 @@ def plain_lines(text: str, arrays: dict[str, Any], x: int, y: int) -> Tally[int]
 
 def counted_lines(program: Kernel, arrays: dict[str, Any], x: int, y: int) -> dict[int, int]:
     """Run the kernel in gcc-O0, where no block is merged with another, and count its lines from its decorator."""
-    code = program.compiled(GCC_O0)
+    code = program.compile(GCC_O0)
     totals = code.new_totals()
     program.prepare(code, list(arrays.values()), totals).run((*arrays.values(), x, y))
     found: dict[int, int] = {}
@@ -123,7 +123,7 @@ def test_a_routine_counts_alike_whether_inlined_or_called(
     counts = []
     for name in ("inlined", "called"):
         kernel = import_text(CALLER, tmp_path, name).f
-        code, arrays = kernel.compiled(VDSP_O2), [a, a[::-1].copy()]
+        code, arrays = kernel.compile(VDSP_O2), [a, a[::-1].copy()]
         totals = code.new_totals()
         cclk = kernel.prepare(code, arrays, totals).run(arrays).issue_cclk
         counts.append((cclk, totals.tolist(), arrays[1].tolist()))

@@ -21,7 +21,7 @@ from bfsim.kernel.costs import optimised
 from tests.kernel import cost_kernels
 for name in {NAMES}:
     kernel = getattr(cost_kernels, name)
-    print(hashlib.sha256(optimised(kernel.function, VDSP_O2).encode()).hexdigest(), kernel.compiled(VDSP_O2).counters)
+    print(hashlib.sha256(optimised(kernel.function, VDSP_O2).encode()).hexdigest(), kernel.compile(VDSP_O2).counters)
 """
 
 
@@ -31,7 +31,7 @@ def test_ir_and_counters_do_not_depend_on_hash_seed_folder_or_cache(tmp_path: Pa
     for name in NAMES:
         kernel = getattr(cost_kernels, name)
         digest = hashlib.sha256(optimised(kernel.function, VDSP_O2).encode()).hexdigest()
-        here.append(f"{digest} {kernel.compiled(VDSP_O2).counters}")
+        here.append(f"{digest} {kernel.compile(VDSP_O2).counters}")
     root = Path(__file__).parents[2]
     there = subprocess.run(
         [sys.executable, "-c", PRINT, str(root)],

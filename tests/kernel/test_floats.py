@@ -120,9 +120,9 @@ def test_a_profile_without_a_library_refuses_floats() -> None:
     with pytest.raises(
         KernelError, match=r"norm must do without floats, for the profile gcc-O2 has no library"
     ):
-        norm.compiled(bare)
+        norm.compile(bare)
     with pytest.raises(KernelError, match="gcc-O0"):
-        product.compiled(GCC_O0)
+        product.compile(GCC_O0)
 
 
 @pytest.mark.parametrize(

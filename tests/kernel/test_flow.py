@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from bfsim.kernel import VDSP_O2
 from bfsim.kernel.costs import optimised
-from bfsim.kernel.counters import instrument
+from bfsim.kernel.counters import cost
+from bfsim.kernel.instrument import instrument
 from bfsim.kernel.ir_text import Instruction, read_module
-from bfsim.kernel.loops import Flow
-from bfsim.kernel.lowering.places import Places
-from bfsim.kernel.lowering.walks import Walks
-from bfsim.kernel.schedule import cost
+from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
+from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 from tests.kernel import cost_kernels
 
 INSTRUCTIONS = """
@@ -42,8 +42,8 @@ done:                                             ; preds = %other.1thread-pre-s
 LOOP = """
 define void @f(ptr %a, i32 %n) {
 entry:
-  br label %turn
-turn:                                             ; preds = %entry, %again
+  br label %iteration
+iteration:                                             ; preds = %entry, %again
   %i = phi i32 [ 0, %entry ], [ %next, %again ]
   %kind = and i32 %i, 3
   switch i32 %kind, label %never [
@@ -52,25 +52,25 @@ turn:                                             ; preds = %entry, %again
     i32 2, label %even
     i32 3, label %again
   ]
-even:                                             ; preds = %turn, %turn
+even:                                             ; preds = %iteration, %iteration
   store i32 0, ptr %a, align 4
   br label %again
-never:                                            ; preds = %turn
+never:                                            ; preds = %iteration
   unreachable
-again:                                            ; preds = %even, %turn, %turn
+again:                                            ; preds = %even, %iteration, %iteration
   %next = add nuw nsw i32 %i, 1
   %last = icmp eq i32 %next, %n
-  br i1 %last, label %done, label %turn
+  br i1 %last, label %done, label %iteration
 done:                                             ; preds = %again
   ret void
 }
 """
 
 
-def read_one(text: str) -> Flow:
+def read_one(text: str) -> ControlFlow:
     """Read the only routine of `text`."""
     (routine,) = read_module(text)
-    return Flow(routine)
+    return ControlFlow(routine)
 
 
 def test_every_form_of_instruction_is_read() -> None:
@@ -111,11 +111,11 @@ def test_every_form_of_instruction_has_a_cost() -> None:
 
 
 def test_a_default_that_never_happens_is_no_way_out_of_a_loop() -> None:
-    """A loop whose `switch` has an unreachable default still counts its turns."""
+    """A loop whose `switch` has an unreachable default still counts its iterations."""
     flow = read_one(LOOP)
     (loop,) = flow.loops
-    assert loop.blocks == {"turn", "even", "again"}
-    assert Walks(flow, Places(flow)).is_counted(loop)
+    assert loop.blocks == {"iteration", "even", "again"}
+    assert ScalarEvolution(flow, InvariantCodeMotion(flow)).is_counted(loop)
 
 
 def test_or_moves_an_address_only_where_it_adds() -> None:
@@ -123,7 +123,7 @@ def test_or_moves_an_address_only_where_it_adds() -> None:
     for flag, slope in ((" disjoint", 1), ("", None)):
         odd = f"%odd = or{flag} i32 %i, 1\n  %kind"
         flow = read_one(LOOP.replace("%kind", odd, 1))
-        advance = Walks(flow, Places(flow)).advance("%odd", flow.loops[0])
+        advance = ScalarEvolution(flow, InvariantCodeMotion(flow)).increment("%odd", flow.loops[0])
         assert (advance.constant if advance else None) == slope
 
 
@@ -141,7 +141,7 @@ def test_names_of_the_kernel_and_of_the_counters_never_meet() -> None:
     """Everything that counting adds begins with a dot, which no Python name does."""
     text = optimised(cost_kernels.store_each.function, VDSP_O2)
     counters = tuple(each for routine in read_module(text) for each in cost(routine, VDSP_O2))
-    counted = instrument(text, cost_kernels.store_each.function, counters, "entry_name", followed=False)
+    counted = instrument(text, cost_kernels.store_each.function, counters, "entry_name", traced=False)
     assert 0 < counted.count("= alloca i64") <= len(counters)  # the others are derived
     added = [row.split(" = ")[0].strip() for row in counted.splitlines() if " = alloca i64" in row]
     assert all(name.startswith("%.bf.") for name in added)

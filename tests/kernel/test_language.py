@@ -259,7 +259,7 @@ def test_odd_functions_are_refused_and_nothing_else(text: str, tmp_path: Path) -
 def test_odd_kernels_of_the_language_compile(text: str, tmp_path: Path) -> None:
     """A function inside the language compiles, whatever its names, its size and the way its types are written."""
     f: Kernel = import_text(text, tmp_path).f
-    assert f.compiled(VDSP_O2).counters
+    assert f.compile(VDSP_O2).counters
 
 
 def test_two_kernels_of_one_name_cannot_be_linked(import_kernels: ImportText) -> None:

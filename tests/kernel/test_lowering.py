@@ -16,10 +16,10 @@ from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.lowering.context import Context
-from bfsim.kernel.lowering.interlocks import issues
+from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.multiples import multiple
 from bfsim.kernel.lowering.predict import combined
-from bfsim.kernel.lowering.steps import Bank, Step
+from bfsim.kernel.lowering.schedule import issues
 from tests.kernel.modules import import_text
 
 
@@ -27,7 +27,7 @@ def lowered(text: str, folder: Path, profile: CompilerProfile = GCC_O2) -> Tally
     """Compile the only kernel of `text`, and count the operations of its blocks, each block once."""
     kernel: Kernel = import_text(f"@kernel\n{text}", folder).f
     counts: Tally[Op] = Tally()
-    for counter in kernel.compiled(profile).counters:
+    for counter in kernel.compile(profile).counters:
         for each in counter.charges if counter.value is None else ():
             counts[each.op] += each.count
     return counts
@@ -104,7 +104,7 @@ def test_what_does_not_change_in_a_loop_is_computed_before_it(tmp_path: Path) ->
     def places(known: Context, opcode: str) -> set[bool]:
         (loop,) = known.flow.loops
         return {
-            known.places.of[each.result or ""] in loop.blocks
+            known.code_motion.of[each.result or ""] in loop.blocks
             for label in loop.blocks
             for each in known.flow.blocks[label].instructions
             if each.opcode == opcode
@@ -116,40 +116,44 @@ def test_what_does_not_change_in_a_loop_is_computed_before_it(tmp_path: Path) ->
 
 
 def test_pointers_walk_along_for_nothing_or_for_an_addition(tmp_path: Path) -> None:
-    """A step as wide as the access is a post-increment; another step is one addition a turn."""
+    """A step as wide as the access is a post-increment; another step is one addition an iteration."""
     text = "def f(a: u8[:], out: u8[:], n: i32):\n    for i in range(n):\n        out[i] = a[{0}]\n"
-    groups = context(text.format("i"), tmp_path).groups.all
+    groups = context(text.format("i"), tmp_path).induction_variables.all
     assert [each.steps_free for each in groups] == [True, True]
-    strided = context(text.format("3 * i + 1"), tmp_path).groups.all
-    assert sorted((each.advance.constant, each.steps_free) for each in strided) == [(1, True), (3, False)]
+    strided = context(text.format("3 * i + 1"), tmp_path).induction_variables.all
+    assert sorted((each.increment.constant, each.steps_free) for each in strided) == [(1, True), (3, False)]
 
 
 def test_a_flag_that_ends_a_loop_is_threaded_away() -> None:
-    """`while j < n and found == 0`: who sets the flag jumps out, division and all, and the loop counts its turns."""
+    """`while j < n and found == 0`: who sets the flag jumps out, division and all, and the loop counts its iterations."""
     (routine,) = read_module(optimised(grow_segments.function, GCC_O2))
     known = Context(routine, GCC_O2)
-    assert known.flags.names
+    assert known.jump_threading.names
     inner, _ = known.flow.loops
     inside = [each for label in inner.blocks for each in known.flow.blocks[label].instructions]
-    assert inner.header in known.needs.counted
+    assert inner.header in known.demanded.counted
     assert not any(each.is_division for each in inside)
 
 
-def test_few_turns_and_calls_keep_a_loop_from_being_counted(tmp_path: Path) -> None:
-    """Three turns are too few for a hardware loop; four are enough; a division by a variable calls the library."""
+def test_few_iterations_and_calls_keep_a_loop_from_being_counted(tmp_path: Path) -> None:
+    """Three iterations are too few for a hardware loop; four are enough; a division by a variable calls the library."""
     text = "def f(a: i32[:], b: u32):\n    for i in range({0}):\n        a[i] = a[i] {1}\n"
-    for turns, rest, counted in ((3, "^ 5", False), (4, "^ 5", True), (9, "+ i32(b // u32(a[i]))", False)):
-        known = context(text.format(turns, rest), tmp_path)
-        assert {loop.header in known.needs.counted for loop in known.flow.loops} == {counted}
+    for iterations, rest, counted in (
+        (3, "^ 5", False),
+        (4, "^ 5", True),
+        (9, "+ i32(b // u32(a[i]))", False),
+    ):
+        known = context(text.format(iterations, rest), tmp_path)
+        assert {loop.header in known.demanded.counted for loop in known.flow.loops} == {counted}
 
 
 def test_counting_bits_is_one_operation(tmp_path: Path) -> None:
-    """`while x: x &= x - 1` has no turns on the Blackfin: ONES counts the bits."""
+    """`while x: x &= x - 1` has no iterations on the Blackfin: ONES counts the bits."""
     kernel: Kernel = import_text(
         "@kernel\ndef f(x: u32) -> i32:\n    n = 0\n    while x != 0:\n        x = x & (x - 1)\n        n += 1\n    return n\n",
         tmp_path,
     ).f
-    code = kernel.compiled(GCC_O2)
+    code = kernel.compile(GCC_O2)
     cost = {
         x: kernel.prepare(code, [], code.new_totals()).run((x,)).issue_cclk for x in (1, 0xFFFF, 0xFFFFFFFF)
     }
@@ -172,9 +176,9 @@ def test_more_values_than_registers_are_reloaded(tmp_path: Path) -> None:
     def moves(count: int) -> int:
         names = [f"s{each}" for each in range(count)]
         start = "".join(f"    {name} = {number}\n" for number, name in enumerate(names))
-        turn = "".join(f"        {name} = ({name} ^ x) * {name}\n" for name in names)
+        iteration = "".join(f"        {name} = ({name} ^ x) * {name}\n" for name in names)
         ends = " ^ ".join(names)
-        text = f"def f(a: i32[:]) -> i32:\n{start}    for i in range(len(a)):\n        x = a[i]\n{turn}    return {ends}\n"
+        text = f"def f(a: i32[:]) -> i32:\n{start}    for i in range(len(a)):\n        x = a[i]\n{iteration}    return {ends}\n"
         found = lowered(text, tmp_path)
         return found[Op.LOAD32] + found[Op.STORE32] + found[Op.IMM]
 
@@ -185,12 +189,12 @@ def test_more_values_than_registers_are_reloaded(tmp_path: Path) -> None:
 def test_an_independent_operation_hides_a_wait() -> None:
     """A value moved to a pointer register is awaited four cycles; each operation in between takes one off."""
 
-    def banks(name: str) -> Bank:
-        return Bank.POINTER if name.startswith("p") else Bank.DATA
+    def banks(name: str) -> RegisterBank:
+        return RegisterBank.POINTER if name.startswith("p") else RegisterBank.DATA
 
-    move = Step(Op.MOVE, 1, "p0", Bank.POINTER, (("r0", Bank.DATA),))
-    other = Step(Op.ALU, 2, "r5", Bank.DATA, (("r6", Bank.DATA),))
-    load = Step(Op.LOAD16, 3, "r1", Bank.DATA, (("p0", Bank.POINTER),))
+    move = MachineInstruction(Op.MOVE, 1, "p0", RegisterBank.POINTER, (("r0", RegisterBank.DATA),))
+    other = MachineInstruction(Op.ALU, 2, "r5", RegisterBank.DATA, (("r6", RegisterBank.DATA),))
+    load = MachineInstruction(Op.LOAD16, 3, "r1", RegisterBank.DATA, (("p0", RegisterBank.POINTER),))
     assert sum(each.stall_cclk for each in issues([move, load], banks, parallel=False)) == 4
     assert sum(each.stall_cclk for each in issues([move, load, other], banks, parallel=False)) == 3
 

@@ -13,7 +13,7 @@ from tests.kernel.test_lowering import context, lowered
 
 
 def loops(body: str, head: str = "a: i32[:], n: i32", before: str = "s = 0") -> str:
-    """Return a kernel that turns `body` for i in range(n)."""
+    """Return a kernel that repeats `body` for i in range(n)."""
     rows = "\n        ".join(body.splitlines())
     return f"def f({head}) -> i32:\n    {before}\n    for i in range(n):\n        {rows}\n    return s\n"
 
@@ -22,7 +22,7 @@ def loops(body: str, head: str = "a: i32[:], n: i32", before: str = "s = 0") -> 
 def test_a_loop_that_follows_from_a_constant_is_played_through(
     start: str, counted: bool, tmp_path: Path
 ) -> None:
-    """8, 4, 2, 1: four turns of a hardware loop; from a parameter nobody knows."""
+    """8, 4, 2, 1: four iterations of a hardware loop; from a parameter nobody knows."""
     text = f"def f(b: u32, n: u32) -> u32:\n    k = u32({start})\n    while k > 0:\n        b = b ^ (b >> k)\n        k = k >> 1\n    return b\n"
     assert (Op.LOOP_SETUP in lowered(text, tmp_path)) is counted
 
@@ -53,7 +53,7 @@ def test_a_value_that_a_later_variable_takes_over_ends_a_hardware_loop(
     assert (Op.LOOP_SETUP in lowered(text, tmp_path)) is hardware
 
 
-def test_one_value_that_is_kept_for_the_next_turn_needs_no_copy(tmp_path: Path) -> None:
+def test_one_value_that_is_kept_for_the_next_iteration_needs_no_copy(tmp_path: Path) -> None:
     """The difference of neighbours: nothing but the load, a move of the old value, the sum and the store."""
     found = lowered(loops("y = a[i]\na[i] = y - p\np = y", before="s = 0\n    p = 0"), tmp_path)
     assert Op.LOOP_SETUP in found
@@ -86,14 +86,14 @@ def test_a_stack_that_a_continue_skips_is_counted_down(step: int, counted: bool,
     )
     (inner,) = (loop for loop in found.flow.loops if found.flow.is_split(loop))
     assert found.flow.ending(inner) == inner.header
-    assert (inner.header in found.needs.counted) is counted
+    assert (inner.header in found.demanded.counted) is counted
     assert found.likelihood.taken[
         inner.header, found.flow.blocks[inner.header].successors[0]
     ] == pytest.approx(0.89)
 
 
 def test_the_least_element_goes_along_in_a_register(tmp_path: Path) -> None:
-    """a[least] is loaded before the loop; one load a turn is left, and the branch, since two values are chosen."""
+    """a[least] is loaded before the loop; one load an iteration is left, and the branch, since two values are chosen."""
     least = "if a[i] < a[s]:\n    s = i\n"
     found = lowered(loops(least), tmp_path)
     assert Op.COND_MOVE not in found
@@ -122,7 +122,7 @@ def test_a_stepped_value_is_compared_behind_its_step(tmp_path: Path) -> None:
         tmp_path,
     )
     tests = [each for block in found.routine.blocks for each in block.instructions if each.opcode == "icmp"]
-    bounds = [(found.needs.compared(each)[1], each.operands[1]) for each in tests]
+    bounds = [(found.demanded.compared(each)[1], each.operands[1]) for each in tests]
     assert any(seen != written for seen, written in bounds)
     assert any(seen == written for seen, written in bounds)
 

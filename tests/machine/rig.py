@@ -18,7 +18,8 @@ from bfsim.chip.boards import board_named
 from bfsim.chip.memory_map import region_of
 from bfsim.chip.sensors import LEFT_CAMERA
 from bfsim.chip.spec import BoardSpec
-from bfsim.kernel import Kernel, followers
+from bfsim.kernel import Kernel
+from bfsim.kernel import access_trace as log
 from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
 from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.bus import state as w
@@ -257,10 +258,10 @@ class Bench:
 
         Each access: (cycle of the call, kind, address).
         """
-        log, count = self.bus.room_of(core)[followers.LOG :], 0
+        entries, count = self.bus.room_of(core)[log.LOG :], 0
         for stamp, kind, address in accesses:
-            entry = stamp << followers.STAMP_BIT | kind << followers.KIND_BIT
-            log[count] = entry | self.offset(address)
+            entry = stamp << log.STAMP_BIT | kind << log.KIND_BIT
+            entries[count] = entry | self.offset(address)
             count += 1
         return Call(self, core, self.bus.access(core, begin, cclk, count))
 

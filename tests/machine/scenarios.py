@@ -14,7 +14,7 @@ from fractions import Fraction
 from random import Random
 
 from bfsim.chip.boards import board_named
-from bfsim.kernel.followers import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
+from bfsim.kernel.access_trace import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
 from bfsim.machine.bus import core_requests, dma_requests, runs
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Pace, Transfer, TransferPlan, Walk

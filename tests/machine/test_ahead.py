@@ -16,7 +16,7 @@ import pytest
 
 from bfsim import run
 from bfsim.kernel import store
-from bfsim.kernel.compiled import Entry
+from bfsim.kernel.native import NativeEntry
 from bfsim.machine.bus import ahead
 from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.run import simulate
@@ -37,7 +37,7 @@ class Compiler:
 @pytest.fixture
 def cold(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have nothing compiled, a place to keep it and two processors."""
-    monkeypatch.setattr(Entry, "is_kept", lambda _: False)
+    monkeypatch.setattr(NativeEntry, "is_kept", lambda _: False)
     monkeypatch.setattr(store, "can_keep", lambda: True)
     monkeypatch.setattr(ahead.os, "cpu_count", lambda: 2)
 
@@ -73,7 +73,7 @@ def test_nothing_is_started_for_nothing(
     monkeypatch: pytest.MonkeyPatch, kept: bool, can_keep: bool, processors: int
 ) -> None:
     """A warm start starts no process, nor does one that could not keep what it makes, or has no processor for it."""
-    monkeypatch.setattr(Entry, "is_kept", lambda _: kept)
+    monkeypatch.setattr(NativeEntry, "is_kept", lambda _: kept)
     monkeypatch.setattr(store, "can_keep", lambda: can_keep)
     monkeypatch.setattr(ahead.os, "cpu_count", lambda: processors)
     monkeypatch.setattr(ahead.subprocess, "Popen", lambda *_, **__: pytest.fail("a process was started"))
@@ -126,9 +126,9 @@ def test_it_does_not_outlive_who_started_it(tmp_path: Path) -> None:
 
 
 IR = """
-from bfsim.kernel.compiled import _ir
-from bfsim.kernel.follow import follow
-print("IndexError" in _ir(follow))
+from bfsim.kernel.native import _ir
+from bfsim.kernel.traced_access import trace_access
+print("IndexError" in _ir(trace_access))
 """
 
 
@@ -147,9 +147,9 @@ def test_what_is_compiled_is_the_same_in_any_environment(name: str) -> None:
 
 FIND = """
 import sys
-from bfsim.kernel.follow import follow
+from bfsim.kernel.traced_access import trace_access
 from bfsim.machine.bus.weave import advance
-print(all(each.is_kept() and each.address() for each in (follow, advance)), "numba" in sys.modules)
+print(all(each.is_kept() and each.address() for each in (trace_access, advance)), "numba" in sys.modules)
 """
 
 

@@ -15,7 +15,7 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS, board_named
-from bfsim.kernel import followers as log
+from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus, Pace, Transfer, Walk
 from bfsim.machine.detailed.arbiter import Grant, MdmaTurns, Request, SdramArbiter

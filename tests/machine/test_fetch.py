@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from bfsim.api import Core, Frame
 from bfsim.chip.boards import CM_BF561
-from bfsim.kernel import VDSP_O2, Kernel, followers
-from bfsim.kernel.followers import Follower
+from bfsim.kernel import VDSP_O2, Kernel
+from bfsim.kernel import access_trace as log
+from bfsim.kernel.access_trace import AccessTrace
 from bfsim.linker import LinkerScript, link
 from bfsim.machine.bus.state import FETCH_BYTES
 from bfsim.machine.calls.fetch import CodeCache
@@ -33,7 +34,7 @@ TURNS = [0, 1, 10, 300]
 
 def executed_bytes(kernel: Kernel, *arguments: Any) -> int:
     """Bytes of code that a call executes: those of each block, as often as it runs."""
-    code = kernel.compiled(VDSP_O2)
+    code = kernel.compile(VDSP_O2)
     totals = code.new_totals()
     kernel.prepare(code, [], totals).run(arguments)
     return sum(count * each.nbytes for count, each in zip(totals.tolist(), code.counters, strict=False))
@@ -179,16 +180,16 @@ def test_lines_of_different_sets_do_not_push_each_other_out() -> None:
 
 def test_fetches_come_between_the_accesses_without_reordering_them() -> None:
     """The log is in order of time; accesses of one block, which have one stamp, stay as the block made them."""
-    follower = Follower(np.zeros(64, np.uint8), 64, np.zeros(followers.LOG + 16, np.int64))
+    access_trace = AccessTrace(np.zeros(64, np.uint8), 64, np.zeros(log.LOG + 16, np.int64))
 
     def entry(stamp: int, kind: int, offset: int) -> int:
-        return stamp << followers.STAMP_BIT | kind << followers.KIND_BIT | offset
+        return stamp << log.STAMP_BIT | kind << log.KIND_BIT | offset
 
-    block = [entry(5, followers.WRITE_BACK, 32), entry(5, followers.FILL, 0), entry(5, followers.LOAD, 60)]
-    follower.entries(3)[:] = block
-    fetches = [entry(0, followers.FETCH, 8), entry(5, followers.FETCH, 16), entry(9, followers.FETCH, 24)]
-    assert follower.insert(3, np.array(fetches)) == 6
-    assert follower.entries(6).tolist() == [fetches[0], *block, fetches[1], fetches[2]]
+    block = [entry(5, log.WRITE_BACK, 32), entry(5, log.FILL, 0), entry(5, log.LOAD, 60)]
+    access_trace.entries(3)[:] = block
+    fetches = [entry(0, log.FETCH, 8), entry(5, log.FETCH, 16), entry(9, log.FETCH, 24)]
+    assert access_trace.insert(3, np.array(fetches)) == 6
+    assert access_trace.entries(6).tolist() == [fetches[0], *block, fetches[1], fetches[2]]
 
 
 def test_the_record_says_where_the_code_is() -> None:

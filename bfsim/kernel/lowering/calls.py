@@ -9,29 +9,29 @@ from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.idioms import fills_of
+from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.multiples import multiple
-from bfsim.kernel.lowering.steps import Bank, Step, Steps
-from bfsim.kernel.profile import Routine
+from bfsim.kernel.profile import LibraryRoutine
 
-ANY, DATA = Bank.ANY, Bank.DATA
+ANY, DATA = RegisterBank.ANY, RegisterBank.DATA
 RECIPROCAL = 1 << 35  # divided by the divisor: a constant of 32 bits
 
 
 class Calls:
-    """Emits steps into the block `label`; here those of calls and divisions."""
+    """Emits instructions into the block `label`; here those of calls and divisions."""
 
     def __init__(self, context: Context) -> None:
         self.context = context
-        self.steps = Steps({label: [] for label in context.flow.blocks})
+        self.code = MachineCode({label: [] for label in context.flow.blocks})
         self.label = ""
 
-    def step(self, op: Op, each: Instruction, result: str | None, bank: Bank, *uses: tuple[str, Bank],
+    def append(self, op: Op, each: Instruction, result: str | None, bank: RegisterBank, *uses: tuple[str, RegisterBank],
              overwrites: tuple[str, ...] = (), cclk: int | None = None, nbytes: int | None = None) -> None:  # fmt: skip
         named = tuple(
             (value if value.startswith("#") else self.context.name(value), where) for value, where in uses
         )
         over = tuple(self.context.name(value) for value in overwrites)
-        self.steps.add(self.label, Step(op, each.line, result, bank, named, over, cclk, nbytes))
+        self.code.add(self.label, MachineInstruction(op, each.line, result, bank, named, over, cclk, nbytes))
 
     def call(self, each: Instruction) -> None:
         if not each.is_call:
@@ -40,16 +40,16 @@ class Calls:
         arguments = self.context.arguments(each)
         self._pass(each, arguments)
         result = each.result or None
-        self.step(Op.CALL, each, result, DATA)
+        self.append(Op.CALL, each, result, DATA)
 
     def _pass(self, each: Instruction, arguments: list[str]) -> None:
         for number, value in enumerate(arguments):
             if number >= isa.REGISTER_ARGUMENTS:
-                self.step(Op.STORE32, each, None, DATA, (value, ANY))
+                self.append(Op.STORE32, each, None, DATA, (value, ANY))
             elif self.context.is_there(value, number, each):
                 continue  # computed right where it is passed, or passed on
             else:
-                self.step(Op.IMM if not value.startswith("%") else Op.MOVE, each, None, DATA, (value, ANY))
+                self.append(Op.IMM if not value.startswith("%") else Op.MOVE, each, None, DATA, (value, ANY))
 
     def _intrinsic(self, each: Instruction) -> None:
         values = tuple((value, DATA) for value in each.operands if not value.startswith(("true", "false")))
@@ -62,64 +62,66 @@ class Calls:
         elif "@llvm.bitreverse" in each.text or "@llvm.bswap" in each.text:
             self._swap_bits(each)
         elif "@llvm.umin" in each.text or "@llvm.umax" in each.text:
-            self.step(Op.COMPARE, each, None, DATA, *values)
-            self.step(Op.COND_MOVE, each, each.result, DATA, *values, overwrites=(each.operands[0],))
+            self.append(Op.COMPARE, each, None, DATA, *values)
+            self.append(Op.COND_MOVE, each, each.result, DATA, *values, overwrites=(each.operands[0],))
         elif "@llvm.fsh" in each.text:
-            self.step(Op.SHIFT, each, f"{each.result}.half", DATA, values[0])
-            self.step(Op.SHIFT, each, f"{each.result}.half2", DATA, values[0])
-            self.step(
+            self.append(Op.SHIFT, each, f"{each.result}.half", DATA, values[0])
+            self.append(Op.SHIFT, each, f"{each.result}.half2", DATA, values[0])
+            self.append(
                 Op.ALU, each, each.result, DATA, (f"{each.result}.half", DATA), (f"{each.result}.half2", DATA)
             )
         else:
-            self.step(Op.DSP_ALU, each, each.result, DATA, *values)
+            self.append(Op.DSP_ALU, each, each.result, DATA, *values)
 
     def _shift_by_zeros(self, each: Instruction) -> None:
         """LLVM divides by what it knows to be a power of two with a count of zeros; the Blackfin calls its library."""
         routine = self.context.profile.library.divide_unsigned
         self._pass(each, list(each.operands[:1]) * 2)
-        self.step(Op.CALL, each, each.result, DATA)
+        self.append(Op.CALL, each, each.result, DATA)
         self._library(each, routine)
 
     def _swap_bits(self, each: Instruction) -> None:
         """Halves are swapped over and over, as the source does from which LLVM has read the whole reversal."""
         stages = 5 if "bitreverse" in each.text else 2
         for stage in range(stages - 1):
-            self.step(Op.SHIFT, each, f"{each.result}.up", DATA, (each.operands[0], DATA))
-            self.step(Op.SHIFT, each, f"{each.result}.down", DATA, (each.operands[0], DATA))
+            self.append(Op.SHIFT, each, f"{each.result}.up", DATA, (each.operands[0], DATA))
+            self.append(Op.SHIFT, each, f"{each.result}.down", DATA, (each.operands[0], DATA))
             for half in ("up", "down"):
                 mask = (f"#{stage} {half}", DATA)
-                self.step(Op.ALU, each, f"{each.result}.{half}", DATA, (f"{each.result}.{half}", DATA), mask)
-            self.step(
+                self.append(
+                    Op.ALU, each, f"{each.result}.{half}", DATA, (f"{each.result}.{half}", DATA), mask
+                )
+            self.append(
                 Op.ALU, each, each.result, DATA, (f"{each.result}.up", DATA), (f"{each.result}.down", DATA)
             )
-        self.step(Op.ALU, each, each.result, DATA, (each.result or "", DATA))
+        self.append(Op.ALU, each, each.result, DATA, (each.result or "", DATA))
 
     def fill(self, loop: Loop) -> None:
-        """Call memset instead of turning; what its time depends on the length is charged per turn."""
+        """Call memset instead of iterating; what its time depends on the length is charged per iteration."""
         fill = self.context.profile.library.fill
         assert fill is not None
-        turns = self.context.walks.turns(loop)
+        iterations = self.context.evolution.iterations(loop)
         for each in fills_of(self.context.flow, loop):
             self.label = self.context.flow.entering(loop)
             root = self.context.flow.root(each.operands[1])
             for argument in (root, each.operands[0], ""):
                 used = ((argument, ANY),) if argument.startswith("%") else ()
-                self.step(Op.MOVE if used else Op.IMM, each, None, DATA, *used)
-            self.step(Op.CALL, each, None, DATA)
+                self.append(Op.MOVE if used else Op.IMM, each, None, DATA, *used)
+            self.append(Op.CALL, each, None, DATA)
             nbytes = each.bits // isa.BYTE_BITS
-            known = 0 if turns is None else turns * nbytes // fill.bytes_per_cclk
-            self.step(Op.LIBRARY, each, None, DATA, cclk=fill.cclk + known, nbytes=0)
-            if turns is None and nbytes > 1:
+            known = 0 if iterations is None else iterations * nbytes // fill.bytes_per_cclk
+            self.append(Op.LIBRARY, each, None, DATA, cclk=fill.cclk + known, nbytes=0)
+            if iterations is None and nbytes > 1:
                 self.label = loop.header
-                self.step(Op.LIBRARY, each, None, DATA, cclk=1, nbytes=0)
+                self.append(Op.LIBRARY, each, None, DATA, cclk=1, nbytes=0)
 
-    def _library(self, each: Instruction, routine: Routine) -> None:
+    def _library(self, each: Instruction, routine: LibraryRoutine) -> None:
         if routine.mix:
             for op, count in routine.mix:
                 for _ in range(count):
-                    self.step(op, each, None, DATA, nbytes=0)
+                    self.append(op, each, None, DATA, nbytes=0)
         else:
-            self.step(Op.LIBRARY, each, None, DATA, cclk=routine.cclk, nbytes=0)
+            self.append(Op.LIBRARY, each, None, DATA, cclk=routine.cclk, nbytes=0)
 
     def float_operation(self, each: Instruction) -> None:
         """A call of the soft-float library."""
@@ -133,47 +135,47 @@ class Calls:
             routine = library.square_root if "@llvm.sqrt" in each.text else library.to_integer
         values = [operand for operand in each.operands if operand.startswith("%") or operand[:1].isdigit()]
         self._pass(each, values[: isa.REGISTER_ARGUMENTS])
-        self.step(Op.CALL, each, each.result, DATA)
+        self.append(Op.CALL, each, each.result, DATA)
         self._library(each, routine)
         if each.opcode == "fcmp":
-            self.step(Op.COMPARE, each, None, DATA)  # of the integer that the library returns, with zero
+            self.append(Op.COMPARE, each, None, DATA)  # of the integer that the library returns, with zero
 
     def sign(self, each: Instruction) -> None:
         """Changing the sign of a float flips a bit."""
-        self.step(Op.ALU, each, each.result, DATA, (each.operands[0], DATA))
+        self.append(Op.ALU, each, each.result, DATA, (each.operands[0], DATA))
 
     def divide(self, each: Instruction) -> None:
         library = self.context.profile.library
-        signed = self.context.needs.divides_signed(each)
+        signed = self.context.demanded.divides_signed(each)
         routines = {
             ("div", True): library.divide_signed, ("div", False): library.divide_unsigned,
             ("rem", True): library.remainder_signed, ("rem", False): library.remainder_unsigned,
         }  # fmt: skip
         routine = routines[each.opcode[1:], signed]
-        if not self.context.needs.divides_by_call(each):
+        if not self.context.demanded.divides_by_call(each):
             self._divide_by_constant(each)
             return
-        if FLOOR in (each.result or "") and self.context.needs.has_quotient(each):
-            self.step(Op.MUL32, each, f"{each.result}.back", DATA, (each.operands[1], DATA))
-            self.step(
+        if FLOOR in (each.result or "") and self.context.demanded.has_quotient(each):
+            self.append(Op.MUL32, each, f"{each.result}.back", DATA, (each.operands[1], DATA))
+            self.append(
                 Op.ALU, each, each.result, DATA, (each.operands[0], DATA), (f"{each.result}.back", DATA)
             )
             return
         self._pass(each, list(each.operands[:2]))
-        self.step(Op.CALL, each, each.result, DATA)
+        self.append(Op.CALL, each, each.result, DATA)
         self._library(each, routine)
 
     def _divide_by_constant(self, each: Instruction) -> None:
         """The upper half of a product with the reciprocal [umulsi3_highpart of GCC: seven operations, and a move]."""
         value = each.operands[0]
-        if each.opcode == "udiv" or not self.context.needs.has_quotient(each):
+        if each.opcode == "udiv" or not self.context.demanded.has_quotient(each):
             for _ in range(7):
-                self.step(
+                self.append(
                     Op.MAC, each, None, DATA, (value, DATA), (f"#{RECIPROCAL // int(each.operands[1])}", DATA)
                 )
-            self.step(Op.MOVE, each, each.result, DATA)
-            self.step(Op.SHIFT, each, each.result, DATA, (each.result or "", DATA))
+            self.append(Op.MOVE, each, each.result, DATA)
+            self.append(Op.SHIFT, each, each.result, DATA, (each.result or "", DATA))
         if each.opcode == "urem":
             for op in multiple(int(each.operands[1])) or (Op.MUL32,):
-                self.step(op, each, f"{each.result}.back", DATA, (each.result or "", DATA))
-            self.step(Op.ALU, each, each.result, DATA, (value, DATA), (f"{each.result}.back", DATA))
+                self.append(op, each, f"{each.result}.back", DATA, (each.result or "", DATA))
+            self.append(Op.ALU, each, each.result, DATA, (value, DATA), (f"{each.result}.back", DATA))

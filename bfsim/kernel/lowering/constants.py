@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
-from bfsim.kernel.lowering.steps import Bank, Step
+from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 
 
-def load_constant(constant: str, line: int, result: str | None = None, bank: Bank = Bank.ANY) -> Step:
+def load_constant(
+    constant: str, line: int, result: str | None = None, bank: RegisterBank = RegisterBank.ANY
+) -> MachineInstruction:
     """Return the operation that loads a constant, written #5."""
     digits = constant[1:].lstrip("-")
     number = int(constant[1:]) if digits.isdigit() else 0
     if number in isa.SHORT_IMMEDIATE:
-        return Step(Op.IMM, line, result, bank)
+        return MachineInstruction(Op.IMM, line, result, bank)
     if number in isa.LONG_IMMEDIATE:
-        return Step(Op.IMM, line, result, bank, nbytes=isa.LONG_FORM_BYTES)
-    return Step(Op.IMM32, line, result, bank)
+        return MachineInstruction(Op.IMM, line, result, bank, nbytes=isa.LONG_FORM_BYTES)
+    return MachineInstruction(Op.IMM32, line, result, bank)

@@ -5,16 +5,16 @@ from __future__ import annotations
 from functools import cached_property
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction, Routine
-from bfsim.kernel.loops import Flow
-from bfsim.kernel.lowering.flags import Flags
-from bfsim.kernel.lowering.groups import HIDDEN, Groups
+from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.demanded_values import DemandedValues
 from bfsim.kernel.lowering.idioms import bit_counting_loops, filling_loops
-from bfsim.kernel.lowering.needs import Needs
-from bfsim.kernel.lowering.places import Places
+from bfsim.kernel.lowering.if_conversion import ConvertedIf, IfConversion
+from bfsim.kernel.lowering.induction_variables import HIDDEN, InductionVariables
+from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
+from bfsim.kernel.lowering.jump_threading import JumpThreading
 from bfsim.kernel.lowering.predict import Likelihood
 from bfsim.kernel.lowering.ranges import ranges
-from bfsim.kernel.lowering.shapes import Shape, Shapes
-from bfsim.kernel.lowering.walks import Walks
+from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 from bfsim.kernel.lowering.widths import widest
 from bfsim.kernel.profile import CompilerProfile
 
@@ -24,43 +24,51 @@ class Context:
 
     def __init__(self, routine: Routine, profile: CompilerProfile) -> None:
         self.routine, self.profile = routine, profile
-        self.flow = Flow(routine)
-        self.flags = Flags(self.flow)
+        self.flow = ControlFlow(routine)
+        self.jump_threading = JumpThreading(self.flow)
         for loop in self.flow.loops:
-            loop.blocks -= self.flags.leaving(loop)
-        self.places = Places(self.flow)
-        self.walks = Walks(self.flow, self.places)
-        self.shapes = Shapes(self.flow, profile)
-        self.ranges = ranges(self.flow, frozenset({*self.shapes.by_label, *self.shapes.gone}))
+            loop.blocks -= self.jump_threading.leaving(loop)
+        self.code_motion = InvariantCodeMotion(self.flow)
+        self.evolution = ScalarEvolution(self.flow, self.code_motion)
+        self.if_conversion = IfConversion(self.flow, profile)
+        self.ranges = ranges(self.flow, frozenset({*self.if_conversion.by_label, *self.if_conversion.gone}))
         self.second_parts = {each.second: each.inside for each in self.ranges.values()}
         """Blocks whose test is part of the one before, and where they lead if both hold."""
         self.likelihood = Likelihood(self.flow, self.second_parts)
-        self.groups = Groups(self.flow, self.walks, profile)
-        self.bit_counts = bit_counting_loops(self.flow, self.walks)
-        self.fills = filling_loops(self.flow, self.walks) if profile.library.fill else {}
-        self.needs = Needs(
-            self.flow, self.walks, self.shapes, self.groups, self.flags, frozenset(self.fills), profile
+        self.induction_variables = InductionVariables(self.flow, self.evolution, profile)
+        self.bit_counts = bit_counting_loops(self.flow, self.evolution)
+        self.fills = filling_loops(self.flow, self.evolution) if profile.library.fill else {}
+        self.demanded = DemandedValues(
+            self.flow,
+            self.evolution,
+            self.if_conversion,
+            self.induction_variables,
+            self.jump_threading,
+            frozenset(self.fills),
+            profile,
         )
         self.replaced = self.bit_counts | self.fills
         """Loops of one block that are an operation or a call."""
 
     @cached_property
-    def _shape_by_phi(self) -> dict[str, Shape]:
-        return {shape.phi.result or "": shape for shape in self.shapes.by_label.values()}
+    def _conversion_by_phi(self) -> dict[str, ConvertedIf]:
+        return {
+            conversion.phi.result or "": conversion for conversion in self.if_conversion.by_label.values()
+        }
 
-    def shape_of(self, phi: Instruction) -> Shape | None:
+    def conversion_of(self, phi: Instruction) -> ConvertedIf | None:
         """The branchless `if` that computes a phi."""
-        return self._shape_by_phi.get(phi.result or "")
+        return self._conversion_by_phi.get(phi.result or "")
 
     def others(self, phi: Instruction) -> list[tuple[str, str]]:
         """Arms of a phi that come from elsewhere than from the branchless `if` that computes it."""
-        shape = self.shape_of(phi)
-        own = {shape.label, *shape.arms} if shape else set()
+        conversion = self.conversion_of(phi)
+        own = {conversion.label, *conversion.arms} if conversion else set()
         return [(value, label) for value, label in self.arms(phi) if label not in own]
 
-    def shaped(self, phi: Instruction) -> str:
+    def converted(self, phi: Instruction) -> str:
         """Name of what a branchless `if` computes: a value of its own where other ways lead to the phi as well."""
-        return f"{phi.result}.shaped" if self.others(phi) else phi.result or ""
+        return f"{phi.result}.converted" if self.others(phi) else phi.result or ""
 
     def is_alias(self, each: Instruction) -> bool:
         """Whether an instruction only renames a register: widening what a load has extended already, or narrowing."""
@@ -89,15 +97,15 @@ class Context:
         """The register that holds `value`; constants are written #5."""
         if not value.startswith(("%", "@")):
             return f"#{value}"
-        value = self.places.same.get(value, value)
-        if value in self.needs.behind:
-            return self.needs.behind[value].name
+        value = self.code_motion.same.get(value, value)
+        if value in self.demanded.eliminated:
+            return self.demanded.eliminated[value].name
         each = self.flow.instruction(value)
-        if each is not None and self.needs.in_sunk_mask(each):
+        if each is not None and self.demanded.in_sunk_mask(each):
             return self.name(each.operands[0])
         if each is not None and self.is_alias(each):
             source = self.flow.instruction(each.operands[0])
-            if source is not None and source.opcode == "load" and self.needs.extended_apart(source):
+            if source is not None and source.opcode == "load" and self.demanded.extended_apart(source):
                 return f"{source.result}.wide"
             return self.name(each.operands[0])
         return value
@@ -126,7 +134,7 @@ class Context:
 
     def is_there(self, value: str, number: int, call: Instruction) -> bool:
         """Whether a value is in the register of argument `number` already: computed there, or passed on in its place."""
-        if self.needs.ends_in(value, call):
+        if self.demanded.ends_in(value, call):
             return True
         parameters, users = self.parameters(), self.flow.users.get(value)
         repeats = any(

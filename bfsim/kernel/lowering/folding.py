@@ -7,7 +7,7 @@ from functools import cached_property
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.isa import ADDRESS_SHIFTS
 from bfsim.kernel.learnt import Learnt
-from bfsim.kernel.loops import Flow
+from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.predict import predicate
 from bfsim.kernel.profile import CompilerProfile
 
@@ -19,7 +19,7 @@ HIGH_BYTE = 0xFF00  # a mask with these bits cuts a sum down to a half-word
 class Folding:
     """What is folded into what, in one routine."""
 
-    def __init__(self, flow: Flow, profile: CompilerProfile) -> None:
+    def __init__(self, flow: ControlFlow, profile: CompilerProfile) -> None:
         self.flow, self.profile = flow, profile
 
     def shift_add(self, each: Instruction) -> tuple[str, str] | None:

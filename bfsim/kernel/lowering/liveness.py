@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from bfsim.kernel.loops import Flow
-from bfsim.kernel.lowering.steps import Steps
+from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.machine_code import MachineCode
 
 
 @dataclass(slots=True)
@@ -16,7 +16,7 @@ class Liveness:
     out: dict[str, set[str]] = field(default_factory=dict)
 
 
-def liveness(flow: Flow, steps: Steps, merged: dict[str, list[tuple[str, str]]]) -> Liveness:
+def liveness(flow: ControlFlow, code: MachineCode, merged: dict[str, list[tuple[str, str]]]) -> Liveness:
     """Solve the data flow equations. `merged`: of each phi the (value, block it comes from) of its arms.
 
     A phi reads its arms at the end of the blocks they come from, and is written at the start of its own.
@@ -32,11 +32,11 @@ def liveness(flow: Flow, steps: Steps, merged: dict[str, list[tuple[str, str]]])
     reads: dict[str, set[str]] = {}
     for label in flow.blocks:
         needed: set[str] = set()
-        for step in reversed(steps.of[label]):
-            needed.discard(step.result or "")
-            needed.update(name for name, _ in step.uses if not name.startswith("#"))
+        for instruction in reversed(code.of[label]):
+            needed.discard(instruction.result or "")
+            needed.update(name for name, _ in instruction.uses if not name.startswith("#"))
         reads[label] = needed
-        written[label] |= {step.result for step in steps.of[label] if step.result}
+        written[label] |= {instruction.result for instruction in code.of[label] if instruction.result}
     live = Liveness({label: set() for label in flow.blocks}, {label: set() for label in flow.blocks})
     changed = True
     while changed:

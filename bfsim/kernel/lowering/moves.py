@@ -7,7 +7,7 @@ import re
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.constants import load_constant
-from bfsim.kernel.lowering.steps import Bank, Step
+from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.webs import Webs
 
 DECLARED = re.compile(r"\.v(\d+)")
@@ -15,12 +15,12 @@ LAST = 1 << 16
 
 
 class Moves:
-    """Inserts the moves into the steps of a routine; `on_edges` are those that belong to an edge."""
+    """Inserts the moves into the code of a routine; `on_edges` are those that belong to an edge."""
 
     def __init__(self, webs: Webs) -> None:
-        self.webs, self.flow, self.steps = webs, webs.flow, webs.steps
+        self.webs, self.flow, self.code = webs, webs.flow, webs.code
         self.find, self.bank = webs.find, webs.bank
-        self.on_edges: dict[tuple[str, str], list[Step]] = {}
+        self.on_edges: dict[tuple[str, str], list[MachineInstruction]] = {}
         self._copies()
         self._overwrites()
         self._moves()
@@ -36,16 +36,18 @@ class Moves:
                 if value.startswith("#"):
                     self._on_edge(label, home, load_constant(value, line, phi, self.bank[self.find(phi)]))
                 elif self.find(value) != self.find(phi):
-                    move = Step(Op.MOVE, line, phi, Bank.ANY, ((value, Bank.ANY),))
+                    move = MachineInstruction(
+                        Op.MOVE, line, phi, RegisterBank.ANY, ((value, RegisterBank.ANY),)
+                    )
                     if self._is_before_the_test(phi, label, home):
-                        self.steps.add(label, move)
+                        self.code.add(label, move)
                         continue
                     self._on_edge(label, home, move)
                     onto.setdefault((label, home), {})[self.find(phi)] = self.find(value)
         for (label, home), copies in onto.items():
             if _is_circular(copies):
                 line = self.flow.blocks[home].instructions[0].line
-                self._on_edge(label, home, Step(Op.MOVE, line, None, Bank.ANY))
+                self._on_edge(label, home, MachineInstruction(Op.MOVE, line, None, RegisterBank.ANY))
 
     def _is_before_the_test(self, phi: str, label: str, home: str) -> bool:
         """Whether a copy that goes with a back edge is made before the test there [insert_backedge_copies, tree-outof-ssa.cc].
@@ -60,72 +62,84 @@ class Moves:
         outside = (way for way in self.flow.blocks[label].successors if way != home)
         return not taken_over and not any(phi in self.webs.live.into[way] for way in outside)
 
-    def _on_edge(self, label: str, home: str, step: Step) -> None:
+    def _on_edge(self, label: str, home: str, instruction: MachineInstruction) -> None:
         if len(set(self.flow.blocks[label].successors)) == 1:
-            self.steps.add(label, step)
+            self.code.add(label, instruction)
         else:
-            self.on_edges.setdefault((label, home), []).append(step)
+            self.on_edges.setdefault((label, home), []).append(instruction)
 
     def _overwrites(self) -> None:
         """Two-operand instructions destroy an operand: one that is still needed is copied first."""
-        for label, block in self.steps.of.items():
+        for label, block in self.code.of.items():
             alive = {self.find(name) for name in self.webs.live.out[label]}
-            kept: list[Step] = []
-            for step in reversed(block):
-                kept.append(step)
-                if step.overwrites:
-                    lost = [self.find(name) for name in step.overwrites]
-                    own = self.find(step.result or "")
+            kept: list[MachineInstruction] = []
+            for instruction in reversed(block):
+                kept.append(instruction)
+                if instruction.overwrites:
+                    lost = [self.find(name) for name in instruction.overwrites]
+                    own = self.find(instruction.result or "")
                     needed = all((name in alive and name != own) or name.startswith("#") for name in lost)
                     if needed and not all(name.startswith("#") for name in lost):
-                        kept.append(Step(Op.MOVE, step.line, None, Bank.ANY))
-                if step.result:
-                    alive.discard(self.find(step.result))
-                alive.update(self.find(name) for name, _ in step.uses)
-            self.steps.of[label] = kept[::-1]
+                        kept.append(MachineInstruction(Op.MOVE, instruction.line, None, RegisterBank.ANY))
+                if instruction.result:
+                    alive.discard(self.find(instruction.result))
+                alive.update(self.find(name) for name, _ in instruction.uses)
+            self.code.of[label] = kept[::-1]
 
     def _moves(self) -> None:
         """A move wherever a value is used in the other bank; outside the loop if it does not change there."""
         for label in self.flow.order:
-            block: list[Step] = []
-            for step in self.steps.of[label]:
-                for position, (name, wanted) in enumerate(step.uses):
-                    bank = self._wanted(step, wanted)
-                    if name.startswith("#") or bank in (Bank.ANY, self.bank.get(self.find(name), bank)):
+            block: list[MachineInstruction] = []
+            for instruction in self.code.of[label]:
+                for position, (name, wanted) in enumerate(instruction.uses):
+                    bank = self._wanted(instruction, wanted)
+                    if name.startswith("#") or bank in (
+                        RegisterBank.ANY,
+                        self.bank.get(self.find(name), bank),
+                    ):
                         continue
                     place = self._move_place(name, label)
                     copy = self._copy_of(name, bank, place)
-                    move = Step(Op.MOVE, step.line, copy, bank, ((name, Bank.ANY),))
+                    move = MachineInstruction(
+                        Op.MOVE, instruction.line, copy, bank, ((name, RegisterBank.ANY),)
+                    )
                     if place == label:
                         block.insert(
-                            self._behind_definition(block, name) if bank is Bank.DATA else len(block), move
+                            self._behind_definition(block, name) if bank is RegisterBank.DATA else len(block),
+                            move,
                         )
-                    elif not any(each.result == copy for each in self.steps.of[place]):
-                        self.steps.add(place, move)
-                    step.uses = (*step.uses[:position], (copy, bank), *step.uses[position + 1 :])
-                block.append(step)
-            self.steps.of[label] = block
+                    elif not any(each.result == copy for each in self.code.of[place]):
+                        self.code.add(place, move)
+                    instruction.uses = (
+                        *instruction.uses[:position],
+                        (copy, bank),
+                        *instruction.uses[position + 1 :],
+                    )
+                block.append(instruction)
+            self.code.of[label] = block
 
-    def _behind_definition(self, block: list[Step], name: str) -> int:
-        """Position right behind the step that computes `name`, or the end: what a pointer register yields goes back."""
-        places = [number for number, step in enumerate(block) if step.result == name]
+    def _behind_definition(self, block: list[MachineInstruction], name: str) -> int:
+        """Position right behind the instruction that computes `name`, or the end: what a pointer register yields goes back."""
+        places = [number for number, instruction in enumerate(block) if instruction.result == name]
         return places[-1] + 1 if places else len(block)
 
-    def _copy_of(self, name: str, bank: Bank, place: str) -> str:
+    def _copy_of(self, name: str, bank: RegisterBank, place: str) -> str:
         copy = f"{name}@{bank.value}.{place}"
         self.bank[copy] = bank
         return copy
 
-    def _wanted(self, step: Step, bank: Bank) -> Bank:
+    def _wanted(self, instruction: MachineInstruction, bank: RegisterBank) -> RegisterBank:
         """The bank in which an operand is wanted: that of the result, or of the other operand."""
-        if bank is not Bank.ANY or step.op in (Op.STORE32, Op.MOVE):
+        if bank is not RegisterBank.ANY or instruction.op in (Op.STORE32, Op.MOVE):
             return bank
-        if step.result:
-            return self.bank.get(self.find(step.result), Bank.DATA)
+        if instruction.result:
+            return self.bank.get(self.find(instruction.result), RegisterBank.DATA)
         banks = {
-            self.bank.get(self.find(name), Bank.DATA) for name, _ in step.uses if not name.startswith("#")
+            self.bank.get(self.find(name), RegisterBank.DATA)
+            for name, _ in instruction.uses
+            if not name.startswith("#")
         }
-        return banks.pop() if len(banks) == 1 else Bank.DATA
+        return banks.pop() if len(banks) == 1 else RegisterBank.DATA
 
     def _move_place(self, name: str, label: str) -> str:
         place = label
@@ -139,22 +153,22 @@ class Moves:
         if any(self.find(phi) == web and self.flow.defined[phi][0] in loop.blocks for phi in self.webs.phis):
             return True
         return any(
-            step.result and self.find(step.result) == web
+            instruction.result and self.find(instruction.result) == web
             for label in self.flow.inside(loop)
-            for step in self.steps.of[label]
+            for instruction in self.code.of[label]
         )
 
     def _constants(self) -> None:
         """A constant that is no immediate is loaded once, before the outermost loop around its use."""
         made: set[tuple[str, str]] = set()
         for label in self.flow.order:
-            block: list[Step] = []
-            for step in self.steps.of[label]:
-                for name, _ in step.uses:
+            block: list[MachineInstruction] = []
+            for instruction in self.code.of[label]:
+                for name, _ in instruction.uses:
                     if (
                         not name.startswith("#")
-                        or step.op is Op.IMM
-                        or (step.op is Op.COND_MOVE and name == "#poison")
+                        or instruction.op is Op.IMM
+                        or (instruction.op is Op.COND_MOVE and name == "#poison")
                     ):
                         continue
                     loops = self.flow.loops_of(label)
@@ -163,11 +177,11 @@ class Moves:
                         continue
                     made.add((name, place))
                     if place == label:
-                        block.append(load_constant(name, step.line))
+                        block.append(load_constant(name, instruction.line))
                     else:
-                        self.steps.add(place, load_constant(name, step.line))
-                block.append(step)
-            self.steps.of[label] = block
+                        self.code.add(place, load_constant(name, instruction.line))
+                block.append(instruction)
+            self.code.of[label] = block
 
 
 def _declared(phi: str) -> int:

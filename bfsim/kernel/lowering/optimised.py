@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from bfsim.kernel import isa
-from bfsim.kernel.ir_text import Block, Routine
+from bfsim.kernel.ir_text import BasicBlock, Routine
 from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import Loop
+from bfsim.kernel.lowering.block_layout import BlockLayout
 from bfsim.kernel.lowering.charges import BlockCost, Charge, Test, charge, instead
 from bfsim.kernel.lowering.context import Context
-from bfsim.kernel.lowering.interlocks import Issue, issues
-from bfsim.kernel.lowering.layout import Layout
+from bfsim.kernel.lowering.machine_code import MachineInstruction
 from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.registers import Allocation, allocate
+from bfsim.kernel.lowering.schedule import Issue, issues
 from bfsim.kernel.lowering.select import select
-from bfsim.kernel.lowering.steps import Step
-from bfsim.kernel.lowering.sunk import with_values_sunk
+from bfsim.kernel.lowering.sinking import sink
 from bfsim.kernel.profile import CompilerProfile
 
 ALONE = Issue()
@@ -23,25 +23,26 @@ ALONE = Issue()
 
 def lower(routine: Routine, profile: CompilerProfile) -> dict[str, BlockCost]:
     """Return what each block of `routine` costs, by label."""
-    routine = with_values_sunk(without_redundant_loads(routine))
-    lowering = _Lowering(routine, profile)
+    routine = sink(without_redundant_loads(routine))
+    lowering = _OptimisedLowering(routine, profile)
     return {block.label: lowering.block(block) for block in routine.blocks}
 
 
-class _Lowering:
+class _OptimisedLowering:
     def __init__(self, routine: Routine, profile: CompilerProfile) -> None:
         self.context = Context(routine, profile)
         self.flow, self.profile = self.context.flow, profile
-        self.steps = select(self.context)
-        self.allocation = allocate(self.context, self.steps)
+        self.code = select(self.context)
+        self.allocation = allocate(self.context, self.code)
         empty = set(self.context.replaced) | {label for label in self.flow.blocks if self._is_empty(label)}
         copies = {
-            edge: [self._charge(step) for step in steps] for edge, steps in self.allocation.on_edges.items()
+            edge: [self._charge(instruction) for instruction in steps]
+            for edge, steps in self.allocation.on_edges.items()
         }
-        self.layout = Layout(
+        self.layout = BlockLayout(
             self.flow,
             self.context.likelihood,
-            frozenset(empty | self.context.shapes.gone | self.context.second_parts.keys()),
+            frozenset(empty | self.context.if_conversion.gone | self.context.second_parts.keys()),
             copies,
             leaving_side_last=profile.applies(Learnt.LEAVING_SIDE),
         )
@@ -50,26 +51,26 @@ class _Lowering:
     def _is_empty(self, label: str) -> bool:
         block = self.flow.blocks[label]
         is_latch = any(loop.latch == label for loop in self.flow.loops)
-        return not self.steps.of[label] and len(block.successors) == 1 and not is_latch and (
+        return not self.code.of[label] and len(block.successors) == 1 and not is_latch and (
             label != self.flow.routine.blocks[0].label
         )  # fmt: skip
 
     def _is_hardware(self, loop: Loop) -> bool:
         """A counted loop, at most two deep, with an operation before its end [GCC: hwloop_optimize in bfin.cc]."""
-        if loop.header not in self.context.needs.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
+        if loop.header not in self.context.demanded.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
             return False
         if self.flow.is_split(loop) or (loop.latch, loop.header) in self.allocation.on_edges:
-            return False  # values move from turn to turn in a block of its own: the last one jumps
+            return False  # values move from iteration to iteration in a block of its own: the last one jumps
         before = [
             each
             for each in self.flow.predecessors[loop.latch]
             if not self.flow.is_overflow_guard(self.flow.blocks[each])
-            and each not in self.context.shapes.gone
+            and each not in self.context.if_conversion.gone
         ]
         copied = any(self._ends_apart(inner, before) for inner in loop.inner)
         if copied and self.profile.applies(Learnt.COPIED_END):
             return False  # the end of the loop is copied behind each exit of the inner one, so there are two ends
-        return bool(self.steps.of[loop.latch]) or len(before) == 1
+        return bool(self.code.of[loop.latch]) or len(before) == 1
 
     def _ends_apart(self, inner: Loop, before: list[str]) -> bool:
         """Whether the exits of an inner loop do not meet at once: one of them has a move to make."""
@@ -79,32 +80,35 @@ class _Lowering:
         )
 
     def _counted_depth(self, loop: Loop) -> int:
-        own = int(loop.header in self.context.needs.counted)
+        own = int(loop.header in self.context.demanded.counted)
         return own + max((self._counted_depth(each) for each in loop.inner), default=0)
 
-    def block(self, block: Block) -> BlockCost:
+    def block(self, block: BasicBlock) -> BlockCost:
         cost = BlockCost()
-        steps = self.steps.of[block.label]
+        instructions = self.code.of[block.label]
         if block is self.flow.routine.blocks[0]:
             self._enter(cost, block.instructions[0].line)
         before = len(cost.charges)
         cost.charges += [
-            self._charge(step, issue) for step, issue in zip(steps, self._issues(steps), strict=True)
+            self._charge(instruction, issue)
+            for instruction, issue in zip(instructions, self._issues(instructions), strict=True)
         ]
         self._loops(block, cost)
         self._leave_block(block, cost)
-        others = cost.charges[:before] + cost.charges[before + len(steps) :]
-        cost.nbytes = sum(each.code_bytes for each in steps) + sum(COSTS[each.op].nbytes for each in others)
+        others = cost.charges[:before] + cost.charges[before + len(instructions) :]
+        cost.nbytes = sum(each.code_bytes for each in instructions) + sum(
+            COSTS[each.op].nbytes for each in others
+        )
         return cost
 
-    def _issues(self, steps: list[Step]) -> list[Issue]:
+    def _issues(self, instructions: list[MachineInstruction]) -> list[Issue]:
         if not self.profile.interlocks:
-            return [Issue()] * len(steps)
-        return issues(steps, self.allocation.bank.get, parallel=self.profile.parallel_issue)
+            return [Issue()] * len(instructions)
+        return issues(instructions, self.allocation.bank.get, parallel=self.profile.parallel_issue)
 
-    def _charge(self, step: Step, issue: Issue = ALONE) -> Charge:
-        cclk = COSTS[step.op].cclk if step.cclk is None else step.cclk
-        return Charge(step.op, step.line, 0 if issue.paired else cclk, issue.stall_cclk)
+    def _charge(self, instruction: MachineInstruction, issue: Issue = ALONE) -> Charge:
+        cclk = COSTS[instruction.op].cclk if instruction.cclk is None else instruction.cclk
+        return Charge(instruction.op, instruction.line, 0 if issue.paired else cclk, issue.stall_cclk)
 
     # Function
 
@@ -116,7 +120,7 @@ class _Lowering:
             cost.charges += [charge(op, line) for op in ops]
         elif self.allocation.saves_frame_pointer:
             cost.charges.append(charge(Op.PUSH, line))
-        cost.charges += [self._charge(step) for step in self.allocation.entry]
+        cost.charges += [self._charge(instruction) for instruction in self.allocation.entry]
 
     def _return(self, cost: BlockCost, line: int) -> None:
         if self.allocation.calls:
@@ -140,26 +144,26 @@ class _Lowering:
 
     # Loops and branches
 
-    def _loops(self, block: Block, cost: BlockCost) -> None:
+    def _loops(self, block: BasicBlock, cost: BlockCost) -> None:
         for loop in self.flow.loops:
-            if loop.header not in self.context.needs.counted or loop.header in self.context.replaced:
+            if loop.header not in self.context.demanded.counted or loop.header in self.context.replaced:
                 continue
             line = self.flow.blocks[loop.header].instructions[-1].line
             line = self.flow.blocks[loop.latch].terminator.line or line
             if block.label == self.flow.entering(loop):
                 cost.charges.append(charge(Op.MOVE, line))
                 if any(
-                    group.loop is loop and abs(group.advance.constant) > 1
-                    for group in self.context.groups.all
+                    variable.loop is loop and abs(variable.increment.constant) > 1
+                    for variable in self.context.induction_variables.all
                 ):
                     cost.charges += [charge(Op.ALU, line)] * 3
                 if loop.header in self.hardware:
                     cost.charges.append(charge(Op.LOOP_SETUP, line))
 
-    def _leave_block(self, block: Block, cost: BlockCost) -> None:
+    def _leave_block(self, block: BasicBlock, cost: BlockCost) -> None:
         terminator, label = block.terminator, block.label
         if label in self.context.replaced or (
-            label in self.context.shapes.gone and len(set(block.successors)) > 1
+            label in self.context.if_conversion.gone and len(set(block.successors)) > 1
         ):
             return
         if terminator.opcode == "ret":
@@ -167,10 +171,10 @@ class _Lowering:
         elif terminator.opcode == "switch":
             self._switch(block, cost)
         elif terminator.opcode == "br" and len(set(block.successors)) == 1:
-            if label not in self.context.shapes.gone and not self._vanishes(label):
+            if label not in self.context.if_conversion.gone and not self._vanishes(label):
                 cost.charges += self.layout.on(label, block.successors[0], terminator.line)
-        elif terminator.opcode == "br" and label in self.context.shapes.by_label:
-            join, _ = self.flow.defined[self.context.shapes.by_label[label].phi.result or ""]
+        elif terminator.opcode == "br" and label in self.context.if_conversion.by_label:
+            join, _ = self.flow.defined[self.context.if_conversion.by_label[label].phi.result or ""]
             cost.charges += self.layout.jump(label, self.layout.landing(join), terminator.line)
         elif terminator.opcode == "br":
             self._conditional(block, cost)
@@ -178,11 +182,11 @@ class _Lowering:
     def _vanishes(self, label: str) -> bool:
         return label in self.layout.skipped
 
-    def _conditional(self, block: Block, cost: BlockCost) -> None:
+    def _conditional(self, block: BasicBlock, cost: BlockCost) -> None:
         label, line = block.label, block.terminator.line
         if label in self.context.second_parts:
             sides = self._second_part(label, line)
-        elif self.context.flags.decides(block.terminator) or self.flow.is_overflow_guard(block):
+        elif self.context.jump_threading.decides(block.terminator) or self.flow.is_overflow_guard(block):
             sides = tuple(self.layout.on(label, way, line) for way in block.successors)
         else:
             if self._is_kept(block):
@@ -204,16 +208,16 @@ class _Lowering:
             )
         return tuple(sides)
 
-    def _is_kept(self, block: Block) -> bool:
+    def _is_kept(self, block: BasicBlock) -> bool:
         """Whether a condition was computed before the loop: a register keeps it, and CC gets it back."""
         condition = block.terminator.operands[0]
-        moved = self.context.places.of.get(condition, block.label) != block.label
+        moved = self.context.code_motion.of.get(condition, block.label) != block.label
         tested = self.flow.innermost(block.label)
-        hoisted = moved and tested is not None and self.context.places.is_invariant(condition, tested)
+        hoisted = moved and tested is not None and self.context.code_motion.is_invariant(condition, tested)
         return (
             hoisted
             and self.profile.applies(Learnt.GUARDS)
-            and block.label not in self.context.shapes.by_label
+            and block.label not in self.context.if_conversion.by_label
         )
 
     def _branch(self, label: str, line: int) -> tuple[list[Charge], list[Charge]]:
@@ -221,7 +225,7 @@ class _Lowering:
             (
                 each
                 for each in self.flow.loops
-                if self.flow.ending(each) == label and each.header in self.context.needs.counted
+                if self.flow.ending(each) == label and each.header in self.context.demanded.counted
             ),
             None,
         )
@@ -240,7 +244,7 @@ class _Lowering:
             again = [*again, *moves, charge(Op.JUMP, line)]
         return (again, leaving) if ways[0] == stays else (leaving, again)
 
-    def _switch(self, block: Block, cost: BlockCost) -> None:
+    def _switch(self, block: BasicBlock, cost: BlockCost) -> None:
         """A chain of comparisons and branches, in the order of the cases."""
         value, line = block.terminator.operands[0], block.terminator.line
         pair = [charge(Op.COMPARE, line), charge(Op.BRANCH_NOT_TAKEN, line)]

@@ -10,15 +10,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 
-from bfsim.kernel.ir_text import Block, Instruction
-from bfsim.kernel.loops import Flow, Loop
+from bfsim.kernel.ir_text import BasicBlock, Instruction
+from bfsim.kernel.loops import ControlFlow, Loop
 
 EVEN = 0.5
 # hit rates [predict.def]
 LOOP_EXIT, EXTRA_EXIT, LOOP_GUARD = 0.89, 0.67, 0.73
 POSITIVE, NOT_EQUAL, CALL = 0.59, 0.66, 0.67
 CONTINUE = 0.67  # the surest hint of the source: the side without `continue`
-MOST_TURNS = 100  # a loop is guessed to turn at most so often where its count is a constant
+MOST_ITERATIONS = 100  # a loop is guessed to iterate at most so often where its count is a constant
 
 BELOW_ZERO = {("slt", 0), ("slt", 1), ("sle", 0), ("sle", -1), ("slt", -1), ("sle", 1)}
 ABOVE_ZERO = {("sgt", 0), ("sgt", -1), ("sge", 0), ("sge", 1), ("sgt", 1), ("sge", -1)}
@@ -27,7 +27,7 @@ ABOVE_ZERO = {("sgt", 0), ("sgt", -1), ("sge", 0), ("sge", 1), ("sgt", 1), ("sge
 class Likelihood:
     """Probabilities of the edges, and frequencies of the blocks, of one routine."""
 
-    def __init__(self, flow: Flow, second_parts: Mapping[str, str] | None = None) -> None:
+    def __init__(self, flow: ControlFlow, second_parts: Mapping[str, str] | None = None) -> None:
         """`second_parts`: blocks whose test is made by the one before, and where they lead then."""
         self.flow, self.second_parts = flow, second_parts or {}
 
@@ -52,7 +52,7 @@ class Likelihood:
 
     @cached_property
     def frequency(self) -> dict[str, float]:
-        """Executions of each block per call, as guessed: loops turn as their exits are likely."""
+        """Executions of each block per call, as guessed: loops iterate as their exits are likely."""
         found = dict.fromkeys(self.flow.blocks, 0.0)
         entry = self.flow.routine.blocks[0].label
         back = {(loop.latch, loop.header) for loop in self.flow.loops}
@@ -62,17 +62,17 @@ class Likelihood:
                 for before in self.flow.predecessors[label]
                 if (before, label) not in back
             )
-            found[label] = (1.0 if label == entry else into) * self._turns(label)
+            found[label] = (1.0 if label == entry else into) * self._iterations(label)
         return found
 
-    def _turns(self, label: str) -> float:
-        turns = 1.0
+    def _iterations(self, label: str) -> float:
+        iterations = 1.0
         for loop in self.flow.loops:
             if loop.header == label:
-                turns *= min(MOST_TURNS, 1 / max(1e-2, 1 - self.taken[loop.latch, loop.header]))
-        return turns
+                iterations *= min(MOST_ITERATIONS, 1 / max(1e-2, 1 - self.taken[loop.latch, loop.header]))
+        return iterations
 
-    def _of_true_side(self, block: Block) -> float:
+    def _of_true_side(self, block: BasicBlock) -> float:
         yes, no = block.successors
         if self.flow.is_overflow_guard(block):
             return float("icmp ne" in self._text_of_test(block))
@@ -95,14 +95,14 @@ class Likelihood:
         """The loop of the source: GCC guesses before it splits any."""
         return self.flow.around(loop) if loop is not None and self.flow.is_split(loop) else loop
 
-    def _text_of_test(self, block: Block) -> str:
+    def _text_of_test(self, block: BasicBlock) -> str:
         test = self.flow.instruction(block.terminator.operands[0])
         return test.text if test else ""
 
     def _only_exit(self, loop: Loop) -> bool:
         return len(self.flow.exits(loop)) == 1
 
-    def _by_opcode(self, block: Block) -> list[float]:
+    def _by_opcode(self, block: BasicBlock) -> list[float]:
         """Equality is unlikely, and values are positive."""
         test = self.flow.instruction(block.terminator.operands[0])
         if test is None or test.opcode != "icmp":
@@ -119,7 +119,7 @@ class Likelihood:
             return [POSITIVE]
         return []
 
-    def _by_calls(self, block: Block) -> list[float]:
+    def _by_calls(self, block: BasicBlock) -> list[float]:
         """A side with a call, which the other side does not reach, is unlikely."""
         votes = []
         for vote, way in zip((1 - CALL, CALL), block.successors, strict=True):
@@ -128,8 +128,8 @@ class Likelihood:
                 votes.append(vote)
         return votes
 
-    def _by_guard(self, block: Block, loop: Loop | None) -> list[float]:
-        """A test right before a loop is likely to let it turn."""
+    def _by_guard(self, block: BasicBlock, loop: Loop | None) -> list[float]:
+        """A test right before a loop is likely to let it iterate."""
         votes = []
         for vote, way in zip((LOOP_GUARD, 1 - LOOP_GUARD), block.successors, strict=True):
             if any(each.header == way and each is not loop for each in self.flow.loops):
@@ -137,7 +137,7 @@ class Likelihood:
         return votes
 
 
-def _by_hint(block: Block) -> list[float]:
+def _by_hint(block: BasicBlock) -> list[float]:
     """A side of an `if` that ends in `continue` or `return` is unlikely: the source knows, the branch carries it.
 
     Where a jump was threaded, LLVM has made an extreme of it.

@@ -1,4 +1,4 @@
-"""Blocks before loops that begin right behind another one: what is set up there must not run in every turn of the first."""
+"""Blocks before loops that begin right behind another one: what is set up there must not run in every iteration of the first."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 
 from bfsim.kernel.ir_text import DEFINE, LABEL, Routine, read_module
-from bfsim.kernel.loops import Flow
+from bfsim.kernel.loops import ControlFlow
 
 ENDING = ".before"
 
@@ -19,7 +19,7 @@ def with_preheaders(text: str) -> str:
 
 def _edges(routine: Routine) -> Iterator[tuple[str, str]]:
     """(last block of a loop, header of the one behind it)."""
-    flow = Flow(routine)
+    flow = ControlFlow(routine)
     for loop in flow.loops:
         before = [each for each in flow.predecessors[loop.header] if each not in loop.blocks]
         if len(before) == 1 and flow.innermost(before[0]) is not flow.around(loop):

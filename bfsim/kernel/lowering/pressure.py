@@ -9,21 +9,21 @@ from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import Loop
-from bfsim.kernel.lowering.steps import Bank, Step
+from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.webs import Webs
 
 POINTERS = isa.POINTER_REGISTERS + 1  # with FP, which -O2 frees
-KEPT = {Bank.DATA: 4, Bank.POINTER: 4}  # R4-R7, P3-P5 and FP survive a call
-ROOM = {Bank.DATA: isa.DATA_REGISTERS, Bank.POINTER: POINTERS}
+KEPT = {RegisterBank.DATA: 4, RegisterBank.POINTER: 4}  # R4-R7, P3-P5 and FP survive a call
+ROOM = {RegisterBank.DATA: isa.DATA_REGISTERS, RegisterBank.POINTER: POINTERS}
 
 
 class Pressure:
-    """Inserts the reloads into the steps of a routine."""
+    """Inserts the reloads into the code of a routine."""
 
     def __init__(self, webs: Webs) -> None:
-        self.webs, self.flow, self.steps = webs, webs.flow, webs.steps
+        self.webs, self.flow, self.code = webs, webs.flow, webs.code
         self.find, self.bank, self.frequency = webs.find, webs.bank, webs.frequency
-        self.reloading: set[tuple[str, Bank]] = set()
+        self.reloading: set[tuple[str, RegisterBank]] = set()
         webs.analyse()
         self._spill()
 
@@ -31,7 +31,7 @@ class Pressure:
         """Innermost loops first: what is used least there gives up its register."""
         spilled: set[str] = set()
         for loop in self.flow.loops:
-            for bank in (Bank.DATA, Bank.POINTER):
+            for bank in (RegisterBank.DATA, RegisterBank.POINTER):
                 for _ in range(32):
                     victim = self._victim(loop, bank, spilled)
                     if victim is None:
@@ -43,17 +43,19 @@ class Pressure:
         """Return the constants that a loop keeps in registers, and how often it uses them."""
         found: dict[str, float] = {}
         for label in self.flow.inside(loop):
-            for step in self.steps.of[label]:
-                for name, _ in step.uses:
-                    if name.startswith("#") and step.op is not Op.IMM:
+            for instruction in self.code.of[label]:
+                for name, _ in instruction.uses:
+                    if name.startswith("#") and instruction.op is not Op.IMM:
                         found[name] = found.get(name, 0) + self.frequency[label]
         return found
 
-    def _victim(self, loop: Loop, bank: Bank, spilled: set[str]) -> str | None:
+    def _victim(self, loop: Loop, bank: RegisterBank, spilled: set[str]) -> str | None:
         constants = {name: weight for name, weight in self.constants_in(loop).items() if name not in spilled}
-        extra = len(constants) if bank is Bank.DATA else 0
+        extra = len(constants) if bank is RegisterBank.DATA else 0
         has_call = any(
-            step.op is Op.CALL for label in self.flow.inside(loop) for step in self.steps.of[label]
+            instruction.op is Op.CALL
+            for label in self.flow.inside(loop)
+            for instruction in self.code.of[label]
         )
         room = KEPT[bank] if has_call else ROOM[bank]
         busiest: set[str] = set()
@@ -70,20 +72,20 @@ class Pressure:
             return None
         self.reloading.add((loop.header, bank))
         weights = {name: self._weight(name, loop) for name in busiest}
-        if bank is Bank.DATA:
+        if bank is RegisterBank.DATA:
             weights |= constants
         return min(weights, key=lambda name: (weights[name], name), default=None)
 
     def points(self, label: str, *, across_calls: bool) -> list[set[str]]:
-        """Webs alive after each step of a block (only across calls, if asked for)."""
+        """Webs alive after each instruction of a block (only across calls, if asked for)."""
         alive = {self.find(name) for name in self.webs.live.out[label]}
         found = [] if across_calls else [set(alive)]
-        for step in reversed(self.steps.of[label]):
-            if step.result:
-                alive.discard(self.find(step.result))
-            if across_calls and step.op is Op.CALL:
+        for instruction in reversed(self.code.of[label]):
+            if instruction.result:
+                alive.discard(self.find(instruction.result))
+            if across_calls and instruction.op is Op.CALL:
                 found.append(set(alive))
-            alive.update(self.find(name) for name, _ in step.uses if not name.startswith("#"))
+            alive.update(self.find(name) for name, _ in instruction.uses if not name.startswith("#"))
             if not across_calls:
                 found.append(set(alive))
         return found
@@ -91,18 +93,21 @@ class Pressure:
     def _weight(self, web: str, loop: Loop) -> float:
         total = 0.0
         for label in self.flow.inside(loop):
-            for step in self.steps.of[label]:
-                names = {self.find(name) for name, _ in step.uses} | {self.find(step.result or "")}
+            for instruction in self.code.of[label]:
+                names = {self.find(name) for name, _ in instruction.uses} | {
+                    self.find(instruction.result or "")
+                }
                 total += self.frequency[label] * (web in names)
         return total
 
     def _accumulates(self, web: str, loop: Loop) -> bool:
         """Whether a loop only adds to a value: it may live where there is no other arithmetic (P, I registers)."""
         touching = [
-            step
+            instruction
             for label in self.flow.inside(loop)
-            for step in self.steps.of[label]
-            if self.find(step.result or "") == web or any(self.find(name) == web for name, _ in step.uses)
+            for instruction in self.code.of[label]
+            if self.find(instruction.result or "") == web
+            or any(self.find(name) == web for name, _ in instruction.uses)
         ]
         fitted = self.webs.context.profile.applies(Learnt.ACCUMULATORS)
         return (
@@ -117,29 +122,40 @@ class Pressure:
             self._move_in(web, loop)
             return
         for label in self.flow.inside(loop):
-            block: list[Step] = []
-            for step in self.steps.of[label]:
-                if any(self.find(name) == web for name, _ in step.uses) and step.op is not Op.IMM:
+            block: list[MachineInstruction] = []
+            for instruction in self.code.of[label]:
+                if (
+                    any(self.find(name) == web for name, _ in instruction.uses)
+                    and instruction.op is not Op.IMM
+                ):
                     constant = web.startswith("#")
-                    if block and _is_copy_for(block[-1], step) and web in map(self.find, step.overwrites):
+                    if (
+                        block
+                        and _is_copy_for(block[-1], instruction)
+                        and web in map(self.find, instruction.overwrites)
+                    ):
                         block.pop()  # what was reloaded may be overwritten
-                    block.append(Step(Op.MOVE if constant else Op.LOAD32, step.line, None, Bank.ANY))
-                block.append(step)
-                if step.result and self.find(step.result) == web:
-                    block.append(Step(Op.STORE32, step.line, None, Bank.ANY))
-            self.steps.of[label] = block
+                    block.append(
+                        MachineInstruction(
+                            Op.MOVE if constant else Op.LOAD32, instruction.line, None, RegisterBank.ANY
+                        )
+                    )
+                block.append(instruction)
+                if instruction.result and self.find(instruction.result) == web:
+                    block.append(MachineInstruction(Op.STORE32, instruction.line, None, RegisterBank.ANY))
+            self.code.of[label] = block
 
     def _move_in(self, web: str, loop: Loop) -> None:
         """What is added to a value in another bank has to be moved there."""
         for label in self.flow.inside(loop):
-            block: list[Step] = []
-            for step in self.steps.of[label]:
-                if step.result and self.find(step.result) == web:
-                    block.append(Step(Op.MOVE, step.line, None, Bank.ANY))
-                block.append(step)
-            self.steps.of[label] = block
+            block: list[MachineInstruction] = []
+            for instruction in self.code.of[label]:
+                if instruction.result and self.find(instruction.result) == web:
+                    block.append(MachineInstruction(Op.MOVE, instruction.line, None, RegisterBank.ANY))
+                block.append(instruction)
+            self.code.of[label] = block
 
 
-def _is_copy_for(before: Step, step: Step) -> bool:
-    """Whether the step before only saves an operand that this one overwrites."""
-    return bool(step.overwrites) and before.op is Op.MOVE and before.result is None and not before.uses
+def _is_copy_for(before: MachineInstruction, instruction: MachineInstruction) -> bool:
+    """Whether the instruction before only saves an operand that this one overwrites."""
+    return bool(instruction.overwrites) and before.op is Op.MOVE and before.result is None and not before.uses

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bfsim.kernel.ir_text import Instruction
-from bfsim.kernel.loops import Flow
+from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.predict import predicate
 
 JOINED = ("and", "or", "decided")  # what the blocks of a condition of several parts are called
@@ -29,7 +29,7 @@ class Range:
     high: int
 
 
-def ranges(flow: Flow, taken: frozenset[str]) -> dict[str, Range]:
+def ranges(flow: ControlFlow, taken: frozenset[str]) -> dict[str, Range]:
     """Return the ranges that a routine tests for, by both of their blocks, none of which is in `taken`."""
     found: dict[str, Range] = {}
     for label in flow.order:
@@ -39,7 +39,7 @@ def ranges(flow: Flow, taken: frozenset[str]) -> dict[str, Range]:
     return found
 
 
-def _range(flow: Flow, first: str, second: str) -> Range | None:
+def _range(flow: ControlFlow, first: str, second: str) -> Range | None:
     rows = flow.blocks[second].instructions
     alone = flow.predecessors[second] == [first] and second.startswith(JOINED)
     if not alone or any(each.opcode not in (*RENAMING, "icmp", "br") for each in rows):
@@ -55,7 +55,7 @@ def _range(flow: Flow, first: str, second: str) -> Range | None:
     return _neither(flow, first, second)
 
 
-def _neither(flow: Flow, first: str, second: str) -> Range | None:
+def _neither(flow: ControlFlow, first: str, second: str) -> Range | None:
     """The test for one of two numbers side by side, of which 255 and 0 are two if the value is a byte."""
     ways = flow.blocks[first].successors
     one, other = (_test(flow, label) for label in (first, second))
@@ -75,7 +75,7 @@ def _neither(flow: Flow, first: str, second: str) -> Range | None:
     return Range(first, second, miss, _plain(flow, one), low, high)
 
 
-def _bound(flow: Flow, label: str, holds: bool) -> tuple[str, str, int] | None:
+def _bound(flow: ControlFlow, label: str, holds: bool) -> tuple[str, str, int] | None:
     """(value, low or high, bound) that the test at the end of a block sets if it comes out as `holds`."""
     test = _test(flow, label)
     if test is None or len(flow.users.get(test.result or "", [])) > 1:
@@ -88,14 +88,14 @@ def _bound(flow: Flow, label: str, holds: bool) -> tuple[str, str, int] | None:
     return _plain(flow, test), "low" if relation[0] == "g" else "high", number
 
 
-def _test(flow: Flow, label: str) -> Instruction | None:
+def _test(flow: ControlFlow, label: str) -> Instruction | None:
     """The comparison that decides at the end of a block, if there is one."""
     branch = flow.blocks[label].terminator
     test = flow.instruction(branch.operands[0]) if branch.opcode == "br" and branch.operands else None
     return test if test is not None and test.opcode == "icmp" else None
 
 
-def _plain(flow: Flow, test: Instruction) -> str:
+def _plain(flow: ControlFlow, test: Instruction) -> str:
     value, each = test.operands[0], flow.instruction(test.operands[0])
     while each is not None and each.opcode in RENAMING:
         value = each.operands[0]

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import PHI_ARM, Block, Instruction, Routine
-from bfsim.kernel.loops import Flow, Loop
+from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine
+from bfsim.kernel.loops import ControlFlow, Loop
 
 AGAIN = ".again"  # ending of the name of an address that is only computed to go along
 
@@ -30,7 +30,7 @@ class Carried:
 
 def without_redundant_loads(routine: Routine) -> Routine:
     """Return `routine` with such loads before their loops."""
-    flow = Flow(routine)
+    flow = ControlFlow(routine)
     for loop in flow.loops:
         for each in flow.blocks[loop.header].instructions:
             carried = _carried(flow, loop, each)
@@ -39,7 +39,7 @@ def without_redundant_loads(routine: Routine) -> Routine:
     return routine
 
 
-def _carried(flow: Flow, loop: Loop, load: Instruction) -> Carried | None:
+def _carried(flow: ControlFlow, loop: Loop, load: Instruction) -> Carried | None:
     address = flow.instruction(load.operands[0]) if load.opcode == "load" else None
     if address is None or address.opcode != "getelementptr" or flow.users.get(address.result or "") != [load]:
         return None
@@ -61,7 +61,7 @@ def _carried(flow: Flow, loop: Loop, load: Instruction) -> Carried | None:
     return Carried(loop, load, address, index, merged, known) if len(known) == len(values) else None
 
 
-def _loaded(flow: Flow, loop: Loop, address: Instruction, index: str, label: str) -> str | None:
+def _loaded(flow: ControlFlow, loop: Loop, address: Instruction, index: str, label: str) -> str | None:
     """The value at the same array's `index`, if it has been loaded on the way to the end of block `label`."""
     for before in flow.dominators[label] & loop.blocks:
         for each in flow.blocks[before].instructions:
@@ -71,7 +71,7 @@ def _loaded(flow: Flow, loop: Loop, address: Instruction, index: str, label: str
     return None
 
 
-def _moved(flow: Flow, routine: Routine, carried: Carried) -> Routine:
+def _moved(flow: ControlFlow, routine: Routine, carried: Carried) -> Routine:
     """Load before the loop; in it, a phi beside that of the index, and one beside each that merges it."""
     load, loop = carried.load, carried.loop
     first, following, address = (f"{load.result}.{name}" for name in ("first", "following", "address"))
@@ -102,11 +102,11 @@ def _moved(flow: Flow, routine: Routine, carried: Carried) -> Routine:
             rows.insert(0, merging)
         if block.label == loop.header:
             rows.insert(0, here)
-        blocks.append(Block(block.label, tuple(rows)))
+        blocks.append(BasicBlock(block.label, tuple(rows)))
     return _with_addresses(flow, replace(routine, blocks=tuple(blocks)), carried)
 
 
-def _with_addresses(flow: Flow, routine: Routine, carried: Carried) -> Routine:
+def _with_addresses(flow: ControlFlow, routine: Routine, carried: Carried) -> Routine:
     """Where the element is wanted behind the loop, its address goes along: computed again on the ways that keep it."""
     kept = {label for label, value in carried.values.items() if value == carried.load.result}
     alone = all(len(set(flow.blocks[label].successors)) == 1 for label in kept)
@@ -114,13 +114,13 @@ def _with_addresses(flow: Flow, routine: Routine, carried: Carried) -> Routine:
         return routine
     again = replace(carried.address, result=f"{carried.load.result}{AGAIN}")
     blocks = [
-        Block(block.label, (again, *block.instructions)) if block.label in kept else block
+        BasicBlock(block.label, (again, *block.instructions)) if block.label in kept else block
         for block in routine.blocks
     ]
     return replace(routine, blocks=tuple(blocks))
 
 
-def _is_wanted_behind(flow: Flow, carried: Carried) -> bool:
+def _is_wanted_behind(flow: ControlFlow, carried: Carried) -> bool:
     """Whether the element that was chosen last is accessed behind the loop."""
     array = carried.address.operands[:-1]
     chosen = [

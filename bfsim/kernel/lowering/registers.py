@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.moves import Moves
 from bfsim.kernel.lowering.pressure import POINTERS, Pressure
-from bfsim.kernel.lowering.steps import Bank, Step, Steps
 from bfsim.kernel.lowering.webs import Webs
 
 
@@ -21,25 +21,25 @@ from bfsim.kernel.lowering.webs import Webs
 class Allocation:
     """What the registers of one routine cost beside its operations, and the bank of each value."""
 
-    bank: dict[str, Bank]
-    on_edges: dict[tuple[str, str], list[Step]]
+    bank: dict[str, RegisterBank]
+    on_edges: dict[tuple[str, str], list[MachineInstruction]]
     calls: bool
-    entry: list[Step] = field(default_factory=list)
+    entry: list[MachineInstruction] = field(default_factory=list)
     saved_data: int = 0
     saved_pointers: int = 0
     saves_frame_pointer: bool = False
 
 
-def allocate(context: Context, steps: Steps) -> Allocation:
-    """Insert moves, constants and reloads into `steps`; return what belongs to edges and to the function's ends."""
-    webs = Webs(context, steps)
+def allocate(context: Context, code: MachineCode) -> Allocation:
+    """Insert moves, constants and reloads into `code`; return what belongs to edges and to the function's ends."""
+    webs = Webs(context, code)
     moves = Moves(webs)
     pressure = Pressure(webs)
     names = (*webs.web, *webs.bank)
     result = Allocation(
         bank={name: webs.bank[webs.find(name)] for name in names if webs.find(name) in webs.bank},
         on_edges=moves.on_edges,
-        calls=any(step.op is Op.CALL for block in steps.of.values() for step in block),
+        calls=any(instruction.op is Op.CALL for block in code.of.values() for instruction in block),
     )
     _Ends(webs, pressure, result).save()
     return result
@@ -50,24 +50,27 @@ class _Ends:
 
     def __init__(self, webs: Webs, pressure: Pressure, result: Allocation) -> None:
         self.webs, self.pressure, self.result = webs, pressure, result
-        self.flow, self.steps, self.bank = webs.flow, webs.steps, webs.bank
+        self.flow, self.code, self.bank = webs.flow, webs.code, webs.bank
 
     def save(self) -> None:
         """Find the registers that are saved, and load or move the arguments."""
-        peak = {Bank.DATA: 0, Bank.POINTER: 0}
-        across = {Bank.DATA: set[str](), Bank.POINTER: set[str]()}
+        peak = {RegisterBank.DATA: 0, RegisterBank.POINTER: 0}
+        across = {RegisterBank.DATA: set[str](), RegisterBank.POINTER: set[str]()}
         for label in self.flow.blocks:
             for alive in self.pressure.points(label, across_calls=False):
                 for bank, highest in peak.items():
                     peak[bank] = max(highest, sum(self.bank.get(name) is bank for name in alive))
             for alive in self.pressure.points(label, across_calls=True):
                 for name in alive:
-                    across[self.bank.get(name, Bank.DATA)].add(name)
+                    across[self.bank.get(name, RegisterBank.DATA)].add(name)
         constants = {name for loop in self.flow.loops for name in self.pressure.constants_in(loop)}
-        data = min(peak[Bank.DATA] + len(constants), isa.DATA_REGISTERS) - isa.SCRATCH_DATA_REGISTERS
-        pointers = min(peak[Bank.POINTER], POINTERS) - isa.SCRATCH_POINTER_REGISTERS
+        data = min(peak[RegisterBank.DATA] + len(constants), isa.DATA_REGISTERS) - isa.SCRATCH_DATA_REGISTERS
+        pointers = min(peak[RegisterBank.POINTER], POINTERS) - isa.SCRATCH_POINTER_REGISTERS
         if self.result.calls:
-            data, pointers = max(data, len(across[Bank.DATA])), max(pointers, len(across[Bank.POINTER]))
+            data, pointers = (
+                max(data, len(across[RegisterBank.DATA])),
+                max(pointers, len(across[RegisterBank.POINTER])),
+            )
         self.result.saved_data = min(max(data, 0), 4)
         self.result.saved_pointers = min(max(pointers, 0), 3)
         self.result.saves_frame_pointer = pointers > 3
@@ -77,35 +80,39 @@ class _Ends:
     def _results(self) -> None:
         """The next call destroys R0: a result that is wanted behind it moves to a register that survives."""
         kept = self._kept_results()
-        for label, block in self.steps.of.items():
-            moved: list[Step] = []
-            for step in block:
-                moved.append(step)
-                if step.op is Op.CALL and step.result in kept:
-                    moved.append(Step(Op.MOVE, step.line, None, Bank.ANY))
-            self.steps.of[label] = moved
+        for label, block in self.code.of.items():
+            moved: list[MachineInstruction] = []
+            for instruction in block:
+                moved.append(instruction)
+                if instruction.op is Op.CALL and instruction.result in kept:
+                    moved.append(MachineInstruction(Op.MOVE, instruction.line, None, RegisterBank.ANY))
+            self.code.of[label] = moved
 
     def _kept_results(self) -> set[str]:
         """Values that are alive across a call."""
         kept: set[str] = set()
-        for label, block in self.steps.of.items():
+        for label, block in self.code.of.items():
             alive = set(self.webs.live.out[label])
-            for step in reversed(block):
-                alive.discard(step.result or "")
-                if step.op is Op.CALL and step.code_bytes:  # not what a library routine calls itself
+            for instruction in reversed(block):
+                alive.discard(instruction.result or "")
+                if (
+                    instruction.op is Op.CALL and instruction.code_bytes
+                ):  # not what a library routine calls itself
                     kept |= alive
-                alive.update(name for name, _ in step.uses)
+                alive.update(name for name, _ in instruction.uses)
         return kept
 
-    def _parameters(self, across: dict[Bank, set[str]]) -> None:
-        used = {name for block in self.steps.of.values() for step in block for name, _ in step.uses}
+    def _parameters(self, across: dict[RegisterBank, set[str]]) -> None:
+        used = {
+            name for block in self.code.of.values() for instruction in block for name, _ in instruction.uses
+        }
         used |= {value for arms in self.webs.phis.values() for value, _ in arms}
         line = self.flow.routine.blocks[0].instructions[0].line
         for number, name in enumerate(self.webs.context.parameters()):
             if name not in used:
                 continue
-            bank = self.bank.get(self.webs.find(name), Bank.DATA)
+            bank = self.bank.get(self.webs.find(name), RegisterBank.DATA)
             if number >= isa.REGISTER_ARGUMENTS:
-                self.result.entry.append(Step(Op.LOAD32, line, None, bank))
-            elif bank is Bank.POINTER or name in across[bank]:
-                self.result.entry.append(Step(Op.MOVE, line, None, bank))
+                self.result.entry.append(MachineInstruction(Op.LOAD32, line, None, bank))
+            elif bank is RegisterBank.POINTER or name in across[bank]:
+                self.result.entry.append(MachineInstruction(Op.MOVE, line, None, bank))

@@ -15,22 +15,22 @@ from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.lowering.accesses import Accesses
 from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.if_conversion import ConversionKind
+from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.multiples import multiple
 from bfsim.kernel.lowering.predict import predicate
 from bfsim.kernel.lowering.ranges import Range
-from bfsim.kernel.lowering.shapes import Kind
-from bfsim.kernel.lowering.steps import Bank, Step, Steps
 
-ANY, DATA, POINTER = Bank.ANY, Bank.DATA, Bank.POINTER
+ANY, DATA, POINTER = RegisterBank.ANY, RegisterBank.DATA, RegisterBank.POINTER
 EXTENDING_MASKS = {"255": 8, "65535": 16}
 
 
-def select(context: Context) -> Steps:
+def select(context: Context) -> MachineCode:
     """Return the operations of every block of a routine."""
     selector = _Selector(context)
     for loop in context.bit_counts.values():
         line = context.flow.blocks[loop.header].instructions[-1].line
-        selector.steps.add(context.flow.entering(loop), Step(Op.ALU, line, None, DATA))
+        selector.code.add(context.flow.entering(loop), MachineInstruction(Op.ALU, line, None, DATA))
     for loop in context.fills.values():
         selector.fill(loop)
     for label in context.flow.order:
@@ -38,23 +38,23 @@ def select(context: Context) -> Steps:
             continue
         selector.counters(label)
         for each in context.flow.blocks[label].instructions:
-            if context.needs.emits(each):
-                selector.emit(each, context.places.of.get(each.result or "", label))
+            if context.demanded.emits(each):
+                selector.emit(each, context.code_motion.of.get(each.result or "", label))
     selector.pointers()
-    return selector.steps
+    return selector.code
 
 
 class _Selector(Accesses):
     def emit(self, each: Instruction, label: str) -> None:
         """Append the operations of one instruction to the block where it is computed."""
         self.label = label
-        shape = self.context.shape_of(each)
+        conversion = self.context.conversion_of(each)
         if each.opcode == "phi":
-            if shape is not None:
-                self.label = shape.label
-                self._shaped(each)
-            if self.context.needs.sunk_mask(each):
-                self.step(Op.EXTEND, each, None, DATA, (each.result or "", DATA))
+            if conversion is not None:
+                self.label = conversion.label
+                self._converted(each)
+            if self.context.demanded.sunk_mask(each):
+                self.append(Op.EXTEND, each, None, DATA, (each.result or "", DATA))
             return
         rule = RULES.get(each.opcode)
         if rule is not None:
@@ -63,79 +63,79 @@ class _Selector(Accesses):
     # Arithmetic
 
     def add(self, each: Instruction) -> None:
-        if self.context.needs.in_shifted_sum(each):
+        if self.context.demanded.in_shifted_sum(each):
             return
-        if (product := self.context.needs.accumulates(each)) is not None:
+        if (product := self.context.demanded.accumulates(each)) is not None:
             sum_before = next(operand for operand in each.operands if operand != product.result)
             factors = ((operand, DATA) for operand in product.operands[:2])
-            self.step(Op.MAC, each, each.result, DATA, (sum_before, DATA), *factors)
+            self.append(Op.MAC, each, each.result, DATA, (sum_before, DATA), *factors)
             return
-        if (plan := self.context.needs.shift_add(each)) is not None:
+        if (plan := self.context.demanded.shift_add(each)) is not None:
             shifted, other = plan
-            self.step(Op.ADD_SHIFT, each, each.result, POINTER, (other, POINTER), (shifted, POINTER))
+            self.append(Op.ADD_SHIFT, each, each.result, POINTER, (other, POINTER), (shifted, POINTER))
             return
-        if (division := self.context.needs.remainder(each)) is not None:
+        if (division := self.context.demanded.remainder(each)) is not None:
             rest = replace(each, opcode=division.opcode.replace("div", "rem"), operands=division.operands)
             self.divide(rest)
             return
         left, right = each.operands[:2]
-        if (total := self.context.needs.added_flag(each)) is not None:
-            self.step(Op.ALU, each, each.result, ANY, (total, ANY))
+        if (total := self.context.demanded.added_flag(each)) is not None:
+            self.append(Op.ALU, each, each.result, ANY, (total, ANY))
             return
-        if self.context.needs.narrowed(each):
-            self.step(Op.MOVE, each, None, DATA)
-            self.step(Op.ALU, each, None, DATA, (left, DATA))
+        if self.context.demanded.narrowed(each):
+            self.append(Op.MOVE, each, None, DATA)
+            self.append(Op.ALU, each, None, DATA, (left, DATA))
         if right.lstrip("-").isdigit() and int(right) in isa.ADD_IMMEDIATE and each.opcode == "add":
-            self.step(Op.ALU, each, each.result, ANY, (left, ANY), overwrites=(left,))
+            self.append(Op.ALU, each, each.result, ANY, (left, ANY), overwrites=(left,))
         elif each.opcode == "sub" and left == "0":
-            self.step(Op.ALU, each, each.result, DATA, (right, DATA))
+            self.append(Op.ALU, each, each.result, DATA, (right, DATA))
         else:
-            self.step(Op.ALU, each, each.result, ANY, (left, ANY), (right, ANY))
+            self.append(Op.ALU, each, each.result, ANY, (left, ANY), (right, ANY))
 
     def shift(self, each: Instruction) -> None:
         users = self.flow.users.get(each.result or "", [])
         if users and all(self.halved(user) is not None for user in users):
             return
-        if self.context.needs.in_shift_add(each) or self._is_half_extension(each):
+        if self.context.demanded.in_shift_add(each) or self._is_half_extension(each):
             return
         value, amount = each.operands[:2]
-        if (pair := self.context.needs.shifted_sum(each)) is not None:
-            self.step(Op.ADD_SHIFT, each, each.result, ANY, (pair[0], ANY), (pair[1], ANY), overwrites=pair)
-        elif each.opcode == "ashr" and (source := self.context.needs.extension_of(each)):
-            self.step(Op.EXTEND, each, each.result, DATA, (source, DATA))
+        if (pair := self.context.demanded.shifted_sum(each)) is not None:
+            self.append(Op.ADD_SHIFT, each, each.result, ANY, (pair[0], ANY), (pair[1], ANY), overwrites=pair)
+        elif each.opcode == "ashr" and (source := self.context.demanded.extension_of(each)):
+            self.append(Op.EXTEND, each, each.result, DATA, (source, DATA))
         elif amount.isdigit():
             near = int(amount) in isa.ADDRESS_SHIFTS and each.opcode != "ashr"
             kept = len(self.flow.users.get(value, [])) > 1  # three operands take the long form
             where = ANY if near else DATA
             nbytes = isa.LONG_FORM_BYTES if kept else None
-            self.step(Op.SHIFT, each, each.result, where, (value, where), nbytes=nbytes)
+            self.append(Op.SHIFT, each, each.result, where, (value, where), nbytes=nbytes)
         else:
-            self.step(Op.SHIFT, each, each.result, DATA, (value, DATA), (amount, DATA), overwrites=(value,))
+            self.append(Op.SHIFT, each, each.result, DATA, (value, DATA), (amount, DATA), overwrites=(value,))
 
     def _is_half_extension(self, each: Instruction) -> bool:
         users = self.flow.users.get(each.result or "", [])
         return each.opcode == "shl" and bool(users) and all(
-            self.context.needs.extension_of(user) == each.operands[0] for user in users
+            self.context.demanded.extension_of(user) == each.operands[0] for user in users
         )  # fmt: skip
 
     def logic(self, each: Instruction) -> None:
         left, right = each.operands[:2]
-        needs = self.context.needs
+        demanded = self.context.demanded
         if each.bits == 1:
             self._joined(each)
             return
-        if needs.in_bit_test(each) or needs.is_shift_mask(each) or needs.in_sunk_mask(each):
+        if demanded.in_bit_test(each) or demanded.is_shift_mask(each) or demanded.in_sunk_mask(each):
             return
         if each.opcode == "and" and right in EXTENDING_MASKS:
-            self.step(Op.EXTEND, each, each.result, DATA, (left, DATA))
+            self.append(Op.EXTEND, each, each.result, DATA, (left, DATA))
         elif right.lstrip("-").isdigit() and _is_single_bit(each.opcode, int(right)):
-            self.step(Op.ALU, each, each.result, DATA, (left, DATA), overwrites=(left,))
+            self.append(Op.ALU, each, each.result, DATA, (left, DATA), overwrites=(left,))
         else:
-            self.step(Op.ALU, each, each.result, DATA, (left, DATA), (right, DATA))
+            self.append(Op.ALU, each, each.result, DATA, (left, DATA), (right, DATA))
 
     def multiply(self, each: Instruction) -> None:
         left, right = each.operands[:2]
-        if self._steps_along(each) or self.context.needs.accumulated(each) is not None:
+        if self._steps_along(each) or self.context.demanded.accumulated(each) is not None:
             return
         if (
             right.lstrip("-").isdigit()
@@ -146,44 +146,46 @@ class _Selector(Accesses):
             for number, op in enumerate(plan):
                 result = each.result if number == len(plan) - 1 else f"{each.result}.{number}"
                 bank = POINTER if op is Op.ADD_SHIFT else ANY
-                self.step(op, each, result, bank, (value, bank), (left, bank))
+                self.append(op, each, result, bank, (value, bank), (left, bank))
                 value = result or ""
         elif self._short(each):
             for factor in dict.fromkeys((left, right)):
-                if self.context.needs.extended_for_product(factor):
-                    self.step(Op.EXTEND, each, None, DATA, (factor, DATA))
-            self.step(Op.MUL16, each, each.result, DATA, (left, DATA), (right, DATA))
+                if self.context.demanded.extended_for_product(factor):
+                    self.append(Op.EXTEND, each, None, DATA, (factor, DATA))
+            self.append(Op.MUL16, each, each.result, DATA, (left, DATA), (right, DATA))
         else:
-            self.step(
+            self.append(
                 Op.MUL32, each, each.result, DATA, (left, DATA), (right, DATA), overwrites=(left, right)
             )
 
     def _steps_along(self, each: Instruction) -> bool:
-        """A product of a counter: an addition per turn takes its place (strength reduction)."""
-        loop, advance = self.flow.innermost(self.label), self.context.needs.stepped(each)
-        if loop is None or advance is None:
+        """A product of a counter: an addition per iteration takes its place (strength reduction)."""
+        loop, increment = self.flow.innermost(self.label), self.context.demanded.stepped(each)
+        if loop is None or increment is None:
             return False
         stride = f"{each.result}.stride"
-        self.steps.add(self.flow.entering(loop), Step(Op.IMM, each.line, each.result, ANY))
-        uses = ((each.result or "", ANY), (stride, ANY)) if advance.symbolic else ((each.result or "", ANY),)
-        self.steps.add(loop.latch, Step(Op.ALU, each.line, each.result, ANY, uses))
+        self.code.add(self.flow.entering(loop), MachineInstruction(Op.IMM, each.line, each.result, ANY))
+        uses = (
+            ((each.result or "", ANY), (stride, ANY)) if increment.symbolic else ((each.result or "", ANY),)
+        )
+        self.code.add(loop.latch, MachineInstruction(Op.ALU, each.line, each.result, ANY, uses))
         return True
 
     def _short(self, each: Instruction) -> bool:
-        return all(self.context.needs.is_short(operand) for operand in each.operands[:2])
+        return all(self.context.demanded.is_short(operand) for operand in each.operands[:2])
 
     def extend(self, each: Instruction) -> None:
         if " i1 " in each.text:
-            self.step(Op.CC_MOVE, each, each.result, DATA)
+            self.append(Op.CC_MOVE, each, each.result, DATA)
         elif not self.context.is_alias(each):
-            self.step(Op.EXTEND, each, each.result, DATA, (each.operands[0], DATA))
+            self.append(Op.EXTEND, each, each.result, DATA, (each.operands[0], DATA))
 
     # Decisions
 
     def compare(self, each: Instruction) -> None:
-        if self.context.needs.bit_tested(each) is not None:
-            masked = self.context.needs.bit_tested(each) or ""
-            self.step(Op.BIT_TEST, each, None, DATA, (masked, DATA))
+        if self.context.demanded.bit_tested(each) is not None:
+            masked = self.context.demanded.bit_tested(each) or ""
+            self.append(Op.BIT_TEST, each, None, DATA, (masked, DATA))
             return
         if (joined := self.context.ranges.get(self.label)) is not None and _decides(
             self.flow.blocks[self.label].terminator, each
@@ -191,28 +193,28 @@ class _Selector(Accesses):
             if self.label == joined.first:
                 self._in_range(each, joined)
             return
-        left, right = self.context.needs.compared(each)
+        left, right = self.context.demanded.compared(each)
         if right.lstrip("-").isdigit() and _is_near(predicate(each), int(right)):
-            self.step(Op.COMPARE, each, None, DATA, (left, ANY))
+            self.append(Op.COMPARE, each, None, DATA, (left, ANY))
         elif right.lstrip("-").isdigit() and self.context.profile.applies(Learnt.COMPARED):
-            self.steps.add(self.label, load_constant(f"#{right}", each.line, f"{each.result}.bound"))
-            self.step(Op.COMPARE, each, None, DATA, (left, ANY), (f"{each.result}.bound", ANY))
+            self.code.add(self.label, load_constant(f"#{right}", each.line, f"{each.result}.bound"))
+            self.append(Op.COMPARE, each, None, DATA, (left, ANY), (f"{each.result}.bound", ANY))
         else:
-            self.step(Op.COMPARE, each, None, DATA, (left, ANY), (right, ANY))
+            self.append(Op.COMPARE, each, None, DATA, (left, ANY), (right, ANY))
 
     def _in_range(self, each: Instruction, tested: Range) -> None:
         """The distance from the lower end, compared as an unsigned number."""
         value, distance, length = tested.value, f"{each.result}.distance", tested.high - tested.low
         if -tested.low in isa.ADD_IMMEDIATE and tested.low:
-            self.step(Op.ALU, each, distance, ANY, (value, ANY), overwrites=(value,))
+            self.append(Op.ALU, each, distance, ANY, (value, ANY), overwrites=(value,))
         elif tested.low:
-            self.step(Op.ALU, each, distance, ANY, (value, ANY), (f"#{-tested.low}", ANY))
+            self.append(Op.ALU, each, distance, ANY, (value, ANY), (f"#{-tested.low}", ANY))
         value = distance if tested.low else value
         if length in isa.COMPARE_UNSIGNED_IMMEDIATE:
-            self.step(Op.COMPARE, each, None, DATA, (value, ANY))
+            self.append(Op.COMPARE, each, None, DATA, (value, ANY))
         else:
-            self.steps.add(self.label, load_constant(f"#{length}", each.line, f"{each.result}.bound"))
-            self.step(Op.COMPARE, each, None, DATA, (value, ANY), (f"{each.result}.bound", ANY))
+            self.code.add(self.label, load_constant(f"#{length}", each.line, f"{each.result}.bound"))
+            self.append(Op.COMPARE, each, None, DATA, (value, ANY), (f"{each.result}.bound", ANY))
 
     def choose(self, each: Instruction) -> None:
         """A select that LLVM itself formed."""
@@ -220,36 +222,36 @@ class _Selector(Accesses):
             self._joined(each)
         else:
             yes, no = each.operands[1:3]
-            self.step(Op.COND_MOVE, each, each.result, ANY, (yes, ANY), (no, ANY), overwrites=(no,))
+            self.append(Op.COND_MOVE, each, each.result, ANY, (yes, ANY), (no, ANY), overwrites=(no,))
 
     def _joined(self, each: Instruction) -> None:
         """`and` or `or` of two conditions: in C, a branch of its own."""
         if all(user.opcode == "br" for user in self.flow.users.get(each.result or "", [])):
-            self.step(Op.BRANCH_NOT_TAKEN, each, None, DATA)
+            self.append(Op.BRANCH_NOT_TAKEN, each, None, DATA)
         else:
-            self.step(Op.CC_MOVE, each, each.result, DATA)
-            self.step(Op.ALU, each, each.result, DATA)
+            self.append(Op.CC_MOVE, each, each.result, DATA)
+            self.append(Op.ALU, each, each.result, DATA)
 
-    def _shaped(self, each: Instruction) -> None:
+    def _converted(self, each: Instruction) -> None:
         """An `if` without a branch: its operation stands in the block that tests."""
-        shape = self.context.shape_of(each)
-        assert shape is not None
-        result = self.context.shaped(each)
-        if shape.kind is Kind.ABSOLUTE:
-            self.step(Op.DSP_ALU, each, result, DATA, (shape.operands[0], DATA))
-            if self.context.needs.is_short(shape.operands[0]):
-                self.step(Op.EXTEND, each, result, DATA, (result, DATA))
-        elif shape.kind is Kind.EXTREME:
-            self.step(Op.DSP_ALU, each, result, DATA, *((value, DATA) for value in shape.operands))
-        elif shape.kind is Kind.CLAMP:
-            *inner, bound = shape.operands
-            self.step(Op.DSP_ALU, each, f"{result}.inner", DATA, *((value, DATA) for value in inner))
-            self.step(Op.DSP_ALU, each, result, DATA, (f"{result}.inner", DATA), (bound, DATA))
-        elif shape.kind is Kind.FLAG:
-            self.step(Op.CC_MOVE, each, result, DATA)
+        conversion = self.context.conversion_of(each)
+        assert conversion is not None
+        result = self.context.converted(each)
+        if conversion.kind is ConversionKind.ABSOLUTE:
+            self.append(Op.DSP_ALU, each, result, DATA, (conversion.operands[0], DATA))
+            if self.context.demanded.is_short(conversion.operands[0]):
+                self.append(Op.EXTEND, each, result, DATA, (result, DATA))
+        elif conversion.kind is ConversionKind.EXTREME:
+            self.append(Op.DSP_ALU, each, result, DATA, *((value, DATA) for value in conversion.operands))
+        elif conversion.kind is ConversionKind.CLAMP:
+            *inner, bound = conversion.operands
+            self.append(Op.DSP_ALU, each, f"{result}.inner", DATA, *((value, DATA) for value in inner))
+            self.append(Op.DSP_ALU, each, result, DATA, (f"{result}.inner", DATA), (bound, DATA))
+        elif conversion.kind is ConversionKind.FLAG:
+            self.append(Op.CC_MOVE, each, result, DATA)
         else:
-            uses = tuple((value, ANY) for value in shape.operands)
-            self.step(Op.COND_MOVE, each, result, ANY, *uses, overwrites=shape.operands[1:])
+            uses = tuple((value, ANY) for value in conversion.operands)
+            self.append(Op.COND_MOVE, each, result, ANY, *uses, overwrites=conversion.operands[1:])
 
 
 def _decides(branch: Instruction, test: Instruction) -> bool:

@@ -6,22 +6,22 @@ no branch predicted. Measured against GCC's own code: see the README.
 
 from __future__ import annotations
 
-from bfsim.kernel.ir_text import Block, Routine
+from bfsim.kernel.ir_text import BasicBlock, Routine
 from bfsim.kernel.isa import COSTS, REGISTER_ARGUMENTS, Op
 from bfsim.kernel.lowering.charges import BlockCost, Charge, charge
 from bfsim.kernel.lowering.unoptimised_paths import Paths
 from bfsim.kernel.lowering.unoptimised_stores import assign
 from bfsim.kernel.lowering.unoptimised_trees import Trees
-from bfsim.kernel.lowering.unoptimised_values import Values
+from bfsim.kernel.lowering.unoptimised_values import ExpressionCode
 from bfsim.kernel.profile import CompilerProfile
 
 
 def lower(routine: Routine, profile: CompilerProfile) -> dict[str, BlockCost]:
     """Return what each block of `routine` costs, by label."""
-    return _Lowering(routine, profile).run()
+    return _UnoptimisedLowering(routine, profile).run()
 
 
-class _Lowering:
+class _UnoptimisedLowering:
     def __init__(self, routine: Routine, profile: CompilerProfile) -> None:
         self.routine, self.profile = routine, profile
         self.trees = Trees(routine)
@@ -38,8 +38,8 @@ class _Lowering:
                 self._leave(self.paths.blocks[label])
         return self.costs
 
-    def _block(self, block: Block) -> None:
-        code = Values(self.profile, block.terminator.line)
+    def _block(self, block: BasicBlock) -> None:
+        code = ExpressionCode(self.profile, block.terminator.line)
         if block.label in self.paths.landed:
             code.op(Op.MOVE)  # a NOP
         for each in self.trees.statements(block):
@@ -55,7 +55,7 @@ class _Lowering:
         self.saved |= code.saved
         self._go(block, cost)
 
-    def _go(self, block: Block, cost: BlockCost) -> None:
+    def _go(self, block: BasicBlock, cost: BlockCost) -> None:
         """The branch or jump at the end of `block`."""
         line = block.terminator.line
         follows = self.paths.next_of(block.label)
@@ -86,7 +86,7 @@ class _Lowering:
         cost.charges[:0] = [*saving, *(charge(op, line) for op in frame)]
         cost.nbytes += sum(COSTS[each].nbytes for each in frame) + _nbytes(saving)
 
-    def _leave(self, block: Block) -> None:
+    def _leave(self, block: BasicBlock) -> None:
         cost, line = self.costs[block.label], block.terminator.line
         if not block.terminator.operands and block.label not in self.paths.landed:
             cost.add(line, Op.MOVE)  # a NOP

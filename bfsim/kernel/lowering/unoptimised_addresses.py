@@ -9,12 +9,12 @@ from bfsim.kernel.lowering.unoptimised_expressions import WORD, Expr, const, sim
 from bfsim.kernel.lowering.unoptimised_registers import MODIFIERS
 
 if TYPE_CHECKING:
-    from bfsim.kernel.lowering.unoptimised_values import Values
+    from bfsim.kernel.lowering.unoptimised_values import ExpressionCode
 
 BYTE_MASKS = (0xFF, 0xFFFF)
 
 
-def offset_of(code: Values, index: Expr, size: int) -> bool:
+def offset_of(code: ExpressionCode, index: Expr, size: int) -> bool:
     """Compute `index * size`; return whether it is in a pointer register.
 
     Factors of the index merge with the size, and a number that is added to the index is added to the product then.
@@ -38,7 +38,7 @@ def offset_of(code: Values, index: Expr, size: int) -> bool:
     return pointer
 
 
-def _converted(code: Values, index: Expr, *, to_pointer: bool) -> bool:
+def _converted(code: ExpressionCode, index: Expr, *, to_pointer: bool) -> bool:
     """Convert an index: a copy of what was computed, none of what was just loaded or extended."""
     if index.op in ("local", "load", "widen", "register") or index.unsigned:
         return code.value(index)
@@ -49,7 +49,7 @@ def _converted(code: Values, index: Expr, *, to_pointer: bool) -> bool:
     return to_pointer or pointer
 
 
-def _converted_mask(code: Values, index: Expr) -> bool:
+def _converted_mask(code: ExpressionCode, index: Expr) -> bool:
     """Conversions pass through masks."""
     inner, mask = index.args
     if mask.value in BYTE_MASKS or inner.is_leaf or inner.unsigned:

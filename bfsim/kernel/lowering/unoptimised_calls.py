@@ -10,16 +10,16 @@ from bfsim.kernel.lowering.unoptimised_constants import product, unsigned_quotie
 from bfsim.kernel.lowering.unoptimised_expressions import Expr
 
 if TYPE_CHECKING:
-    from bfsim.kernel.lowering.unoptimised_values import Values
+    from bfsim.kernel.lowering.unoptimised_values import ExpressionCode
 
 
-def call(code: Values, each: Expr) -> None:
+def call(code: ExpressionCode, each: Expr) -> None:
     """Call another kernel; its result is in R0."""
     _arguments(code, each.args)
     code.op(Op.CALL)
 
 
-def divide(code: Values, each: Expr) -> None:
+def divide(code: ExpressionCode, each: Expr) -> None:
     """Divide: unsigned by a constant without a call, as GCC has a long product for it; else by the library."""
     left, right = each.args
     if each.is_call:
@@ -34,7 +34,7 @@ def divide(code: Values, each: Expr) -> None:
         code.op(*(plan.ops if plan else (Op.IMM, Op.MUL32)), Op.ALU)
 
 
-def _library(code: Values, op: str) -> list[Charge]:
+def _library(code: ExpressionCode, op: str) -> list[Charge]:
     library = code.profile.library
     routine = {
         "sdiv": library.divide_signed, "udiv": library.divide_unsigned,
@@ -45,7 +45,7 @@ def _library(code: Values, op: str) -> list[Charge]:
     return [Charge(each, code.line, COSTS[each].cclk, count=count) for each, count in routine.mix]
 
 
-def _arguments(code: Values, given: tuple[Expr, ...]) -> None:
+def _arguments(code: ExpressionCode, given: tuple[Expr, ...]) -> None:
     """Compute what is no variable, then put everything in its place.
 
     What is computed first must not be in the way: it is moved to its register last.

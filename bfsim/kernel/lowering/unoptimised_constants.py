@@ -16,7 +16,7 @@ CHEAP_SHIFT = 2  # [PRM] P = P + (P << 1), P = P + (P << 2): at -O0 not used, bu
 WORD = 32
 
 
-class Plan(NamedTuple):
+class ProductPlan(NamedTuple):
     """Operations that multiply: what GCC thinks they cost, what they are, and whether the last is an addition."""
 
     cost: int
@@ -24,12 +24,12 @@ class Plan(NamedTuple):
     is_sum: bool
 
 
-def product(factor: int) -> Plan | None:
+def product(factor: int) -> ProductPlan | None:
     """Return how to multiply by `factor`, or None where GCC takes its multiplication [choose_mult_variant]."""
     if factor == -1:
-        return Plan(1, (Op.ALU,), is_sum=False)
+        return ProductPlan(1, (Op.ALU,), is_sum=False)
     if factor < 0 and (1 - factor).bit_count() == 1:
-        return Plan(1, (Op.MOVE, Op.SHIFT, Op.ALU), is_sum=False)
+        return ProductPlan(1, (Op.MOVE, Op.SHIFT, Op.ALU), is_sum=False)
     variants = [_Step(factor - 1, 1, (Op.ALU,), is_sum=True), _Step(-factor, 1, (Op.ALU,), is_sum=False)]
     found = _best([_plan(factor, MOST_COST), *(_then(each, MOST_COST) for each in variants)])
     return found and found._replace(ops=(Op.MOVE, *found.ops))
@@ -45,21 +45,21 @@ class _Step(NamedTuple):
 
 
 @cache
-def _plan(factor: int, limit: int) -> Plan | None:
+def _plan(factor: int, limit: int) -> ProductPlan | None:
     if limit < 0 or factor <= 0:
         return None
     if factor == 1:
-        return Plan(0, (), is_sum=False)
+        return ProductPlan(0, (), is_sum=False)
     return _best([_then(each, limit) for each in _steps(factor)])
 
 
-def _best(plans: list[Plan | None]) -> Plan | None:
+def _best(plans: list[ProductPlan | None]) -> ProductPlan | None:
     return min((each for each in plans if each), key=lambda each: (each.cost, len(each.ops)), default=None)
 
 
-def _then(step: _Step, limit: int) -> Plan | None:
+def _then(step: _Step, limit: int) -> ProductPlan | None:
     before = _plan(step.factor, limit - step.cost)
-    return before and Plan(before.cost + step.cost, (*before.ops, *step.ops), step.is_sum)
+    return before and ProductPlan(before.cost + step.cost, (*before.ops, *step.ops), step.is_sum)
 
 
 def _steps(factor: int) -> list[_Step]:

@@ -62,7 +62,7 @@ class Expr:
 
 
 @dataclass(frozen=True, slots=True)
-class Statement:
+class TreeStatement:
     """Something that a block does: `target` is what is written, a local or a load, or None."""
 
     value: Expr

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bfsim.kernel.ir_text import Block, Routine
+from bfsim.kernel.ir_text import BasicBlock, Routine
 from bfsim.kernel.lowering.unoptimised_trees import Trees, base
 
 
@@ -51,7 +51,7 @@ class Paths:
             label = self.only_way(self.blocks[label]) or label
         return label
 
-    def only_way(self, block: Block) -> str | None:
+    def only_way(self, block: BasicBlock) -> str | None:
         """Where a block that does not branch goes; None if it returns or the value of a condition is needed."""
         successors = block.successors
         if len(successors) == 1:
@@ -91,7 +91,7 @@ class Paths:
                 self.order.append(label)
                 label = self._onward(block)
 
-    def _landing(self, block: Block) -> str | None:
+    def _landing(self, block: BasicBlock) -> str | None:
         """Where GCC puts the jump of `if test: break` and the like: behind what is left, with a NOP for the debugger.
 
         The branch then goes there when the test is true. "" is the end of the function.
@@ -112,7 +112,7 @@ class Paths:
             self._open.add(inside)
             inside = self._onward(self.blocks[inside], condition=True)
 
-    def _onward(self, block: Block, *, condition: bool = False) -> str | None:
+    def _onward(self, block: BasicBlock, *, condition: bool = False) -> str | None:
         """Place both sides of a branch and return what follows them; or what follows a block without a branch."""
         successors = block.successors
         kinds = [base(each) for each in successors]
@@ -138,14 +138,14 @@ class Paths:
 
     # Branches
 
-    def _branch(self, block: Block) -> Branch | None:
+    def _branch(self, block: BasicBlock) -> Branch | None:
         value = self._decides(block)
         if value is None:
             return None
         if_true, if_false = (self._follow(block, value, truth) for truth in (True, False))
         return Branch(value, if_true, if_false)
 
-    def _decides(self, block: Block) -> str | None:
+    def _decides(self, block: BasicBlock) -> str | None:
         """The value that `block` computes and goes by."""
         if self._is_extreme(block):
             return None
@@ -157,13 +157,13 @@ class Paths:
             return self._leaf(block, stored) if stored else None
         return None
 
-    def _is_extreme(self, block: Block) -> bool:
+    def _is_extreme(self, block: BasicBlock) -> bool:
         """Whether the branch is that of a minimum or the like, which needs none."""
         if [base(each) for each in block.successors] != ["yes", "no"]:
             return False
         return self.blocks[block.successors[0]].instructions[-2].operands[-1] in self.trees.extremes
 
-    def _leaf(self, block: Block, value: str) -> str | None:
+    def _leaf(self, block: BasicBlock, value: str) -> str | None:
         """Look through `not` and hidden slots; None if an earlier block knew the value, or the compiler."""
         if value not in self.trees.home:
             return None
@@ -176,11 +176,11 @@ class Paths:
         tree = self.trees.condition(value)
         return None if all(arg.is_const for arg in tree.args) and tree.args else value
 
-    def _stored(self, block: Block, slot: str) -> str | None:
+    def _stored(self, block: BasicBlock, slot: str) -> str | None:
         stores = [each for each in block.instructions if each.opcode == "store" and each.operands[1] == slot]
         return stores[-1].operands[0] if stores else None
 
-    def _follow(self, block: Block, leaf: str, truth: bool) -> str:
+    def _follow(self, block: BasicBlock, leaf: str, truth: bool) -> str:
         """Where `block` leads when its value `leaf` is `truth`."""
         known = {leaf: truth}
         while True:
@@ -195,7 +195,7 @@ class Paths:
                 return target.label
             block = target
 
-    def _learn(self, block: Block, known: dict[str, bool]) -> None:
+    def _learn(self, block: BasicBlock, known: dict[str, bool]) -> None:
         """Add to `known` (values and hidden slots) what follows from it in `block`."""
         for each in block.instructions:
             if each.opcode == "store" and self.trees.is_hidden(each.operands[1]):
@@ -206,7 +206,7 @@ class Paths:
             elif each.opcode == "xor" and each.operands[0] in known:
                 known[each.result or ""] = not known[each.operands[0]]
 
-    def _only_logic(self, block: Block) -> bool:
+    def _only_logic(self, block: BasicBlock) -> bool:
         hidden = [
             (each.opcode == "load" and self.trees.is_hidden(each.operands[0]))
             or (each.opcode == "store" and self.trees.is_hidden(each.operands[1]))
@@ -216,14 +216,14 @@ class Paths:
         ]
         return all(hidden)
 
-    def _truth(self, block: Block) -> bool | None:
+    def _truth(self, block: BasicBlock) -> bool | None:
         """Whether a branch goes by a number, as in `while True`."""
         tree = self.trees.condition(block.terminator.operands[0])
         if tree.op == "compare" and all(arg.is_const for arg in tree.args):
             return tree.name == "ne" and tree.args[0] != tree.args[1]
         return None
 
-    def _is_empty(self, block: Block) -> bool:
+    def _is_empty(self, block: BasicBlock) -> bool:
         """Whether no code comes of `block`: it is only a way, or only passes on what `and` and `or` decided."""
         is_first = block.label == self.labels[0]
         if is_first or self.branches[block.label] or not block.successors or block.label in self.landed:

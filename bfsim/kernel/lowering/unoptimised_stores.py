@@ -8,16 +8,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from bfsim.kernel.isa import ADD_IMMEDIATE, Op
-from bfsim.kernel.lowering.unoptimised_expressions import BITWISE, Expr, Statement
+from bfsim.kernel.lowering.unoptimised_expressions import BITWISE, Expr, TreeStatement
 
 if TYPE_CHECKING:
-    from bfsim.kernel.lowering.unoptimised_values import Values
+    from bfsim.kernel.lowering.unoptimised_values import ExpressionCode
 
 STORES = {1: Op.STORE8, 8: Op.STORE8, 16: Op.STORE16, 32: Op.STORE32}
 FOLDED = ("+", "-", "*", "<<", "neg", "inverse")  # low bits of these come of low bits alone
 
 
-def assign(code: Values, each: Statement) -> None:
+def assign(code: ExpressionCode, each: TreeStatement) -> None:
     """Compute and store."""
     code.line = each.line
     target = each.target
@@ -36,7 +36,7 @@ def assign(code: Values, each: Statement) -> None:
         code.op(STORES[target.bits])
 
 
-def _store_low_bits(code: Values, value: Expr, target: Expr) -> None:
+def _store_low_bits(code: ExpressionCode, value: Expr, target: Expr) -> None:
     """Store in an array of bytes or halves. Only unsigned types wrap, so a sum for a signed one is converted again."""
     value = _stripped(value, target.bits)
     pointer = low_bits_of(code, value, target, late=target.unsigned)
@@ -47,7 +47,7 @@ def _store_low_bits(code: Values, value: Expr, target: Expr) -> None:
     code.op(STORES[target.bits])
 
 
-def low_bits_of(code: Values, value: Expr, target: Expr, *, late: bool) -> bool:
+def low_bits_of(code: ExpressionCode, value: Expr, target: Expr, *, late: bool) -> bool:
     """Compute as many bits of `value` as `target` has; return whether they are in a pointer register.
 
     The operands are converted, each by a copy. `late`: the operation comes after the address of an element, and its
@@ -86,7 +86,7 @@ def low_bits_of(code: Values, value: Expr, target: Expr, *, late: bool) -> bool:
     return _operation(code, value, pointers)
 
 
-def _operation(code: Values, value: Expr, pointers: list[bool]) -> bool:
+def _operation(code: ExpressionCode, value: Expr, pointers: list[bool]) -> bool:
     last = value.args[-1]
     if value.op == "+" and not last.is_const:
         return code.add(pointers, to_pointer=True)

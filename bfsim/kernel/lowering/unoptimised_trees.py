@@ -1,6 +1,6 @@
 """Plain IR → the statements of the C program that it stands for.
 
-`emit` writes one load for every mention of a variable and one block for every turn of the source, so that the C
+`emit` writes one load for every mention of a variable and one block for every branch of the source, so that the C
 statements can be read back. What C would not compute is dropped here: the correction of a division that rounds
 down, the mask of a shift count, the second counter of a loop.
 """
@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from bfsim.kernel.ir_text import Block, Instruction, Routine
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine
 from bfsim.kernel.lowering.unoptimised_expressions import (
     Expr,
-    Statement,
+    TreeStatement,
     compare,
     const,
     extreme_of,
@@ -55,15 +55,15 @@ class Trees:
         """Those of them that are a minimum, maximum or absolute value, inner ones first."""
         self._find_extremes()
 
-    def statements(self, block: Block) -> Iterator[Statement]:
+    def statements(self, block: BasicBlock) -> Iterator[TreeStatement]:
         """What `block` does, in order, but for its branch."""
         for each in block.instructions:
             if each.opcode == "store":
                 yield from self._store(each, block.label)
             elif each.is_call and each.result not in self.used_in:
-                yield Statement(self._call(each, block.label), None, each.line)
+                yield TreeStatement(self._call(each, block.label), None, each.line)
             elif each.result and self._outlives(each, block) and not self._is_bound(each):
-                yield Statement(self._value(each), Expr("register"), each.line)
+                yield TreeStatement(self._value(each), Expr("register"), each.line)
 
     def condition(self, operand: str) -> Expr:
         """The truth value `operand`."""
@@ -105,7 +105,7 @@ class Trees:
                 if extreme := extreme_of(test[1].text.split()[1], operands, sides):
                     self.extremes[blocks[block.successors[0]].instructions[-2].operands[1]] = extreme
 
-    def _chosen(self, block: Block) -> Expr:
+    def _chosen(self, block: BasicBlock) -> Expr:
         """One side of a conditional expression, if nothing else happens in its block."""
         stores = [each for each in block.instructions if each.opcode == "store"]
         return self.expr(stores[-1].operands[0], block.label) if len(stores) == 1 else Expr("register")
@@ -114,7 +114,7 @@ class Trees:
         """Whether a slot belongs to `and` and `or`, not to a variable."""
         return slot.startswith("%.")
 
-    def _outlives(self, each: Instruction, block: Block) -> bool:
+    def _outlives(self, each: Instruction, block: BasicBlock) -> bool:
         return bool(self.used_in.get(each.result or "", set()) - {block.label}) and each.opcode != "alloca"
 
     def _is_bound(self, each: Instruction) -> bool:
@@ -127,22 +127,22 @@ class Trees:
     def is_counter(self, operand: str) -> bool:
         """Whether `operand` is read from the hidden counter of a loop."""
         each = self.home[operand][1] if operand in self.home else None
-        return each is not None and each.opcode == "load" and ".turn" in each.operands[0]
+        return each is not None and each.opcode == "load" and ".iteration" in each.operands[0]
 
-    def _store(self, each: Instruction, label: str) -> Iterator[Statement]:
+    def _store(self, each: Instruction, label: str) -> Iterator[TreeStatement]:
         value, target = each.operands
         if self.is_hidden(target) and target in self.home and self.home[target][1].opcode == "alloca":
             return
         if target in self.extremes:
             return
         if target in self.choices:
-            yield Statement(self.expr(value, label), Expr("register"), each.line)
+            yield TreeStatement(self.expr(value, label), Expr("register"), each.line)
         elif self.home[target][1].opcode == "alloca":
             if not self.is_counter(value) and value not in self.routine.parameters:
-                yield Statement(self.expr(value, label), self._variable(target), each.line)
+                yield TreeStatement(self.expr(value, label), self._variable(target), each.line)
         else:
             element = self._element(self.home[target][1], each.bits, label)
-            yield Statement(self.expr(value, label), element, each.line)
+            yield TreeStatement(self.expr(value, label), element, each.line)
 
     def _variable(self, slot: str) -> Expr:
         if slot in self.choices:

@@ -19,7 +19,7 @@ ZERO_EXTENSIONS = (0xFF, 0xFFFF)  # R.B (Z), R.L (Z)
 OPERATIONS = {"-": Op.ALU, "neg": Op.ALU, "inverse": Op.ALU, "abs": Op.DSP_ALU}
 
 
-class Values(Registers):
+class ExpressionCode(Registers):
     """Computes expressions. A method that returns a truth value tells whether the result is in a pointer register."""
 
     def value(self, each: Expr, *, adds: bool = False, waits: bool = False, outermost: bool = False) -> bool:

@@ -1,7 +1,7 @@
-"""Loops of so few and so small turns that a compiler writes them out [try_unroll_loop_completely in tree-ssa-loop-ivcanon.cc].
+"""Loops of so few and so small iterations that a compiler writes them out [try_unroll_loop_completely in tree-ssa-loop-ivcanon.cc].
 
-GCC does so at -O2 where the code does not grow by its own estimate: two thirds of the turns without what becomes
-constant in them, against one turn. LLVM is asked to unroll those and no others.
+GCC does so at -O2 where the code does not grow by its own estimate: two thirds of the iterations without what becomes
+constant in them, against one iteration. LLVM is asked to unroll those and no others.
 """
 
 from __future__ import annotations
@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from bfsim.kernel.ir_text import DEFINE, LABEL, Instruction, Routine, read_module
-from bfsim.kernel.loops import Flow, Loop, pointee_nbytes
-from bfsim.kernel.lowering.places import Places
-from bfsim.kernel.lowering.walks import Walks
+from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
+from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
+from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 
-MOST_TURNS = 8  # [max-completely-peel-times]
+MOST_ITERATIONS = 8  # [max-completely-peel-times]
 CONTROL = 4  # statements that vanish with the loop: two counters, and a test that counts as two
 FREE = ("phi", "br", "zext", "sext", "trunc", "freeze")
 LOOP_NOTE = ", !llvm.loop !"
@@ -49,25 +49,25 @@ def _annotated(text: str, wishes: dict[tuple[str, str], str]) -> Iterator[str]:
 
 
 def _loops(routine: Routine) -> Iterator[tuple[Loop, bool]]:
-    flow = Flow(routine)
-    walks = Walks(flow, Places(flow))
+    flow = ControlFlow(routine)
+    evolution = ScalarEvolution(flow, InvariantCodeMotion(flow))
     for loop in flow.loops:
-        yield loop, not loop.inner and _shrinks(flow, walks, loop)
+        yield loop, not loop.inner and _shrinks(flow, evolution, loop)
 
 
-def _shrinks(flow: Flow, walks: Walks, loop: Loop) -> bool:
+def _shrinks(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> bool:
     inside = [each for label in flow.inside(loop) for each in flow.blocks[label].instructions]
-    turns = walks.turns(loop)
-    if turns is None or turns > MOST_TURNS or flow.exits(loop) != [loop.latch]:
+    iterations = evolution.iterations(loop)
+    if iterations is None or iterations > MOST_ITERATIONS or flow.exits(loop) != [loop.latch]:
         return False
     if any(each.is_call or each.is_division for each in inside):
         return False
-    control = _control(flow, walks, loop)
-    size = sum(_size(flow, walks, loop, each) for each in inside if each.result not in control)
-    return 2 * turns * size <= 3 * (size + CONTROL)
+    control = _control(flow, evolution, loop)
+    size = sum(_size(flow, evolution, loop, each) for each in inside if each.result not in control)
+    return 2 * iterations * size <= 3 * (size + CONTROL)
 
 
-def _control(flow: Flow, walks: Walks, loop: Loop) -> set[str | None]:
+def _control(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> set[str | None]:
     """The test that ends the loop, and the step of its counter."""
     counters = {each.result for each in flow.blocks[loop.header].instructions if each.opcode == "phi"}
     steps = [
@@ -75,12 +75,12 @@ def _control(flow: Flow, walks: Walks, loop: Loop) -> set[str | None]:
         for each in flow.blocks[loop.latch].instructions
         if each.opcode == "add" and each.operands[0] in counters and each.operands[1].lstrip("-").isdigit()
     ]
-    return {walks.exit_test(loop), *steps}
+    return {evolution.exit_test(loop), *steps}
 
 
-def _size(flow: Flow, walks: Walks, loop: Loop, each: Instruction) -> int:
+def _size(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, each: Instruction) -> int:
     """Statements that C has for an instruction; what does not change in the loop has left it."""
-    if each.opcode in FREE or (each.result and walks.places.is_invariant(each.result, loop)):
+    if each.opcode in FREE or (each.result and evolution.code_motion.is_invariant(each.result, loop)):
         return 0
     if each.opcode != "getelementptr":
         return 1

@@ -6,9 +6,9 @@ from collections import Counter as Tally
 from collections import defaultdict
 
 from bfsim.kernel.lowering.context import Context
-from bfsim.kernel.lowering.groups import is_merged_pointer
+from bfsim.kernel.lowering.induction_variables import is_merged_pointer
 from bfsim.kernel.lowering.liveness import Liveness, liveness
-from bfsim.kernel.lowering.steps import Bank, Steps
+from bfsim.kernel.lowering.machine_code import MachineCode, RegisterBank
 
 ROUNDS = 3  # in which values settle in the bank of those they are computed with
 
@@ -16,12 +16,12 @@ ROUNDS = 3  # in which values settle in the bank of those they are computed with
 class Webs:
     """The webs of one routine. A phi and its arms are one web, unless some of its values are alive together."""
 
-    def __init__(self, context: Context, steps: Steps) -> None:
-        self.context, self.flow, self.steps = context, context.flow, steps
+    def __init__(self, context: Context, code: MachineCode) -> None:
+        self.context, self.flow, self.code = context, context.flow, code
         self.frequency = context.likelihood.frequency
         self.phis = self._phis()
         self.web: dict[str, str] = {}
-        self.bank: dict[str, Bank] = {}
+        self.bank: dict[str, RegisterBank] = {}
         self.live = Liveness()
         self.analyse()
         self._coalesce()
@@ -33,28 +33,28 @@ class Webs:
             if block.label in self.context.replaced:
                 continue
             for each in block.instructions:
-                shape = self.context.shape_of(each)
+                conversion = self.context.conversion_of(each)
                 if (
                     each.opcode == "phi"
                     and not is_merged_pointer(each)
-                    and self.context.needs.emits(each)
-                    and (shape is None or self.context.others(each))
+                    and self.context.demanded.emits(each)
+                    and (conversion is None or self.context.others(each))
                 ):
                     arms = self.context.others(each)
                     found[each.result or ""] = [
                         (self.context.name(value), label) for value, label in arms if value != "poison"
                     ]
-                    if shape is not None:
-                        found[each.result or ""].append((self.context.shaped(each), shape.label))
+                    if conversion is not None:
+                        found[each.result or ""].append((self.context.converted(each), conversion.label))
         return found
 
     def analyse(self) -> None:
-        """Find what is alive where; again whenever steps were inserted."""
+        """Find what is alive where; again whenever instructions were inserted."""
         merged = {
             phi: [(value, label) for value, label in arms if not value.startswith("#")]
             for phi, arms in self.phis.items()
         }
-        self.live = liveness(self.flow, self.steps, merged)
+        self.live = liveness(self.flow, self.code, merged)
 
     def find(self, name: str) -> str:
         """The web that a value belongs to: values that share a register."""
@@ -84,15 +84,17 @@ class Webs:
             mine |= theirs
 
     def _stepped(self) -> list[tuple[str, str]]:
-        """Counters of loops and their next values, which only the next turn wants: they are stepped last, in place."""
+        """Counters of loops and their next values, which only the next iteration wants: they are stepped last, in place."""
         found = []
         for phi, arms in self.phis.items():
             label, each = self.flow.defined[phi]
             latches = [loop.latch for loop in self.flow.loops if loop.header == label]
             for value, source in arms:
-                step = self.flow.instruction(value)
-                steps = step is not None and step.opcode == "add" and step.operands[0] == phi
-                if steps and source in latches and self.flow.users[value] == [each]:
+                instruction = self.flow.instruction(value)
+                advances = (
+                    instruction is not None and instruction.opcode == "add" and instruction.operands[0] == phi
+                )
+                if advances and source in latches and self.flow.users[value] == [each]:
                     found.append((phi, value))
         return found
 
@@ -108,11 +110,11 @@ class Webs:
         entry = self.flow.routine.blocks[0].label
         for label in self.flow.order:
             alive = set(self.live.out[label])
-            for step in reversed(self.steps.of[label]):
-                if step.result:
-                    keep_apart(step.result, alive)
-                    alive.discard(step.result)
-                alive.update(name for name, _ in step.uses if not name.startswith("#"))
+            for instruction in reversed(self.code.of[label]):
+                if instruction.result:
+                    keep_apart(instruction.result, alive)
+                    alive.discard(instruction.result)
+                alive.update(name for name, _ in instruction.uses if not name.startswith("#"))
             here = {phi for phi in self.phis if self.flow.defined[phi][0] == label}
             for name in alive if label == entry else here:
                 keep_apart(name, alive | here)
@@ -122,37 +124,39 @@ class Webs:
         """Where a value's definition leaves the choice, the bank that needs fewer moves."""
         fixed, wants, friends = self._wishes()
         names = {self.find(each) for each in self._names()}
-        self.bank = {name: _majority(fixed.get(name)) or Bank.DATA for name in names}
+        self.bank = {name: _majority(fixed.get(name)) or RegisterBank.DATA for name in names}
         for _ in range(ROUNDS):
             for name in sorted(names - fixed.keys()):
                 votes = Tally(wants.get(name, Tally()))
                 for friend, weight in friends.get(name, Tally()).items():
                     if friend != name and (friend in fixed or friend in wants):
                         votes[self.bank[friend]] += weight // 2
-                self.bank[name] = _majority(votes) or Bank.DATA
+                self.bank[name] = _majority(votes) or RegisterBank.DATA
 
     def _names(self) -> set[str]:
-        steps = [step for block in self.steps.of.values() for step in block]
+        instructions = [instruction for block in self.code.of.values() for instruction in block]
         return (
-            {name for step in steps for name, _ in step.uses}
-            | {step.result for step in steps if step.result}
+            {name for instruction in instructions for name, _ in instruction.uses}
+            | {instruction.result for instruction in instructions if instruction.result}
             | {*self.phis}
         )
 
-    def _wishes(self) -> tuple[dict[str, Tally[Bank]], dict[str, Tally[Bank]], dict[str, Tally[str]]]:
+    def _wishes(
+        self,
+    ) -> tuple[dict[str, Tally[RegisterBank]], dict[str, Tally[RegisterBank]], dict[str, Tally[str]]]:
         """Of each web: banks that its definitions fix, banks that its uses want, and webs it is computed with."""
-        fixed: defaultdict[str, Tally[Bank]] = defaultdict(Tally)
-        wants: defaultdict[str, Tally[Bank]] = defaultdict(Tally)
+        fixed: defaultdict[str, Tally[RegisterBank]] = defaultdict(Tally)
+        wants: defaultdict[str, Tally[RegisterBank]] = defaultdict(Tally)
         friends: defaultdict[str, Tally[str]] = defaultdict(Tally)
-        for label, block in self.steps.of.items():
+        for label, block in self.code.of.items():
             weight = int(self.frequency[label] * 1000) + 1
-            for step in block:
-                own = self.find(step.result) if step.result else None
-                if own and step.bank is not Bank.ANY:
-                    fixed[own][step.bank] += weight
-                for name, bank in step.uses:
+            for instruction in block:
+                own = self.find(instruction.result) if instruction.result else None
+                if own and instruction.bank is not RegisterBank.ANY:
+                    fixed[own][instruction.bank] += weight
+                for name, bank in instruction.uses:
                     other = self.find(name)
-                    if bank is not Bank.ANY and not name.startswith("#"):
+                    if bank is not RegisterBank.ANY and not name.startswith("#"):
                         wants[other][bank] += weight
                     elif own and not name.startswith("#"):
                         friends[other][own] += weight
@@ -160,7 +164,7 @@ class Webs:
         return fixed, wants, friends
 
 
-def _majority(votes: Tally[Bank] | None) -> Bank | None:
+def _majority(votes: Tally[RegisterBank] | None) -> RegisterBank | None:
     if not votes:
         return None
-    return max((Bank.DATA, Bank.POINTER), key=lambda bank: votes[bank])
+    return max((RegisterBank.DATA, RegisterBank.POINTER), key=lambda bank: votes[bank])

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from bfsim.kernel.loops import Flow
+from bfsim.kernel.loops import ControlFlow
 
 WORD = 32
 DEEPEST = 6  # operations that are looked through; each may have several operands
 
 
-def widest(flow: Flow, value: str, seen: frozenset[str] = frozenset()) -> int:
+def widest(flow: ControlFlow, value: str, seen: frozenset[str] = frozenset()) -> int:
     """Return the number of low bits beyond which `value` has none; 32 if that is not known."""
     if value.isdigit():
         return int(value).bit_length()

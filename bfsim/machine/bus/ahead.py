@@ -19,7 +19,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from bfsim.kernel import store
-from bfsim.kernel.follow import follow
+from bfsim.kernel.traced_access import trace_access
 from bfsim.machine.bus.weave import Weave, advance, compiled_weave, plain_weave
 
 # Its loops are short and full of branches: the highest level takes a second longer and gains nothing.
@@ -82,5 +82,5 @@ def _end_with(parent: int) -> None:
 if __name__ == "__main__":
     if os.name == "posix":  # elsewhere a process keeps the number of a parent that has ended
         Thread(target=_end_with, args=(int(sys.argv[1]),), daemon=True).start()
-    for each in (follow, advance):  # the follower is needed first
+    for each in (trace_access, advance):  # the access trace is needed first
         each.compile()

@@ -284,7 +284,7 @@ class Bus:
         return stalls
 
     def room_of(self, core: int) -> NDArray[np.int64]:
-        """Return where a core's follower keeps its state and its log."""
-        first = w.LOGS_AT + core * w.FOLLOWER_WORDS
-        room: NDArray[np.int64] = self._state[first : first + w.FOLLOWER_WORDS]
+        """Return where a core's access trace keeps its state and its log."""
+        first = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS
+        room: NDArray[np.int64] = self._state[first : first + w.ACCESS_TRACE_WORDS]
         return room

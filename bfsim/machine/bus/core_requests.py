@@ -6,8 +6,8 @@ Loads overtake stores, except that a load from an address in the store buffer wa
 
 from __future__ import annotations
 
-from bfsim.kernel import followers as log
-from bfsim.kernel.compiled import compiled
+from bfsim.kernel import access_trace as log
+from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.pacing import aligned
 from bfsim.machine.bus.sdram import access, stream
@@ -15,7 +15,7 @@ from bfsim.machine.bus.state import State
 from bfsim.machine.bus.traffic import count_access, count_traffic
 
 
-@compiled
+@native
 def bytes_of(state: State, kind: int) -> int:
     """Return what an access of this kind moves: a 32-bit word whatever its width, a cache line, or 64 bits of code."""
     if kind in (log.LOAD, log.STORE):
@@ -23,7 +23,7 @@ def bytes_of(state: State, kind: int) -> int:
     return w.FETCH_BYTES if kind == log.FETCH else state[w.LINE_BYTES]
 
 
-@compiled
+@native
 def next_entry(state: State, core: int, not_before: int) -> int:
     """Set the core's next access up; after the last one end the job and return its number, NONE - 1 - core."""
     job = w.JOBS_AT + core * w.JOB_WORDS
@@ -34,7 +34,7 @@ def next_entry(state: State, core: int, not_before: int) -> int:
         state[master + w.READY] = w.NEVER
         state[w.DONE_AT] = state[job + w.BEGIN] + state[job + w.TOTAL] * cclk + state[job + w.STALLED]
         return w.NONE - 1 - core
-    entry = state[w.LOGS_AT + core * w.FOLLOWER_WORDS + log.LOG + state[job + w.ENTRY]]
+    entry = state[w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + state[job + w.ENTRY]]
     issued = max(not_before, state[job + w.BEGIN] + (entry >> log.STAMP_BIT) * cclk + state[job + w.STALLED])
     kind = entry >> log.KIND_BIT & log.KIND_MASK
     waits = kind not in (log.STORE, log.WRITE_BACK)
@@ -49,7 +49,7 @@ def next_entry(state: State, core: int, not_before: int) -> int:
     return w.NONE
 
 
-@compiled
+@native
 def start_jobs(state: State) -> None:
     """Let the cores begin with what was handed to them."""
     for core in range(w.CORES):
@@ -63,7 +63,7 @@ def start_jobs(state: State) -> None:
             next_entry(state, core, state[job + w.BEGIN])
 
 
-@compiled
+@native
 def stall(state: State, job: int, cclk: int, done: int, reason: int) -> int:
     """Stall the core for `reason` from its present access until `done`, less that access's own cycle; return the cycles."""
     cycles = max(0, (done - state[job + w.ISSUED_AT] + cclk - 1) // cclk - 1)
@@ -72,7 +72,7 @@ def stall(state: State, job: int, cclk: int, done: int, reason: int) -> int:
     return cycles
 
 
-@compiled
+@native
 def wait_for_buffer(state: State, core: int, what: int) -> int:
     """Let the core wait until its store buffer has room, or is empty."""
     state[w.JOBS_AT + core * w.JOB_WORDS + w.STATE] = what
@@ -80,7 +80,7 @@ def wait_for_buffer(state: State, core: int, what: int) -> int:
     return w.NONE
 
 
-@compiled
+@native
 def store(state: State, core: int, at: int, entry: int) -> int:
     """Put a store into the core's buffer."""
     job = w.JOBS_AT + core * w.JOB_WORDS
@@ -94,7 +94,7 @@ def store(state: State, core: int, at: int, entry: int) -> int:
     return next_entry(state, core, at)
 
 
-@compiled
+@native
 def prepare_drain(state: State, core: int, at: int) -> None:
     """Let the oldest store ask for its bus from tick `at` on."""
     job = w.JOBS_AT + core * w.JOB_WORDS
@@ -107,7 +107,7 @@ def prepare_drain(state: State, core: int, at: int) -> None:
     state[master + w.READY] = aligned(at, state[w.SCLK]) if uses_bus else at
 
 
-@compiled
+@native
 def serve_stores(state: State, core: int, at: int) -> int:
     """Write the oldest store of a core's buffer, and let the core go on if it waited for that."""
     job = w.JOBS_AT + core * w.JOB_WORDS
@@ -141,7 +141,7 @@ def serve_stores(state: State, core: int, at: int) -> int:
     return w.NONE
 
 
-@compiled
+@native
 def is_in_buffer(state: State, job: int, offset: int, nbytes: int) -> bool:
     """Whether the store buffer has anything of the `nbytes` (a power of two) at `offset`, or a line that holds them."""
     for number in range(state[job + w.STORES]):
@@ -152,12 +152,12 @@ def is_in_buffer(state: State, job: int, offset: int, nbytes: int) -> bool:
     return False
 
 
-@compiled
+@native
 def serve_core(state: State, core: int, at: int) -> int:
     """Make the core's present access at tick `at`; return the number of its job when that is done, else NONE."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     entry = (
-        state[w.LOGS_AT + core * w.FOLLOWER_WORDS + log.LOG + state[job + w.ENTRY]]
+        state[w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + state[job + w.ENTRY]]
         if state[job + w.ENTRY] < state[job + w.END]
         else w.NONE
     )
@@ -174,7 +174,7 @@ def serve_core(state: State, core: int, at: int) -> int:
     return next_entry(state, core, done)
 
 
-@compiled
+@native
 def read_l2(state: State, core: int, at: int, kind: int) -> int:
     """Read from L2 through the port that both cores share; return when the first data are there."""
     job = w.JOBS_AT + core * w.JOB_WORDS
@@ -197,7 +197,7 @@ def read_l2(state: State, core: int, at: int, kind: int) -> int:
     return done
 
 
-@compiled
+@native
 def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
     """Read from SDRAM; return when the first data are at the core.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.kernel.compiled import compiled
+from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.pacing import aligned, arrival, burst_of, lose, next_paced, step_device
 from bfsim.machine.bus.runs import move_run, take_turn
@@ -12,7 +12,7 @@ from bfsim.machine.bus.traffic import count_access, count_traffic
 from bfsim.machine.bus.transfers import after_move, moved, next_on_chip
 
 
-@compiled
+@native
 def access_burst(state: State, number: int, at: int, offset: int, step: int, count: int, write: bool) -> int:
     """Access `count` elements, `step` bytes apart, one after the other; return when the last one is through."""
     transfer = w.TRANSFERS_AT + state[w.MASTERS_AT + number + w.TRANSFER] * w.TRANSFER_WORDS
@@ -26,7 +26,7 @@ def access_burst(state: State, number: int, at: int, offset: int, step: int, cou
     return through
 
 
-@compiled
+@native
 def exchange(state: State, memory: Memory, number: int, at: int) -> int:
     """Move an element within SDRAM, into the FIFO or out of it: when that is full, all of it is written again."""
     master = w.MASTERS_AT + number
@@ -53,7 +53,7 @@ def exchange(state: State, memory: Memory, number: int, at: int) -> int:
     return w.NONE
 
 
-@compiled
+@native
 def copy_on_chip(state: State, memory: Memory, number: int, at: int) -> int:
     """End a row of a transfer between L1 and L2: all of it moves at its end."""
     master = w.MASTERS_AT + number
@@ -74,7 +74,7 @@ def copy_on_chip(state: State, memory: Memory, number: int, at: int) -> int:
     return after_move(state, master, transfer, at)
 
 
-@compiled
+@native
 def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> int:
     """Move the next burst to or from a device that sets the pace, and lose what came too late."""
     master = w.MASTERS_AT + number
@@ -109,7 +109,7 @@ def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> 
     return after_move(state, master, transfer, through)
 
 
-@compiled
+@native
 def serve_dma(state: State, memory: Memory, number: int, at: int, until: int) -> int:
     """Grant the request of a DMA at tick `at`; return the number of the transfer that wakes somebody, or NONE."""
     where = w.MASTERS_AT + number

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from bfsim.kernel.compiled import compiled
+from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.walk import copy_element, go_on
 
 
-@compiled
+@native
 def aligned(tick: int, period: int) -> int:
     """Return the first edge of a clock of `period` ticks at or after `tick`."""
     return (tick + period - 1) // period * period
 
 
-@compiled
+@native
 def arrival(state: State, transfer: int, ahead: int) -> int:
     """Return when a device has the element `ahead` of the next one, or has sent it: the end of its time on the wire."""
     place, began = state[transfer + w.PLACE] + ahead, state[transfer + w.LINE_BEGAN]
@@ -30,7 +30,7 @@ def arrival(state: State, transfer: int, ahead: int) -> int:
     return state[transfer + w.START] + ticks
 
 
-@compiled
+@native
 def step_device(state: State, transfer: int, count: int) -> None:
     """Go on by `count` elements of the device's line."""
     state[transfer + w.PLACE] += count
@@ -39,7 +39,7 @@ def step_device(state: State, transfer: int, count: int) -> None:
         state[transfer + w.LINE_BEGAN] += state[transfer + w.LINE]
 
 
-@compiled
+@native
 def burst_of(state: State, transfer: int) -> int:
     """How many elements a device's DMA moves at once: each as it comes in, but half a FIFO on its way out.
 
@@ -53,7 +53,7 @@ def burst_of(state: State, transfer: int) -> int:
     )
 
 
-@compiled
+@native
 def next_paced(state: State, master: int, transfer: int) -> None:
     """Set when the device's next burst wants to move: when it is there, or when the FIFO has room for it."""
     burst, ready = burst_of(state, transfer), state[transfer + w.START]
@@ -64,7 +64,7 @@ def next_paced(state: State, master: int, transfer: int) -> None:
     state[master + w.READY] = aligned(ready, state[w.SCLK])
 
 
-@compiled
+@native
 def lose(state: State, memory: Memory, master: int, transfer: int, at: int) -> None:
     """Drop the elements that came before tick `at` and found the FIFO full; the picture goes on without them.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.kernel.compiled import compiled
+from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.sdram import access, hits_ahead, stream
 from bfsim.machine.bus.state import Memory, State
@@ -10,7 +10,7 @@ from bfsim.machine.bus.traffic import count_access, count_traffic
 from bfsim.machine.bus.transfers import after_move, moved
 
 
-@compiled
+@native
 def alone_until(state: State, number: int, until: int) -> int:
     """Until when a master has the bus to itself: nobody else asks for it before, or does anything that needs none of it."""
     limit = min(until, state[w.NEXT_REFRESH])
@@ -20,7 +20,7 @@ def alone_until(state: State, number: int, until: int) -> int:
     return limit
 
 
-@compiled
+@native
 def preferred_until(state: State, number: int, until: int) -> int:
     """Until when a master that just had the bus has it again whenever it asks, if it leaves no gap."""
     limit = min(until, state[w.NEXT_REFRESH])
@@ -36,7 +36,7 @@ def preferred_until(state: State, number: int, until: int) -> int:
     return limit
 
 
-@compiled
+@native
 def run_ahead(state: State, number: int, transfer: int, ahead: int, ticks: int, until: int) -> int:
     """How many of `ahead` more elements of `ticks` each, all page hits, nobody can come between.
 
@@ -61,7 +61,7 @@ def run_ahead(state: State, number: int, transfer: int, ahead: int, ticks: int, 
     return max(0, min(ahead, to_gap, (room + ticks - 1) // ticks))
 
 
-@compiled
+@native
 def pause(state: State, master: int, elements: int) -> int:
     """Add up what a memory DMA pauses for `elements` that it reads; return the ticks that are due.
 
@@ -73,7 +73,7 @@ def pause(state: State, master: int, elements: int) -> int:
     return bursts * state[w.BURST_WORDS] * state[w.SCLK]
 
 
-@compiled
+@native
 def take_turn(state: State, master: int, count: int) -> None:
     """Count what a stream moved; when it and its partner have had their periods, both begin anew."""
     state[master + w.SERVED] += count
@@ -83,7 +83,7 @@ def take_turn(state: State, master: int, count: int) -> None:
         state[w.MASTERS_AT + partner + w.SERVED] = 0
 
 
-@compiled
+@native
 def move_run(state: State, memory: Memory, number: int, at: int, until: int) -> int:
     """Move the next elements of a memory DMA with one side in SDRAM; return who is woken."""
     master = w.MASTERS_AT + number

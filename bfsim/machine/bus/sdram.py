@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.kernel.compiled import compiled
+from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.state import State
 
@@ -39,7 +39,7 @@ def new_sdram(board: BoardSpec) -> NDArray[np.int64]:
     return state
 
 
-@compiled
+@native
 def refresh(state: State, now: int) -> int:
     """Do the refreshes that are due by `now`; return when a command can be given. Only the last one can still last."""
     missed = (now - state[w.NEXT_REFRESH]) // state[w.REFRESH_INTERVAL]
@@ -57,7 +57,7 @@ def refresh(state: State, now: int) -> int:
     return max(now, begin + state[w.REFRESH])
 
 
-@compiled
+@native
 def access(state: State, now: int, offset: int, write: bool) -> int:
     """Read or write the word at `offset`, not before `now` (on an SCLK edge); return when its data are through."""
     command = max(now, state[w.COMMAND_FREE])
@@ -94,7 +94,7 @@ def access(state: State, now: int, offset: int, write: bool) -> int:
     return through
 
 
-@compiled
+@native
 def hits_ahead(state: State, offset: int, step: int) -> int:
     """How many accesses from `offset`, `step` bytes apart, lie on its page and are sure to hit: 0 if it is not open."""
     page = offset >> state[w.PAGE_BITS]
@@ -103,7 +103,7 @@ def hits_ahead(state: State, offset: int, step: int) -> int:
     return (((page + 1) << state[w.PAGE_BITS]) - offset + step - 1) // step
 
 
-@compiled
+@native
 def stream(state: State, count: int, write: bool, offset: int) -> int:
     """Do `count` more accesses that hit, a cycle apart, behind one of the same direction; return when they are through.
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import MutableSequence
 
-from bfsim.kernel import followers
+from bfsim.kernel import access_trace as log
 
 State = MutableSequence[int]
 """The array, an int64 one, as compiled code sees it."""
@@ -149,5 +149,5 @@ ENDS_AT = POSTS_AT + 2 * MAX_TRANSFERS
 LOGS_AT = ENDS_AT + ENDS
 LOG_ENTRIES = 1 << 23
 """Accesses outside L1 that one kernel call may make; the host has memory for those that are made only."""
-FOLLOWER_WORDS = followers.LOG + LOG_ENTRIES
-STATE_WORDS = LOGS_AT + CORES * FOLLOWER_WORDS
+ACCESS_TRACE_WORDS = log.LOG + LOG_ENTRIES
+STATE_WORDS = LOGS_AT + CORES * ACCESS_TRACE_WORDS

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from bfsim.kernel.compiled import compiled
+from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.state import State
 from bfsim.trace import TrafficRecord
@@ -52,14 +52,14 @@ def traffic_records(words: Sequence[int], cclk_ticks: int) -> tuple[TrafficRecor
     return tuple(records)
 
 
-@compiled
+@native
 def count_traffic(state: State, master: int, memory: int, write: bool, nbytes: int) -> None:
     """Count bytes that a master moved to or from a memory."""
     at = w.TRAFFIC_AT + (master * w.MEMORIES + memory) * w.TRAFFIC_WORDS
     state[at + (w.WRITTEN_BYTES if write else w.READ_BYTES)] += nbytes
 
 
-@compiled
+@native
 def count_access(state: State, master: int, elements: int) -> None:
     """Count `elements` accesses of SDRAM, the first of which was the controller's last one, and the time they took."""
     at = w.TRAFFIC_AT + (master * w.MEMORIES + w.IN_SDRAM) * w.TRAFFIC_WORDS
@@ -68,7 +68,7 @@ def count_access(state: State, master: int, elements: int) -> None:
     state[at + w.BUSY] += state[w.COMMAND_FREE] - state[w.BEGAN] - state[w.REFRESH_WAIT]
 
 
-@compiled
+@native
 def count_subbanks(state: State, side: int, count: int) -> None:
     """Count what the next `count` elements of a side move to or from each sub-bank of L1."""
     first, bits = state[w.L1_FIRST], state[w.SUBBANK_BITS]

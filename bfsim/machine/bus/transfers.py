@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bfsim.kernel.compiled import compiled
+from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.pacing import aligned, next_paced
 from bfsim.machine.bus.state import Memory, State
@@ -10,7 +10,7 @@ from bfsim.machine.bus.traffic import count_subbanks
 from bfsim.machine.bus.walk import move
 
 
-@compiled
+@native
 def accept(state: State) -> None:
     """Put the transfers that were posted behind those of their masters; a master that has none begins at once."""
     for post in range(state[w.POSTED]):
@@ -24,7 +24,7 @@ def accept(state: State) -> None:
     state[w.POSTED] = 0
 
 
-@compiled
+@native
 def begin(state: State, master: int, transfer: int, at: int) -> None:
     """Start a transfer at tick `at`, or at its own time if that is later."""
     mode, end = state[transfer + w.MODE], state[w.SDRAM_END]
@@ -47,7 +47,7 @@ def begin(state: State, master: int, transfer: int, at: int) -> None:
         state[master + w.READY] = start
 
 
-@compiled
+@native
 def next_on_chip(state: State, master: int, transfer: int) -> None:
     """Note when the next row between L1 and L2 is through."""
     parts = (state[transfer + w.MOVED] + state[transfer + w.TO_X_LEFT]) * state[transfer + w.ELEMENT]
@@ -56,7 +56,7 @@ def next_on_chip(state: State, master: int, transfer: int) -> None:
     )
 
 
-@compiled
+@native
 def moved(state: State, memory: Memory, transfer: int, count: int) -> None:
     """Move the bytes of `count` elements, and count what goes to and from the sub-banks of L1."""
     count_subbanks(state, transfer + w.FROM, count)
@@ -64,7 +64,7 @@ def moved(state: State, memory: Memory, transfer: int, count: int) -> None:
     move(state, memory, transfer, count)
 
 
-@compiled
+@native
 def after_move(state: State, master: int, transfer: int, through: int) -> int:
     """See whether the transfer is done, or a row of it, with the elements that just moved; return who is woken."""
     if state[transfer + w.LEFT] == 0:
@@ -78,7 +78,7 @@ def after_move(state: State, master: int, transfer: int, through: int) -> int:
     return w.NONE
 
 
-@compiled
+@native
 def finish(state: State, master: int, transfer: int, at: int) -> int:
     """End a transfer at tick `at` and begin the next one; return its number if it wakes somebody."""
     number, wakes = state[transfer + w.IDENTITY], state[transfer + w.WAKE]

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from bfsim.kernel.compiled import compiled
+from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.state import Memory, State
 
 WORD_BYTES, WORD_BITS = 4, 2  # the arena is an array of 32-bit words
 
 
-@compiled
+@native
 def go_on(state: State, side: int, count: int) -> None:
     """Move a side on by `count` elements of its line. Behind a line's last one Y_MODIFY stands in for X_MODIFY."""
     state[side + w.POSITION] += count * state[side + w.X_MODIFY]
@@ -19,7 +19,7 @@ def go_on(state: State, side: int, count: int) -> None:
         state[side + w.X_LEFT] = state[side + w.X_COUNT]
 
 
-@compiled
+@native
 def copy_element(memory: Memory, source: int, target: int, bits: int) -> None:
     """Copy the element of 1 << `bits` bytes at `source` to `target`."""
     if bits == WORD_BITS:
@@ -30,7 +30,7 @@ def copy_element(memory: Memory, source: int, target: int, bits: int) -> None:
     memory[target >> WORD_BITS] = memory[target >> WORD_BITS] & ~(mask << shift) | value << shift
 
 
-@compiled
+@native
 def move(state: State, memory: Memory, transfer: int, count: int) -> None:
     """Move `count` elements, none beyond the end of either side's line, and step both sides on."""
     source, target, bits = state[transfer + w.FROM], state[transfer + w.TO], state[transfer + w.ELEMENT_BITS]

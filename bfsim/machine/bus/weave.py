@@ -13,7 +13,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from bfsim.kernel.compiled import compiled, entry, words_at
+from bfsim.kernel.native import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_requests import serve_core, serve_stores, start_jobs
 from bfsim.machine.bus.dma_requests import serve_dma
@@ -26,7 +26,7 @@ from bfsim.machine.bus.transfers import accept
 NO_BUS, URGENT, AGAINST, HAD_ITS_TURN, HAD_THE_BUS = -10_000, -1_000, 100, 2, 2
 
 
-@compiled
+@native
 def rank_of(state: State, number: int, at: int) -> int:
     """Return the rank of a master's request at tick `at`."""
     master = w.MASTERS_AT + number
@@ -48,7 +48,7 @@ def rank_of(state: State, number: int, at: int) -> int:
     return rank
 
 
-@compiled
+@native
 def count_direction(state: State, before: int) -> None:
     """Begin the period in which requests of the same direction are preferred, or use up a transfer of it."""
     if state[w.LAST_WRITE] != before:
@@ -57,7 +57,7 @@ def count_direction(state: State, before: int) -> None:
         state[w.DEB_LEFT] -= 1
 
 
-@compiled
+@native
 def first_request(state: State, until: int) -> tuple[int, int]:
     """Return who can be served first, and when; NONE if nobody before tick `until`."""
     free = state[w.COMMAND_FREE]
@@ -80,7 +80,7 @@ def first_request(state: State, until: int) -> tuple[int, int]:
     return first, first_at
 
 
-@compiled
+@native
 def serve_cameras(state: State, memory: Memory, number: int, at: int, until: int) -> int:
     """Serve a PPI, and then the words of both that come before anybody else can want the bus; return who is woken.
 
@@ -99,7 +99,7 @@ def serve_cameras(state: State, memory: Memory, number: int, at: int, until: int
     return woken
 
 
-@compiled
+@native
 def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int:
     """Serve the request of a master; return who is woken."""
     if number <= w.PPI1 and not state[w.DEB_PERIOD]:
@@ -111,7 +111,7 @@ def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int
     return serve_dma(state, memory, number, at, until)
 
 
-@entry("int64", "int64*", "uint32*", "int64")
+@native_entry("int64", "int64*", "uint32*", "int64")
 def advance(state_at: State, memory_at: Memory, until: int) -> int:
     """Grant all requests before tick `until`, in order; return early with who is woken, at tick DONE_AT, else NONE.
 

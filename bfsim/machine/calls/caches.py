@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from bfsim.chip.memory_map import Region
 from bfsim.chip.spec import CacheSpec
 from bfsim.errors import FirmwareError, LinkError
-from bfsim.kernel.followers import MAX_REGIONS, CachedRegion, CacheSize, Policy
+from bfsim.kernel.access_trace import MAX_REGIONS, CachedRegion, CacheSize, Policy
 from bfsim.linker import LinkMap
 from bfsim.machine.memories import Memories
 

@@ -8,7 +8,7 @@ from typing import Protocol
 
 from bfsim.errors import FirmwareError, KernelError
 from bfsim.kernel import CompilerProfile, Kernel, Work
-from bfsim.kernel.followers import Follower
+from bfsim.kernel.access_trace import AccessTrace
 from bfsim.machine.calls.conflicts import SubBanks
 from bfsim.machine.calls.fetch import CodeOutside, FetchedCall
 from bfsim.machine.calls.groups import CallGroup
@@ -67,7 +67,7 @@ class CallCache:
         self,
         core: str,
         profile: CompilerProfile,
-        follower: Follower,
+        access_trace: AccessTrace,
         code: CodeOutside,
         subbanks: SubBanks,
         *,
@@ -75,7 +75,7 @@ class CallCache:
     ) -> None:
         self._core = core
         self._profile = profile
-        self._follower = follower
+        self._access_trace = access_trace
         self._code = code
         self._subbanks = subbanks
         self._sanitize = sanitize
@@ -96,7 +96,7 @@ class CallCache:
         )
 
     def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> BoundCall:
-        """Prepare a call for the first time, and know it from now on. Rows outside of L1 are followed."""
+        """Prepare a call for the first time, and know it from now on. Rows outside of L1 are traced."""
         if not isinstance(kernel, Kernel):
             name = getattr(kernel, "__name__", repr(kernel))
             raise FirmwareError(f"core.run must get a function with @kernel before it, not {name}")
@@ -118,19 +118,21 @@ class CallCache:
                     f"{name} must be a row of a placed buffer, not {row!r} (kernel {kernel.name}, {kernel.place})"
                 )
             rows.append(row)
-        followed = sum(map(self._is_followed, rows)) > 0  # of every row, since some cannot be reached at all
-        group = self._group(kernel, tuple(each.memory for each in rows), followed)
+        traced = sum(map(self._is_traced, rows)) > 0  # of every row, since some cannot be reached at all
+        group = self._group(kernel, tuple(each.memory for each in rows), traced)
         for seen, row in zip(group.subbanks, rows, strict=True):
             seen.update(self._subbanks.of(row))
-        follower = self._follower if followed else None
-        call: BoundCall = kernel.prepare(group.code, [each.array for each in rows], group.totals, follower)
+        access_trace = self._access_trace if traced else None
+        call: BoundCall = kernel.prepare(
+            group.code, [each.array for each in rows], group.totals, access_trace
+        )
         if outside := self._code.of(group.code.counters):
             call = FetchedCall(
-                call, outside, group.code.counters, group.totals, self._follower, self._code.cache
+                call, outside, group.code.counters, group.totals, self._access_trace, self._code.cache
             )
         return CheckedCall(call, kernel) if self._sanitize else call
 
-    def _is_followed(self, row: Row) -> bool:
+    def _is_traced(self, row: Row) -> bool:
         """Whether accesses to `row` take longer than one cycle. Another core's L1 cannot be reached at all."""
         if not row.memory.startswith("CORE"):
             return True
@@ -143,10 +145,10 @@ class CallCache:
             )
         return False
 
-    def _group(self, kernel: Kernel, memories: tuple[str, ...], followed: bool) -> CallGroup:
+    def _group(self, kernel: Kernel, memories: tuple[str, ...], traced: bool) -> CallGroup:
         key = (self.stage, kernel, memories)
         if key not in self._groups:
-            code = kernel.compiled(self._profile, followed=followed)
+            code = kernel.compile(self._profile, traced=traced)
             self._groups[key] = CallGroup(
                 self.stage, kernel, memories, code, code.new_totals(), [set() for _ in memories]
             )

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from bfsim.chip.spec import CacheSpec
 from bfsim.kernel import Work
-from bfsim.kernel import followers as log
-from bfsim.kernel.followers import Follower
-from bfsim.kernel.schedule import Counter
+from bfsim.kernel import access_trace as log
+from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.counters import Counter
 from bfsim.machine.bus.state import FETCH_BYTES
 from bfsim.machine.memories import Row
 
@@ -93,15 +93,15 @@ class CodeOutside:
 
 
 class FetchedCall:
-    """A call whose code lies outside L1: its fetches are added to what its follower logged."""
+    """A call whose code lies outside L1: its fetches are added to what its access trace has."""
 
     def __init__(
         self, call: Runnable, code: Code, counters: Iterable[Counter], totals: NDArray[np.int64],
-        follower: Follower, cache: CodeCache | None,
+        access_trace: AccessTrace, cache: CodeCache | None,
     ) -> None:  # fmt: skip
         self._call = call
         self._totals = totals
-        self._follower = follower
+        self._access_trace = access_trace
         self._cache = cache
         self._code = code
         self._lines = code.lines(cache.line_bytes) if cache else []
@@ -119,7 +119,7 @@ class FetchedCall:
         work = self._call.run(arguments)
         fetches = self._line_fills() if self._cache else self._single_fetches(work, self._totals - before)
         if len(fetches):
-            work.accesses = self._follower.insert(work.accesses, fetches)
+            work.accesses = self._access_trace.insert(work.accesses, fetches)
         return work
 
     def _line_fills(self) -> NDArray[np.int64]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.kernel import Kernel
-from bfsim.kernel.jit import Compiled
+from bfsim.kernel.jit import CompiledKernel
 
 
 @dataclass(slots=True)
@@ -21,6 +21,6 @@ class CallGroup:
     stage: str
     kernel: Kernel
     memories: tuple[str, ...]
-    code: Compiled
+    code: CompiledKernel
     totals: NDArray[np.int64]
     subbanks: list[set[int]]

@@ -11,7 +11,7 @@ from typing import Any
 from bfsim.chip.spec import BoardSpec
 from bfsim.chip.spi_registers import TRANSFER_WRITES
 from bfsim.errors import FirmwareError
-from bfsim.kernel.followers import Follower
+from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.types import Number
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
@@ -67,7 +67,7 @@ class Core(SynchronisedCore):
         calls: CallCache,
         bus: Bus,
         number: int,
-        follower: Follower,
+        access_trace: AccessTrace,
         capture: Capture,
         streams: tuple[MdmaStream, MdmaStream],
         dma: Dma,
@@ -98,7 +98,7 @@ class Core(SynchronisedCore):
         self._on_finished = on_finished
         self._layouts = layouts
         self._view = view
-        self._follower = follower
+        self._access_trace = access_trace
         self._capture = capture
         self._streams = streams
         self._dma = dma
@@ -252,11 +252,11 @@ class Core(SynchronisedCore):
         return nbytes
 
     def _is_cached(self, image: Sequence[Row]) -> bool:
-        return bool(image) and self._follower.caches(image[0].offset)
+        return bool(image) and self._access_trace.caches(image[0].offset)
 
     def _invalidate(self, rows: Sequence[Row]) -> None:
         """Let the data cache forget what it holds of a picture that DMA has written over."""
-        lines = self._follower.forget(rows[0].offset, rows[0].nbytes * len(rows))
+        lines = self._access_trace.forget(rows[0].offset, rows[0].nbytes * len(rows))
         cclk = lines * self._board.chip.cache.invalidate_cclk
         self.issue(cclk)
 

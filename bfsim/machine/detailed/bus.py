@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import simpy
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.kernel import followers
+from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import RANKS, Bus, Pace, Transfer, TransferPlan, Walk
 from bfsim.machine.bus.weave import plain_weave
@@ -95,8 +95,8 @@ class DetailedBus(Bus):
     def access(self, core: int, begin: int, cclk: int, entries: int) -> simpy.Event:
         """Play the first `entries` accesses of a core's log, of a call of `cclk` cycles from tick `begin`; return its end."""
         done = self._env.event()
-        log = self.room_of(core)[followers.LOG :][:entries]
-        self._env.process(self._ports[core].call(begin, cclk, log, done))
+        made = self.room_of(core)[log.LOG :][:entries]
+        self._env.process(self._ports[core].call(begin, cclk, made, done))
         return done
 
     def stalls_of(self, core: int) -> Sequence[int]:

@@ -15,7 +15,7 @@ import simpy
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.kernel import followers as log
+from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.detailed.arbiter import Arbiter, Grant, wait_until
 from bfsim.machine.detailed.sdram import Page

@@ -9,7 +9,7 @@ from bfsim.kernel.expressions import Expressions
 from bfsim.kernel.types import FloatType, IntType, Number, f32, i32, promoted, sqrt
 
 
-class Scope(Expressions):
+class KernelScope(Expressions):
     """What a kernel's expressions are read in, calls among them."""
 
     __slots__ = ()
@@ -73,7 +73,7 @@ class Scope(Expressions):
             return tree.Length(node.args[0].id, i32, node.lineno)
         self.source.refuse(node, "len is for array parameters", "write len(array)")
 
-    def _kernel_call(self, node: ast.Call, callee: tree.Function) -> tree.Call:
+    def _kernel_call(self, node: ast.Call, callee: tree.Function) -> tree.KernelCall:
         if len(node.args) != len(callee.parameters):
             self.source.refuse(
                 node,
@@ -84,7 +84,7 @@ class Scope(Expressions):
             self._argument(each, parameter)
             for each, parameter in zip(node.args, callee.parameters, strict=True)
         )
-        return tree.Call(callee, arguments, callee.result, node.lineno)
+        return tree.KernelCall(callee, arguments, callee.result, node.lineno)
 
     def _argument(self, node: ast.expr, parameter: tree.Parameter) -> tree.Expr | str:
         if isinstance(parameter.type, (IntType, FloatType)):

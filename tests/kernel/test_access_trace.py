@@ -1,4 +1,4 @@
-"""The memory follower: every access of a kernel outside L1 is logged, or what the data cache makes of it."""
+"""The access trace: every access of a kernel outside L1 is logged, or what the data cache makes of it."""
 
 from __future__ import annotations
 
@@ -13,12 +13,21 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
-from bfsim.kernel import followers as log
+from bfsim.kernel import access_trace as log
 from bfsim.kernel import i32, kernel, u8
-from bfsim.kernel.followers import FILL, LOAD, STORE, WRITE_BACK, CachedRegion, CacheSize, Follower, Policy
+from bfsim.kernel.access_trace import (
+    FILL,
+    LOAD,
+    STORE,
+    WRITE_BACK,
+    AccessTrace,
+    CachedRegion,
+    CacheSize,
+    Policy,
+)
 from tests.kernel.running import run
 
-OUTSIDE, L1 = 8192, 4096  # bytes of the arena: first what is followed, then what is not
+OUTSIDE, L1 = 8192, 4096  # bytes of the arena: first what is traced, then what is not
 SMALL = CacheSize(nbytes=512, line_bytes=32, ways=2)  # eight sets
 Entry = tuple[int, int]
 
@@ -41,38 +50,40 @@ def add_to(target: i32[:], value: i32):
 
 @dataclass
 class Memory:
-    """An arena with a follower."""
+    """An arena with an access trace."""
 
     cached: Sequence[CachedRegion] = ()
     size: CacheSize = SMALL
     entries: int = 4096
     arena: NDArray[np.uint8] = field(init=False)
-    follower: Follower = field(init=False)
+    access_trace: AccessTrace = field(init=False)
 
     def __post_init__(self) -> None:
         self.arena = np.zeros(OUTSIDE + L1, np.uint8)
         room = np.zeros(log.LOG + self.entries, np.int64)
-        self.follower = Follower(self.arena, OUTSIDE, room, self.cached, self.size)
+        self.access_trace = AccessTrace(self.arena, OUTSIDE, room, self.cached, self.size)
 
     @property
     def l1(self) -> NDArray[np.uint8]:
-        """Memory that is not followed."""
+        """Memory that is not traced."""
         return self.arena[OUTSIDE:]
 
     def stroll(
         self, source: NDArray[np.uint8], target: NDArray[np.uint8], start: int, step: int, n: int
     ) -> list[Entry]:
         """Run the kernel; return (kind, offset) of what was logged."""
-        return self.logged(run(stroll, source, target, start, step, n, follower=self.follower).accesses)
+        return self.logged(
+            run(stroll, source, target, start, step, n, access_trace=self.access_trace).accesses
+        )
 
     def logged(self, count: int) -> list[Entry]:
         """Return (kind, offset) of the first entries."""
-        entries = self.follower.entries(count).tolist()
+        entries = self.access_trace.entries(count).tolist()
         return [(each >> log.KIND_BIT & log.KIND_MASK, each & log.OFFSET_MASK) for each in entries]
 
 
 def test_loads_and_stores_are_logged_in_their_order() -> None:
-    """Kind and offset of each; L1 is not followed."""
+    """Kind and offset of each; L1 is not traced."""
     memory = Memory()
     source, target = memory.arena[100:200], memory.arena[1000:1100]
     expected = [entry for i in range(40) for entry in ((LOAD, 100 + i), (STORE, 1000 + i))]
@@ -93,20 +104,20 @@ def test_a_word_is_one_access() -> None:
     """32 bits at a time, read and written in place."""
     memory = Memory()
     words = memory.arena[256:320].view(np.int32)
-    work = run(add_to, words, 7, follower=memory.follower)
+    work = run(add_to, words, 7, access_trace=memory.access_trace)
     assert memory.logged(work.accesses) == [(kind, 256 + 4 * i) for i in range(16) for kind in (LOAD, STORE)]
     assert (words == 7).all()
 
 
 def test_stamps_are_the_cycles_of_the_call() -> None:
-    """They grow from one turn of the loop to the next by what the turn costs, and end before the call does."""
+    """They grow from one iteration of the loop to the next by what the iteration costs, and end before the call does."""
     memory = Memory()
-    work = run(stroll, memory.arena, memory.l1, 0, 1, 50, follower=memory.follower)
-    stamps = memory.follower.entries(50) >> log.STAMP_BIT
-    turns = np.diff(stamps)
-    assert (turns == turns[0]).all()
-    longer = run(stroll, memory.arena, memory.l1, 0, 1, 51, follower=memory.follower)
-    assert turns[0] == longer.issue_cclk + longer.stall_cclk - work.issue_cclk - work.stall_cclk
+    work = run(stroll, memory.arena, memory.l1, 0, 1, 50, access_trace=memory.access_trace)
+    stamps = memory.access_trace.entries(50) >> log.STAMP_BIT
+    iterations = np.diff(stamps)
+    assert (iterations == iterations[0]).all()
+    longer = run(stroll, memory.arena, memory.l1, 0, 1, 51, access_trace=memory.access_trace)
+    assert iterations[0] == longer.issue_cclk + longer.stall_cclk - work.issue_cclk - work.stall_cclk
     assert 0 <= stamps[0] < stamps[-1] < work.issue_cclk + work.stall_cclk
 
 
@@ -129,15 +140,15 @@ def test_a_full_log_is_told_and_overwrites_nothing() -> None:
 
 
 def test_following_changes_neither_pixels_nor_cycles() -> None:
-    """The followed build stores the same values, returns the same and issues the same cycles."""
+    """The traced build stores the same values, returns the same and issues the same cycles."""
     memory = Memory()
     source, seen = memory.arena[:64], memory.arena[64:128]
     source[:] = np.arange(64)
     plain = np.zeros(64, np.uint8)
     bare = run(stroll, source, plain, 0, 1, 64)
-    followed = run(stroll, source, seen, 0, 1, 64, follower=memory.follower)
-    assert (bare.issue_cclk, bare.value) == (followed.issue_cclk, followed.value)
-    assert (bare.accesses, followed.accesses) == (0, 128)
+    traced = run(stroll, source, seen, 0, 1, 64, access_trace=memory.access_trace)
+    assert (bare.issue_cclk, bare.value) == (traced.issue_cclk, traced.value)
+    assert (bare.accesses, traced.accesses) == (0, 128)
     np.testing.assert_array_equal(plain, seen)
 
 
@@ -202,9 +213,9 @@ def test_a_cache_forgets_what_dma_has_overwritten() -> None:
     """Its lines are filled again, all that the bytes touch and no others; changes of theirs are lost."""
     memory = Memory([CachedRegion(0, 4096, Policy.WRITE_BACK)])
     memory.stroll(memory.l1, memory.arena, 0, 32, 6)
-    assert memory.follower.forget(33, 64) == 3
+    assert memory.access_trace.forget(33, 64) == 3
     assert memory.stroll(memory.arena, memory.l1, 0, 32, 6) == [(FILL, 32), (FILL, 64), (FILL, 96)]
-    assert Memory().follower.forget(0, 64) == 0
+    assert Memory().access_trace.forget(0, 64) == 0
 
 
 regions = st.tuples(st.integers(0, 20), st.integers(0, 40), st.sampled_from(Policy)).map(

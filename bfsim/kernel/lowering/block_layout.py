@@ -9,12 +9,12 @@ from __future__ import annotations
 from itertools import pairwise
 
 from bfsim.kernel.isa import Op
-from bfsim.kernel.loops import Flow, Loop
+from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.charges import Charge, charge
 from bfsim.kernel.lowering.predict import EVEN, Likelihood
 
 
-class Layout:
+class BlockLayout:
     """Positions of the blocks of one routine.
 
     `skipped` blocks hold no code. An edge with copies of its own is a block, too: `copies` holds their cost by edge.
@@ -22,7 +22,7 @@ class Layout:
 
     def __init__(
         self,
-        flow: Flow,
+        flow: ControlFlow,
         likelihood: Likelihood,
         skipped: frozenset[str],
         copies: dict[tuple[str, str], list[Charge]],
@@ -120,7 +120,7 @@ class Layout:
         return len(self.flow.predecessors[name]) if name in self.flow.blocks else 1
 
     def _rotated(self, order: list[str]) -> list[str]:
-        """Turn each loop that would jump back so that it ends with its likeliest exit: the test moves to the bottom."""
+        """Rotate each loop that would jump back so that it ends with its likeliest exit: the test moves to the bottom."""
         for loop in self.flow.loops:
             if len(set(self.flow.blocks[loop.latch].successors)) != 1:
                 continue

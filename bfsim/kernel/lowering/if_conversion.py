@@ -1,4 +1,4 @@
-"""Small `if`s that a compiler turns into one operation: minimum, maximum, absolute value, conditional move.
+"""If-conversion: small `if`s that a compiler turns into one operation: minimum, maximum, absolute value, conditional move.
 
 As GCC does it [phiopt and ifcvt.cc of GCC 12]: a branch goes away only if all that its arms do is to choose
 between two values that are there already (or to negate one that was tested for its sign).
@@ -11,7 +11,7 @@ from enum import Enum, auto
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction
 from bfsim.kernel.learnt import Learnt
-from bfsim.kernel.loops import Flow
+from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.predict import predicate
 from bfsim.kernel.profile import CompilerProfile
 
@@ -19,7 +19,7 @@ RENAMING = ("trunc", "zext", "sext", "freeze")
 BYTE, WORD = 8, 32
 
 
-class Kind(Enum):
+class ConversionKind(Enum):
     """What becomes of a small `if`."""
 
     ABSOLUTE = auto()
@@ -34,10 +34,10 @@ class Kind(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
+class ConvertedIf:
     """An `if` in block `label` that needs no branch; `phi` is what it computes, from `operands`."""
 
-    kind: Kind
+    kind: ConversionKind
     label: str
     phi: Instruction
     operands: tuple[str, ...]
@@ -45,25 +45,25 @@ class Shape:
     """Blocks that vanish."""
 
 
-class Shapes:
+class IfConversion:
     """The small `if`s of one routine, by the block that tests."""
 
-    def __init__(self, flow: Flow, profile: CompilerProfile) -> None:
+    def __init__(self, flow: ControlFlow, profile: CompilerProfile) -> None:
         self.flow, self.profile = flow, profile
-        self.by_label: dict[str, Shape] = {}
+        self.by_label: dict[str, ConvertedIf] = {}
         for label in flow.order:
-            shape = self._shape(label)
-            if shape:
-                self.by_label[label] = shape
+            conversion = self._conversion(label)
+            if conversion:
+                self.by_label[label] = conversion
         for label in flow.order:
             clamp = self._clamp(label)
             if clamp:
                 for arm in clamp.arms & self.by_label.keys():
                     del self.by_label[arm]
                 self.by_label[label] = clamp
-        self.gone = frozenset(arm for shape in self.by_label.values() for arm in shape.arms)
+        self.gone = frozenset(arm for conversion in self.by_label.values() for arm in conversion.arms)
 
-    def _shape(self, label: str) -> Shape | None:
+    def _conversion(self, label: str) -> ConvertedIf | None:
         block = self.flow.blocks[label]
         if block.terminator.opcode != "br" or len(set(block.successors)) != 2:
             return None
@@ -98,11 +98,15 @@ class Shapes:
         is_header = any(loop.header == way for loop in self.flow.loops)
         return alone and not is_header and all(each.opcode in ("phi", *RENAMING) for each in rows[:-1])
 
-    def _clamp(self, label: str) -> Shape | None:
+    def _clamp(self, label: str) -> ConvertedIf | None:
         """A minimum of a constant and of a maximum, or the other way round [minmax_replacement in tree-ssa-phiopt.cc]."""
         block = self.flow.blocks[label]
         inner = next((self.by_label[way] for way in block.successors if way in self.by_label), None)
-        if inner is None or inner.kind is not Kind.EXTREME or self.flow.predecessors[inner.label] != [label]:
+        if (
+            inner is None
+            or inner.kind is not ConversionKind.EXTREME
+            or self.flow.predecessors[inner.label] != [label]
+        ):
             return None
         join = self.flow.defined[inner.phi.result or ""][0]
         test = self.flow.instruction(block.terminator.operands[0])
@@ -118,7 +122,9 @@ class Shapes:
             or value not in inner.operands
         ):
             return None
-        return Shape(Kind.CLAMP, label, inner.phi, (*inner.operands, bound), inner.arms | {inner.label})
+        return ConvertedIf(
+            ConversionKind.CLAMP, label, inner.phi, (*inner.operands, bound), inner.arms | {inner.label}
+        )
 
     def _is_arm(self, way: str, label: str) -> bool:
         block = self.flow.blocks[way]
@@ -147,7 +153,7 @@ class Shapes:
 
     def _of_choice(
         self, label: str, arms: frozenset[str], phi: Instruction, yes: str, no: str
-    ) -> Shape | None:
+    ) -> ConvertedIf | None:
         work = [each for arm in arms for each in self._work(arm)]
         test = self.flow.instruction(self.flow.blocks[label].terminator.operands[0])
         if test is None or test.opcode != "icmp":
@@ -155,11 +161,11 @@ class Shapes:
         if work:
             return self._negation(label, arms, phi, work, test)
         if {yes, no} == {"1", "0"}:
-            return Shape(Kind.FLAG, label, phi, (yes, no), arms)
+            return ConvertedIf(ConversionKind.FLAG, label, phi, (yes, no), arms)
         bounds = {self._plain(each) for each in _bounds(test)}
         if (predicate(test)[0] == "s" or self._is_positive(test)) and {yes, no} <= bounds:
-            return Shape(Kind.EXTREME, label, phi, (yes, no), arms)
-        return Shape(Kind.CHOICE, label, phi, (yes, no), arms)
+            return ConvertedIf(ConversionKind.EXTREME, label, phi, (yes, no), arms)
+        return ConvertedIf(ConversionKind.CHOICE, label, phi, (yes, no), arms)
 
     def _is_positive(self, test: Instruction) -> bool:
         """Whether an unsigned comparison is as good as a signed one: LLVM makes them of values that are never negative."""
@@ -170,7 +176,7 @@ class Shapes:
 
     def _negation(
         self, label: str, arms: frozenset[str], phi: Instruction, work: list[Instruction], test: Instruction
-    ) -> Shape | None:
+    ) -> ConvertedIf | None:
         if len(work) != 1 or work[0].opcode != "sub" or work[0].operands[0] != "0":
             return None
         value = work[0].operands[1]
@@ -183,7 +189,9 @@ class Shapes:
         chosen = value in phi.operands and work[0].result in phi.operands
         by_sign = predicate(test) in ("slt", "sgt", "sle", "sge") and test.operands[1] in ("0", "-1", "1")
         return (
-            Shape(Kind.ABSOLUTE, label, phi, (value, value), arms) if chosen and tested and by_sign else None
+            ConvertedIf(ConversionKind.ABSOLUTE, label, phi, (value, value), arms)
+            if chosen and tested and by_sign
+            else None
         )
 
 

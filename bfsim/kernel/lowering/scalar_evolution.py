@@ -1,7 +1,7 @@
-"""Values that advance by the same amount with every turn of a loop (scalar evolution, in its simplest form).
+"""Scalar evolution: values that grow by the same amount with every iteration of a loop.
 
 An address that does is a pointer which a compiler steps along instead of computing it: for nothing, where a
-post-increment does it, or with one addition a turn.
+post-increment does it, or with one addition an iteration.
 """
 
 from __future__ import annotations
@@ -9,32 +9,32 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bfsim.kernel.ir_text import PHI_ARM
-from bfsim.kernel.loops import Flow, Loop, pointee_nbytes
-from bfsim.kernel.lowering.evaluated import evaluated_turns
-from bfsim.kernel.lowering.places import Places
+from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
+from bfsim.kernel.lowering.evaluated_iterations import evaluated_iterations
+from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
 
-DEEPEST = 12  # operations that a form looks through
+DEEPEST = 12  # operations that an affine value is looked for through
 
 
 @dataclass(frozen=True, slots=True)
-class Form:
+class Affine:
     """A sum: `constant` plus each named value times its factor."""
 
     terms: tuple[tuple[str, int], ...] = ()
     constant: int = 0
 
-    def plus(self, other: Form, factor: int = 1) -> Form:
-        """Return this form plus `factor` times the other."""
+    def plus(self, other: Affine, factor: int = 1) -> Affine:
+        """Return this affine plus `factor` times the other."""
         terms = dict(self.terms)
         for name, times in other.terms:
             terms[name] = terms.get(name, 0) + factor * times
         kept = tuple(sorted((name, times) for name, times in terms.items() if times))
-        return Form(kept, self.constant + factor * other.constant)
+        return Affine(kept, self.constant + factor * other.constant)
 
 
 @dataclass(frozen=True, slots=True)
-class Advance:
-    """What a value gains per turn: `constant`, or an amount that is known only when the loop starts."""
+class Increment:
+    """What a value gains per iteration: `constant`, or an amount that is known only when the loop starts."""
 
     constant: int = 0
     symbolic: bool = False
@@ -45,122 +45,122 @@ class Advance:
         return self.symbolic or self.constant != 0
 
 
-class Walks:
+class ScalarEvolution:
     """Forms and advances of the values of one routine."""
 
-    def __init__(self, flow: Flow, places: Places) -> None:
-        self.flow, self.places = flow, places
+    def __init__(self, flow: ControlFlow, code_motion: InvariantCodeMotion) -> None:
+        self.flow, self.code_motion = flow, code_motion
 
-    def form(self, value: str, depth: int = DEEPEST) -> Form:
+    def affine(self, value: str, depth: int = DEEPEST) -> Affine:
         """Return `value` as a sum; an address in bytes."""
         if value.lstrip("-").isdigit():
-            return Form(constant=int(value))
+            return Affine(constant=int(value))
         each = self.flow.instruction(value)
-        alone = Form(((value, 1),))
+        alone = Affine(((value, 1),))
         if each is None or depth == 0:
             return alone
         last = each.operands[-1] if each.operands else ""
         number = int(last) if last.lstrip("-").isdigit() else None
         match each.opcode:
             case "getelementptr":
-                base, index = self.form(each.operands[0], depth - 1), self.form(last, depth - 1)
+                base, index = self.affine(each.operands[0], depth - 1), self.affine(last, depth - 1)
                 return base.plus(index, pointee_nbytes(each))
             case "add":
-                return self.form(each.operands[0], depth - 1).plus(self.form(last, depth - 1))
+                return self.affine(each.operands[0], depth - 1).plus(self.affine(last, depth - 1))
             case "or" if " disjoint " in each.text:
-                return self.form(each.operands[0], depth - 1).plus(self.form(last, depth - 1))
+                return self.affine(each.operands[0], depth - 1).plus(self.affine(last, depth - 1))
             case "sub":
-                return self.form(each.operands[0], depth - 1).plus(self.form(last, depth - 1), -1)
+                return self.affine(each.operands[0], depth - 1).plus(self.affine(last, depth - 1), -1)
             case "shl" if number is not None:
-                return Form().plus(self.form(each.operands[0], depth - 1), 1 << number)
+                return Affine().plus(self.affine(each.operands[0], depth - 1), 1 << number)
             case "mul" if number is not None:
-                return Form().plus(self.form(each.operands[0], depth - 1), number)
+                return Affine().plus(self.affine(each.operands[0], depth - 1), number)
         return alone
 
-    def advance(self, value: str, loop: Loop) -> Advance | None:
-        """Return what `value` gains per turn of `loop`; None if that changes from turn to turn."""
-        form = self.form(value)
+    def increment(self, value: str, loop: Loop) -> Increment | None:
+        """Return what `value` gains per iteration of `loop`; None if that changes from iteration to iteration."""
+        affine = self.affine(value)
         total, symbolic = 0, False
-        for name, times in form.terms:
+        for name, times in affine.terms:
             gain = self._of_term(name, loop)
             if gain is None:
                 return None
             total, symbolic = total + times * gain.constant, symbolic or gain.symbolic
-        return Advance(total, symbolic)
+        return Increment(total, symbolic)
 
-    def _of_term(self, name: str, loop: Loop) -> Advance | None:
-        if self.places.is_invariant(name, loop):
-            return Advance()
+    def _of_term(self, name: str, loop: Loop) -> Increment | None:
+        if self.code_motion.is_invariant(name, loop):
+            return Increment()
         each = self.flow.instruction(name)
         assert each is not None
         if each.opcode == "phi" and self.flow.defined[name][0] == loop.header:
             return self._of_counter(name, loop)
         if each.opcode == "mul":
-            left, right = (self.advance(operand, loop) for operand in each.operands)
+            left, right = (self.increment(operand, loop) for operand in each.operands)
             if left and right and not (left.moves and right.moves) and not (left.symbolic or right.symbolic):
-                return Advance(symbolic=True)
+                return Increment(symbolic=True)
         return None
 
-    def _of_counter(self, phi: str, loop: Loop) -> Advance | None:
+    def _of_counter(self, phi: str, loop: Loop) -> Increment | None:
         gain = self.gain(phi, loop)
         if gain is None:
             return None
         if not gain.terms:
-            return Advance(gain.constant)
-        fixed = all(self.places.is_invariant(name, loop) for name, _ in gain.terms)
-        return Advance(symbolic=True) if fixed else None
+            return Increment(gain.constant)
+        fixed = all(self.code_motion.is_invariant(name, loop) for name, _ in gain.terms)
+        return Increment(symbolic=True) if fixed else None
 
-    def gain(self, phi: str, loop: Loop) -> Form | None:
-        """Return by how much a phi of the header of `loop` differs from its value a turn before."""
+    def gain(self, phi: str, loop: Loop) -> Affine | None:
+        """Return by how much a phi of the header of `loop` differs from its value an iteration before."""
         instruction = self.flow.instruction(phi)
         assert instruction is not None
         updates = {arm for arm, source in PHI_ARM.findall(instruction.text) if source[1:] in loop.blocks}
         if len(updates) != 1:
             return None
-        form = self.form(updates.pop())
-        if dict(form.terms).get(phi) != 1:
+        affine = self.affine(updates.pop())
+        if dict(affine.terms).get(phi) != 1:
             return None
-        return form.plus(Form(((phi, 1),)), -1)
+        return affine.plus(Affine(((phi, 1),)), -1)
 
     def is_counted(self, loop: Loop) -> bool:
-        """Whether the number of turns is known when the loop starts: its last test compares a stepping value."""
+        """Whether the number of iterations is known when the loop starts: its last test compares a stepping value."""
         test = self.exit_test(loop)
         return test is not None and (
-            self._counts(test, loop) or evaluated_turns(self.flow, loop, test) is not None
+            self._counts(test, loop) or evaluated_iterations(self.flow, loop, test) is not None
         )
 
     def _counts(self, test: str, loop: Loop) -> bool:
         each = self.flow.instruction(test)
         if each is None or each.opcode != "icmp":
             return False
-        gains = [self.advance(operand, loop) for operand in each.operands[:2]]
+        gains = [self.increment(operand, loop) for operand in each.operands[:2]]
         if None in gains:
             return False
         moving = [gain for gain in gains if gain is not None and gain.moves]
         return len(moving) == 1 and not moving[0].symbolic
 
-    def turns(self, loop: Loop) -> int | None:
-        """How often `loop` turns, where constants say so."""
+    def iterations(self, loop: Loop) -> int | None:
+        """How often `loop` iterates, where constants say so."""
         test = self.flow.instruction(self.exit_test(loop) or "")
         if test is None or test.opcode != "icmp" or not test.operands[1].lstrip("-").isdigit():
             return None
-        gain = self.advance(test.operands[0], loop)
+        gain = self.increment(test.operands[0], loop)
         start = self._start(test.operands[0], loop)
         if gain is None or start is None or not gain.constant or gain.symbolic:
-            return evaluated_turns(self.flow, loop, test.result or "")
+            return evaluated_iterations(self.flow, loop, test.result or "")
         return max(0, (int(test.operands[1]) - start) // gain.constant) + 1
 
     def _start(self, value: str, loop: Loop) -> int | None:
-        """What a form of one counter is at its first turn."""
-        form, entering = self.form(value), self.flow.entering(loop)
-        if len(form.terms) != 1:
+        """What an affine value of one counter is in its first iteration."""
+        affine, entering = self.affine(value), self.flow.entering(loop)
+        if len(affine.terms) != 1:
             return None
-        name, times = form.terms[0]
+        name, times = affine.terms[0]
         each = self.flow.instruction(name)
         if each is None or each.opcode != "phi":
             return None
         first = next((arm for arm, source in PHI_ARM.findall(each.text) if source[1:] == entering), "")
-        return int(first) * times + form.constant if first.lstrip("-").isdigit() else None
+        return int(first) * times + affine.constant if first.lstrip("-").isdigit() else None
 
     def starts_fixed(self, loop: Loop) -> bool:
         """Whether every counter of `loop` starts at a constant."""

@@ -1,16 +1,16 @@
-"""The compiled part of the memory follower: called by a kernel's machine code at every access that may leave L1."""
+"""The compiled part of the access trace: called by a kernel's machine code at every access that may leave L1."""
 
 from __future__ import annotations
 
 from collections.abc import MutableSequence
 
-from bfsim.kernel import followers as log
-from bfsim.kernel.compiled import compiled, entry, words_at
+from bfsim.kernel import access_trace as log
+from bfsim.kernel.native import native, native_entry, words_at
 
 State = MutableSequence[int]
 
 
-@compiled
+@native
 def write_entry(state: State, kind: int, offset: int, stamp: int) -> None:
     """Log an access, or only count it when the log is full."""
     if state[log.ENTRIES] < state[log.ROOM]:
@@ -18,7 +18,7 @@ def write_entry(state: State, kind: int, offset: int, stamp: int) -> None:
     state[log.ENTRIES] += 1
 
 
-@compiled
+@native
 def policy_of(state: State, offset: int) -> int:
     """Return how the region at `offset` is cached, or EMPTY."""
     for number in range(state[log.REGIONS]):
@@ -28,7 +28,7 @@ def policy_of(state: State, offset: int) -> int:
     return log.EMPTY
 
 
-@compiled
+@native
 def look_up(state: State, line: int, changed: int, allocate: bool) -> tuple[bool, int]:
     """Look for a line and make it the one used last; return whether it was there, and the changed line that left for it."""
     first, way = log.TAGS + line % state[log.SETS] * state[log.WAYS], 0
@@ -51,8 +51,8 @@ def look_up(state: State, line: int, changed: int, allocate: bool) -> tuple[bool
     return hit, left
 
 
-@compiled
-def follow_cached(state: State, offset: int, write: bool, policy: int, stamp: int) -> None:
+@native
+def trace_cached(state: State, offset: int, write: bool, policy: int, stamp: int) -> None:
     """Log what the data cache asks of the memories for an access."""
     bits, changes = state[log.LINE_BITS], write and policy == log.WRITE_BACK_POLICY
     hit, left = look_up(state, offset >> bits, 1 if changes else 0, changes or not write)
@@ -64,9 +64,9 @@ def follow_cached(state: State, offset: int, write: bool, policy: int, stamp: in
         write_entry(state, log.FILL, offset >> bits << bits, stamp)
 
 
-@entry("void", "int64*", "int64", "int64", "int64")
-def follow(at: State, address: int, access: int, stamp: int) -> None:
-    """Follow an access of `access` bytes, WRITE more if it writes, at a host address and a cycle of the call."""
+@native_entry("void", "int64*", "int64", "int64", "int64")
+def trace_access(at: State, address: int, access: int, stamp: int) -> None:
+    """Trace an access of `access` bytes, WRITE more if it writes, at a host address and a cycle of the call."""
     state = words_at(at)
     if not state[log.ARENA] <= address < state[log.END]:
         return
@@ -75,4 +75,4 @@ def follow(at: State, address: int, access: int, stamp: int) -> None:
     if policy == log.EMPTY:
         write_entry(state, log.STORE if write else log.LOAD, offset, stamp)
     else:
-        follow_cached(state, offset, write, policy, stamp)
+        trace_cached(state, offset, write, policy, stamp)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from bfsim.kernel.isa import COSTS, LOAD_TO_POINTER_STALL, MOVE_TO_POINTER_STALL, Op
-from bfsim.kernel.lowering.steps import Bank, Step
+from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 
 BUNDLING = {
     Op.DSP_ALU,
@@ -31,16 +31,21 @@ class Issue:
     paired: bool = False
 
 
-def issues(steps: Sequence[Step], bank_of: Callable[[str], Bank | None], *, parallel: bool) -> list[Issue]:
-    """Return for each step of a block when it is issued; with `parallel`, 32-bit DSP operations take accesses along."""
+def issues(
+    instructions: Sequence[MachineInstruction],
+    bank_of: Callable[[str], RegisterBank | None],
+    *,
+    parallel: bool,
+) -> list[Issue]:
+    """Return for each instruction of a block when it is issued; with `parallel`, 32-bit DSP operations take accesses along."""
     behind: list[dict[int, int]] = []
-    for number, step in enumerate(steps):
-        gaps = {earlier: _gap(steps[earlier], step, bank_of) for earlier in range(number)}
+    for number, instruction in enumerate(instructions):
+        gaps = {earlier: _gap(instructions[earlier], instruction, bank_of) for earlier in range(number)}
         behind.append({earlier: gap for earlier, gap in gaps.items() if gap is not None})
     issued: dict[int, int] = {}
-    found = [Issue()] * len(steps)
+    found = [Issue()] * len(instructions)
     now = 0
-    while len(issued) < len(steps):
+    while len(issued) < len(instructions):
         ready = {
             number: max((issued[before] + gap for before, gap in gaps.items()), default=0)
             for number, gaps in enumerate(behind)
@@ -50,20 +55,24 @@ def issues(steps: Sequence[Step], bank_of: Callable[[str], Bank | None], *, para
         found[number] = Issue(max(0, ready[number] - now))
         now = max(now, ready.pop(number))
         issued[number] = now
-        if parallel and steps[number].op in BUNDLING:
+        if parallel and instructions[number].op in BUNDLING:
             for other in [
-                each for each in sorted(ready) if ready[each] <= now and steps[each].op in LOADS | STORES
+                each
+                for each in sorted(ready)
+                if ready[each] <= now and instructions[each].op in LOADS | STORES
             ][:1]:
                 found[other], issued[other] = Issue(paired=True), now
-        now += _cclk(steps[number])
+        now += _cclk(instructions[number])
     return found
 
 
-def _cclk(step: Step) -> int:
-    return COSTS[step.op].cclk if step.cclk is None else step.cclk
+def _cclk(instruction: MachineInstruction) -> int:
+    return COSTS[instruction.op].cclk if instruction.cclk is None else instruction.cclk
 
 
-def _gap(first: Step, then: Step, bank_of: Callable[[str], Bank | None]) -> int | None:
+def _gap(
+    first: MachineInstruction, then: MachineInstruction, bank_of: Callable[[str], RegisterBank | None]
+) -> int | None:
     """Cycles from the issue of `first` to that of `then` at the earliest; None if they are independent."""
     used = {name for name, _ in then.uses}
     if first.result is not None and first.result in used:
@@ -79,9 +88,11 @@ def _gap(first: Step, then: Step, bank_of: Callable[[str], Bank | None]) -> int 
     return None
 
 
-def _latency(first: Step, then: Step, bank_of: Callable[[str], Bank | None]) -> int:
+def _latency(
+    first: MachineInstruction, then: MachineInstruction, bank_of: Callable[[str], RegisterBank | None]
+) -> int:
     name = first.result or ""
-    if (first.bank if first.bank is not Bank.ANY else bank_of(name)) is not Bank.POINTER:
+    if (first.bank if first.bank is not RegisterBank.ANY else bank_of(name)) is not RegisterBank.POINTER:
         return 0
     if first.op is Op.LOAD32:
         return LOAD_TO_POINTER_STALL
@@ -92,5 +103,5 @@ def _latency(first: Step, then: Step, bank_of: Callable[[str], Bank | None]) -> 
     )
 
 
-def _comes_from_data(move: Step, bank_of: Callable[[str], Bank | None]) -> bool:
-    return bank_of(move.uses[0][0]) is Bank.DATA
+def _comes_from_data(move: MachineInstruction, bank_of: Callable[[str], RegisterBank | None]) -> bool:
+    return bank_of(move.uses[0][0]) is RegisterBank.DATA

@@ -1,4 +1,4 @@
-"""Flags: variables that are only ever set to constants and tested.
+"""Jump threading of flags: variables that are only ever set to constants and tested.
 
 Compilers thread the jump: each place that sets the flag goes on to where the test would lead, and neither flag nor
 test is left [tree-ssa-threadbackward.cc of GCC 12].
@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction
-from bfsim.kernel.loops import Flow, Loop
+from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.predict import predicate
 
 
-class Flags:
+class JumpThreading:
     """The flags of one routine, and the tests of them."""
 
-    def __init__(self, flow: Flow) -> None:
+    def __init__(self, flow: ControlFlow) -> None:
         self.flow = flow
         phis = {
             each.result or "": each
@@ -41,7 +41,7 @@ class Flags:
             changed, self.names = kept != self.names, kept
 
     def _is_carried(self, name: str) -> bool:
-        """Whether a loop carries a flag from turn to turn: no jump is threaded through the head of a loop.
+        """Whether a loop carries a flag from iteration to iteration: no jump is threaded through the head of a loop.
 
         A flag that ends the loop once it is set is always the same in it.
         """
@@ -50,7 +50,7 @@ class Flags:
         return loop is not None and len(self._values(name, loop, set())) > 1
 
     def _values(self, name: str, loop: Loop, seen: set[str]) -> set[str]:
-        """Constants that a flag may be in the turns of `loop`."""
+        """Constants that a flag may be in the iterations of `loop`."""
         seen.add(name)
         home, phi = self.flow.defined[name]
         found: set[str] = set()

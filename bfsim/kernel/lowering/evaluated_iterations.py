@@ -1,7 +1,7 @@
-"""Loops whose number of turns compilers find by playing them through [loop_niter_by_eval in tree-ssa-loop-niter.cc of GCC 12].
+"""Loops whose number of iterations compilers find by playing them through [loop_niter_by_eval in tree-ssa-loop-niter.cc of GCC 12].
 
 A value that starts at a constant and is computed from itself and constants alone can be followed until the exit
-test fails: `shift = 8; while shift > 0: shift >>= 1` turns four times.
+test fails: `shift = 8; while shift > 0: shift >>= 1` iterates four times.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ import operator
 from collections.abc import Callable
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction
-from bfsim.kernel.loops import Flow, Loop
+from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.predict import predicate
 
-MOST_TURNS = 1000  # [GCC: max-iterations-to-track]
-DEEPEST = 8  # operations from one turn's value to the next
+MOST_ITERATIONS = 1000  # [GCC: max-iterations-to-track]
+DEEPEST = 8  # operations from one iteration's value to the next
 WORD = 0xFFFFFFFF
 
 
@@ -33,8 +33,8 @@ RELATIONS: dict[str, Callable[[int, int], bool]] = {
 }  # fmt: skip
 
 
-def evaluated_turns(flow: Flow, loop: Loop, test: str) -> int | None:
-    """Return how often `loop` turns, where its exit test `test` follows from one constant; None otherwise."""
+def evaluated_iterations(flow: ControlFlow, loop: Loop, test: str) -> int | None:
+    """Return how often `loop` iterates, where its exit test `test` follows from one constant; None otherwise."""
     compare = flow.instruction(test)
     counter = _counter(flow, loop, test)
     if compare is None or counter is None:
@@ -45,14 +45,14 @@ def evaluated_turns(flow: Flow, loop: Loop, test: str) -> int | None:
     if set(arms) != {flow.entering(loop), loop.latch} or not _is_number(arms[flow.entering(loop)]):
         return None
     value = int(arms[flow.entering(loop)]) & WORD
-    for turn in range(1, MOST_TURNS + 1):
+    for iteration in range(1, MOST_ITERATIONS + 1):
         if _holds(flow, compare, counter, value) != stays:
-            return turn
+            return iteration
         value = _value(flow, arms[loop.latch], counter, value)
     return None
 
 
-def _counter(flow: Flow, loop: Loop, value: str, depth: int = DEEPEST) -> Instruction | None:
+def _counter(flow: ControlFlow, loop: Loop, value: str, depth: int = DEEPEST) -> Instruction | None:
     """The phi of the header that `value` is computed from, with constants alone."""
     each = flow.instruction(value)
     if each is None or depth == 0:
@@ -65,7 +65,7 @@ def _counter(flow: Flow, loop: Loop, value: str, depth: int = DEEPEST) -> Instru
     return _counter(flow, loop, names.pop(), depth - 1) if len(names) == 1 else None
 
 
-def _holds(flow: Flow, compare: Instruction, counter: Instruction, value: int) -> bool:
+def _holds(flow: ControlFlow, compare: Instruction, counter: Instruction, value: int) -> bool:
     left, right = (_value(flow, operand, counter, value) for operand in compare.operands[:2])
     relation = predicate(compare)
     if relation[0] == "s":
@@ -73,8 +73,8 @@ def _holds(flow: Flow, compare: Instruction, counter: Instruction, value: int) -
     return RELATIONS[relation[-2:]](left, right)
 
 
-def _value(flow: Flow, name: str, counter: Instruction, value: int) -> int:
-    """What `name` is in the turn in which the counter is `value`; 32 bits, not negative."""
+def _value(flow: ControlFlow, name: str, counter: Instruction, value: int) -> int:
+    """What `name` is in the iteration in which the counter is `value`; 32 bits, not negative."""
     if _is_number(name):
         return int(name) & WORD
     if name == counter.result:

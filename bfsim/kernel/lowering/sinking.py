@@ -1,4 +1,4 @@
-"""Values that only some ways need, computed on those ways [tree-ssa-sink.cc of GCC 12].
+"""Sinking: values that only some paths need are computed on those paths [tree-ssa-sink.cc of GCC 12].
 
 What one side of a test does not use waits for the other side, if that is the rarer one.
 """
@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import PHI_ARM, Block, Instruction, Routine
-from bfsim.kernel.loops import Flow
+from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine
+from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.predict import Likelihood
 
 MOVABLE = (
@@ -20,7 +20,7 @@ RARER, RARER_LOAD = (
 )  # how often the new place runs, at most [sink-frequency-threshold; 7 % more for loads]
 
 
-def with_values_sunk(routine: Routine) -> Routine:
+def sink(routine: Routine) -> Routine:
     """Return `routine` with each value in the block where it is first needed."""
     sinking = _Sinking(routine)
     return replace(routine, blocks=tuple(sinking.block(each) for each in routine.blocks))
@@ -28,7 +28,7 @@ def with_values_sunk(routine: Routine) -> Routine:
 
 class _Sinking:
     def __init__(self, routine: Routine) -> None:
-        self.flow = Flow(routine)
+        self.flow = ControlFlow(routine)
         self.frequency = Likelihood(self.flow).frequency
         self.home = {name: label for name, (label, _) in self.flow.defined.items()}
         self.arrived: dict[str, list[Instruction]] = {label: [] for label in self.flow.blocks}
@@ -38,7 +38,7 @@ class _Sinking:
                     self.home[each.result] = place
                     self.arrived[place].insert(0, each)
 
-    def block(self, block: Block) -> Block:
+    def block(self, block: BasicBlock) -> BasicBlock:
         """A block without what left it, and with what came."""
         rows = [
             each
@@ -46,7 +46,7 @@ class _Sinking:
             if self.home.get(each.result or "", block.label) == block.label
         ]
         phis = [each for each in rows if each.opcode == "phi"]
-        return Block(block.label, (*phis, *self.arrived[block.label], *rows[len(phis) :]))
+        return BasicBlock(block.label, (*phis, *self.arrived[block.label], *rows[len(phis) :]))
 
     def _place(self, each: Instruction, label: str) -> str:
         """The block that all uses pass, out of as many loops as possible, or `label` if that is not worth it."""

@@ -1,4 +1,4 @@
-"""What of the optimised IR a Blackfin has to compute at all, and in which form.
+"""Demanded values: what of the optimised IR a Blackfin has to compute at all, and in which form.
 
 Post-increments, hardware loops, folded offsets and extending loads do much of what the IR spells out.
 """
@@ -11,18 +11,20 @@ from functools import cached_property
 from bfsim.kernel.divisions import FLOOR, SIGNED
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.learnt import Learnt
-from bfsim.kernel.loops import Flow, Loop
-from bfsim.kernel.lowering.behind import counters_behind
-from bfsim.kernel.lowering.flags import Flags
+from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.folding import NARROW, Folding
-from bfsim.kernel.lowering.groups import Groups
+from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
+from bfsim.kernel.lowering.induction_variable_elimination import eliminated_counters
+from bfsim.kernel.lowering.induction_variables import InductionVariables
+from bfsim.kernel.lowering.jump_threading import JumpThreading
 from bfsim.kernel.lowering.redundant import AGAIN
-from bfsim.kernel.lowering.shapes import Kind, Shapes
-from bfsim.kernel.lowering.walks import Advance, Walks
+from bfsim.kernel.lowering.scalar_evolution import Increment, ScalarEvolution
 from bfsim.kernel.profile import CompilerProfile
 
 BYTE = 8
-FEWEST_TURNS = 3  # a loop of so few turns keeps its branch ["too few iterations" in loop-doloop.cc of GCC 12]
+FEWEST_ITERATIONS = (
+    3  # a loop of so few iterations keeps its branch ["too few iterations" in loop-doloop.cc of GCC 12]
+)
 
 
 class Use(Enum):
@@ -33,50 +35,57 @@ class Use(Enum):
     WIDE = auto()
 
 
-class Needs(Folding):
+class DemandedValues(Folding):
     """Which instructions of one routine are emitted, and which are part of others."""
 
     def __init__(
         self,
-        flow: Flow,
-        walks: Walks,
-        shapes: Shapes,
-        groups: Groups,
-        flags: Flags,
+        flow: ControlFlow,
+        evolution: ScalarEvolution,
+        if_conversion: IfConversion,
+        induction_variables: InductionVariables,
+        jump_threading: JumpThreading,
         calling: frozenset[str],
         profile: CompilerProfile,
     ) -> None:
         """`calling`: blocks that become calls of the library."""
         super().__init__(flow, profile)
-        self.walks, self.shapes, self.groups, self.flags = walks, shapes, groups, flags
+        self.evolution, self.if_conversion, self.induction_variables, self.jump_threading = (
+            evolution,
+            if_conversion,
+            induction_variables,
+            jump_threading,
+        )
         self.calling = calling
-        self.counted = {loop.header for loop in flow.loops if self._turns_by_counter(loop)}
-        self.behind = counters_behind(flow, walks, groups, self.counted)
+        self.counted = {loop.header for loop in flow.loops if self._iterations_by_counter(loop)}
+        self.eliminated = eliminated_counters(flow, evolution, induction_variables, self.counted)
 
-    def _turns_by_counter(self, loop: Loop) -> bool:
-        """Counted, and without calls: a register counts the turns, not the program's variable."""
+    def _iterations_by_counter(self, loop: Loop) -> bool:
+        """Counted, and without calls: a register counts the iterations, not the program's variable."""
         inside = (each for label in self.flow.inside(loop) for each in self.flow.blocks[label].instructions)
         library = any(
             each.is_call or each.is_soft_float or (each.is_division and self.divides_by_call(each))
             for each in inside
         ) or not self.calling.isdisjoint(loop.blocks)
-        turns = self.walks.turns(loop)
-        many = turns is None or turns > FEWEST_TURNS
-        counted = self.walks.is_counted(loop) and not self._may_be_endless(loop)
-        return not library and many and counted and (turns is not None or self._steps_by_power(loop))
+        iterations = self.evolution.iterations(loop)
+        many = iterations is None or iterations > FEWEST_ITERATIONS
+        counted = self.evolution.is_counted(loop) and not self._may_be_endless(loop)
+        return not library and many and counted and (iterations is not None or self._steps_by_power(loop))
 
     def _steps_by_power(self, loop: Loop) -> bool:
-        """Whether the number of turns takes a shift to find, not a division ["Costs of niter computation too high" there]."""
-        test = self.flow.instruction(self.walks.exit_test(loop) or "")
+        """Whether the number of iterations takes a shift to find, not a division ["Costs of niter computation too high" there]."""
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
         gains = (
-            [self.walks.advance(operand, loop) for operand in test.operands[:2]] if test is not None else []
+            [self.evolution.increment(operand, loop) for operand in test.operands[:2]]
+            if test is not None
+            else []
         )
         return all(gain is None or abs(gain.constant).bit_count() <= 1 for gain in gains)
 
     def _may_be_endless(self, loop: Loop) -> bool:
         """With several exits, the pointer that walks is compared for equality with its end.
 
-        GCC counts such turns only if the pointer is sure to meet the end: steps of one byte, or a fixed start
+        GCC counts such iterations only if the pointer is sure to meet the end: steps of one byte, or a fixed start
         ["possible infinite iteration case" in loop-doloop.cc of GCC 12]. Nor does it count `i <= n`, which may always hold.
         """
         if len(self.flow.exits(loop)) < 2:
@@ -85,27 +94,32 @@ class Needs(Folding):
             return True
         if self.flow.is_split(loop):
             return not self._steps_by_one(loop)
-        wide = any(group.loop is loop and abs(group.advance.constant) > 1 for group in self.groups.all)
-        return wide and not self.walks.starts_fixed(loop)
+        wide = any(
+            variable.loop is loop and abs(variable.increment.constant) > 1
+            for variable in self.induction_variables.all
+        )
+        return wide and not self.evolution.starts_fixed(loop)
 
     def _is_inclusive(self, loop: Loop) -> bool:
         """Whether a loop runs up to `stop + 1`, which C writes as `<= stop`."""
-        test = self.flow.instruction(self.walks.exit_test(loop) or "")
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
         bound = self.flow.instruction(test.operands[1]) if test is not None else None
         return bound is not None and bound.opcode == "add" and bound.operands[1] == "1"
 
     def _steps_by_one(self, loop: Loop) -> bool:
-        test = self.flow.instruction(self.walks.exit_test(loop) or "")
-        gain = self.walks.advance(test.operands[0], loop) if test is not None else None
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        gain = self.evolution.increment(test.operands[0], loop) if test is not None else None
         return gain is not None and abs(gain.constant) == 1 and not gain.symbolic
 
     def emits(self, each: Instruction) -> bool:
         """Whether `each` becomes operations."""
         if each.result is None:
             return True
-        if each.result in self.walks.places.same:
+        if each.result in self.evolution.code_motion.same:
             return False
-        return each.result in self._needed and self.flow.defined[each.result][0] not in self.shapes.gone
+        return (
+            each.result in self._needed and self.flow.defined[each.result][0] not in self.if_conversion.gone
+        )
 
     @cached_property
     def _needed(self) -> set[str]:
@@ -119,9 +133,9 @@ class Needs(Folding):
             if each.result and (each.result not in needed or id(each) in roots):
                 needed.add(each.result)
             for used in self._really_used(each):
-                if used in self.behind and not self._is_own_step(each, used):
+                if used in self.eliminated and not self._is_own_step(each, used):
                     continue
-                operand = self.walks.places.same.get(used, used)
+                operand = self.evolution.code_motion.same.get(used, used)
                 source = self.flow.instruction(operand)
                 if source is not None and operand not in needed:
                     needed.add(operand)
@@ -137,11 +151,11 @@ class Needs(Folding):
         return each.opcode in ("store", "br", "switch", "ret") or each.is_call or along
 
     def _really_used(self, each: Instruction) -> tuple[str, ...]:
-        if each.opcode in ("load", "store") and id(each) in self.groups.of:
-            group = self.groups.of[id(each)]
-            return (*each.operands[:-1], *(name for name, _ in (*group.start, *group.distance)))
+        if each.opcode in ("load", "store") and id(each) in self.induction_variables.of:
+            variable = self.induction_variables.of[id(each)]
+            return (*each.operands[:-1], *(name for name, _ in (*variable.start, *variable.distance)))
         if each.opcode == "br":
-            return () if self.flags.decides(each) or self._is_guard(each) else self._of_branch(each)
+            return () if self.jump_threading.decides(each) or self._is_guard(each) else self._of_branch(each)
         if each.opcode == "icmp":
             return self._of_compare(each)
         if (other := self.added_flag(each)) is not None:
@@ -151,19 +165,21 @@ class Needs(Folding):
         if (division := self.remainder(each)) is not None:
             return division.operands
         if each.opcode in ("select", "and", "or") and each.bits == 1:
-            counting = {self.walks.exit_test(loop) for loop in self.flow.loops if loop.header in self.counted}
+            counting = {
+                self.evolution.exit_test(loop) for loop in self.flow.loops if loop.header in self.counted
+            }
             return tuple(operand for operand in each.operands if operand not in counting)
         return each.operands
 
-    def stepped(self, product: Instruction) -> Advance | None:
-        """By how much a product of a counter grows with each turn: an addition takes its place (strength reduction)."""
-        loop = self.flow.innermost(self.walks.places.of[product.result or ""])
-        advance = self.walks.advance(product.result or "", loop) if loop is not None else None
-        return advance if advance is not None and advance.moves else None
+    def stepped(self, product: Instruction) -> Increment | None:
+        """By how much a product of a counter grows with each iteration: an addition takes its place (strength reduction)."""
+        loop = self.flow.innermost(self.evolution.code_motion.of[product.result or ""])
+        increment = self.evolution.increment(product.result or "", loop) if loop is not None else None
+        return increment if increment is not None and increment.moves else None
 
     def _stays(self, operand: str, product: Instruction) -> bool:
-        loop = self.flow.innermost(self.walks.places.of[product.result or ""])
-        return loop is not None and self.walks.places.is_invariant(operand, loop)
+        loop = self.flow.innermost(self.evolution.code_motion.of[product.result or ""])
+        return loop is not None and self.evolution.code_motion.is_invariant(operand, loop)
 
     def _is_guard(self, branch: Instruction) -> bool:
         return any(
@@ -176,9 +192,15 @@ class Needs(Folding):
         label = next(block.label for block in self.flow.routine.blocks if block.terminator is each)
         for loop in self.flow.loops:
             if self.flow.ending(loop) == label and loop.header in self.counted:
-                return tuple(operand for operand in each.operands if operand != self.walks.exit_test(loop))
-        shape = self.shapes.by_label.get(label)
-        if shape is not None and shape.kind in (Kind.ABSOLUTE, Kind.EXTREME, Kind.CLAMP):
+                return tuple(
+                    operand for operand in each.operands if operand != self.evolution.exit_test(loop)
+                )
+        conversion = self.if_conversion.by_label.get(label)
+        if conversion is not None and conversion.kind in (
+            ConversionKind.ABSOLUTE,
+            ConversionKind.EXTREME,
+            ConversionKind.CLAMP,
+        ):
             return ()
         return each.operands
 
@@ -189,10 +211,12 @@ class Needs(Folding):
         if (
             loop is None
             or label not in self.flow.exits(loop)
-            or not any(group.loop is loop and not group.stride for group in self.groups.all)
+            or not any(
+                variable.loop is loop and not variable.stride for variable in self.induction_variables.all
+            )
         ):
             return self.compared(each)
-        gains = [self.walks.advance(operand, loop) for operand in each.operands[:2]]
+        gains = [self.evolution.increment(operand, loop) for operand in each.operands[:2]]
         if None in gains or sum(gain.moves for gain in gains if gain) != 1:
             return self.compared(each)
         return tuple(
@@ -310,25 +334,25 @@ class Needs(Folding):
 
     def extended_late(self, load: Instruction) -> bool:
         """Whether the load with the post-increment is extended on its own: others through its pointer come before its use."""
-        group = self.groups.of.get(id(load))
+        variable = self.induction_variables.of.get(id(load))
         if not self.profile.applies(Learnt.LATE_EXTENSION):
             return False
         if (
             load.bits not in NARROW
-            or group is None
-            or not group.steps_free
-            or group.accesses[0][1] is not load
+            or variable is None
+            or not variable.steps_free
+            or variable.accesses[0][1] is not load
         ):
             return False
         users = self.users(load.result or "")
-        if len(group.accesses) < 2 or len(users) != 1 or users[0].opcode != "zext":
+        if len(variable.accesses) < 2 or len(users) != 1 or users[0].opcode != "zext":
             return False
-        label = group.accesses[0][0]
+        label = variable.accesses[0][0]
         rows = self.flow.blocks[label].instructions
         ends = {id(user) for user in self.users(users[0].result or "")}
         between = rows[rows.index(load) + 1 :]
         first_use = next((number for number, each in enumerate(between) if id(each) in ends), len(between))
-        return any(each is access for each in between[:first_use] for _, access, _ in group.accesses)
+        return any(each is access for each in between[:first_use] for _, access, _ in variable.accesses)
 
     def ends_in(self, value: str, call: Instruction) -> bool:
         """Whether `call` is the only use of a value: then it is computed in the argument's register."""

@@ -1,4 +1,4 @@
-"""The memory follower of the bound phase: what each access of a kernel outside L1 asks of the memories, access by access.
+"""The access trace of the bound phase: what each access of a kernel outside L1 asks of the memories, access by access.
 
 It runs inside the compiled kernel and writes a log; the machine plays the log against the rest of the chip and adds the waiting.
 Where a region is cached it keeps the tags of the core's data cache, and logs line fills and write-backs only.
@@ -25,7 +25,7 @@ LOAD, STORE, FILL, WRITE_BACK, FETCH, FETCH_LINE = range(6)
 
 # Words of the state; the log stands behind them.
 (
-    FUNCTION,  # address of the follower; compiled kernels call it
+    FUNCTION,  # address of `trace_access`; compiled kernels call it
     ARENA, END,  # host address of the arena, and of what is behind SDRAM and L2
     ENTRIES,  # how many accesses there were
     ROOM,  # how many entries the log can have
@@ -75,25 +75,25 @@ class CacheSize:
         return self.nbytes // (self.line_bytes * self.ways)
 
 
-class Follower:
-    """The follower of one core; `follow.py` is its compiled part, which waits until a kernel touches memory outside L1."""
+class AccessTrace:
+    """The access trace of one core; `traced_access.py` is its compiled part, which waits until a kernel touches memory outside L1."""
 
     def __init__(
         self,
         arena: NDArray[np.uint8],
-        followed_nbytes: int,
+        traced_nbytes: int,
         room: NDArray[np.int64],
         cached: Sequence[CachedRegion] = (),
         size: CacheSize | None = None,
     ) -> None:
-        """`arena`: the host array of all memories; the first `followed_nbytes` of it are outside L1.
+        """`arena`: the host array of all memories; the first `traced_nbytes` of it are outside L1.
 
         `room`: where the state and the log go, LOG words and as many as the log can have entries.
         """
         self._arena = arena  # the state has its address only
         self._state = room
         self._state[TAGS:LOG] = EMPTY
-        self._state[ARENA], self._state[END] = arena.ctypes.data, arena.ctypes.data + followed_nbytes
+        self._state[ARENA], self._state[END] = arena.ctypes.data, arena.ctypes.data + traced_nbytes
         self._state[ROOM] = len(room) - LOG
         if size and cached:
             self._state[LINE_BITS], self._state[SETS], self._state[WAYS] = (
@@ -107,11 +107,11 @@ class Follower:
                 self._state[at : at + 3] = each.first, each.end, each.policy
 
     def address(self) -> int:
-        """Return the host address of the state, ready to be followed."""
+        """Return the host address of the state, ready to be traced."""
         if not self._state[FUNCTION]:
-            from bfsim.kernel.follow import follow  # which has the numbers above from here
+            from bfsim.kernel.traced_access import trace_access  # which has the numbers above from here
 
-            self._state[FUNCTION] = follow.address()
+            self._state[FUNCTION] = trace_access.address()
         return int(self._state.ctypes.data)
 
     def take_count(self) -> int:

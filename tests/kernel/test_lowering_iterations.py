@@ -1,4 +1,4 @@
-"""What of a turn a compiler for the Blackfin leaves out, writes out, moves to where it is needed, or computes from what is there."""
+"""What of a loop a compiler for the Blackfin leaves out, writes out, moves to where it is needed, or computes from what is there."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def code(text: str, folder: Path) -> str:
 
 @pytest.mark.parametrize(("most", "loads"), [(1, 3), (2, 1)])
 def test_a_loop_is_written_out_if_the_code_does_not_grow(most: int, loads: int, tmp_path: Path) -> None:
-    """Three turns of four statements cost what the loop does; five turns would cost more."""
+    """Three iterations of four statements cost what the loop does; five iterations would cost more."""
     assert code(WINDOW.format(most=most), tmp_path).count("= load i8") == loads
 
 
@@ -56,7 +56,7 @@ def f(a: u8[:], w: i32, out: u8[:]) -> None:
 
 
 def test_a_step_that_is_no_power_of_two_is_not_counted(tmp_path: Path) -> None:
-    """The number of turns would take a division; a shift is fine."""
+    """The number of iterations would take a division; a shift is fine."""
     text = "def f(a: u8[:], n: i32) -> i32:\n    s = 0\n    i = 0\n    while i < n:\n        s = s ^ a[i]\n        i += {}\n    return s\n"
     assert Op.LOOP_SETUP not in lowered(text.format(3), tmp_path)
     assert Op.LOOP_SETUP in lowered(text.format(4), tmp_path)
@@ -94,11 +94,11 @@ def test_both_ends_of_a_range_are_found(tmp_path: Path) -> None:
 
 
 def test_a_flag_that_a_loop_carries_is_tested(tmp_path: Path) -> None:
-    """What one turn sets and another tests cannot be threaded; what ends its loop can."""
+    """What one iteration sets and another tests cannot be threaded; what ends its loop can."""
     carried = "def f(a: u8[:], n: i32) -> i32:\n    s = 0\n    on = 0\n    for i in range(n):\n        if a[i] != 0:\n            on = 0\n        elif on == 0:\n            s += i\n            on = 1\n    return s\n"
-    assert not context(carried, tmp_path).flags.names
+    assert not context(carried, tmp_path).jump_threading.names
     (routine, *_) = reversed(read_module(optimised(grow_segments.function, GCC_O2)))
-    assert Context(routine, GCC_O2).flags.names  # `found`, which ends the search
+    assert Context(routine, GCC_O2).jump_threading.names  # `found`, which ends the search
 
 
 def test_the_remainder_written_as_a_difference_is_a_second_call(tmp_path: Path) -> None:
@@ -109,24 +109,24 @@ def test_the_remainder_written_as_a_difference_is_a_second_call(tmp_path: Path) 
 
 
 def test_a_counter_of_bytes_is_read_off_the_pointer(tmp_path: Path) -> None:
-    """Where only some turns want it and each looks at neighbours, nothing steps it; words would need a shift."""
+    """Where only some iterations want it and each looks at neighbours, nothing steps it; words would need a shift."""
     text = "def f(a: {}[:], n: i32, v: i32) -> i32:\n    at = 0\n    for i in range(n):\n        if a[i] > {}:\n            at = i\n            a[i] = 0\n    return at\n"
-    assert context(text.format("u8", "a[i + 1]"), tmp_path).needs.behind
-    assert not context(text.format("u8", "v"), tmp_path).needs.behind
-    assert not context(text.format("i32", "a[i + 1]"), tmp_path).needs.behind
+    assert context(text.format("u8", "a[i + 1]"), tmp_path).demanded.eliminated
+    assert not context(text.format("u8", "v"), tmp_path).demanded.eliminated
+    assert not context(text.format("i32", "a[i + 1]"), tmp_path).demanded.eliminated
 
 
-def test_what_only_some_turns_load_needs_no_pointer_of_its_own(tmp_path: Path) -> None:
-    """The row above is reached from the pointer that every turn steps."""
+def test_what_only_some_iterations_load_needs_no_pointer_of_its_own(tmp_path: Path) -> None:
+    """The row above is reached from the pointer that every iteration steps."""
     text = "def f(a: u8[:], p: i32, w: i32, n: i32) -> i32:\n    s = 0\n    for x in range(n):\n        if a[p + x] == 0:\n            s += a[p - w + x]\n    return s\n"
-    here, above = context(text, tmp_path).groups.all
+    here, above = context(text, tmp_path).induction_variables.all
     assert here.neighbour is None
     assert above.neighbour is here
     assert above.distance == (("%w", -1),)
 
 
 def test_what_a_loop_sets_up_does_not_run_in_the_loop_before(tmp_path: Path) -> None:
-    """LLVM lets a loop lead to the next one of as many turns; there is a block between them."""
+    """LLVM lets a loop lead to the next one of as many iterations; there is a block between them."""
     text = "def f(a: i32[:], b: i32[:], n: i32) -> i32:\n    s = 0\n    for i in range(256):\n        s += a[i]\n        a[i] = s\n    for i in range(256):\n        s ^= b[i]\n        b[i] = s\n    return s\n"
     found = context(text, tmp_path).flow
     for loop in found.loops:

@@ -32,7 +32,7 @@ _parts: list[Callable[..., Any]] = []
 """What numba has still to be told of."""
 
 
-def compiled(function: Function) -> Function:
+def native(function: Function) -> Function:
     """Let `function` be compiled as a part of those that call it. Called from Python, it is plain Python."""
     _parts.append(function)
     return function
@@ -44,7 +44,7 @@ def words_at(address: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class Entry:
+class NativeEntry:
     """A function that machine code can call: as it was written, and numba's names for the types of its result and arguments."""
 
     python: Callable[..., Any]
@@ -71,13 +71,13 @@ class Entry:
         return code
 
 
-def entry(result: str, *arguments: str) -> Callable[[Callable[..., Any]], Entry]:
+def native_entry(result: str, *arguments: str) -> Callable[[Callable[..., Any]], NativeEntry]:
     """Make a function an entry; types are those of numba, pointers with a star: "int64*"."""
-    return lambda function: Entry(function, result, arguments)
+    return lambda function: NativeEntry(function, result, arguments)
 
 
 @cache
-def _loaded(each: Entry) -> int:
+def _loaded(each: NativeEntry) -> int:
     code = store.load(_key(each.symbol)) or each.compile()
     jit.add(code)
     return jit.address_of(each.symbol)
@@ -92,7 +92,7 @@ def _key(symbol: str) -> str:
     return digest.hexdigest()
 
 
-def _ir(each: Entry) -> str:
+def _ir(each: NativeEntry) -> str:
     """Return a module of LLVM IR with an entry and all that it calls, of which only the entry can be called from outside."""
     numba: Any = importlib.import_module("numba")  # its own types do not know all of its options
     for name, value in SETTINGS.items():

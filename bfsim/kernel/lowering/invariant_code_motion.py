@@ -1,23 +1,23 @@
-"""Where a compiler computes each value: out of every loop in which its operands do not change.
+"""Loop-invariant code motion: each value is computed outside of every loop in which its operands do not change.
 
-Arithmetic moves freely. A load moves only where it runs in every turn and nothing in the loop may write
+Arithmetic moves freely. A load moves only where it runs in every iteration and nothing in the loop may write
 what it reads; arrays of the same element width may overlap, as in C without `restrict`.
 """
 
 from __future__ import annotations
 
 from bfsim.kernel.ir_text import Instruction
-from bfsim.kernel.loops import Flow, Loop
+from bfsim.kernel.loops import ControlFlow, Loop
 
 HOISTED = ("add", "sub", "mul", "and", "or", "xor", "shl", "lshr", "ashr")
 FIXED = ("phi", "store", "call", "br", "ret", "switch", "unreachable")
 BYTE = 8  # in C, bytes may overlap with anything
 
 
-class Places:
+class InvariantCodeMotion:
     """The block in which each value of one routine is computed."""
 
-    def __init__(self, flow: Flow) -> None:
+    def __init__(self, flow: ControlFlow) -> None:
         self.flow = flow
         self.of: dict[str, str] = {}
         self.same: dict[str, str] = {}
@@ -30,7 +30,7 @@ class Places:
             self._hoist(label)
 
     def is_invariant(self, value: str, loop: Loop) -> bool:
-        """Whether `value` stays the same while `loop` turns."""
+        """Whether `value` stays the same while `loop` iterates."""
         return value not in self.of or self.of[value] not in loop.blocks
 
     def _hoist(self, label: str) -> None:

@@ -1,4 +1,4 @@
-"""Blackfin operations on values that have no register yet, and how a routine's control flow will be coded."""
+"""Blackfin instructions on values that have no register yet, and how a routine's control flow will be coded."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from enum import Enum
 from bfsim.kernel.isa import COSTS, Op
 
 
-class Bank(Enum):
+class RegisterBank(Enum):
     """Where a value must be: data register, pointer register, or either."""
 
     DATA = "R"
@@ -17,14 +17,14 @@ class Bank(Enum):
 
 
 @dataclass(slots=True)
-class Step:
+class MachineInstruction:
     """One operation. `uses` are names of values, or constants written #5; `overwrites`: the operand it destroys."""
 
     op: Op
     line: int
     result: str | None
-    bank: Bank
-    uses: tuple[tuple[str, Bank], ...] = ()
+    bank: RegisterBank
+    uses: tuple[tuple[str, RegisterBank], ...] = ()
     overwrites: tuple[str, ...] = ()
     cclk: int | None = None
     """Cycles, where they are not those of the operation."""
@@ -38,11 +38,11 @@ class Step:
 
 
 @dataclass(slots=True)
-class Steps:
+class MachineCode:
     """The operations of each block of a routine, but for its branches."""
 
-    of: dict[str, list[Step]] = field(default_factory=dict)
+    of: dict[str, list[MachineInstruction]] = field(default_factory=dict)
 
-    def add(self, label: str, step: Step) -> None:
+    def add(self, label: str, instruction: MachineInstruction) -> None:
         """Append to a block."""
-        self.of.setdefault(label, []).append(step)
+        self.of.setdefault(label, []).append(instruction)

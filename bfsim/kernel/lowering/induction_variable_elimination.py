@@ -1,0 +1,80 @@
+"""Induction-variable elimination: counters that a pointer stands for. Where only some iterations want `i`, it is the pointer less the array [tree-ssa-loop-ivopts.cc].
+
+So it is where every iteration accesses neighbours, a[i] and a[i + 1]; beside a single access, GCC keeps the counter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from bfsim.kernel.ir_text import PHI_ARM, Instruction
+from bfsim.kernel.loops import ControlFlow, Loop
+from bfsim.kernel.lowering.induction_variables import InductionVariable, InductionVariables
+from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
+
+
+@dataclass(frozen=True, slots=True)
+class EliminatedCounter:
+    """A counter that is computed from the pointer of `variable`, in the blocks `blocks`."""
+
+    counter: str
+    variable: InductionVariable
+    blocks: frozenset[str]
+
+    @property
+    def name(self) -> str:
+        """What its value is called there."""
+        return f"{self.counter}.eliminated"
+
+
+def eliminated_counters(
+    flow: ControlFlow, evolution: ScalarEvolution, variables: InductionVariables, counted: set[str]
+) -> dict[str, EliminatedCounter]:
+    """Return such counters of the `counted` loops (by header): of bytes, so that the distance is the index."""
+    found: dict[str, EliminatedCounter] = {}
+    for variable in variables.all:
+        loop = variable.loop
+        bytewise = not variable.increment.symbolic and abs(variable.increment.constant) == 1
+        steady = {offset for label, _, offset in variable.accesses if flow.every_iteration(label, loop)}
+        if loop.header not in counted or not bytewise or len(steady) < 2:
+            continue
+        for each in flow.blocks[loop.header].instructions:
+            name = each.result or ""
+            affine = dict(evolution.affine(variable.accesses[0][1].operands[-1]).terms)
+            if each.opcode != "phi" or name in found or affine != {name: 1, variable.root: 1}:
+                continue
+            blocks = frozenset(_wanted(flow, evolution, loop, name))
+            if blocks and all(
+                flow.innermost(label) is loop and not flow.every_iteration(label, loop) for label in blocks
+            ):
+                found[name] = EliminatedCounter(name, variable, blocks)
+    return found
+
+
+def _wanted(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, counter: str) -> Iterator[str]:
+    """Blocks that want the value of a counter itself: not its step, nor an address, nor the end of the loop."""
+    phi = flow.instruction(counter)
+    for user in flow.users.get(counter, []):
+        if user.opcode == "getelementptr" or user.result == evolution.exit_test(loop):
+            continue
+        if user.opcode == "phi":
+            yield from (source[1:] for value, source in PHI_ARM.findall(user.text) if value == counter)
+        elif phi is not None and user.result in phi.operands:
+            yield from _wanted_of_step(flow, evolution, loop, user, phi)
+        else:
+            yield _home(flow, user)
+
+
+def _wanted_of_step(
+    flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, step: Instruction, phi: Instruction
+) -> Iterator[str]:
+    for user in flow.users.get(step.result or "", []):
+        if user is not phi and user.opcode != "getelementptr" and user.result != evolution.exit_test(loop):
+            yield loop.latch
+
+
+def _home(flow: ControlFlow, user: Instruction) -> str:
+    return next(
+        label for label, block in flow.blocks.items() if any(each is user for each in block.instructions)
+    )
