@@ -9,7 +9,7 @@ import os
 import signal
 import sys
 
-from bfsim.errors import INTERRUPTED
+from bfsim.signals import BY_SIGNAL, hear_signals
 
 
 def main() -> None:
@@ -21,16 +21,21 @@ def main() -> None:
     if hear is signal.default_int_handler:  # otherwise Ctrl-C is ignored: in the background of a shell
         signal.signal(signal.SIGINT, _leave)
     from bfsim.cli import main as command
+    from bfsim.endings import fault
 
     signal.signal(signal.SIGINT, hear)
-    command(prog_name="bfsim")
+    hear_signals()
+    try:
+        command(prog_name="bfsim")
+    except Exception:  # noqa: BLE001 - whatever comes as far as this
+        sys.exit(fault())
 
 
-def _leave(_signal: int, _frame: object) -> None:
+def _leave(number: int, _frame: object) -> None:
     """End at once: nothing is begun yet that must be tidied up, and an import is no place to raise from."""
     sys.stderr.write("bfsim: interrupted\n")
     sys.stderr.flush()
-    os._exit(INTERRUPTED)
+    os._exit(BY_SIGNAL + number)
 
 
 if __name__ == "__main__":

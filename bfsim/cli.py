@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -13,21 +14,14 @@ from bfsim.cli_boards import boards
 from bfsim.cli_ldf import ldf
 from bfsim.cli_record import record
 from bfsim.cli_seen import Watchers, require_view, takes_views, watching
-from bfsim.errors import INTERRUPTED, BfsimError, ConfigError
-from bfsim.terminal import (
-    ending_deaf_kernels,
-    print_report,
-    progress_bar,
-    replace_what_has_no_code,
-    writing_output,
-)
+from bfsim.endings import LIMIT_BROKEN, exit_code_of
+from bfsim.errors import ConfigError
+from bfsim.signals import ending_deaf_kernels, interrupted_code
+from bfsim.terminal import print_report, progress_bar
 
 if TYPE_CHECKING:
     from bfsim.seen import SeenFrame
     from bfsim.trace import RunRecord
-
-LIMIT_BROKEN, MISTAKE = 1, 2
-"""Exit codes other than 0 and INTERRUPTED."""
 
 STDOUT = Path("-")
 
@@ -35,19 +29,19 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class _Bfsim(click.Group):
-    """Ends every command that goes wrong for a known reason with one paragraph and an exit code."""
+    """Ends every command with an exit code, and one that goes wrong for a known reason with one paragraph."""
+
+    def main(self, *arguments: Any, standalone_mode: bool = True, **options: Any) -> Any:
+        call = partial(super().main, *arguments, standalone_mode=False, **options)
+        if standalone_mode:
+            raise SystemExit(exit_code_of(call))
+        return call()
 
     def invoke(self, ctx: click.Context) -> Any:
-        replace_what_has_no_code()
         try:
-            with writing_output():
-                return super().invoke(ctx)
-        except BfsimError as error:
-            click.echo(f"bfsim: error: {error}", err=True)
-            ctx.exit(MISTAKE)
-        except KeyboardInterrupt:
-            click.echo("bfsim: interrupted", err=True)
-            ctx.exit(INTERRUPTED)
+            return super().invoke(ctx)
+        except KeyboardInterrupt:  # click would begin a new line
+            raise click.Abort from None
 
 
 @click.group(cls=_Bfsim, context_settings={"help_option_names": ["-h", "--help"]})
@@ -57,7 +51,8 @@ def main() -> None:
 
     Without arguments, `bfsim run` runs the built-in recording through the built-in firmware.
 
-    Exit codes: 0 done, 1 a limit of `bfsim check` is broken, 2 a mistake in what was given, 130 interrupted.
+    Exit codes: 0 done, 1 a limit of `bfsim check` is broken, 2 a mistake in what was given, 70 a fault of bfsim's own;
+    130 Ctrl-C, 143 SIGTERM, 129 SIGHUP, and 141 nobody reads the output any more.
     """
 
 
@@ -291,11 +286,7 @@ def _simulate(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
     """Run the simulation behind a progress bar and return at least one frame; `watchers` get what is seen."""
     from bfsim.run import Feed, Fidelity, simulate
 
-    told = 0
-
     def tell(frame: SeenFrame) -> None:
-        nonlocal told
-        told += 1
         for each in watchers or ():
             each(frame)
 
@@ -304,7 +295,7 @@ def _simulate(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
         done = simulate(
             feed=Feed(feed), fidelity=Fidelity(fidelity), progress=progress, on_seen=on_seen, **what
         )
-    if done.interrupted and not (told if watchers else done.frames):
+    if done.interrupted and not done.frames:
         raise KeyboardInterrupt
     if not done.frames:
         raise ConfigError("a run must have at least one frame to report on, and this one finished none")
@@ -314,4 +305,4 @@ def _simulate(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
 def _exit_if_interrupted(done: RunRecord) -> None:
     if done.interrupted:
         click.echo(f"bfsim: interrupted after {len(done.frames)} frames", err=True)
-        raise SystemExit(INTERRUPTED)
+        raise SystemExit(interrupted_code())

@@ -1,13 +1,22 @@
 """The errors of bfsim: one class per kind of mistake, each a child of the built-in that a caller expects.
 
 A message says what must be, what was, and where. The command line prints it as one paragraph and
-exits with code 2. A missed deadline or a missed frame is a result and never an error.
+exits with code 2. Values of any length stand in it as `shown`. A missed deadline or a missed frame is a result and never an error.
 """
 
 from __future__ import annotations
 
-INTERRUPTED = 130
-"""Exit code of a command that Ctrl-C cut short: never 0, for it did not do what was asked."""
+LONGEST_VALUE = 80
+"""As many characters of a value go into a message; the whole of it is in the file that it is from."""
+
+
+def shown(value: object) -> str:
+    """Return a value as a message has it: text in quotes, all on one line, and its middle left out where it is long."""
+    text = repr(value)
+    if len(text) <= LONGEST_VALUE:
+        return text
+    half = LONGEST_VALUE // 2
+    return f"{text[:half]}[{len(text) - 2 * half} more characters]{text[-half:]}"
 
 
 class BfsimError(Exception):

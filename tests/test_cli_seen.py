@@ -117,8 +117,8 @@ def test_a_view_that_fails_is_told_with_its_line(tmp_path: Path, monkeypatch: py
 
 
 def test_ctrl_c_before_the_first_frame_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A frame may be done and not yet looked at: there is nothing to draw, and nothing is left."""
-    interrupted = replace(edge_run(100), interrupted=True)
+    """There is nothing to draw, and nothing is left."""
+    interrupted = replace(edge_run(100), frames=(), interrupted=True)
     monkeypatch.setattr("bfsim.run.simulate", lambda **_: interrupted)
     result = run("--overlay", tmp_path / "seen.gif", "--mcap", tmp_path / "seen.mcap")
     assert (result.exit_code, result.stderr) == (130, "bfsim: interrupted\n")

@@ -208,7 +208,8 @@ fw = Firmware(mains={"A": main, "B": main}, buffers=buffers, camera="camera", ro
 """
 
 
-def test_ctrl_c_ends_a_kernel_that_does_not_end(tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_kernel_that_does_not_end(tmp_path: Path, number: signal.Signals) -> None:
     """Python hears nothing while the machine code of a kernel runs; the user needs no `kill`."""
     (tmp_path / "endless.py").write_text(ENDLESS)
     command = [sys.executable, "-m", "bfsim", "run", "--firmware", "endless:fw"]
@@ -216,9 +217,9 @@ def test_ctrl_c_ends_a_kernel_that_does_not_end(tmp_path: Path) -> None:
         while process.poll() is None and not (tmp_path / "begun").exists():
             time.sleep(0.05)
         time.sleep(1)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
         _, err = process.communicate(timeout=30)
-    assert (process.returncode, err) == (130, "bfsim: interrupted in a kernel that does not end\n")
+    assert (process.returncode, err) == (128 + number, "bfsim: interrupted in a kernel that does not end\n")
 
 
 def write_recording(path: Path, width: int = 16, height: int = 8) -> Path:

@@ -14,17 +14,20 @@ ROOT = Path(__file__).parent.parent
 # Each room and what it may import of bfsim besides itself, from the bottom of the house to the top.
 MAY_IMPORT = {
     "errors": set(),
+    "drafts": set(),
+    "signals": {"drafts"},
     "clocks": {"errors"},
     "trace": {"errors"},
     "seen": set(),
     "chip": {"errors", "clocks"},
     "kernel": {"errors"},
     "linker": {"errors", "chip"},
-    "machine": {"errors", "clocks", "seen", "trace", "chip", "kernel", "linker"},
+    "machine": {"errors", "signals", "clocks", "seen", "trace", "chip", "kernel", "linker"},
     "api": {"chip", "errors", "kernel", "machine", "seen", "trace"},
-    "recording": {"errors", "seen"},
+    "recording": {"errors", "drafts", "seen"},
     "report": {
         "errors",
+        "drafts",
         "clocks",
         "seen",
         "trace",
@@ -35,14 +38,15 @@ MAY_IMPORT = {
     "explain": {"errors", "kernel", "loading", "trace"},
     "run": {"errors", "seen", "trace", "chip", "kernel", "linker", "machine", "recording", "loading"},
     "mapping": {"chip", "kernel", "linker", "loading", "machine", "report", "run"},
-    "terminal": {"errors"},
+    "endings": {"errors", "signals"},
+    "terminal": set(),
     "cli_boards": {"chip", "report", "terminal"},
     "cli_ldf": {"mapping", "report", "terminal"},
     "cli_record": {"recording", "terminal"},
     "cli_seen": {"errors", "recording", "report", "run", "seen"},
-    "cli": {"errors", "seen", "trace", "report", "run", "explain", "terminal"}
+    "cli": {"endings", "errors", "seen", "signals", "trace", "report", "run", "explain", "terminal"}
     | {"cli_boards", "cli_ldf", "cli_record", "cli_seen"},
-    "__main__": {"errors", "cli"},
+    "__main__": {"cli", "endings", "signals"},
 }
 MACHINE = {
     "firmware_lines": set(),

@@ -42,6 +42,7 @@ from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi.spi import OUTSIDE_BYTES, Spi
 from bfsim.machine.spi.strategy import Script, StrategyUnit
 from bfsim.seen import Seen
+from bfsim.signals import uninterrupted
 from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, MessageRecord, TrafficRecord
 
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
@@ -214,6 +215,7 @@ class Board:
                 self._run_until(self._spi.busy)
         except KeyboardInterrupt:
             interrupted = True
+            self._tell_seen()
         return self._outcome(capture, interrupted)
 
     def _run_until(self, event: simpy.Event) -> None:
@@ -221,10 +223,13 @@ class Board:
         with suppress(simpy.core.EmptySchedule):
             while not event.processed and not (self._shared.turns and self._is_deadlock()):
                 self._env.step()
-                if (
-                    self._seen and self._on_seen
-                ):  # here, outside of the firmware: what fails is no fault of it
-                    self._on_seen(*self._seen.pop())
+                self._tell_seen()  # here, outside of the firmware: what fails is no fault of it
+
+    def _tell_seen(self) -> None:
+        """Tell what was seen in each frame that is done, as a whole: a frame with a record has been told, too."""
+        while self._seen and self._on_seen:
+            with uninterrupted():
+                self._on_seen(*self._seen.pop(0))
 
     def _is_deadlock(self) -> bool:
         """Whether every core has ended or waits for another one, whatever DMA and cameras go on doing."""
@@ -329,9 +334,10 @@ class Board:
             results={name: value for each in parts for name, value in each.results.items()},
             remarks=tuple(text for each in parts for text in each.remarks),
         )
-        self._frames.append(record)
-        if seen := tuple(each.seen for each in parts if each.seen):
-            self._seen.append((record.index, seen))
+        with uninterrupted():
+            self._frames.append(record)
+            if seen := tuple(each.seen for each in parts if each.seen):
+                self._seen.append((record.index, seen))
         if on_frame:
             on_frame(record)
 

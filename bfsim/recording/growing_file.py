@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
+from bfsim.drafts import draft_folder
 from bfsim.errors import RecordingError
 
 
@@ -18,18 +18,20 @@ def growing_file(path: Path) -> Iterator[IO[bytes]]:
     After an error or Ctrl-C nothing is left of it, and a file that was at `path` before is untouched. Raises
     RecordingError where the system refuses.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    with writing(path):
-        stream = temporary.open("xb")
-    try:
-        yield stream
+    with ExitStack() as stack:
         with writing(path):
-            stream.close()
-            temporary.replace(path)
-    finally:
-        with suppress(OSError):  # a full disk refuses what is still buffered; the file goes away all the same
-            stream.close()
-        temporary.unlink(missing_ok=True)
+            draft = stack.enter_context(draft_folder(path.parent)) / path.name
+            stream = draft.open("xb")
+        try:
+            yield stream
+            with writing(path):
+                stream.close()
+                draft.replace(path)
+        finally:
+            with suppress(
+                OSError
+            ):  # a full disk refuses what is still buffered; the file goes away all the same
+                stream.close()
 
 
 @contextmanager

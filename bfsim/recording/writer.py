@@ -18,7 +18,7 @@ from mcap_protobuf.schema import register_schema
 from numpy.typing import NDArray
 
 from bfsim import __version__
-from bfsim.errors import RecordingError
+from bfsim.errors import RecordingError, shown
 from bfsim.recording import layout
 from bfsim.recording.frames import DisparityImage, RectificationTables, StereoGeometry, UyvyImage
 from bfsim.recording.growing_file import growing_file, writing
@@ -59,6 +59,12 @@ class RecordingWriter:
             )
         if height <= 0:
             raise RecordingError(f"{path}: image height must be above 0, not {height}")
+        try:
+            description.encode()
+        except UnicodeEncodeError:
+            raise RecordingError(
+                f"{path}: description must be text in UTF-8, not {shown(description)}"
+            ) from None
         if rectification is not None:
             rectification.check(width, height)
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 import shutil
-import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
+from bfsim.drafts import draft_folder
 from bfsim.errors import ConfigError
 
 
@@ -42,8 +42,8 @@ def write_bytes(path: Path, content: bytes) -> None:
     require_place(path)
     target = path.resolve()
     try:
-        with tempfile.TemporaryDirectory(prefix=".bfsim-", dir=target.parent) as folder:
-            draft = Path(folder) / target.name
+        with draft_folder(target.parent) as folder:
+            draft = folder / target.name
             draft.write_bytes(content)
             if target.exists():
                 shutil.copymode(target, draft)

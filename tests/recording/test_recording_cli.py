@@ -110,3 +110,11 @@ def test_damaged_recording(tmp_path: Path) -> None:
 def test_help_shows_examples(command: str) -> None:
     """The help of a command shows how it is typed."""
     assert f"bfsim record {command} run.mcap" in run(command, "--help").output
+
+
+def test_a_description_that_is_no_text(folder: Path) -> None:
+    """Bytes that are no UTF-8 come from the shell as half characters."""
+    result = run("import", folder / "run.mcap", folder / "im", "--mono", "--description", "caf\udce9")
+    assert isinstance(result.exception, RecordingError)
+    assert str(result.exception).endswith("description must be text in UTF-8, not 'caf\\udce9'")
+    assert not (folder / "run.mcap").exists()

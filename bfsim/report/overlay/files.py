@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from mmap import ACCESS_READ, mmap
@@ -15,6 +14,7 @@ import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
+from bfsim.drafts import draft_folder, sweep
 from bfsim.errors import ConfigError
 from bfsim.report.overlay.overlay import overlay_of
 from bfsim.report.overlay.style import PAPER
@@ -52,8 +52,7 @@ class OverlayWriter:
     def __enter__(self) -> Self:
         with _writing(self.path), ExitStack() as stack:
             where = self.path if self.path.is_dir() else self.path.parent
-            draft = stack.enter_context(tempfile.TemporaryDirectory(prefix=".bfsim-", dir=where))
-            self._folder = Path(draft) / "overlay"
+            self._folder = stack.enter_context(draft_folder(where)) / "overlay"
             self._folder.mkdir()
             self._cleanup = stack.pop_all()
         return self
@@ -168,6 +167,7 @@ def _require_folder(path: Path) -> None:
         if not path.parent.is_dir():
             raise ConfigError(f"{path}: the folder {path.parent} must exist to make a folder there")
         return
+    sweep(path)
     foreign = set(path.iterdir()) - set(_earlier(path))
     if foreign:
         raise ConfigError(

@@ -1,0 +1,77 @@
+"""Drafts: what is written beside its place, and put there when it is complete.
+
+A draft is a folder with a lock on it for as long as its process lives. What a killed process left behind has no lock any
+more, and the next one that writes in the same folder removes it. Knows nothing of what is written.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+if sys.platform != "win32":  # elsewhere no folder can be locked, and nothing is swept
+    import fcntl
+
+_PREFIX, _SUFFIX = ".bfsim-", ".draft"
+_NAME = re.compile(re.escape(_PREFIX) + r"\w{8}" + re.escape(_SUFFIX))
+"""Only such names, which nobody gives to anything else, are swept."""
+
+_open: set[Path] = set()
+
+
+@contextmanager
+def draft_folder(where: Path) -> Iterator[Path]:
+    """Yield a new folder in `where` that goes away, with all that is still in it, at the end of the `with` block.
+
+    What killed processes left in `where` goes away at the beginning. Raises OSError where the system refuses.
+    """
+    sweep(where)
+    unnamed = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=where))
+    lock = _lock(unnamed)
+    folder = unnamed.with_name(unnamed.name + _SUFFIX)
+    unnamed.rename(folder)  # only now, with its lock on it, could it be swept
+    _open.add(folder)
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+        _open.discard(folder)
+        if lock is not None:
+            os.close(lock)
+
+
+def sweep(where: Path) -> None:
+    """Remove the drafts in `where` that no process holds any more; what cannot be removed stays."""
+    with suppress(OSError):
+        for folder in [each for each in where.iterdir() if _NAME.fullmatch(each.name)]:
+            lock = _lock(folder)
+            if lock is not None:
+                shutil.rmtree(folder, ignore_errors=True)
+                os.close(lock)
+
+
+def discard_all() -> None:
+    """Remove the drafts of this process, which ends at once and comes to the end of no `with` block."""
+    for folder in [*_open]:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _lock(folder: Path) -> int | None:
+    """Open a folder and lock it; None if another process holds it, or if it cannot be locked."""
+    if sys.platform == "win32":
+        return None
+    with suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            os.close(handle)
+        else:
+            return handle
+    return None

@@ -1,0 +1,105 @@
+"""The signals that end a command early: Ctrl-C (SIGINT), SIGTERM and SIGHUP.
+
+All raise KeyboardInterrupt, so that drafts are removed and the frames that are done are reported; the exit code says which
+signal it was.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Event, Thread, current_thread, main_thread
+from types import FrameType
+
+from bfsim.drafts import discard_all
+
+BY_SIGNAL = 128
+"""Exit codes from here on say which signal ended a command, as in a shell."""
+
+DEAF_S = 2.0
+"""Calls of kernels take milliseconds: one that a signal has not ended by then does not end at all."""
+
+_SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+
+
+class _Heard(Event):
+    """Set when a signal was heard; `number` is the last one's."""
+
+    number = int(signal.SIGINT)
+
+
+_heard = _Heard()
+
+
+def hear_signals() -> None:
+    """Let all signals that end a command raise KeyboardInterrupt, except those that are ignored, as by nohup."""
+    for number in _SIGNALS:
+        if signal.getsignal(number) in {signal.SIG_DFL, signal.default_int_handler}:
+            signal.signal(number, _hear)
+
+
+def interrupted_code() -> int:
+    """Return the exit code of a command that a signal cut short: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP."""
+    return BY_SIGNAL + _heard.number
+
+
+def _hear(number: int, _frame: FrameType | None) -> None:
+    _heard.number = number
+    _heard.set()
+    raise KeyboardInterrupt
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Let a signal wait until the end of the `with` block, for what is done as a whole or not at all."""
+    if current_thread() is not main_thread():  # signals are handled in the main thread alone
+        yield
+        return
+    waiting: list[int] = []
+
+    def wait(number: int, _frame: FrameType | None) -> None:
+        _heard.set()
+        waiting.append(number)
+
+    handlers = {number: handler for number in _SIGNALS if callable(handler := signal.getsignal(number))}
+    for number in handlers:
+        signal.signal(number, wait)
+    try:
+        yield
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+    if waiting:
+        handlers[waiting[0]](waiting[0], None)
+
+
+@contextmanager
+def ending_deaf_kernels() -> Iterator[None]:
+    """Let signals end Python from inside a kernel that loops for ever: machine code, which hears of no exception."""
+    heard_here = {int(number) for number in _SIGNALS if signal.getsignal(number) is _hear}
+    if not heard_here:  # ignored, or another's: in the background, or in a debugger
+        yield
+        return
+
+    def watch() -> None:
+        while number := pressed.recv(1):  # Python's own part of a handler writes the signal's number
+            if number[0] in heard_here and not _heard.wait(DEAF_S):
+                discard_all()
+                os.write(2, b"bfsim: interrupted in a kernel that does not end\n")
+                os._exit(BY_SIGNAL + number[0])
+
+    pressed, press = socket.socketpair()
+    press.settimeout(0)
+    watcher = Thread(target=watch, daemon=True)
+    watcher.start()
+    signal.set_wakeup_fd(press.fileno())
+    try:
+        yield
+    finally:
+        signal.set_wakeup_fd(-1)
+        press.close()
+        watcher.join()
+        pressed.close()

@@ -1,0 +1,106 @@
+"""How commands end: exit codes by cause, and nothing left behind."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from bfsim.endings import FAULT
+
+# firmware that sees something, in a recording that does not end
+SLOW = """
+import signal, sys, time
+import bfsim.report.overlay.files as files
+
+drawn = files.overlay_of
+
+def slowly(frame):
+    open("drawing", "w").close()
+    time.sleep(1)
+    return drawn(frame)
+
+files.overlay_of = slowly
+from bfsim.__main__ import main
+main()
+"""
+
+
+def bfsim(command: str, *, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run a line of shell in which "$BFSIM" is the command."""
+    surroundings = {**os.environ, "BFSIM": f"{sys.executable} -m bfsim"}
+    return subprocess.run(
+        ["bash", "-c", command], env=surroundings, capture_output=True, check=False, text=True, cwd=cwd
+    )
+
+
+@pytest.mark.parametrize("command", ["boards", "--help", "run --help", "--version"])
+def test_a_closed_pipe_is_no_broken_limit(command: str) -> None:
+    """Who stops to read ends the command as a signal would, in silence."""
+    done = bfsim(f"$BFSIM {command} | true; exit ${{PIPESTATUS[0]}}")
+    assert (done.returncode, done.stderr) == (141, "")
+
+
+@pytest.mark.parametrize("command", ["--help", "boards --help", "--version", "boards"])
+def test_a_full_device(command: str) -> None:
+    """Help is output as any other."""
+    done = bfsim(f"$BFSIM {command} > /dev/full")
+    assert done.returncode == 2
+    assert done.stderr == "bfsim: error: standard output must be accessible: No space left on device\n"
+
+
+def test_a_full_device_for_the_message() -> None:
+    """Nobody can be told, but the exit code says it."""
+    assert bfsim("$BFSIM fly 2> /dev/full").returncode == 2
+
+
+def test_trouble_elsewhere_is_not_blamed_on_standard_output(tmp_path: Path) -> None:
+    """What the system refuses without a file's name is not standard output."""
+    program = "import bfsim.cli, errno; from unittest.mock import patch\n"
+    program += "with patch('bfsim.cli_boards._summary', side_effect=OSError(errno.EMFILE, 'Too many open files')): bfsim.cli.main()"
+    done = subprocess.run(
+        [sys.executable, "-c", program, "boards"], capture_output=True, check=False, text=True, cwd=tmp_path
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "bfsim: error: the system must allow what bfsim asks of it: Too many open files\n"
+
+
+def test_a_fault_of_bfsim_is_no_broken_limit() -> None:
+    """A traceback ends with a code of its own."""
+    program = "import bfsim.cli_boards as boards; from unittest.mock import patch; from bfsim.__main__ import main\n"
+    program += "with patch('bfsim.cli_boards._summary', side_effect=KeyError('x')): main()"
+    done = subprocess.run(
+        [sys.executable, "-c", program, "boards"], capture_output=True, check=False, text=True
+    )
+    assert done.returncode == FAULT
+    assert "KeyError" in done.stderr
+    assert "fault of bfsim" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129), (signal.SIGINT, 130)]
+)
+def test_a_signal_leaves_nothing_behind(tmp_path: Path, number: signal.Signals, code: int) -> None:
+    """What is drawn when the signal comes is drawn to its end, and no file or folder stays but what was asked for."""
+    arguments = "run", "--overlay", "seen", "--mcap", "seen.mcap", "--json", "seen.json"
+    with subprocess.Popen(
+        [sys.executable, "-c", SLOW, *arguments],
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+        cwd=tmp_path,
+    ) as process:
+        while process.poll() is None and not (tmp_path / "drawing").exists():
+            time.sleep(0.05)
+        process.send_signal(number)
+        _, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (code, "bfsim: interrupted after 1 frames\n")
+    assert {each.name for each in tmp_path.iterdir()} == {"drawing", "seen", "seen.json", "seen.mcap"}
+    assert [each.name for each in (tmp_path / "seen").iterdir()] == ["frame-0000.png"]
+    assert ["seen" in each for each in json.loads((tmp_path / "seen.json").read_text())["frames"]] == [True]
