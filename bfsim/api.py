@@ -5,7 +5,7 @@ from __future__ import annotations
 from bfsim.chip.dma_registers import Flow, WdSize
 from bfsim.chip.ppi_registers import PpiStatusBit
 from bfsim.errors import FirmwareError
-from bfsim.kernel import Kernel, Work, f32, i8, i16, i32, kernel, sqrt, u8, u16, u32
+from bfsim.kernel import Kernel, Work, f32, i8, i16, i32, kernel, quotient, remainder, sqrt, u8, u16, u32
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.core import Core, Frame
 from bfsim.machine.core.readout import Readout
@@ -36,5 +36,5 @@ __all__ = [
     "BudgetRow", "Buffer", "Buffers", "Calibration", "CameraSettings", "Colour", "Core", "DmaConfig", "Firmware", "FirmwareError", "Flow", "Frame",
     "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "OutputRing", "PpiStatusBit", "Readout", "Reference", "Row", "Seen", "SeenBlob",
     "SeenCircle", "SeenEdges", "SeenEdges3D", "SeenGeometry", "SeenLine", "SeenLine3D", "SeenObject", "SeenRectangle", "Solid", "SourcePixels",
-    "WdSize", "Work", "f32", "i8", "i16", "i32", "kernel", "no_edges_3d", "sqrt", "u8", "u16", "u32", "write_descriptor",
+    "WdSize", "Work", "f32", "i8", "i16", "i32", "kernel", "no_edges_3d", "quotient", "remainder", "sqrt", "u8", "u16", "u32", "write_descriptor",
 ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Division of i32 in LLVM IR: Python rounds down, the chip towards zero."""
+"""Division in LLVM IR: `//` and `%` round down, as Python does; `quotient` and `remainder` towards zero, as C and the chip do."""
 
 from __future__ import annotations
 
@@ -9,8 +9,15 @@ SIGNED = "signed"  # names divisions: LLVM may make them unsigned, the run-time 
 FLOOR = "floor"  # names remainders that only round a quotient down
 
 
+def unsigned(builder: ir.IRBuilder, op: str, left: ir.Value, right: ir.Value) -> ir.Value:
+    """Return the quotient or the rest of two u32, which round alike."""
+    return (builder.udiv if op in ("//", "quotient") else builder.urem)(left, right)
+
+
 def signed(builder: ir.IRBuilder, op: str, left: ir.Value, right: ir.Value, constant: int | None) -> ir.Value:
-    """Return `left // right` or `left % right`; `constant` is the divisor if it is one."""
+    """Return the quotient or the rest of two i32; `constant` is the divisor if it is one."""
+    if op in ("quotient", "remainder"):
+        return (builder.sdiv if op == "quotient" else builder.srem)(left, right, name=SIGNED)
     if constant is not None and constant > 0 and constant.bit_count() == 1:
         return _by_power_of_two(builder, op, left, constant)
     return _rounded_down(builder, op, left, right)

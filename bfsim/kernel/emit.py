@@ -335,7 +335,7 @@ class _Emitter:
         if node.op in ("min", "max"):
             return self._intrinsic(f"llvm.{'u' if unsigned else 's'}{node.op}.i32", [I32, I32], [left, right])
         if unsigned:
-            return (self.builder.udiv if node.op == "//" else self.builder.urem)(left, right)
+            return divisions.unsigned(self.builder, node.op, left, right)
         constant = int(node.right.value) if isinstance(node.right, tree.Const) else None
         return divisions.signed(self.builder, node.op, left, right, constant)
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from bfsim.kernel import tree
-from bfsim.kernel.operators import BINARY, COMPARE, FOLD, ON_FLOATS, in_words
+from bfsim.kernel.operators import BINARY, COMPARE, DIVISIONS, FOLD, ON_FLOATS, in_words
 from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.types import (
     BOOL,
@@ -188,7 +188,7 @@ class Expressions:
         left, right = self.number(left_node), self.number(right_node)
         if f32 in (left.type, right.type) or op == "/":
             return self._float_arithmetic(node, op, left, right)
-        if op in ("//", "%") and isinstance(right, tree.Const) and right.value == 0:
+        if op in DIVISIONS and isinstance(right, tree.Const) and right.value == 0:
             self.source.refuse(right_node, "the division is by zero", "divide by something else")
         if _are_ints(left, right):
             return self._folded(node, op, left, right)
@@ -210,7 +210,9 @@ class Expressions:
             )
         if left.type is not f32:
             self.source.refuse(
-                node, "a kernel cannot use the float division / on integers", "write // (rounds down)"
+                node,
+                "a kernel cannot use the float division / on integers",
+                "write // (rounds down) or quotient(x, y) (rounds towards zero, as C does)",
             )
         if op not in ON_FLOATS:
             self.source.refuse(node, f"{op} is not for f32", "use + - * / min max, or convert with i32(...)")

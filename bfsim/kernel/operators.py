@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable
 
+from bfsim.kernel.types import quotient, remainder
+
 BINARY = {
     ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.FloorDiv: "//", ast.Mod: "%",
     ast.LShift: "<<", ast.RShift: ">>", ast.BitAnd: "&", ast.BitOr: "|", ast.BitXor: "^",
@@ -16,8 +18,15 @@ FOLD: dict[str, Callable[[int, int], int]] = {
     "+": lambda a, b: a + b, "-": lambda a, b: a - b, "*": lambda a, b: a * b,
     "//": lambda a, b: a // b, "%": lambda a, b: a % b, "<<": lambda a, b: a << b,
     ">>": lambda a, b: a >> b, "&": lambda a, b: a & b, "|": lambda a, b: a | b,
-    "^": lambda a, b: a ^ b, "min": min, "max": max,
+    "^": lambda a, b: a ^ b, "min": min, "max": max, "quotient": quotient, "remainder": remainder,
 }  # fmt: skip
+OF_TWO: dict[Callable[..., object], str] = {
+    min: "min",
+    max: "max",
+    quotient: "quotient",
+    remainder: "remainder",
+}
+DIVISIONS = ("//", "%", "quotient", "remainder")
 
 
 def in_words(node: ast.AST) -> str:

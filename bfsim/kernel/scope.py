@@ -6,6 +6,7 @@ import ast
 
 from bfsim.kernel import tree
 from bfsim.kernel.expressions import Expressions
+from bfsim.kernel.operators import OF_TWO
 from bfsim.kernel.types import FloatType, IntType, Number, f32, i32, promoted, sqrt
 
 
@@ -18,7 +19,7 @@ class KernelScope(Expressions):
         if not isinstance(node.func, ast.Name) or node.keywords:
             self.source.refuse(
                 node,
-                "a kernel can only call kernels, len, min, max, abs, sqrt and casts",
+                "a kernel can only call kernels, len, min, max, abs, quotient, remainder, sqrt and casts",
                 "call by name, without keywords",
             )
         name = node.func.id
@@ -38,17 +39,14 @@ class KernelScope(Expressions):
             return self._kernel_call(node, callee)
         if target is len:
             return self._length(node)
-        if (target is min or target is max) and len(node.args) == 2:
-            return self._arithmetic(node, name, node.args[0], node.args[1])
+        known = OF_TWO.get(target) if callable(target) else None
+        if known is not None and len(node.args) == 2:
+            return self._arithmetic(node, known, node.args[0], node.args[1])
         if target is abs and len(node.args) == 1:
             return self._absolute(node)
         if target is sqrt and len(node.args) == 1:
             return tree.Unary("sqrt", self.number(node.args[0], f32), f32, node.lineno)
-        advice = (
-            f"give {name} two arguments"
-            if target is min or target is max
-            else f"make {name} a @kernel, or inline it"
-        )
+        advice = f"give {name} two arguments" if known else f"make {name} a @kernel, or inline it"
         self.source.refuse(node, f"a kernel cannot call {name} like this", advice)
 
     def _absolute(self, node: ast.Call) -> tree.Expr:

@@ -46,7 +46,7 @@ class Length:
 
 @dataclass(frozen=True, slots=True)
 class Binary:
-    """Arithmetic: one of + - * / // % << >> & | ^ min max, both sides of one type."""
+    """Arithmetic: one of + - * / // % << >> & | ^ min max quotient remainder, both sides of one type."""
 
     op: str
     left: Expr

@@ -114,6 +114,17 @@ def promoted(element: Number) -> Number:
     return element if element is u32 or isinstance(element, FloatType) else i32
 
 
+def quotient(dividend: int, divisor: int) -> int:
+    """Return dividend / divisor as C has it, rounded towards zero; `//` rounds down. In a kernel both are i32 or both u32."""
+    size = abs(int(dividend)) // abs(int(divisor))
+    return size if (dividend < 0) == (divisor < 0) else -size
+
+
+def remainder(dividend: int, divisor: int) -> int:
+    """Return what `quotient` leaves: C's %, with the sign of the dividend; Python's % has that of the divisor."""
+    return int(dividend) - quotient(dividend, divisor) * int(divisor)
+
+
 def sqrt(value: float) -> float:
     """Return the square root of an f32, rounded to an f32; in a kernel a call of the run-time library."""
     return float(np.sqrt(np.float32(value)))

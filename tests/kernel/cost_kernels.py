@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from bfsim.kernel import i16, i32, kernel, u8, u16, u32
+from bfsim.kernel import i16, i32, kernel, remainder, u8, u16, u32
+from bfsim.kernel import quotient as towards_zero
 
 
 @kernel
@@ -133,3 +134,18 @@ def relabel(labels: u16[:], lut: u16[:]):
 def energies(x: i16[:], y: i16[:], out: i32[:]):
     for i in range(len(x)):
         out[i] = x[i] * x[i] + y[i] * y[i]
+
+
+@kernel
+def divided(a: i32, b: i32) -> i32:
+    return towards_zero(a, b)
+
+
+@kernel
+def left_over(a: i32, b: i32) -> i32:
+    return remainder(a, b)
+
+
+@kernel
+def eighths(a: i32) -> i32:
+    return towards_zero(a, 8)

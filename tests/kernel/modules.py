@@ -10,7 +10,7 @@ from types import ModuleType
 
 HEADER = """from __future__ import annotations
 
-from bfsim.kernel import f32, i8, i16, i32, kernel, u8, u16, u32
+from bfsim.kernel import f32, i8, i16, i32, kernel, quotient, remainder, u8, u16, u32
 
 """
 HEADER_LINES = HEADER.count("\n")

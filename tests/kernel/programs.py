@@ -65,7 +65,10 @@ class Writer:
         if form <= 3:
             return f"({self.value(kind, depth - 1)} {self.pick(*'+-*&|^')} {self.value(kind, depth - 1)})"
         if form == 4:
-            return f"({self.value(kind, depth - 1)} {self.pick('//', '%')} {self.divisor(kind, depth - 1)})"
+            dividend, divisor = self.value(kind, depth - 1), self.divisor(kind, depth - 1)
+            operator = self.pick("//", "%", "quotient", "remainder")
+            is_name = operator.isalpha()
+            return f"{operator}({dividend}, {divisor})" if is_name else f"({dividend} {operator} {divisor})"
         if form == 5:
             amount = self.pick(f"({self.value(SIGNED, depth - 1)} & 31)", str(self.draw(st.integers(0, 31))))
             return f"({self.value(kind, depth - 1)} {self.pick('<<', '>>')} {amount})"
@@ -87,7 +90,7 @@ class Writer:
         positive = f"(({self.value(kind, depth)} & 63) + 2)"
         if kind == UNSIGNED:
             return self.pick(positive, "3", "16", "255")
-        return self.pick(positive, f"(-{positive})", "3", "-7", "8", "1000")
+        return self.pick(positive, f"(-{positive})", "3", "-7", "8", "-4", "1000")
 
     def unary(self, kind: str, depth: int) -> str:
         """Write - ~ or abs; only signed numbers have the last."""

@@ -127,6 +127,25 @@ def test_dividing_by_a_power_of_two_shifts() -> None:
     assert cost_kernels.rounded_down(-5) == -5 // 8 + -5 % 16
 
 
+def test_dividing_towards_zero_needs_no_correction() -> None:
+    """`quotient` is C's division: one call of the library, where `//` must mend what is negative; by 8 it is a branch."""
+    assert [cost_kernels.divided(a, b) for a, b in ((7, 2), (-7, 2), (7, -2), (-7, -2))] == [3, -3, -3, 3]
+    assert [cost_kernels.left_over(a, 2) for a in (7, -7)] == [1, -1]
+    assert [cost_kernels.eighths(a) for a in (-9, -8, -1, 0, 17)] == [-1, -1, 0, 0, 2]
+    around = 1 + 1 + 1 + 1 + RETURN  # RETS pushed and popped, room on the stack and back
+    for profile in (GCC_O2, VDSP_O2):
+        call = COSTS[Op.CALL].cclk + around
+        library = profile.library
+        assert (
+            run(cost_kernels.divided, 7, 2, profile=profile).issue_cclk == call + library.divide_signed.cclk
+        )
+        assert (
+            run(cost_kernels.left_over, 7, 2, profile=profile).issue_cclk
+            == call + library.remainder_signed.cclk
+        )
+    assert cclk(cost_kernels.eighths, 17) == 1 + COSTS[Op.BRANCH_TAKEN_BP].cclk + 1 + RETURN
+
+
 @pytest.mark.parametrize("above", [0, 1, 7, 32])
 def test_a_branch_costs_what_the_data_makes_it_cost(above: int) -> None:
     """A pixel that skips the body pays 5 cycles, one that enters it pays 9 and the body."""

@@ -117,6 +117,26 @@ def test_a_division_is_a_call_of_the_library_without_rounding_down(import_kernel
     assert divided - plain == 1 + CALL_CCLK + DIVISION_CCLK
 
 
+@pytest.mark.parametrize(
+    ("statement", "cclk"),
+    [
+        ("x = quotient(y, 2)", 3),  # R1 = R0 >> 31; R0 = R1 + R0; R0 >>>= 1
+        ("x = quotient(y, 8)", 1 + TAKEN_CCLK + 1),  # CC = R0 < 0; IF !CC JUMP over; R0 >>>= 3
+        (
+            "x = remainder(y, 8)",
+            4 + TAKEN_CCLK,
+        ),  # R0 = 7; BITSET (R0, 31); R0 = R1 & R0; CC = R0 < 0; IF !CC JUMP over
+        ("x = quotient(y, 10)", 1 + CALL_CCLK + DIVISION_CCLK),  # R1 = 10; CALL ___divsi3
+    ],
+)
+def test_dividing_towards_zero_by_a_power_of_two_is_no_call(
+    import_kernels: ImportText, statement: str, cclk: int
+) -> None:
+    """The branch skips what mends a negative dividend."""
+    plain = cclk_of(costs_of(import_kernels, "x = y")["entry"].charges)
+    assert cclk_of(costs_of(import_kernels, statement)["entry"].charges) - plain == cclk
+
+
 def test_an_if_branches_round_its_body_without_prediction(import_kernels: ImportText) -> None:
     """R0 = [x]; CC = R0 <= 3; IF CC JUMP else; ...; JUMP after."""
     costs = costs_of(import_kernels, "if x > 3:\n    y = 1\nelse:\n    y = 2")

@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bfsim.kernel import quotient, remainder
+
 
 def _wrapped(value: int, bits: int, *, signed: bool) -> int:
     low = value & ((1 << bits) - 1)
@@ -110,6 +112,7 @@ NAMES: dict[str, Any] = {
     "i8": _cast(8, signed=True), "u8": _cast(8, signed=False), "i16": _cast(16, signed=True),
     "u16": _cast(16, signed=False), "i32": _cast(32, signed=True), "u32": _cast(32, signed=False),
     "min": _chosen(min), "max": _chosen(max), "range": _range,
+    "quotient": _chosen(quotient), "remainder": _chosen(remainder),
     "len": lambda row: Word(len(row), signed=True),
     "kernel": lambda function: function,
 }  # fmt: skip

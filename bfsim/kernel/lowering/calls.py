@@ -11,6 +11,7 @@ from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.idioms import fills_of
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.multiples import multiple
+from bfsim.kernel.lowering.powers import by_power, divided_by_power
 from bfsim.kernel.profile import LibraryRoutine
 
 ANY, DATA = RegisterBank.ANY, RegisterBank.DATA
@@ -152,6 +153,9 @@ class Calls:
             ("rem", True): library.remainder_signed, ("rem", False): library.remainder_unsigned,
         }  # fmt: skip
         routine = routines[each.opcode[1:], signed]
+        if divided_by_power(each):
+            self._divide_by_power(each)
+            return
         if not self.context.demanded.divides_by_call(each):
             self._divide_by_constant(each)
             return
@@ -164,6 +168,12 @@ class Calls:
         self._pass(each, list(each.operands[:2]))
         self.append(Op.CALL, each, each.result, DATA)
         self._library(each, routine)
+
+    def _divide_by_power(self, each: Instruction) -> None:
+        """The likelier way, of a dividend that is not negative, has no code in between."""
+        branch = Op.BRANCH_TAKEN_BP if each.opcode == "sdiv" else Op.BRANCH_NOT_TAKEN
+        for op in by_power(each.opcode, int(each.operands[1]), branch) or ():
+            self.append(op, each, each.result, DATA, (each.operands[0], DATA))
 
     def _divide_by_constant(self, each: Instruction) -> None:
         """The upper half of a product with the reciprocal [umulsi3_highpart of GCC: seven operations, and a move]."""

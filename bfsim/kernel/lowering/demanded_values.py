@@ -17,6 +17,7 @@ from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
 from bfsim.kernel.lowering.induction_variable_elimination import eliminated_counters
 from bfsim.kernel.lowering.induction_variables import InductionVariables
 from bfsim.kernel.lowering.jump_threading import JumpThreading
+from bfsim.kernel.lowering.powers import divided_by_power
 from bfsim.kernel.lowering.redundant import AGAIN
 from bfsim.kernel.lowering.scalar_evolution import Increment, ScalarEvolution
 from bfsim.kernel.profile import CompilerProfile
@@ -238,6 +239,8 @@ class DemandedValues(Folding):
 
     def divides_by_call(self, each: Instruction) -> bool:
         """Whether a division calls the library; the others are products with a reciprocal."""
+        if divided_by_power(each):
+            return False
         return self.divides_signed(each) or not each.operands[1].isdigit()
 
     def divides_signed(self, each: Instruction) -> bool:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from bfsim.kernel.isa import COSTS, REGISTER_ARGUMENTS, SCRATCH_DATA_REGISTERS, Op
 from bfsim.kernel.lowering.charges import Charge
+from bfsim.kernel.lowering.powers import by_power
 from bfsim.kernel.lowering.unoptimised_constants import product, unsigned_quotient
 from bfsim.kernel.lowering.unoptimised_expressions import Expr
 
@@ -20,7 +21,7 @@ def call(code: ExpressionCode, each: Expr) -> None:
 
 
 def divide(code: ExpressionCode, each: Expr) -> None:
-    """Divide: unsigned by a constant without a call, as GCC has a long product for it; else by the library."""
+    """Divide: unsigned by a constant and signed by a power of two without a call, as GCC does; else by the library."""
     left, right = each.args
     if each.is_call:
         _arguments(code, each.args)
@@ -28,6 +29,9 @@ def divide(code: ExpressionCode, each: Expr) -> None:
         code.charges += _library(code, each.op)
         return
     code.value(left)
+    if each.op[0] == "s":
+        code.op(*(by_power(each.op, right.value, Op.BRANCH_TAKEN) or ()))
+        return
     code.op(*unsigned_quotient(right.value))
     if each.op == "urem":
         plan = product(right.value)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bfsim.kernel.isa import ADD_IMMEDIATE
+from bfsim.kernel.isa import ADD_IMMEDIATE, Op
+from bfsim.kernel.lowering.powers import by_power
 
 SWAPPED = {"slt": "sgt", "sgt": "slt", "sle": "sge", "sge": "sle",
            "ult": "ugt", "ugt": "ult", "ule": "uge", "uge": "ule", "eq": "eq", "ne": "ne"}  # fmt: skip
@@ -41,7 +42,9 @@ class Expr:
     @property
     def is_call(self) -> bool:
         """Whether a function returns it, of the library or another kernel."""
-        return self.op in ("call", *DIVISIONS) and not (self.op[0] == "u" and self.args[1].is_const)
+        if self.op not in DIVISIONS or not self.args[1].is_const:
+            return self.op in ("call", *DIVISIONS)
+        return self.op[0] == "s" and by_power(self.op, self.args[1].value, Op.BRANCH_TAKEN) is None
 
     @property
     def calls(self) -> bool:
