@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import traceback
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from io import TextIOWrapper
@@ -12,7 +13,7 @@ from typing import Any
 
 import click
 
-from bfsim.errors import BfsimError
+from bfsim.errors import BfsimError, BfsimWarning
 from bfsim.signals import BY_SIGNAL, interrupted_code
 
 LIMIT_BROKEN, MISTAKE = 1, 2
@@ -27,7 +28,10 @@ def exit_code_of(command: Callable[[], Any]) -> int:
     streams = sys.stdout, sys.stderr
     sys.stdout, sys.stderr = _Output(streams[0], "standard output"), _Output(streams[1], "standard error")
     try:
-        code = _exit_code_of(command)
+        with warnings.catch_warnings():
+            warnings.simplefilter("default", BfsimWarning)
+            warnings.showwarning = _warn  # type: ignore[assignment]  # of its arguments two say all
+            code = _exit_code_of(command)
         sys.stdout.flush()
         sys.stderr.flush()
     except _OutputError as error:
@@ -68,6 +72,12 @@ def _exit_code_of(command: Callable[[], Any]) -> int:
         click.echo("bfsim: interrupted", err=True)
         return interrupted_code()
     return code if isinstance(code, int) else 0
+
+
+def _warn(message: Warning | str, category: type[Warning], *_place: Any) -> None:
+    """Say what bfsim warns of, once and on a line of its own; what libraries warn of is no matter of the user's."""
+    if issubclass(category, BfsimWarning):
+        click.echo(f"bfsim: warning: {message}", err=True)
 
 
 def _mistake(message: str) -> int:

@@ -49,3 +49,7 @@ class DeadlockError(FirmwareError):
 
 class MmrError(BfsimError, ValueError):
     """Raised when firmware programs a memory-mapped register with what the chip would flag."""
+
+
+class BfsimWarning(UserWarning):
+    """Given where a run goes on, but not as its user will have thought."""

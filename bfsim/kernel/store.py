@@ -2,13 +2,18 @@
 
 An entry's name is a digest of everything it depends on, so a changed source, profile, bfsim, LLVM or host
 processor never meets a stale one. Files are written aside and renamed: two processes may start at once.
+
+Entries are run as they are, so nobody else may write them: the folder and each entry belong to the user alone, and an
+entry's checksum is that of its name and its contents.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import stat
 import tempfile
+import warnings
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -17,10 +22,12 @@ import llvmlite
 import llvmlite.binding as llvm
 import platformdirs
 
+from bfsim.errors import BfsimWarning, shown
 from bfsim.kernel import tree
 from bfsim.kernel.profile import CompilerProfile
 
 CHECKSUM_BYTES = 32
+PRIVATE = 0o700
 
 
 def folder() -> Path:
@@ -65,34 +72,81 @@ def tools() -> str:
 
 
 def can_keep() -> bool:
-    """Return whether the cache can be written."""
-    with suppress(OSError):
-        folder().mkdir(parents=True, exist_ok=True)
-    return os.access(folder(), os.W_OK | os.X_OK) and folder().is_dir()
+    """Return whether the cache can be written, and be read again."""
+    place = _trusted(folder())
+    return place is not None and os.access(place, os.W_OK | os.X_OK)
 
 
 def load(name: str) -> bytes | None:
-    """Return the entry `name`, or None when there is none or it is damaged."""
+    """Return the entry `name`, or None when there is none, it is damaged, or another user may have written it."""
+    place = _trusted(folder())
+    if place is None:
+        return None
     try:
-        data = (folder() / name[:2] / name).read_bytes()
+        with (place / name[:2] / name).open("rb") as file:
+            if _stranger(os.fstat(file.fileno())):
+                return None
+            data = file.read()
     except OSError:
         return None
     checksum, body = data[:CHECKSUM_BYTES], data[CHECKSUM_BYTES:]
-    if hashlib.sha256(body).digest() != checksum:
-        return None
-    return body
+    return body if checksum == _checksum(name, body) else None
 
 
 def save(name: str, body: bytes) -> None:
     """Keep `body` under `name`. A cache that cannot be written is no error; the next start compiles again."""
+    place = _trusted(folder())
+    if place is None:
+        return
     with suppress(OSError):
-        place = folder() / name[:2]
-        place.mkdir(parents=True, exist_ok=True)
+        place /= name[:2]
+        place.mkdir(mode=PRIVATE, exist_ok=True)
         handle, aside = tempfile.mkstemp(dir=place)
         try:
             with os.fdopen(handle, "wb") as file:
-                file.write(hashlib.sha256(body).digest() + body)
+                file.write(_checksum(name, body) + body)
             Path(aside).replace(place / name)
         except BaseException:
             Path(aside).unlink()
             raise
+
+
+def _checksum(name: str, body: bytes) -> bytes:
+    """Return the checksum of an entry, which holds under its own name alone."""
+    return hashlib.sha256(f"{name}\0".encode() + body).digest()
+
+
+@cache
+def _trusted(place: Path) -> Path | None:
+    """Return the cache's folder, which is made if it is not there; None, after a warning, if others can write in it.
+
+    The folders above it are not asked: who can put another folder in its place cannot make the user its owner.
+    """
+    with suppress(OSError):
+        place.mkdir(mode=PRIVATE, parents=True, exist_ok=True)
+    try:
+        found = place.stat()
+    except OSError:
+        return None
+    stranger = _stranger(found)
+    if stranger:
+        warnings.warn(
+            f"the kernel cache {shown(str(place))} must be private, for what is in it is run, but {stranger}: it is "
+            "not used, and every start compiles all kernels; `chmod 700` makes a folder of your own private, and "
+            "BFSIM_CACHE_DIR names another one",
+            BfsimWarning,
+            stacklevel=2,
+        )
+        return None
+    return place if stat.S_ISDIR(found.st_mode) else None
+
+
+def _stranger(found: os.stat_result) -> str:
+    """Say who else can write to a file or folder; nothing if only this user can."""
+    if os.name != "posix":  # elsewhere modes say nothing of that
+        return ""
+    if found.st_uid != os.geteuid():
+        return f"it belongs to the user with the number {found.st_uid}"
+    if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+        return f"others may write to it (mode {stat.S_IMODE(found.st_mode):o})"
+    return ""

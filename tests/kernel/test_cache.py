@@ -14,6 +14,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+from bfsim.errors import BfsimWarning
 from bfsim.kernel import VDSP_O2, Kernel, costs, jit, store
 from tests.kernel.modules import HEADER, import_text
 from tests.kernel.running import cclk
@@ -21,6 +22,7 @@ from tests.kernel.running import cclk
 TEXT = "@kernel\ndef f(a: u8[:], b: u8[:]):\n    for i in range(len(a)):\n        b[i] = a[i] // 3\n"
 RUN = """
 import numpy as np
+from bfsim.errors import BfsimWarning
 from bfsim.kernel import VDSP_O2, jit
 from program import f
 compiles = []
@@ -229,3 +231,73 @@ def test_a_damaged_or_full_cache_of_the_follower_is_no_obstacle(folder: Path) ->
     entry.write_bytes(good[:50])
     trace_accesses_in(folder)
     assert entry.read_bytes() == good
+
+
+def others_may_write(folder: Path) -> None:
+    """Open a folder to all users."""
+    folder.chmod(0o777)
+
+
+def it_is_anothers(folder: Path) -> None:
+    """Give a folder to another user; only root can."""
+    os.chown(folder, 12345, -1)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (others_may_write, "others may write to it .mode 777."),
+        pytest.param(
+            it_is_anothers,
+            "it belongs to the user with the number 12345",
+            marks=pytest.mark.skipif(os.geteuid() != 0, reason="only root can give a file away"),
+        ),
+    ],
+)
+def test_a_folder_that_others_can_write_is_not_used(
+    folder: Path, compiles: list[str], tmp_path: Path, change: Callable[[Path], None], message: str
+) -> None:
+    """What is in it would be run; the user is told once, and all is compiled."""
+    folder.mkdir(mode=0o700)
+    change(folder)
+    with pytest.warns(BfsimWarning, match=message) as told:
+        cost_of(import_text(TEXT, tmp_path, "same").f)
+        cost_of(import_text(TEXT, tmp_path, "same").f)
+    assert len(told) == 1
+    assert not store.can_keep()
+    assert compiles == ["f", "f"]
+    assert not list(folder.iterdir())
+
+
+def test_a_new_folder_is_private(folder: Path, tmp_path: Path) -> None:
+    """Nobody else writes in it, whatever the user's umask is."""
+    before = os.umask(0)
+    try:
+        cost_of(import_text(TEXT, tmp_path, "same").f)
+    finally:
+        os.umask(before)
+    assert folder.stat().st_mode & 0o777 == 0o700
+    assert not [each for each in folder.rglob("*") if each.stat().st_mode & 0o022]
+
+
+def test_an_entry_that_others_can_write_is_not_used(
+    folder: Path, compiles: list[str], tmp_path: Path
+) -> None:
+    """The folder may have been open to all when it was written."""
+    cost_of(import_text(TEXT, tmp_path, "same").f)
+    for each in entries(folder):
+        each.chmod(0o666)
+    cost_of(import_text(TEXT, tmp_path, "same").f)
+    assert compiles == ["f", "f"]
+
+
+def test_entries_that_changed_places_are_not_used(folder: Path) -> None:
+    """Each is whole, but it is another kernel's."""
+    store.save("aa1", b"one")
+    store.save("bb2", b"other")
+    one, other = folder / "aa" / "aa1", folder / "bb" / "bb2"
+    kept = one.read_bytes()
+    one.write_bytes(other.read_bytes())
+    other.write_bytes(kept)
+    assert store.load("aa1") is None
+    assert store.load("bb2") is None
