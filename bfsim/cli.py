@@ -16,6 +16,7 @@ from bfsim.cli_record import record
 from bfsim.cli_seen import Watchers, require_view, takes_views, watching
 from bfsim.endings import LIMIT_BROKEN, exit_code_of
 from bfsim.errors import ConfigError
+from bfsim.shipped import FIRMWARE
 from bfsim.signals import ending_deaf_kernels, interrupted_code
 from bfsim.terminal import print_report, progress_bar
 
@@ -64,10 +65,10 @@ _RUN_PARAMETERS = (
     click.argument("recording", required=False, type=click.Path(path_type=Path)),
     click.option(
         "--firmware",
-        metavar="PACKAGE:NAME",
-        default="tinyphoon:tinyphoon",
+        metavar="NAME",
+        default=FIRMWARE[0],
         show_default=True,
-        help="Firmware to run: NAME in the importable PACKAGE.",
+        help="Firmware to run: tinyphoon or one_eye, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
     ),
     click.option(
         "--board",
@@ -216,7 +217,7 @@ def profile(core: str | None, top: int, **what: Any) -> None:
 def explain(kernel: str, runs: bool, as_json: bool, **what: Any) -> None:
     """Print the source of KERNEL with the operations chosen for each line and their cycles.
 
-    KERNEL is PACKAGE:NAME, or only the NAME of a kernel of the firmware. With --run, or with a RECORDING,
+    KERNEL is FILE.py:NAME, PACKAGE:NAME, or only the NAME of a kernel of the firmware. With --run, or with a RECORDING,
     the firmware runs and each line shows how often it was executed and its cycles in all.
 
     \b

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from bfsim.shipped import FIRMWARE
 from bfsim.terminal import print_report
 
 
@@ -30,10 +31,10 @@ class _Size(click.ParamType[tuple[int, int]]):
 @click.argument("file", required=False, type=click.Path(path_type=Path))
 @click.option(
     "--firmware",
-    metavar="PACKAGE:NAME",
-    default="tinyphoon:tinyphoon",
+    metavar="NAME",
+    default=FIRMWARE[0],
     show_default=True,
-    help="Firmware to place: NAME in the importable PACKAGE.",
+    help="Firmware to place: tinyphoon or one_eye, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
 )
 @click.option(
     "--board", metavar="NAME", default="cm-bf561", show_default=True, help="Board with the memories."

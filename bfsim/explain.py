@@ -19,7 +19,7 @@ BRANCHES = {Op.BRANCH_TAKEN, Op.BRANCH_NOT_TAKEN, Op.BRANCH_TAKEN_BP, Op.BRANCH_
 
 
 def explain_named(name: str, firmware: str, profile: str, run: RunRecord | None = None) -> Explanation:
-    """Explain the kernel called `name`, PACKAGE:NAME or the name of a kernel of `firmware`; see `explain`."""
+    """Explain the kernel called `name`, FILE.py:NAME, PACKAGE:NAME or the name of a kernel of `firmware`; see `explain`."""
     return explain(load_kernel(name, firmware), profile_named(profile), run.kernels if run else None)
 
 

@@ -4,71 +4,101 @@ from __future__ import annotations
 
 import difflib
 import hashlib
-import importlib
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
+from bfsim import shipped
 from bfsim.errors import BfsimError, FirmwareError
+from bfsim.importing import OwnModules, Root
 from bfsim.kernel import Kernel
+from bfsim.locating import located, parted
 from bfsim.machine.firmware_lines import line_of
 from bfsim.machine.program import Firmware
 
 NEAREST_NAMES = 5
 """As many names are offered to who asked for one that there is not."""
 
+SHIPPED = Root(shipped.FIRMWARE_FOLDER, shipped.FIRMWARE_PACKAGE)
+
+_imported: dict[tuple[str, Root], tuple[ModuleType, OwnModules]] = {}
+
 
 @dataclass(frozen=True, slots=True)
 class LoadedFirmware:
-    """Firmware with the name it was asked for by, and the digest of its sources."""
+    """Firmware with its name: that of a built-in one, or MODULE:NAME, and the file of that module.
+
+    `own` are its modules. All of their files are known only after a run, in which code may import more.
+    """
 
     name: str
-    digest: str
+    path: Path
+    is_built_in: bool
     firmware: Firmware
+    own: OwnModules
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """The source files, as they lie in the folder that they were imported from."""
+        return tuple(sorted(each.relative for each in self.own.sources.values()))
+
+    @property
+    def digest(self) -> str:
+        """Digest of the source files and their relative names: the same wherever they lie."""
+        lines = sorted(f"{each.relative} {each.sha256}\n" for each in self.own.sources.values())
+        return hashlib.sha256("".join(lines).encode()).hexdigest()
 
 
 def load_firmware(name: str) -> LoadedFirmware:
-    """Import `name`, written PACKAGE:NAME, from the installed packages or else the current folder.
+    """Import the firmware `name`: that of a built-in one, FILE.py:NAME, or PACKAGE:NAME.
 
-    Raises FirmwareError when it cannot be imported or is not a `Firmware`; refused kernels raise KernelError.
+    A package is sought in the current folder and then among the installed ones. :NAME may be left out where there is
+    only one Firmware. What is as it was when it was imported before is not imported again. Raises FirmwareError when it
+    cannot be imported or is no `Firmware`; refused kernels raise KernelError.
     """
-    package, _, attribute = name.partition(":")
-    if not all(each.isidentifier() for each in (*package.split("."), attribute)):
-        raise FirmwareError(f"--firmware must be PACKAGE:NAME, such as tinyphoon:tinyphoon, not {name!r}")
-    module = _import(package)
+    is_built_in = name in shipped.FIRMWARE
+    if is_built_in:
+        module, own = _import(shipped.FIRMWARE_PACKAGE, SHIPPED)
+        attribute = name
+    else:
+        place, attribute = parted(name)
+        module, own = _import(*located(place, _advice(attribute)))
+        attribute = attribute or _only_firmware(module, name)
     firmware = getattr(module, attribute, None)
+    path = _path_of(module)
     if not isinstance(firmware, Firmware):
         found = f"a {type(firmware).__name__}" if hasattr(module, attribute) else "missing"
-        place = module.__spec__.origin if module.__spec__ and module.__spec__.has_location else package
-        raise FirmwareError(f"--firmware: {attribute} must be a bfsim.api.Firmware, but is {found} ({place})")
-    return LoadedFirmware(name, _digest(package), firmware)
+        raise FirmwareError(
+            f"--firmware: {attribute} must be a bfsim.api.Firmware, but is {found} ({path}){_advice(attribute)}"
+        )
+    full_name = name if is_built_in else f"{module.__name__}:{attribute}"
+    return LoadedFirmware(full_name, path, is_built_in, firmware, own)
 
 
 def load_kernel(name: str, firmware: str) -> Kernel:
-    """Find the kernel `name`: PACKAGE:NAME, or the name of one of the kernels of `firmware`.
+    """Find the kernel `name`: FILE.py:NAME, PACKAGE:NAME, or the name of one of the kernels of `firmware`.
 
     Raises FirmwareError when there is no such kernel, or more than one.
     """
-    package, _, attribute = name.rpartition(":")
-    if package:
-        found = [getattr(_import(package), attribute, None)]
+    place, _, attribute = name.rpartition(":")
+    own = load_firmware(firmware).own
+    if not place:
+        found = [each for each in _kernels_of(own) if each.name == attribute]
     else:
-        load_firmware(firmware)
-        found = [each for each in kernels_of(firmware) if each.name == attribute]
-    kernels = [each for each in found if isinstance(each, Kernel)]
-    if len(kernels) != 1:
-        known = {each.name for each in kernels_of(package or firmware)}
-        advice = _apart(kernels) if kernels else _nearest(attribute, known)
-        raise FirmwareError(f"{name} must name one kernel, but names {len(kernels) or 'none'}; {advice}")
-    return kernels[0]
+        module = own.modules.get(place)
+        if module is None:
+            module, own = _import(*located(parted(name)[0]))
+        found = [each for each in [getattr(module, attribute, None)] if isinstance(each, Kernel)]
+    if len(found) != 1:
+        advice = _apart(found) if found else _nearest(attribute, {each.name for each in _kernels_of(own)})
+        raise FirmwareError(f"{name} must name one kernel, but names {len(found) or 'none'}; {advice}")
+    return found[0]
 
 
-def kernels_of(name: str) -> set[Kernel]:
-    """Return the kernels in the loaded modules of a package."""
-    top = name.partition(":")[0].partition(".")[0]
-    modules = [module for each, module in sys.modules.items() if each == top or each.startswith(f"{top}.")]
-    return {each for module in modules for each in vars(module).values() if isinstance(each, Kernel)}
+def _kernels_of(own: OwnModules) -> set[Kernel]:
+    return {
+        each for module in own.modules.values() for each in vars(module).values() if isinstance(each, Kernel)
+    }
 
 
 def _apart(kernels: list[Kernel]) -> str:
@@ -85,37 +115,49 @@ def _nearest(name: str, known: set[str]) -> str:
     return f"the nearest of {len(known)} are {', '.join(nearest)}"
 
 
-def _import(package: str) -> ModuleType:
-    here = str(Path.cwd())
-    if here not in sys.path:
-        sys.path.append(here)
+def _advice(attribute: str) -> str:
+    """Say how built-in firmware is written to who may have meant it."""
+    if attribute in shipped.FIRMWARE:
+        return f"; the built-in firmware is written {attribute}"
+    return f"; built in are {' and '.join(shipped.FIRMWARE)}"
+
+
+def _only_firmware(module: ModuleType, name: str) -> str:
+    names = [each for each, value in vars(module).items() if isinstance(value, Firmware)]
+    if len(names) == 1:
+        return names[0]
+    has = f"has {' and '.join(names)}" if names else "has none"
+    raise FirmwareError(
+        f"--firmware {name} must be followed by :NAME unless the module has one Firmware, but it {has} ({_path_of(module)})"
+    )
+
+
+def _import(module: str, root: Root) -> tuple[ModuleType, OwnModules]:
+    """Import a module from `root`, and what it imports of built-in firmware from what is shipped."""
+    known = _imported.get((module, root))
+    if known and not known[1].changed:
+        return known
+    own = OwnModules((root, SHIPPED))
     try:
-        return importlib.import_module(package)
+        imported = own.load(module)
     except BfsimError:
         raise
     except (Exception, SystemExit) as error:
-        if isinstance(error, ModuleNotFoundError) and f"{package}.".startswith(f"{error.name}."):
+        if isinstance(error, ModuleNotFoundError) and f"{module}.".startswith(f"{error.name}."):
             raise FirmwareError(
-                f"--firmware: the package {package!r} must be installed or in the folder {here}, "
-                "but there is none"
+                f"the module {module!r} must be in {root.folder}, but there is none"
             ) from None
-        raise _failed(package, error) from error
+        raise _failed(module, error) from error
+    _imported[module, root] = imported, own
+    return imported, own
 
 
-def _failed(package: str, error: BaseException) -> FirmwareError:
-    """Say what went wrong while `package` was imported, and on which of its lines."""
+def _failed(module: str, error: BaseException) -> FirmwareError:
+    """Say what went wrong while `module` was imported, and on which of its lines."""
     place = f" ({error.filename}:{error.lineno})" if isinstance(error, SyntaxError) else line_of(error)
-    message = f"importing {package} failed with {type(error).__name__}: {error}{place}"
-    return FirmwareError(f"--firmware: {message}")
+    return FirmwareError(f"importing {module} failed with {type(error).__name__}: {error}{place}")
 
 
-def _digest(package: str) -> str:
-    """Digest of every module of `package` that is loaded, by name: the same wherever it is installed."""
-    top = package.split(".", maxsplit=1)[0]
-    digest = hashlib.sha256()
-    for name in sorted(sys.modules):
-        file = getattr(sys.modules[name], "__file__", None)
-        if file and (name == top or name.startswith(f"{top}.")):
-            digest.update(f"{name}\n".encode())
-            digest.update(Path(file).read_bytes())
-    return digest.hexdigest()
+def _path_of(module: ModuleType) -> Path:
+    """Return the file of a module, or the folder of one that has no file."""
+    return Path(getattr(module, "__file__", None) or next(iter(module.__path__)))

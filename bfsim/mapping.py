@@ -32,17 +32,20 @@ def map_memory(
     """
     spec, compiler = board_named(board), profile_named(profile)
     script = read_placement(ldf, spec)
-    program, size = load_firmware(firmware).firmware, FrameSize(width_px, height_px)
+    loaded, size = load_firmware(firmware), FrameSize(width_px, height_px)
+    program = loaded.firmware
     fits = _fits(program, script, spec)
-    link_map = None
+    link_map, kinds = None, {}
     if fits:
-        link_map = link(script, symbols_of(program, size, compiler), spec.chip.regions, chip=spec.chip.name)
+        with loaded.own.named():
+            symbols, kinds = symbols_of(program, size, compiler), _kinds(program, size)
+        link_map = link(script, symbols, spec.chip.regions, chip=spec.chip.name)
     return memory_map(
         script,
         link_map,
         BoardMemories(board=spec.name, regions=spec.chip.regions, bank_bytes=spec.sdram.bank_bytes),
-        _kinds(program, size) if fits else {},
-        firmware=firmware if fits else "",
+        kinds,
+        firmware=loaded.name if fits else "",
         width_px=width_px,
         height_px=height_px,
     )

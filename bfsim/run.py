@@ -9,7 +9,7 @@ from pathlib import Path
 
 import llvmlite.binding as llvm
 
-from bfsim import __version__
+from bfsim import __version__, shipped
 from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import ConfigError, RecordingError
@@ -25,9 +25,8 @@ from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.seen import Seen, SeenFrame
 from bfsim.trace import Identity, RunRecord
 
-# Both stand beside the installed package: in a checkout and in site-packages alike.
-BUILT_IN_RECORDING = Path(__file__).parent / "recording" / "builtin" / "soccer.mcap"
-PLACEMENTS = Path(__file__).parent.parent / "ldf"
+BUILT_IN_RECORDING = shipped.RECORDING
+PLACEMENTS = shipped.LDF_FOLDER
 DEFAULT_LDF = PLACEMENTS / "thesis.ldf"
 DEFAULT_LDFS = {"ADSP-BF561": DEFAULT_LDF, "ADSP-BF533": PLACEMENTS / "cm-bf533.ldf"}
 
@@ -35,7 +34,7 @@ DEFAULT_LDFS = {"ADSP-BF561": DEFAULT_LDF, "ADSP-BF533": PLACEMENTS / "cm-bf533.
 def simulate(
     recording: Path | None = None,
     *,
-    firmware: str = "tinyphoon:tinyphoon",
+    firmware: str = shipped.FIRMWARE[0],
     board: str = "cm-bf561",
     ldf: Path | None = None,
     frames: int | None = None,
@@ -47,7 +46,7 @@ def simulate(
     progress: Callable[[int, int], None] | None = None,
     on_seen: Callable[[SeenFrame], None] | None = None,
 ) -> RunRecord:
-    """Run `firmware` ("PACKAGE:NAME") on a recording and return the records.
+    """Run `firmware` on a recording and return the records: a built-in one, "FILE.py:NAME" or "PACKAGE:NAME".
 
     Without `recording` and `ldf` the built-in ones are taken; `frames` stops early. `progress` is called with
     (frames done, frames in all); `profile` names the compiler whose code is costed; `strategy` is a script of what
@@ -62,7 +61,11 @@ def simulate(
     require_cores(loaded.firmware, spec)
     script = _read_strategy(strategy, loaded)
     placement = read_placement(ldf, spec)
-    with RecordingReader(recording or BUILT_IN_RECORDING) as reader, compiled_ahead() as weave:
+    with (
+        loaded.own.named(),
+        RecordingReader(recording or BUILT_IN_RECORDING) as reader,
+        compiled_ahead() as weave,
+    ):
         size = FrameSize(reader.width, reader.height)
         program = loaded.firmware.calibrated(calibration_of(reader))
         symbols = symbols_of(program, size, compiler)
@@ -100,7 +103,7 @@ def simulate(
 
 
 def has_view(firmware: str) -> bool:
-    """Whether `firmware` ("PACKAGE:NAME") can tell what it sees. Raises FirmwareError as `simulate`."""
+    """Whether `firmware` can tell what it sees. Raises FirmwareError as `simulate`."""
     return load_firmware(firmware).firmware.view is not None
 
 
@@ -179,6 +182,7 @@ def _record(
         recording_digest=source.digest,
         firmware=loaded.name,
         firmware_digest=loaded.digest,
+        firmware_files=loaded.files,
         board=spec.name,
         board_digest=hashlib.sha256(repr(spec).encode()).hexdigest(),
         ldf=_name(placement.path),
@@ -196,6 +200,9 @@ def _record(
     )
     return RunRecord(
         identity=identity,
+        firmware_place="built in"
+        if loaded.is_built_in
+        else os.fsencode(loaded.path).decode(errors="replace"),
         rows=loaded.firmware.rows,
         reference=loaded.firmware.reference,
         frames=outcome.frames,

@@ -153,12 +153,16 @@ class BudgetRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Identity:
-    """All that a result depends on. Digests are sha256 in hex, or empty; paths are left out on purpose."""
+    """All that a result depends on. Digests are sha256 in hex, or empty.
+
+    Paths are left out on purpose: `firmware_files` are relative to the folder that the firmware was imported from.
+    """
 
     recording: str
     recording_digest: str
     firmware: str
     firmware_digest: str
+    firmware_files: tuple[str, ...]
     board: str
     board_digest: str
     ldf: str
@@ -209,12 +213,14 @@ class MessageRecord:
 class RunRecord:
     """One run. `messages` went over SPI; `interrupts` were taken, by core and source. `missed` are the recording's frames that came while the firmware was busy.
 
+    `firmware_place` is the file that was named as firmware, or "built in".
     `untaken` are the entries of the strategy script that the firmware did not take: after how many frames each was due.
     `reference` says what the `reference_ms` of `rows` are, None where the firmware has no reference.
     When `interrupted` by Ctrl-C, `kernels` and `traffic` also hold what was done of the frame that was not finished.
     """
 
     identity: Identity
+    firmware_place: str
     rows: tuple[BudgetRow, ...]
     reference: Reference | None
     frames: tuple[FrameRecord, ...]

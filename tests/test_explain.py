@@ -70,7 +70,7 @@ def test_without_optimisation_every_variable_is_on_the_stack() -> None:
 
 def test_totals_are_those_of_the_records(run: RunRecord) -> None:
     """After a run, the lines' cycles add up to the kernel's issue and stall cycles, and the calls are the records'."""
-    explanation = explain_named("sobel_row", "tinyphoon:tinyphoon", "vdsp-O2", run)
+    explanation = explain_named("sobel_row", "tinyphoon", "vdsp-O2", run)
     records = [each for each in run.kernels if each.kernel == "sobel_row"]
     expected = sum(line.issue_cclk + line.stall_cclk for each in records for line in each.lines)
     assert sum(each.total_cclk or 0 for each in explanation.lines) == expected > 0
@@ -95,16 +95,22 @@ def test_a_kernel_that_did_not_run_is_told(run: RunRecord) -> None:
         ("tinyphoon:tinyphoon", r"must name one kernel, but names none; the nearest of \d+ are"),
         (
             "clear_labels",
-            r"names 2; write firmware\.\w+\.blob_detection:clear_labels or firmware\..*:clear_labels",
+            r"names 2; write tinyphoon\.\w+\.blob_detection:clear_labels or tinyphoon\..*:clear_labels",
         ),
-        ("bfsim.errors:kernel", "bfsim.errors:kernel must name one kernel, but names none; there are none"),
+        ("bfsim.errors:kernel", "bfsim.errors must have another name: bfsim is a module of Python or bfsim"),
         ("no_such_package:f", "the package 'no_such_package' must be installed"),
     ],
 )
 def test_an_unknown_kernel_is_told(name: str, what: str) -> None:
     """The message has what is spelt nearly so, and no more of the two hundred."""
     with pytest.raises(FirmwareError, match=what):
-        explain_named(name, "tinyphoon:tinyphoon", "vdsp-O2")
+        explain_named(name, "tinyphoon", "vdsp-O2")
+
+
+def test_a_kernel_is_told_apart_by_its_module() -> None:
+    """As the message says, wherever the built-in firmware lies."""
+    explanation = explain_named("tinyphoon.stages.hysteresis:clear_labels", "one_eye", "vdsp-O2")
+    assert explanation.file.endswith("hysteresis.py")
 
 
 def test_an_unknown_profile_is_told() -> None:
@@ -112,7 +118,7 @@ def test_an_unknown_profile_is_told() -> None:
     with pytest.raises(
         ConfigError, match="the compiler profile must be one of gcc-O0, gcc-O2, vdsp-O2, not 'gcc-O3'"
     ):
-        explain_named("sobel_row", "tinyphoon:tinyphoon", "gcc-O3")
+        explain_named("sobel_row", "tinyphoon", "gcc-O3")
 
 
 def bfsim(*arguments: str) -> subprocess.CompletedProcess[str]:

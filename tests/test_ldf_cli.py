@@ -43,7 +43,7 @@ def test_the_thesis_placement_is_shown_by_default() -> None:
     """Every segment and every buffer is there."""
     done = call()
     assert done.exit_code == 0
-    assert done.output.startswith("thesis.ldf on cm-bf561: tinyphoon:tinyphoon, 320x240 px")
+    assert done.output.startswith("thesis.ldf on cm-bf561: tinyphoon, 320x240 px")
     for text in ("MEM_B_L1_SCRATCH", "camera_ring", "0xFF800800", "tinyphoon_stages_open_closing_erode_row"):
         assert text in done.output
     assert max(map(len, done.output.splitlines())) <= 100

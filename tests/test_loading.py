@@ -1,15 +1,18 @@
-"""Firmware by its name: found in the current folder, and every way in which it cannot be found or imported."""
+"""Firmware by its name: which files it is, how it follows their edits, and every way in which it cannot be imported."""
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
+from bfsim import shipped
 from bfsim.errors import FirmwareError, KernelError
-from bfsim.loading import load_firmware
+from bfsim.loading import load_firmware, load_kernel
 
 GOOD = """\
 from bfsim.api import *
@@ -25,12 +28,9 @@ Write = Callable[[str, str], Path]
 
 
 @pytest.fixture
-def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Write]:
-    """Write a file of a firmware into the current folder; what was imported from there is forgotten afterwards."""
+def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
+    """Write a file of a firmware into the current folder."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "path", sys.path[:])
-    monkeypatch.setattr(sys, "dont_write_bytecode", True)
-    before = set(sys.modules)
 
     def write_file(name: str, text: str) -> Path:
         path = tmp_path / name
@@ -38,10 +38,22 @@ def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Write]:
         path.write_text(text)
         return path
 
-    yield write_file
-    for name in set(sys.modules) - before:
-        if name.partition(".")[0].startswith("fw_"):
-            del sys.modules[name]
+    return write_file
+
+
+@pytest.fixture(autouse=True)
+def untouched() -> Iterator[None]:
+    """Whatever is loaded, Python's path and modules are afterwards as they were."""
+    path, modules, finders = sys.path[:], dict(sys.modules), sys.meta_path[:]
+    yield
+    assert (sys.path, sys.meta_path) == (path, finders)
+    new = {name for name, module in sys.modules.items() if modules.get(name) is not module}
+    assert not {name for name in new if name.startswith(("fw_", "tinyphoon"))}
+
+
+def named(text: str) -> str:
+    """Firmware that is told by the name of its camera buffer."""
+    return GOOD.replace('"camera"', f'"{text}"')
 
 
 def test_a_module_of_the_current_folder_is_found(write: Write) -> None:
@@ -59,29 +71,161 @@ def test_a_module_in_a_package_is_found(write: Write) -> None:
     assert load_firmware("fw_robot.eyes:fw").firmware.camera == "camera"
 
 
-@pytest.mark.parametrize(
-    "name", ["", ":", "fw_good", "fw_good:", ":fw", "fw_good.py:", "a/b:fw", "..fw_good:fw", "a:b:c"]
-)
+def test_built_in_firmware_is_called_by_its_name_alone() -> None:
+    """Its files are those that are shipped."""
+    for name in shipped.FIRMWARE:
+        loaded = load_firmware(name)
+        assert (loaded.name, loaded.is_built_in) == (name, True)
+        assert loaded.path == shipped.FIRMWARE_FOLDER / "tinyphoon" / "__init__.py"
+        there = {
+            each.relative_to(shipped.FIRMWARE_FOLDER).as_posix() for each in loaded.path.parent.rglob("*.py")
+        }
+        assert {"tinyphoon/core_a.py", "tinyphoon/stages/edge_detection.py"} < set(loaded.files) <= there
+
+
+@pytest.mark.parametrize("own", ["firmware/__init__.py", "firmware.py", "firmware/fw_part.py"])
+def test_a_firmware_folder_of_the_users_own_is_the_one_that_runs(write: Write, own: str) -> None:
+    """The most usual name; what is built in is not met by it."""
+    path = write(own, named("mine"))
+    package = own.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+    loaded = load_firmware(f"{package}:fw")
+    assert (loaded.firmware.camera, loaded.path, loaded.files) == ("mine", path, (own,))
+
+
+def test_what_is_shipped_neither_shadows_nor_is_shadowed(
+    write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A package of the same name in the current folder, or on Python's path, is another one; in one process, too."""
+    write("tinyphoon/__init__.py", GOOD + "tinyphoon = one_eye = fw\n")
+    write("elsewhere/tinyphoon/__init__.py", named("elsewhere") + "tinyphoon = fw\n")
+    monkeypatch.syspath_prepend(tmp_path / "elsewhere")
+    for _ in range(2):
+        assert load_firmware("tinyphoon").path.parent.parent == shipped.FIRMWARE_FOLDER
+        assert load_firmware("tinyphoon:tinyphoon").path == tmp_path / "tinyphoon" / "__init__.py"
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    assert load_firmware("tinyphoon:tinyphoon").firmware.camera == "elsewhere"
+    assert load_firmware("one_eye").path.parent.parent == shipped.FIRMWARE_FOLDER
+
+
+def test_firmware_in_a_file_is_found_in_any_folder(write: Write, tmp_path: Path) -> None:
+    """With the modules beside it; a file in a package has the package's name."""
+    write("there/fw_part.py", "name = 'beside'\n")
+    write("there/fw-2.py", "from fw_part import name\n" + GOOD.replace('"camera"', "name"))
+    assert load_firmware("there/fw-2.py:fw").firmware.camera == "beside"
+    assert load_firmware(f"{tmp_path}/there/fw-2.py").files == ("fw-2.py", "fw_part.py")
+    write("there/fw_robot/__init__.py", "")
+    write("there/fw_robot/eyes.py", "from . import __name__ as name\n" + GOOD.replace('"camera"', "name"))
+    loaded = load_firmware("there/fw_robot/eyes.py:fw")
+    assert (loaded.name, loaded.firmware.camera) == ("fw_robot.eyes:fw", "fw_robot")
+
+
+def test_the_name_may_be_left_out_where_there_is_one(write: Write) -> None:
+    """Of several, or none, it must be said which."""
+    write("fw_good.py", GOOD)
+    assert load_firmware("fw_good").name == load_firmware("fw_good.py").name == "fw_good:fw"
+    write("fw_two.py", GOOD + "eyes = Firmware(mains={}, buffers=fw.buffers, camera='', rows=())\n")
+    with pytest.raises(
+        FirmwareError, match=r"fw_two.py must be followed by :NAME .*, but it has fw and eyes \("
+    ):
+        load_firmware("fw_two.py")
+    write("fw_none.py", "")
+    with pytest.raises(FirmwareError, match=r"fw_none must be followed by :NAME .*, but it has none \("):
+        load_firmware("fw_none")
+
+
+@pytest.mark.parametrize("edited", ["fw_robot/__init__.py", "fw_robot/eyes.py", "fw_beside.py"])
+def test_an_edit_is_loaded_in_the_same_process(write: Write, tmp_path: Path, edited: str) -> None:
+    """In any of its modules; also where neither the size of the file nor its time says so."""
+    texts = {
+        "fw_robot/__init__.py": "from fw_robot.eyes import name\n" + GOOD.replace('"camera"', "name + 'x'"),
+        "fw_robot/eyes.py": "from fw_beside import name as _name\nname = _name + 'x'\n",
+        "fw_beside.py": "name = 'x'\n",
+    }
+    for name, text in texts.items():
+        write(name, text)
+    first = load_firmware("fw_robot:fw")
+    assert load_firmware("fw_robot:fw").firmware is first.firmware
+    stat = (tmp_path / edited).stat()
+    write(edited, texts[edited].replace("'x'", "'y'"))
+    os.utime(tmp_path / edited, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+    second = load_firmware("fw_robot:fw")
+    assert sorted(first.firmware.camera + second.firmware.camera) == list("xxxxxy")
+    assert first.digest != second.digest
+
+
+def test_an_edited_kernel_is_the_one_that_is_compiled(write: Write, tmp_path: Path) -> None:
+    """Kernels read their source from the file, which Python's cache of lines may have as it was."""
+    text = "from bfsim.api import *\n@kernel\ndef fw_k() -> i32:\n    return 1\n"
+    path = write("fw_kernel.py", text)
+    assert load_kernel("fw_kernel:fw_k", "tinyphoon")() == 1
+    stat = path.stat()
+    write("fw_kernel.py", text.replace("1", "2"))
+    os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+    assert load_kernel("fw_kernel.py:fw_k", "tinyphoon")() == 2
+
+
+def test_modules_that_somebody_else_imported_are_left_to_them(
+    write: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A module of the same name, from the same file or another one, is neither taken nor replaced."""
+    write("fw_good.py", GOOD)
+    other = ModuleType("fw_good")
+    monkeypatch.setitem(sys.modules, "fw_good", other)
+    assert load_firmware("fw_good:fw").firmware.camera == "camera"
+    assert sys.modules["fw_good"] is other
+
+
+def test_what_libraries_import_is_not_the_firmwares(write: Write) -> None:
+    """A module beside the firmware that has the name of Python's, or of one that a library looks for."""
+    write("types.py", "1 / 0\n")
+    write("fw_library.py", "import importlib\ndef get(name): return importlib.import_module(name)\n")
+    write("fw_good.py", "import types, fw_library\nfw_library.get('fw_late')\n" + GOOD)
+    write("fw_late.py", "")
+    assert load_firmware("fw_good:fw").files == ("fw_good.py", "fw_late.py", "fw_library.py")
+    with pytest.raises(FirmwareError, match="types.py must have another name: types is a module of Python"):
+        load_firmware("types.py:fw")
+
+
+def test_built_in_firmware_can_be_built_on(write: Write) -> None:
+    """Its files are then among those that run."""
+    write(
+        "fw_own.py",
+        "from dataclasses import replace\nimport tinyphoon\nfw = replace(tinyphoon.tinyphoon, view=None)\n",
+    )
+    assert {"fw_own.py", "tinyphoon/core_a.py"} < set(load_firmware("fw_own.py").files)
+
+
+@pytest.mark.parametrize("name", ["", ":", "fw_good:", ":fw", "a/b:fw", "..fw_good:fw", "a:b:c"])
 def test_what_is_no_package_and_name_is_refused(name: str) -> None:
     """Nothing is imported for it."""
     with pytest.raises(
-        FirmwareError, match="--firmware must be PACKAGE:NAME, such as tinyphoon:tinyphoon, not '"
+        FirmwareError, match="--firmware must be FILE.py:NAME, PACKAGE:NAME, tinyphoon or one_eye, not '"
     ):
         load_firmware(name)
 
 
-@pytest.mark.parametrize(
-    "name", ["fw_missing:fw", "fw_missing.eyes:fw", "fw_here.missing:fw", "fw_here.py:fw"]
-)
-def test_a_missing_package_is_told_where_it_should_be(write: Write, tmp_path: Path, name: str) -> None:
-    """The folder that was searched stands in the message."""
+def test_a_missing_package_is_told_where_it_should_be(write: Write, tmp_path: Path) -> None:
+    """The folder that was searched stands in the message, and how what is built in is written."""
     write("fw_here.py", GOOD)
-    package = name.partition(":")[0]
-    with pytest.raises(FirmwareError) as caught:
-        load_firmware(name)
-    assert str(caught.value) == (
-        f"--firmware: the package '{package}' must be installed or in the folder {tmp_path}, but there is none"
-    )
+    for name, advice in (
+        ("fw_missing:fw", "built in are tinyphoon and one_eye"),
+        ("fw_missing", "built in are tinyphoon and one_eye"),
+        ("fw_missing:tinyphoon", "the built-in firmware is written tinyphoon"),
+    ):
+        with pytest.raises(FirmwareError) as caught:
+            load_firmware(name)
+        assert str(caught.value) == (
+            f"the package 'fw_missing' must be installed or in the folder {tmp_path}, but there is none; {advice}"
+        )
+    with pytest.raises(
+        FirmwareError, match=f"the module 'fw_here.missing' must be in {tmp_path}, but there is none"
+    ):
+        load_firmware("fw_here.missing:fw")
+    with pytest.raises(FirmwareError, match="fw_there.py must be a file, but there is none"):
+        load_firmware("fw_there.py:fw")
+    (tmp_path / "firmware").mkdir()
+    with pytest.raises(FirmwareError, match="but is missing .*; the built-in firmware is written one_eye"):
+        load_firmware("firmware:one_eye")
 
 
 @pytest.mark.parametrize(
@@ -105,7 +249,7 @@ def test_an_error_while_importing_is_told_with_its_line(write: Write, text: str,
     path = write("fw_broken/__init__.py", text)
     with pytest.raises(FirmwareError) as caught:
         load_firmware("fw_broken:fw")
-    assert str(caught.value).startswith(f"--firmware: importing fw_broken failed with {message}")
+    assert str(caught.value).startswith(f"importing fw_broken failed with {message}")
     assert str(caught.value).endswith(f"({path}:2)")
 
 
@@ -133,11 +277,10 @@ def test_a_refused_kernel_stays_a_kernel_error(write: Write) -> None:
         ("fw_good:missing", "missing"),
         ("fw_good:main", "a function"),
         ("fw_good:Firmware", "a type"),
-        ("sys:path", "a list"),
     ],
 )
 def test_what_is_no_firmware_is_told(write: Write, name: str, found: str) -> None:
-    """The attribute, what it must be and what it is; also for modules that have no file."""
+    """The attribute, what it must be and what it is."""
     write("fw_good.py", GOOD)
     attribute = name.partition(":")[2]
     with pytest.raises(FirmwareError, match=f"{attribute} must be a bfsim.api.Firmware, but is {found} "):
@@ -151,23 +294,23 @@ def test_a_folder_without_code_is_no_firmware(write: Write, tmp_path: Path) -> N
         load_firmware("fw_folder:fw")
 
 
-def digest_in(folder: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """Digest of the firmware fw_robot as it stands in `folder`."""
-    for name in [each for each in sys.modules if each.startswith("fw_")]:
-        del sys.modules[name]
-    monkeypatch.setattr(sys, "path", [each for each in sys.path if "fw_home" not in each])
-    monkeypatch.chdir(folder)
-    return load_firmware("fw_robot:fw").digest
-
-
-def test_the_digest_is_of_the_sources_wherever_they_are(
-    write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_digest_is_of_the_sources_wherever_they_are(write: Write, tmp_path: Path) -> None:
     """The same in another folder, another one after a change in any module of the package."""
     for home in ("fw_home_1", "fw_home_2"):
         write(f"{home}/fw_robot/__init__.py", "from fw_robot import eyes\n" + GOOD)
         write(f"{home}/fw_robot/eyes.py", "focal_px = 300\n")
-    first = digest_in(tmp_path / "fw_home_1", monkeypatch)
-    assert digest_in(tmp_path / "fw_home_2", monkeypatch) == first
+    first, second = (load_firmware(f"fw_home_{n}/fw_robot/__init__.py:fw") for n in (1, 2))
+    assert (first.digest, first.files, first.name) == (second.digest, second.files, second.name)
     write("fw_home_2/fw_robot/eyes.py", "focal_px = 301\n")
-    assert digest_in(tmp_path / "fw_home_2", monkeypatch) != first
+    assert load_firmware("fw_home_2/fw_robot/__init__.py:fw").digest != first.digest
+
+
+def test_an_error_leaves_nothing_half_imported(write: Write) -> None:
+    """What is mended is imported anew, with all that was whole."""
+    write("fw_robot/__init__.py", "import fw_robot.whole, fw_robot.broken\n" + GOOD)
+    write("fw_robot/whole.py", "")
+    write("fw_robot/broken.py", "1 / 0\n")
+    with pytest.raises(FirmwareError, match="ZeroDivisionError"):
+        load_firmware("fw_robot:fw")
+    write("fw_robot/broken.py", "")
+    assert len(load_firmware("fw_robot:fw").files) == 3

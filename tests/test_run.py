@@ -8,7 +8,6 @@ import shutil
 import subprocess
 import sys
 import tracemalloc
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -86,14 +85,11 @@ def record(path: Path, count: int, *, width: int = 32, height: int = 16, period_
 
 
 @pytest.fixture
-def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with firmware in it, the current one."""
     (tmp_path / "fw_eyes.py").write_text(FIRMWARE)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "path", sys.path[:])
-    monkeypatch.setattr(sys, "dont_write_bytecode", True)
-    yield tmp_path
-    sys.modules.pop("fw_eyes", None)
+    return tmp_path
 
 
 def run_eyes(recording: Path, **how: object) -> RunRecord:
@@ -142,9 +138,35 @@ def test_what_the_result_depends_on_changes_the_identity(home: Path) -> None:
         run_eyes(first, board="cm-bf561-ratings"),
     ]
     (home / "fw_eyes.py").write_text(FIRMWARE + "\n# another version\n")
-    del sys.modules["fw_eyes"]
     runs.append(run_eyes(first))
     assert len({identity_digest(each.identity) for each in runs}) == len(runs)
+
+
+def test_an_edited_firmware_runs_as_it_is_now(home: Path) -> None:
+    """In the same process: cycles, results and identity are those of the file as it was before the run."""
+    recording = record(home / "drive.mcap", 1)
+    first = run_eyes(recording)
+    (home / "fw_eyes.py").write_text(FIRMWARE.replace("line[x] > 100", "line[x] * line[x] > 100"))
+    edited = run_eyes(recording)
+    command = [sys.executable, "-c", DIGESTS, str(recording)]
+    apart = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)[0]
+    assert [identity_digest(edited.identity), cycle_digest(edited.frames)] == apart
+    assert cycle_digest(edited.frames) != cycle_digest(first.frames)
+    (home / "fw_eyes.py").write_text(FIRMWARE)
+    again = run_eyes(recording)
+    assert (again.identity, again.frames) == (first.identity, first.frames)
+
+
+def test_what_is_imported_while_it_runs_is_of_the_firmware(home: Path) -> None:
+    """A module that the main loop imports is found beside it, and is among the files."""
+    recording = record(home / "drive.mcap", 1)
+    (home / "fw_late.py").write_text("LIMIT = 3\n")
+    late = "def main(core):\n    import fw_late\n    assert fw_late.LIMIT == 3"
+    (home / "fw_eyes.py").write_text(FIRMWARE.replace("def main(core):", late))
+    run = run_eyes(recording)
+    assert run.identity.firmware_files == ("fw_eyes.py", "fw_late.py")
+    assert run.firmware_place == str(home / "fw_eyes.py")
+    assert "fw_late" not in sys.modules
 
 
 def test_a_cut_run_is_the_beginning_of_the_whole(home: Path) -> None:

@@ -9,7 +9,7 @@ import traceback
 from pathlib import Path
 from typing import Any
 
-NOT_FIRMWARE = (str(Path(__file__).parent.parent) + os.sep, contextlib.__file__)
+NOT_FIRMWARE = (str(Path(__file__).parent.parent) + os.sep, contextlib.__file__, "<frozen importlib")
 """Where the code lies that firmware calls."""
 
 

@@ -256,7 +256,7 @@ def configuration(run: RunRecord) -> Table:
     table = Table.grid(padding=(0, 2))
     table.title, table.title_style, table.title_justify = "Configuration", "bold not italic", "left"
     table.add_row("Recording", f"{identity.recording}, {identity.width_px}x{identity.height_px} px")
-    table.add_row("Firmware", identity.firmware)
+    table.add_row("Firmware", _firmware(run))
     table.add_row("Board", f"{identity.board}, CCLK {_mhz(identity.cclk_hz)}, SCLK {_mhz(identity.sclk_hz)}")
     table.add_row("LDF", identity.ldf)
     table.add_row("Compiler", f"{identity.compiler}, LLVM {identity.llvm_version}")
@@ -276,6 +276,12 @@ def configuration(run: RunRecord) -> Table:
     table.add_row("Identity", identity_digest(identity))
     table.add_row("Cycles", cycle_digest(run.frames))
     return table
+
+
+def _firmware(run: RunRecord) -> str:
+    """Say which files ran."""
+    files = len(run.identity.firmware_files)
+    return f"{run.identity.firmware} ({run.firmware_place}, {files} {'file' if files == 1 else 'files'})"
 
 
 def _messages(run: RunRecord) -> str:

@@ -96,7 +96,7 @@ def test_each_camera_has_its_own_frame(frames: list[Seen]) -> None:
 
 def test_it_costs_what_the_thesis_allows() -> None:
     """On either core, and on a board with one."""
-    for firmware, board in (("tinyphoon:tinyphoon", "cm-bf561"), ("tinyphoon:one_eye", "cm-bf533")):
+    for firmware, board in (("tinyphoon", "cm-bf561"), ("one_eye", "cm-bf533")):
         record = simulate(firmware=firmware, board=board, frames=1)
         for core in record.frames[0].cores:
             (stage,) = (each for each in core.stages if each.stage == "Object detection")

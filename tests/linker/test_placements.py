@@ -28,7 +28,7 @@ CLOSE = (
 def placed(name: str, width_px: int = 320, height_px: int = 240) -> MemoryMap:
     """The built-in firmware in one of the shipped placements."""
     return map_memory(
-        FOLDER / f"{name}.ldf", firmware="tinyphoon:tinyphoon", board="cm-bf561", profile="vdsp-O2",
+        FOLDER / f"{name}.ldf", firmware="tinyphoon", board="cm-bf561", profile="vdsp-O2",
         width_px=width_px, height_px=height_px,
     )  # fmt: skip
 

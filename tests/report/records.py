@@ -25,8 +25,9 @@ from bfsim.trace import (
 IDENTITY = Identity(
     recording="soccer",
     recording_digest="1" * 64,
-    firmware="tinyphoon:tinyphoon",
+    firmware="tinyphoon",
     firmware_digest="2" * 64,
+    firmware_files=("tinyphoon/__init__.py", "tinyphoon/core_a.py"),
     board="cm-bf561",
     board_digest="3" * 64,
     ldf="thesis",
@@ -78,6 +79,7 @@ def run_of(frames: Sequence[FrameRecord], missed: tuple[int, ...] = ()) -> RunRe
     """A run of these frames, without kernels and traffic."""
     return RunRecord(
         identity=IDENTITY,
+        firmware_place="built in",
         rows=ROWS,
         reference=REFERENCE,
         frames=tuple(frames),

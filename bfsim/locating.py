@@ -1,0 +1,79 @@
+"""Names of firmware and kernels as they are given, FILE.py:NAME or PACKAGE:NAME → a module, and where to import it from."""
+
+from __future__ import annotations
+
+import os
+import site
+import sys
+import sysconfig
+from importlib.machinery import ModuleSpec, PathFinder
+from pathlib import Path
+
+from bfsim import shipped
+from bfsim.errors import FirmwareError
+from bfsim.importing import NEVER_OWN, Root
+
+
+def parted(name: str) -> tuple[str, str]:
+    """Split a name into the file or package and, if there is one, the name in it. Raises FirmwareError if it is neither."""
+    if name.endswith(".py"):
+        return name, ""
+    place, colon, attribute = name.rpartition(":") if ":" in name else (name, "", "")
+    is_package = all(each.isidentifier() for each in place.split("."))
+    if not (is_package or place.endswith(".py")) or not (attribute.isidentifier() or not colon):
+        names = " or ".join(shipped.FIRMWARE)
+        raise FirmwareError(f"--firmware must be FILE.py:NAME, PACKAGE:NAME, {names}, not {name!r}")
+    return place, attribute
+
+
+def located(place: str, advice: str = "") -> tuple[str, Root]:
+    """Return the name of the module that is a file or a package, and where to import it from.
+
+    Raises FirmwareError, with the `advice`, if there is none.
+    """
+    module, root = _in_file(place) if place.endswith(".py") else (place, _root_of(place.partition(".")[0]))
+    top = module.partition(".")[0]
+    if top in NEVER_OWN:
+        raise FirmwareError(f"{place} must have another name: {top} is a module of Python or bfsim")
+    if root is None:
+        raise FirmwareError(
+            f"the package {place!r} must be installed or in the folder {Path.cwd()}, but there is none{advice}"
+        )
+    return module, root
+
+
+def _in_file(name: str) -> tuple[str, Root]:
+    """Return the name of the module in a file, and the folder from which Python would import it by that name."""
+    path = Path(os.path.abspath(name))  # noqa: PTH100  # `resolve` would leave the folder of a link
+    if not path.is_file():
+        raise FirmwareError(f"{name} must be a file, but there is none")
+    if "." in path.stem:
+        raise FirmwareError(f"{name} must have a name without dots before .py, to be imported by it")
+    names, folder = [path.stem] if path.stem != "__init__" else [], path.parent
+    while (folder / "__init__.py").is_file():
+        names.insert(0, folder.name)
+        folder = folder.parent
+    return ".".join(names), Root(folder)
+
+
+def _root_of(top: str) -> Root | None:
+    """Find the folder that has the package or module `top`: the current one or, second, one of Python's path."""
+    here = PathFinder.find_spec(top, [str(Path.cwd())])
+    specs = (finder.find_spec(top, None) for finder in sys.meta_path)
+    there = next((each for each in specs if each), None)
+    if here and (here.origin or not (there and there.origin)):  # a folder without __init__.py comes last
+        return Root(Path.cwd())
+    return _root_in(there) if there else None
+
+
+def _root_in(spec: ModuleSpec) -> Root:
+    """Return where a module was found; packages that are installed side by side have nothing to do with each other."""
+    inside = [*(spec.submodule_search_locations or ())]
+    folder = Path(inside[0] if inside else spec.origin or "").parent
+    return Root(folder, spec.name if folder in _installed() else "")
+
+
+def _installed() -> set[Path]:
+    """Return the folders that packages are installed into."""
+    own = [sysconfig.get_path(name) for name in ("purelib", "platlib")]
+    return {Path(each) for each in (*own, *site.getsitepackages(), site.getusersitepackages())}

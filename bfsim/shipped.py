@@ -1,0 +1,17 @@
+"""Where the files are that come with bfsim. An installed package has all of them in it; a checkout keeps LDFs and firmware beside it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+_PACKAGE = Path(__file__).parent
+_IS_INSTALLED = (_PACKAGE / "ldf").is_dir()
+
+RECORDING = _PACKAGE / "recording" / "builtin" / "soccer.mcap"
+LDF_FOLDER = _PACKAGE / "ldf" if _IS_INSTALLED else _PACKAGE.parent / "ldf"
+FIRMWARE_FOLDER = _PACKAGE.parent if _IS_INSTALLED else _PACKAGE.parent / "firmware"
+"""The folder that holds the package FIRMWARE_PACKAGE."""
+
+FIRMWARE_PACKAGE = "tinyphoon"
+FIRMWARE = ("tinyphoon", "one_eye")
+"""Names in that package that `--firmware` takes alone. The first one is the default."""
