@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from benchmarks.playing import play
 from bfsim.api import Core, Firmware, Readout
-from bfsim.machine.spi.protocol import decode, message_nbytes
 from bfsim.recording import RecordingReader
 from bfsim.run import calibration_of
 from tinyphoon import ROWS, THESIS
@@ -20,10 +19,11 @@ from tinyphoon.buffers import buffers, calibration_buffers
 from tinyphoon.features import features
 from tinyphoon.stages.object_detection import left_sight, object_detection, right_sight
 from tinyphoon.stores.objects import NO_MODEL, OBJECT_MODEL, OBJECT_WORDS
-from tinyphoon.strategy.decoding import Results, decode_results
 from tinyphoon.strategy.models import model_words
 from tinyphoon.strategy.modes import INDOOR_FIELD, Mode
 from tinyphoon.strategy.report import report
+from tinyphoon.strategy_unit.decoding import Results, decode_results
+from tinyphoon.strategy_unit.messages import decode, message_nbytes
 
 Records = NDArray[np.int16]
 """Rows of t_Object."""

@@ -15,6 +15,7 @@ from bfsim.machine.dma.memory_dma import MemoryDma
 from bfsim.machine.dma.ring import InputRing, OutputRing
 from bfsim.machine.memories import Row
 from bfsim.machine.program import Buffer, Buffers, Calibration, Firmware, FrameSize, Geometry, SourcePixels
+from bfsim.machine.spi.device import Script, SpiDevice, SpiMessage
 from bfsim.seen import (
     Colour,
     Seen,
@@ -34,7 +35,7 @@ from bfsim.trace import BudgetRow, Reference
 
 __all__ = [
     "BudgetRow", "Buffer", "Buffers", "Calibration", "CameraSettings", "Colour", "Core", "DmaConfig", "Firmware", "FirmwareError", "Flow", "Frame",
-    "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "OutputRing", "PpiStatusBit", "Readout", "Reference", "Row", "Seen", "SeenBlob",
+    "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "OutputRing", "PpiStatusBit", "Readout", "Reference", "Row", "Script", "Seen", "SeenBlob",
     "SeenCircle", "SeenEdges", "SeenEdges3D", "SeenGeometry", "SeenLine", "SeenLine3D", "SeenObject", "SeenRectangle", "Solid", "SourcePixels",
-    "WdSize", "Work", "f32", "i8", "i16", "i32", "kernel", "no_edges_3d", "quotient", "remainder", "sqrt", "u8", "u16", "u32", "write_descriptor",
+    "SpiDevice", "SpiMessage", "WdSize", "Work", "f32", "i8", "i16", "i32", "kernel", "no_edges_3d", "quotient", "remainder", "sqrt", "u8", "u16", "u32", "write_descriptor",
 ]  # fmt: skip

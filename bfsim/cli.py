@@ -99,10 +99,10 @@ _RUN_PARAMETERS = (
         help="When pictures come: as fast as the firmware asks, at the recorded time stamps, or at the free-running cameras' pace.",
     ),
     click.option(
-        "--strategy",
+        "--script",
         metavar="FILE",
         type=click.Path(path_type=Path),
-        help="Script, JSON or TOML, of what the strategy unit sends over SPI and when.",
+        help="What the firmware's device on the SPI is told, JSON or TOML; the firmware says what it understands.",
     ),
     click.option(
         "--fidelity",
@@ -158,7 +158,7 @@ def run(
 
     if json_path and json_path != STDOUT:
         require_place(json_path)
-        require_apart(json_path, (what["recording"], what["ldf"], what["strategy"], mcap, overlay))
+        require_apart(json_path, (what["recording"], what["ldf"], what["script"], mcap, overlay))
     if features and not json_path:
         raise ConfigError("--features must come with --json FILE, which it adds to")
     seen: dict[int, dict[str, Any]] = {}

@@ -36,6 +36,10 @@ class Clocks:
         """Return the first tick at or after `time_ns`."""
         return -int(-(time_ns * self.tick_hz) // 1_000_000_000)
 
+    def ns_of_ticks(self, ticks: int) -> int:
+        """Return the last whole ns at or before a tick."""
+        return int(ticks * 1_000_000_000 // self.tick_hz)
+
 
 @dataclass(frozen=True, slots=True)
 class PeriodicEdges:

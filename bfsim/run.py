@@ -12,7 +12,7 @@ import llvmlite.binding as llvm
 from bfsim import __version__, shipped
 from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
-from bfsim.errors import ConfigError, RecordingError
+from bfsim.errors import ConfigError, FirmwareError, RecordingError
 from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
 from bfsim.linker import LinkerScript, link, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
@@ -20,8 +20,9 @@ from bfsim.machine.board import Board, Fidelity, Outcome, require_cores, symbols
 from bfsim.machine.bus.ahead import compiled_ahead
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.program import Calibration, FrameSize, SourcePixels
-from bfsim.machine.spi.strategy import Script
+from bfsim.machine.spi.device import SpiDevice
 from bfsim.recording import RecordingReader, StereoFrame
+from bfsim.script import read_script
 from bfsim.seen import Seen, SeenFrame
 from bfsim.trace import Identity, RunRecord
 
@@ -42,15 +43,15 @@ def simulate(
     fidelity: Fidelity = Fidelity.FAST,
     sanitize: bool = False,
     profile: str = VDSP_O2.name,
-    strategy: Path | None = None,
+    script: Path | None = None,
     progress: Callable[[int, int], None] | None = None,
     on_seen: Callable[[SeenFrame], None] | None = None,
 ) -> RunRecord:
     """Run `firmware` on a recording and return the records: a built-in one, "FILE.py:NAME" or "PACKAGE:NAME".
 
     Without `recording` and `ldf` the built-in ones are taken; `frames` stops early. `progress` is called with
-    (frames done, frames in all); `profile` names the compiler whose code is costed; `strategy` is a script of what
-    the strategy unit sends; `on_seen` is called with what was seen in each frame, if the firmware has a view, which
+    (frames done, frames in all); `profile` names the compiler whose code is costed; `script` is what the
+    firmware's device on the SPI is told, JSON or TOML; `on_seen` is called with what was seen in each frame, if the firmware has a view, which
     changes nothing in the records. Ctrl-C ends the run with the frames done. Raises a BfsimError for anything
     that is wrong with what was given.
     """
@@ -59,7 +60,7 @@ def simulate(
     spec, compiler = board_named(board), profile_named(profile)
     loaded = load_firmware(firmware)
     require_cores(loaded.firmware, spec)
-    script = _read_strategy(strategy, loaded)
+    device, script_digest = _device(script, loaded)
     placement = read_placement(ldf, spec)
     with (
         loaded.own.named(),
@@ -78,7 +79,7 @@ def simulate(
             feed=feed,
             sanitize=sanitize,
             profile=compiler,
-            script=script,
+            device=device,
             fidelity=fidelity,
             weave=weave,
         )
@@ -99,7 +100,7 @@ def simulate(
                 on_seen(SeenFrame(index=index, times_ns=source.take_times_ns(index), cameras=cameras))
 
         outcome = machine.run(iter(source), count, show if on_seen else None)
-    return _record(outcome, spec, loaded, placement, feed, fidelity, size, source, compiler, script)
+    return _record(outcome, spec, loaded, placement, feed, fidelity, size, source, compiler, script_digest)
 
 
 def has_view(firmware: str) -> bool:
@@ -114,12 +115,19 @@ def read_placement(ldf: Path | None, spec: BoardSpec) -> LinkerScript:
     )
 
 
-def _read_strategy(path: Path | None, loaded: LoadedFirmware) -> Script:
+def _device(path: Path | None, loaded: LoadedFirmware) -> tuple[SpiDevice, str]:
+    """Return the device of the firmware, told by the script if there is one, and the digest of the script."""
     if path is None:
-        return ()
-    from bfsim.machine.spi.script import read_script  # pydantic takes its time
-
-    return read_script(path, loaded.firmware.orders)
+        return loaded.firmware.device({}), ""
+    if loaded.firmware.spi is None:
+        raise ConfigError(
+            f"--script must go with firmware that has a device to tell, and {loaded.name} has none"
+        )
+    script, digest = read_script(path)
+    try:
+        return loaded.firmware.device(script), digest
+    except FirmwareError as error:
+        raise ConfigError(f"{path}: {error}") from error
 
 
 def calibration_of(reader: RecordingReader) -> Calibration:
@@ -175,7 +183,7 @@ def _record(
     size: FrameSize,
     source: _DigestedFrames,
     compiler: CompilerProfile,
-    script: Script,
+    script_digest: str,
 ) -> RunRecord:
     identity = Identity(
         recording=source.name,
@@ -189,7 +197,7 @@ def _record(
         ldf_digest=hashlib.sha256(placement.source.expanded.encode()).hexdigest(),
         compiler=compiler.name,
         feed=feed.value,
-        strategy_digest=hashlib.sha256(repr(script).encode()).hexdigest() if script else "",
+        script_digest=script_digest,
         fidelity=fidelity.value,
         bfsim_version=__version__,
         llvm_version=".".join(map(str, llvm.llvm_version_info)),
@@ -212,7 +220,7 @@ def _record(
         traffic=outcome.traffic,
         code=outcome.code,
         messages=outcome.messages,
-        untaken=outcome.untaken,
+        device_notes=outcome.device_notes,
         interrupts=outcome.interrupts,
         events=outcome.events,
     )

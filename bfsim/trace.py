@@ -169,7 +169,7 @@ class Identity:
     ldf_digest: str
     compiler: str
     feed: str
-    strategy_digest: str
+    script_digest: str
     fidelity: str
     bfsim_version: str
     llvm_version: str
@@ -198,12 +198,11 @@ class CodeRecord:
 class MessageRecord:
     """One message over SPI: `direction` is out or in, seen from the board; the cycles are of core A's clock.
 
-    The `type` of what came in and is no message is "damaged", its sequence number 0.
+    `type` is what the device calls it. Where the firmware's buffer had no room for all of it, "(cut short)" follows.
     """
 
     direction: str
     type: str
-    sequence: int
     nbytes: int
     begin_cclk: int
     end_cclk: int
@@ -214,7 +213,7 @@ class RunRecord:
     """One run. `messages` went over SPI; `interrupts` were taken, by core and source. `missed` are the recording's frames that came while the firmware was busy.
 
     `firmware_place` is the file that was named as firmware, or "built in".
-    `untaken` are the entries of the strategy script that the firmware did not take: after how many frames each was due.
+    `device_notes` are what the device on the SPI had to say when the run was over.
     `reference` says what the `reference_ms` of `rows` are, None where the firmware has no reference.
     When `interrupted` by Ctrl-C, `kernels` and `traffic` also hold what was done of the frame that was not finished.
     """
@@ -230,7 +229,7 @@ class RunRecord:
     traffic: tuple[TrafficRecord, ...]
     code: tuple[CodeRecord, ...]
     messages: tuple[MessageRecord, ...]
-    untaken: tuple[int, ...]
+    device_notes: tuple[str, ...]
     interrupts: Mapping[str, int]
     events: int
 

@@ -130,7 +130,7 @@ def test_a_terminal_with_no_room_and_few_letters() -> None:
     assert done.stdout.isascii()
 
 
-@pytest.mark.parametrize("other", ["--mcap", "--strategy", "--ldf", "recording"])
+@pytest.mark.parametrize("other", ["--mcap", "--script", "--ldf", "recording"])
 def test_the_json_takes_the_place_of_nothing_else(tmp_path: Path, other: str) -> None:
     """A recording that is given twice by a slip is still there afterwards."""
     file = tmp_path / "drive.mcap"

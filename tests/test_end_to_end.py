@@ -322,7 +322,7 @@ def test_the_strategy_unit_orders_modes_and_models(tmp_path: Path) -> None:
     """A good mode is obeyed from the next frame on; bad orders are in the report with the reason, and change nothing."""
     script = tmp_path / "orders.json"
     script.write_text(json.dumps(ORDERS))
-    result = bfsim("run", "--frames", 4, "--strategy", script, "--json", tmp_path / "run.json")
+    result = bfsim("run", "--frames", 4, "--script", script, "--json", tmp_path / "run.json")
     assert result.returncode == 0, result.stderr
     said = " ".join(result.stdout.split())
     for words in (
@@ -347,7 +347,7 @@ def test_small_pictures_run_three_times_as_fast(tmp_path: Path) -> None:
     """160x120 against 320x240 (T §6.6); the change takes effect in the pictures that the cameras begin after it."""
     script = tmp_path / "small.toml"
     script.write_text("[[send]]\nafter_frames = 0\nmode.camera = {width = 160, height = 120}\n")
-    result = bfsim("run", "--strategy", script, "--json", "-")
+    result = bfsim("run", "--script", script, "--json", "-")
     assert result.returncode == 0, result.stderr
     frames = json.loads(result.stdout)["frames"]
     spent = [each["cores"][0]["end_cclk"] - each["cores"][0]["begin_cclk"] for each in frames]
@@ -377,5 +377,5 @@ def test_mistakes_in_orders_are_named(tmp_path: Path, entry: dict[str, Any], mes
     """File, entry, field, and what it must be."""
     script = tmp_path / "orders.json"
     script.write_text(json.dumps({"send": [{"after_frames": 1, **entry}]}))
-    told = " ".join(refused("run", "--strategy", script).split())
+    told = " ".join(refused("run", "--script", script).split())
     assert f"{script}: {message}" in told

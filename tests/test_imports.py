@@ -39,7 +39,9 @@ MAY_IMPORT = {
     "locating": {"errors", "importing", "shipped"},
     "loading": {"errors", "importing", "kernel", "locating", "machine", "shipped"},
     "explain": {"errors", "kernel", "loading", "trace"},
+    "script": {"errors"},
     "run": {
+        "script",
         "errors",
         "seen",
         "trace",
@@ -76,14 +78,14 @@ MAY_IMPORT = {
 MACHINE = {
     "firmware_lines": set(),
     "simulation": set(),
-    "program": {"core"},  # the type of what a main loop gets
+    "program": {"core", "spi"},  # the types of what a main loop gets, and of the device that firmware brings
     "memories": {"program"},
     "code": {"memories", "program"},
     "bus": {"memories", "simulation"},
     "calls": {"bus", "memories"},
     "detailed": {"bus", "memories", "simulation"},
     "cameras": {"bus", "memories", "program", "simulation"},
-    "spi": {"bus", "memories", "simulation"},
+    "spi": {"bus", "firmware_lines", "memories", "simulation"},
     "dma": {
         "bus",
         "firmware_lines",

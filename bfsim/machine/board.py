@@ -39,8 +39,8 @@ from bfsim.machine.firmware_lines import line_of
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.program import Buffer, Buffers, Firmware, FrameSize
 from bfsim.machine.simulation import Simulation
-from bfsim.machine.spi.spi import OUTSIDE_BYTES, Spi
-from bfsim.machine.spi.strategy import Script, StrategyUnit
+from bfsim.machine.spi.device import LARGEST_MESSAGE_BYTES, SpiDevice, device_at_work
+from bfsim.machine.spi.spi import Spi
 from bfsim.seen import Seen
 from bfsim.signals import uninterrupted
 from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, MessageRecord, TrafficRecord
@@ -72,7 +72,7 @@ class Outcome:
     traffic: tuple[TrafficRecord, ...]
     code: tuple[CodeRecord, ...]
     messages: tuple[MessageRecord, ...]
-    untaken: tuple[int, ...]
+    device_notes: tuple[str, ...]
     interrupts: Mapping[str, int]
     events: int
 
@@ -119,7 +119,7 @@ def _called(firmware: Firmware, size: FrameSize) -> Buffers:
 
 @dataclass
 class Board:
-    """A board with firmware in it, ready to run once."""
+    """A board with firmware in it, and `device` on its SPI, ready to run once."""
 
     spec: BoardSpec
     firmware: Firmware
@@ -128,7 +128,7 @@ class Board:
     feed: Feed = Feed.DEMAND
     profile: CompilerProfile = VDSP_O2
     sanitize: bool = False
-    script: Script = ()
+    device: SpiDevice = field(default_factory=SpiDevice)
     fidelity: Fidelity = Fidelity.FAST
     weave: Weave = compiled_weave
     cores: dict[str, Core] = field(init=False, default_factory=dict)
@@ -137,7 +137,9 @@ class Board:
         self._env = Simulation()
         pictures_nbytes = 2 * 2 * self.size.width_px * self.size.height_px  # two at a time
         chip = self.spec.chip
-        self._memories = Memories(self.spec, outside_nbytes=chip.ppis * pictures_nbytes + OUTSIDE_BYTES)
+        self._memories = Memories(
+            self.spec, outside_nbytes=chip.ppis * pictures_nbytes + LARGEST_MESSAGE_BYTES
+        )
         self._outside = [self._memories.outside + number * pictures_nbytes for number in range(chip.ppis + 1)]
         self._bus = (
             DetailedBus(self._env, self.spec, self._memories)
@@ -165,7 +167,7 @@ class Board:
             self.spec,
             self._bus,
             self._memories,
-            StrategyUnit(self.script),
+            self.device,
             partial(self._interrupt, "SPI_DMA"),
             self._outside[-1],
         )
@@ -352,7 +354,7 @@ class Board:
             traffic=traffic_records(self._bus.words, self.spec.clocks.cclk_ticks),
             code=code_records(self.link_map, PROCESSORS, self.spec.chip.regions),
             messages=tuple(self._spi.records),
-            untaken=self._untaken(),
+            device_notes=self._device_notes(),
             interrupts={
                 f"{core} {source}": count
                 for core, each in self._shared.interrupts.items()
@@ -361,7 +363,6 @@ class Board:
             events=self._env.count_events(),
         )
 
-    def _untaken(self) -> tuple[int, ...]:
-        """Return when each entry of the script was due that did not come in."""
-        taken = sum(each.direction == "in" for each in self._spi.records)
-        return tuple(sorted(each.after_frames for each in self.script)[taken:])
+    def _device_notes(self) -> tuple[str, ...]:
+        with device_at_work():
+            return tuple(map(str, self.device.finish()))

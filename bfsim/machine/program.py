@@ -1,4 +1,4 @@
-"""What firmware hands to the machine: its buffers, its two main loops and the rows of its budget."""
+"""What firmware hands to the machine: its buffers, its main loops, its device and the rows of its budget."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError
 from bfsim.kernel.types import FloatType, Number
+from bfsim.machine.spi.device import Script, SpiDevice, device_at_work
 from bfsim.seen import Seen
 from bfsim.trace import BudgetRow, Reference
 
@@ -135,8 +136,8 @@ class Firmware:
     `mains`: the main loop of each core. `buffers`: size of the pictures → buffers. `camera`: the buffer of each core
     that the PPI fills, a whole number of frames. `rows`: the stages in the order of the budget. `reference`: what the
     `reference_ms` of the rows are, which must be said where a row has some. `calibration`: what a recording knows of its cameras → the buffers that it takes, beside the others or in place of those of the same name.
-    `orders`: what the strategy unit may order by name ("mode", "models") → the payload of that message; raises a
-    FirmwareError that names the field and what it must be.
+    `spi`: the script of the user, empty without one → the device at the other end of the SPI; raises a FirmwareError
+    that names the key of the script and what it must be. Without it nobody listens there.
     `view`: what a core has in memory at the end of a frame → what it saw, for people and files, if there is anything to
     show; it is not simulated.
     `write_through`: memory segments of the LDF in SDRAM that the data caches write through; the rest is written back.
@@ -148,7 +149,7 @@ class Firmware:
     rows: tuple[BudgetRow, ...]
     reference: Reference | None = None
     calibration: Callable[[Calibration], Buffers] | None = None
-    orders: Mapping[str, Callable[[Any], bytes]] = field(default_factory=dict)
+    spi: Callable[[Script], SpiDevice] | None = None
     view: Callable[[Readout], Seen | None] | None = None
     write_through: tuple[str, ...] = ()
 
@@ -158,6 +159,16 @@ class Firmware:
             raise FirmwareError(
                 f"reference must say what the reference_ms of {known[0]} is, but there is none"
             )
+
+    def device(self, script: Script) -> SpiDevice:
+        """Return a new device for the other end of the SPI, which does as the script says."""
+        if self.spi is None:
+            return SpiDevice()
+        with device_at_work():
+            device = self.spi(script)
+        if not isinstance(device, SpiDevice):
+            raise FirmwareError(f"spi must make a bfsim.api.SpiDevice, not {device!r}")
+        return device
 
     def calibrated(self, calibration: Calibration) -> Firmware:
         """Return this firmware for the cameras of a recording."""

@@ -266,8 +266,8 @@ def configuration(run: RunRecord) -> Table:
     table.add_row("Fidelity", identity.fidelity)
     if run.messages:
         table.add_row("SPI messages", _messages(run))
-    if run.untaken:
-        table.add_row("Not taken", _untaken(run))
+    for note in run.device_notes:
+        table.add_row("SPI device", note)
     if run.interrupts:
         table.add_row(
             "Interrupts", ", ".join(f"{source} {count:,}" for source, count in run.interrupts.items())
@@ -295,13 +295,6 @@ def _messages(run: RunRecord) -> str:
             microseconds = 1000 * milliseconds(longest, run.identity.cclk_hz)
             parts.append(f"{len(mine):,} {direction} ({nbytes:,} bytes, at most {microseconds:.1f} µs each)")
     return "; ".join(parts)
-
-
-def _untaken(run: RunRecord) -> str:
-    """Say which entries of the strategy script came too late, or to firmware that does not ask for any."""
-    count, first = len(run.untaken), run.untaken[0]
-    entries = "1 entry" if count == 1 else f"{count:,} entries"
-    return f"{entries} of the strategy script, the first with after_frames = {first}: {len(run.frames):,} frames were run"
 
 
 def _code(code: CodeRecord) -> str:

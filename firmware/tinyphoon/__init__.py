@@ -7,7 +7,7 @@ from tinyphoon.buffers import buffers, calibration_buffers, one_core_buffers
 from tinyphoon.core_a import core_a
 from tinyphoon.core_b import core_b
 from tinyphoon.one_core import one_core
-from tinyphoon.strategy.payloads import BY_NAME
+from tinyphoon.strategy_unit.device import StrategyUnit
 from tinyphoon.view.view import view
 
 THESIS = Reference(
@@ -32,7 +32,7 @@ tinyphoon = Firmware(
     rows=ROWS,
     reference=THESIS,
     calibration=calibration_buffers,
-    orders=BY_NAME,
+    spi=StrategyUnit,
     view=view,
 )
 
@@ -43,7 +43,7 @@ one_eye = Firmware(
     rows=ROWS,
     reference=THESIS,
     calibration=calibration_buffers,
-    orders=BY_NAME,
+    spi=StrategyUnit,
     view=view,
 )
 """The same stages for a board with one core and one camera, such as cm-bf533."""

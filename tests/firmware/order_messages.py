@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from bfsim.api import FrameSize
-from bfsim.machine.spi.protocol import Message, MessageType, encode
 from tinyphoon.fields import to_words
 from tinyphoon.strategy.modes import INDOOR_FIELD
 from tinyphoon.strategy.order_checks import models_refusal, picture_refusal, words_refusal
 from tinyphoon.strategy.orders import AREA, CAMERA, MODE_WORDS, ORDER_WORDS, shared_order_buffers
-from tinyphoon.strategy.payloads import payload
+from tinyphoon.strategy_unit.messages import Message, MessageType, encode
+from tinyphoon.strategy_unit.payloads import payload
 
 FULL = FrameSize(320, 240)
 TABLES = {each.name: each.values for each in shared_order_buffers(FULL, "l2_shared")}

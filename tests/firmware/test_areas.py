@@ -15,8 +15,6 @@ from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.cameras.settling import settled
 from bfsim.machine.cameras.skipping import skipped
-from bfsim.machine.spi.protocol import MessageType
-from bfsim.machine.spi.strategy import ScriptedMessage
 from bfsim.recording import StereoFrame
 from bfsim.run import DEFAULT_LDF, PLACEMENTS
 from tests.firmware.lenses import rectified
@@ -25,12 +23,7 @@ from tests.firmware.test_rectification import tables
 from tests.firmware.whole_pictures import buffer, check_core, random_frames
 from tinyphoon import tinyphoon
 from tinyphoon.areas import Area, area_in, principal_shift
-from tinyphoon.strategy.payloads import mode_payload
-
-
-def order(names: dict[str, Any], after_frames: int = 0) -> ScriptedMessage:
-    """A mode that the strategy unit sends."""
-    return ScriptedMessage(after_frames=after_frames, type=MessageType.MODE, payload=mode_payload(names))
+from tinyphoon.strategy_unit.device import StrategyUnit
 
 
 def run(
@@ -43,8 +36,8 @@ def run(
     height, double_width = frames[0].left.shape
     size = FrameSize(double_width // 2, height)
     link_map = link(parse_ldf(ldf), symbols_of(firmware, size), CM_BF561.chip.regions)
-    script = [order(each, number) for number, each in enumerate(names)]
-    board = Board(CM_BF561, firmware, size, link_map, script=script)
+    send = [{"after_frames": number, "mode": each} for number, each in enumerate(names)]
+    board = Board(CM_BF561, firmware, size, link_map, device=StrategyUnit({"send": send}))
     return board, board.run(iter(frames))
 
 

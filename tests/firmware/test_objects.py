@@ -19,9 +19,9 @@ from tinyphoon.stores.objects import (
     SEEN_RIGHT,
     VERIFIED,
 )
-from tinyphoon.strategy.decoding import ReportedObject
 from tinyphoon.strategy.models import MODELS, Shape
 from tinyphoon.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES
+from tinyphoon.strategy_unit.decoding import ReportedObject
 
 NUMBERS = {each.shape: each.number for each in MODELS if each.name != "yellow goal"}
 THESIS_MS = 1.0  # T Table 6.4

@@ -6,13 +6,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bfsim.machine.spi.protocol import Message, MessageError, MessageType, decode, encode
 from tests.firmware.order_messages import FULL, GOOD, MESSAGE, changed, model, received
 from tinyphoon.strategy import order_checks as checks
 from tinyphoon.strategy.order_checks import WHICH_BIT, frame_refusal
 from tinyphoon.strategy.order_texts import refusal_text
 from tinyphoon.strategy.orders import MODE_WORDS, MODEL_FIELDS
-from tinyphoon.strategy.payloads import payload
+from tinyphoon.strategy_unit.messages import Message, MessageError, MessageType, decode, encode
+from tinyphoon.strategy_unit.payloads import payload
 
 
 def refused(octets: bytes) -> int:

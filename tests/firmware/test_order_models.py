@@ -8,14 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.api import FirmwareError
-from bfsim.machine.spi.protocol import MessageType
 from tests.firmware.order_messages import GOOD, framed, model, refusal_of_models
 from tinyphoon.fields import to_words
 from tinyphoon.strategy import order_checks as checks
 from tinyphoon.strategy.models import MODELS, ObjectModel, Shape, check_models
 from tinyphoon.strategy.order_checks import WHICH_BIT
 from tinyphoon.strategy.orders import mode_in, store_order
-from tinyphoon.strategy.payloads import models_payload, payload
+from tinyphoon.strategy_unit.messages import MessageType
+from tinyphoon.strategy_unit.payloads import models_payload, payload
 
 
 def test_models_there_and_back() -> None:

@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bfsim.machine.spi.protocol import Message, MessageType, encode
 from tests.firmware.order_messages import GOOD, NAMES, changed, received, refusal_of_mode
 from tinyphoon.fields import from_words, to_words
 from tinyphoon.strategy import order_checks as checks
@@ -17,7 +16,8 @@ from tinyphoon.strategy.models import MODELS, model_words
 from tinyphoon.strategy.modes import INDOOR_FIELD, Mode
 from tinyphoon.strategy.order_checks import WHICH_BIT, frame_refusal
 from tinyphoon.strategy.orders import AREA, CAMERA, MODE_WORDS, mode_in, store_order
-from tinyphoon.strategy.payloads import mode_payload, payload
+from tinyphoon.strategy_unit.messages import Message, MessageType, encode
+from tinyphoon.strategy_unit.payloads import mode_payload, payload
 
 
 @st.composite

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -10,29 +11,30 @@ from bfsim.api import FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, Outcome, symbols_of
-from bfsim.machine.spi.protocol import MessageType
-from bfsim.machine.spi.strategy import ScriptedBytes, ScriptedMessage
 from bfsim.run import DEFAULT_LDF
 from tests.firmware.whole_pictures import buffer, random_frames
 from tinyphoon import tinyphoon
 from tinyphoon.fields import to_words
 from tinyphoon.strategy import order_checks as checks
-from tinyphoon.strategy.decoding import decode_results
 from tinyphoon.strategy.models import MODELS
-from tinyphoon.strategy.payloads import mode_payload, models_payload
+from tinyphoon.strategy_unit.decoding import decode_results
+from tinyphoon.strategy_unit.device import StrategyUnit
+
+Entry = dict[str, Any]
 
 
-def run(script: Sequence[ScriptedMessage | ScriptedBytes], frames: int) -> tuple[Board, Outcome]:
-    """Play noise of 64x48 to the firmware while the strategy unit sends a script."""
+def run(script: Sequence[Entry], frames: int) -> tuple[StrategyUnit, Board, Outcome]:
+    """Play noise of 64x48 to the firmware while the strategy unit sends the entries of a script."""
     size = FrameSize(64, 48)
     link_map = link(parse_ldf(DEFAULT_LDF), symbols_of(tinyphoon, size), CM_BF561.chip.regions)
-    board = Board(CM_BF561, tinyphoon, size, link_map, script=script)
-    return board, board.run(iter(random_frames(64, 48, frames)))
+    unit = StrategyUnit({"send": list(script)})
+    board = Board(CM_BF561, tinyphoon, size, link_map, device=unit)
+    return unit, board, board.run(iter(random_frames(64, 48, frames)))
 
 
-def mode(after_frames: int, names: object) -> ScriptedMessage:
+def mode(after_frames: int, names: object) -> Entry:
     """A mode of a script."""
-    return ScriptedMessage(after_frames=after_frames, type=MessageType.MODE, payload=mode_payload(names))
+    return {"after_frames": after_frames, "mode": names}
 
 
 def test_a_bad_order_is_counted_and_told_and_the_last_good_mode_stays() -> None:
@@ -41,8 +43,8 @@ def test_a_bad_order_is_counted_and_told_and_the_last_good_mode_stays() -> None:
         mode(0, {"edges": {"strong_threshold": 60}}),
         mode(1, {"edges": {"edge_threshold": 61, "strong_threshold": 60}}),
     )
-    _, alone = run([good], 4)
-    board, outcome = run([good, bad, ScriptedBytes(after_frames=1, octets=b"xx")], 4)
+    _, _, alone = run([good], 4)
+    unit, _, outcome = run([good, bad, {"after_frames": 1, "bytes": [0x78, 0x78]}], 4)
     counted = [(each.results["orders_taken_A"], each.results["orders_refused_A"]) for each in outcome.frames]
     assert counted == [(1, 0), (0, 2), (0, 0), (0, 0)]
     assert [each.remarks for each in outcome.frames] == [
@@ -57,15 +59,15 @@ def test_a_bad_order_is_counted_and_told_and_the_last_good_mode_stays() -> None:
     for one, other in zip(outcome.frames, alone.frames, strict=True):
         for name in ("edges_A", "edges_B", "lines_A", "blobs_B"):
             assert one.results[name] == other.results[name]
-    told = [decode_results(each.message.payload).refusal for each in board._spi._strategy.received]
+    told = [decode_results(each.message.payload).refusal for each in unit.received]
     assert told == [0, checks.CUT_SHORT, 0, 0], "the reason of the last one"
 
 
 def test_both_cores_obey_from_the_next_frame_on() -> None:
     """Not in the frame in which the mode comes; and until another one comes."""
     strong = {"edges": {"edge_threshold": 100, "strong_threshold": 200}}
-    _, plain = run([], 4)
-    _, outcome = run([mode(1, strong), mode(2, {})], 4)
+    _, _, plain = run([], 4)
+    _, _, outcome = run([mode(1, strong), mode(2, {})], 4)
     for core in "AB":
         before, after = (
             [each.results[f"edges_{core}"] for each in frames.frames] for frames in (plain, outcome)
@@ -77,13 +79,11 @@ def test_both_cores_obey_from_the_next_frame_on() -> None:
 
 def test_models_reach_both_cores() -> None:
     """Their colours are those that blobs are made of; a table that contradicts itself changes nothing."""
-
-    def models(after_frames: int, *wanted: object) -> ScriptedMessage:
-        return ScriptedMessage(
-            after_frames=after_frames, type=MessageType.MODELS, payload=models_payload(list(wanted))
-        )
-
-    board, outcome = run([models(0, "robot marker"), models(1, "ball", "ball")], 3)
+    script = [
+        {"after_frames": 0, "models": ["robot marker"]},
+        {"after_frames": 1, "models": ["ball", "ball"]},
+    ]
+    _, board, outcome = run(script, 3)
     expected = np.zeros(64, np.int32)
     expected[:8] = to_words(MODELS[3])
     for core in "AB":
@@ -96,7 +96,7 @@ def test_models_reach_both_cores() -> None:
 
 def test_orders_cost_cycles() -> None:
     """Copying them every frame little, checking one that comes more; all outside of the stages."""
-    _, outcome = run([mode(1, {})], 4)
+    _, _, outcome = run([mode(1, {})], 4)
     checked = [each for each in outcome.kernels if each.kernel in ("words_refusal", "checksum", "copy_order")]
     assert {(each.core, each.kernel) for each in checked} == {
         ("A", "copy_order"), ("B", "copy_order"), ("A", "words_refusal"), ("A", "checksum"),

@@ -11,14 +11,11 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from bfsim.api import FirmwareError
-from bfsim.machine.spi.protocol import SYNC, Message, MessageType, decode, encode, message_nbytes
 from tests.firmware.object_rig import models_of, object_words, rectangle_words
 from tests.firmware.test_rectangles import line_words
 from tinyphoon.exchange import load_word, store_word
 from tinyphoon.stores.objects import BY_FLOOR, NO_OUTLINE, OBJECT_CAPACITY
 from tinyphoon.stores.rectangles import NO_LINE
-from tinyphoon.strategy import framing
-from tinyphoon.strategy.decoding import GoalLine, ReportedObject, Results, Side, decode_results
 from tinyphoon.strategy.framing import crc16_byte
 from tinyphoon.strategy.models import MODELS
 from tinyphoon.strategy.results import (
@@ -30,6 +27,8 @@ from tinyphoon.strategy.results import (
     pack_goal_lines,
     pack_objects,
 )
+from tinyphoon.strategy_unit.decoding import GoalLine, ReportedObject, Results, Side, decode_results
+from tinyphoon.strategy_unit.messages import Message, MessageType, decode, encode, message_nbytes
 
 SEQUENCES = st.integers(0, 0xFFFF)
 BALL, BLUE_GOAL, *_ = MODELS
@@ -63,10 +62,8 @@ def read(octets: bytes) -> Results:
     return decode_results(message.payload)
 
 
-def test_the_numbers_of_the_protocol_are_the_same_on_both_sides() -> None:
-    """The firmware knows nothing of bfsim but its api."""
-    assert framing.SYNC == SYNC
-    assert {name: getattr(framing, name) for name in MessageType.__members__} == MessageType.__members__
+def test_the_largest_message_has_room_for_all_objects_and_lines() -> None:
+    """As the other end counts its bytes."""
     assert message_nbytes(2 * PAYLOAD_WORDS) == 2 * MESSAGE_WORDS
 
 

@@ -115,7 +115,7 @@ def test_what_is_in_space_is_seen_where_it_is(run: tuple[list[SeenFrame], Any], 
     script = tmp_path / "area.toml"
     script.write_text(AREA_SCRIPT)
     areas: list[SeenFrame] = []
-    simulate(frames=FRAMES, strategy=script, on_seen=areas.append)
+    simulate(frames=FRAMES, script=script, on_seen=areas.append)
     assert (areas[1].cameras[0].width_px, areas[1].cameras[0].height_px) == (240, 140)
     assert (areas[1].cameras[0].picture == run[0][1].cameras[0].picture[30:170, 80:560]).all()
     for frame in (run[0][1], areas[1]):

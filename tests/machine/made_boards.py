@@ -1,4 +1,4 @@
-"""Whole boards that are not as shipped: other parts, placements, buffers, scripts of the strategy unit, recordings."""
+"""Whole boards that are not as shipped: other parts, placements, buffers, devices, recordings."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ IDENTITY = Identity(
     ldf_digest="4" * 64,
     compiler="gcc-O2",
     feed="demand",
-    strategy_digest="5e",
+    script_digest="5e",
     fidelity="fast",
     bfsim_version="0.1.0",
     llvm_version="20.1.8",
@@ -89,7 +89,7 @@ def run_of(frames: Sequence[FrameRecord], missed: tuple[int, ...] = ()) -> RunRe
         code=(),
         traffic=(),
         messages=(),
-        untaken=(),
+        device_notes=(),
         interrupts={},
         events=0,
     )

@@ -195,14 +195,12 @@ def test_remarks_are_summed_up() -> None:
     assert "Remarks" not in printed(run_report(run))
 
 
-def test_what_of_a_script_was_not_taken_is_said() -> None:
-    """With the frames that there were to take it in."""
+def test_what_the_device_says_at_the_end_is_in_the_report() -> None:
+    """As it says it."""
     run = edge_run(100, 100)
-    (line,) = (each for each in printed(run_report(replace(run, untaken=(2, 12)))) if "Not taken" in each)
-    assert squeezed(line) == (
-        "Not taken 2 entries of the strategy script, the first with after_frames = 2: 2 frames were run"
-    )
-    assert not any("Not taken" in each for each in printed(run_report(run)))
+    lines = printed(run_report(replace(run, device_notes=("2 answers were not fetched",))))
+    assert "SPI device 2 answers were not fetched" in map(squeezed, lines)
+    assert not any("SPI device" in each for each in printed(run_report(run)))
 
 
 def test_check_report_lists_broken_limits_and_gains(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from bfsim.chip.spec import CameraSpec
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CameraSettings:
-    """What the strategy unit sets in a camera (T §5.1.2), in units of the sensor's registers.
+    """What firmware sets in a camera, in units of the sensor's registers.
 
     `exposure_lines`: shutter time in lines. `gain`, `red_gain`, `blue_gain`: register values, 0..255.
     """

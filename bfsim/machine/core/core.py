@@ -229,7 +229,7 @@ class Core(SynchronisedCore):
         return self._dma.stream(name, self)
 
     def send(self, row: Row, nbytes: int) -> Generator[Any, Any, None]:
-        """Send the first `nbytes` of `row` to the strategy unit by SPI and DMA, once the message before is out."""
+        """Send the first `nbytes` of `row` to the device on the SPI, by DMA, once the message before is out."""
         yield from self._sync()
         if self._spi.busy is not None:
             yield from self._blocked(iter([self._spi.busy]), "the SPI")
@@ -239,7 +239,7 @@ class Core(SynchronisedCore):
         self._spi.send(row, nbytes)
 
     def receive(self, row: Row) -> Generator[Any, Any, int]:
-        """Take the next message of the strategy unit into `row`, if one has come; return its bytes, 0 without one."""
+        """Take the next message of the device on the SPI into `row`, if it has one; return its bytes, 0 without one."""
         yield from self._sync()
         if not self._spi.has_message:
             return 0

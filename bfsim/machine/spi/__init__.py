@@ -1,1 +1,1 @@
-"""The SPI and the strategy unit at its other end."""
+"""The SPI of the board, and what a device at its other end is."""

@@ -1,8 +1,7 @@
-"""SPI: messages to and from the strategy unit, word by word through DMA2 channel 4, one direction at a time."""
+"""SPI: messages to and from the device at its other end, word by word through DMA2 channel 4, one direction at a time."""
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Generator
 from fractions import Fraction
 from math import ceil
@@ -18,50 +17,49 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus, Pace, Transfer, Walk
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.simulation import Simulation
-from bfsim.machine.spi.protocol import MessageError, MessageType, decode
-from bfsim.machine.spi.strategy import StrategyUnit
+from bfsim.machine.spi.device import LARGEST_MESSAGE_BYTES, WORD_BYTES, SpiDevice, SpiMessage, device_at_work
 from bfsim.trace import MessageRecord
-
-WORD_BYTES, WORD_BITS = 2, 16  # SPI_CTL with SIZE
-DAMAGED = "damaged"  # the type, in the records, of what came in and is no message
-OUTSIDE_BYTES = 4096
-"""Room for a message on its way, in the arena."""
 
 
 class Spi:
-    """The SPI of the board, with the strategy unit on it. `busy` is the event at which the present transfer ends."""
+    """The SPI of the board, with a device on it. `busy` is the event at which the present transfer ends."""
 
     def __init__(
-        self, env: Simulation, board: BoardSpec, bus: Bus, memories: Memories, strategy: StrategyUnit,
+        self, env: Simulation, board: BoardSpec, bus: Bus, memories: Memories, device: SpiDevice,
         on_interrupt: Callable[[], None], outside: int,
     ) -> None:  # fmt: skip
         """`outside`: where in the arena a message stands on its way. `on_interrupt`: called when DMA is done."""
         self._env = env
         self._bus = bus
         self._memories = memories
-        self._strategy = strategy
+        self._device = device
         self._on_interrupt = on_interrupt
         self._outside = outside
-        self._cclk_ticks = board.clocks.cclk_ticks
+        self._clocks = board.clocks
         rate = SpiRate(baud=max(2, ceil(board.clocks.sclk_hz / (2 * board.spi_clk_hz))))
         sck_ticks = board.clocks.tick_hz / rate.sck_hz(board.clocks.sclk_hz)
-        self._word_ticks: Fraction = (WORD_BITS + rate.gap_sck) * sck_ticks
-        self._results = 0
-        self._waiting = deque(strategy.due(0))
+        self._word_ticks: Fraction = (8 * WORD_BYTES + rate.gap_sck) * sck_ticks
         self.busy: simpy.Event | None = None
         self.records: list[MessageRecord] = []
         """Every message so far, in order of their ends."""
 
     @property
     def has_message(self) -> bool:
-        """Whether the strategy unit has something to say."""
-        return bool(self._waiting) and self.busy is None
+        """Whether the device has something to say, and the wire is free for it."""
+        if self.busy is not None:
+            return False
+        with device_at_work():
+            return bool(self._device.requests(self._now_ns))
+
+    @property
+    def _now_ns(self) -> int:
+        return self._clocks.ns_of_ticks(self._env.tick)
 
     def send(self, row: Row, nbytes: int) -> None:
         """Begin to send the first `nbytes` of `row`."""
-        if not 0 < nbytes <= min(row.nbytes, OUTSIDE_BYTES) or nbytes % WORD_BYTES:
+        if not 0 < nbytes <= min(row.nbytes, LARGEST_MESSAGE_BYTES) or nbytes % WORD_BYTES:
             raise FirmwareError(
-                f"a message must have 2 to {min(row.nbytes, OUTSIDE_BYTES)} bytes of {row.buffer}, whole words, not {nbytes}"
+                f"a message must have 2 to {min(row.nbytes, LARGEST_MESSAGE_BYTES)} bytes of {row.buffer}, whole words, not {nbytes}"
             )
         self.busy = self._env.process(self._send(row, nbytes, self.busy))
 
@@ -76,11 +74,11 @@ class Spi:
         )  # fmt: skip
         yield self._bus.when_done(self._bus.post(plan))
         octets = self._memories.bytes_from(self._outside, nbytes).tobytes()
-        message = self._strategy.receive(octets, self._env.tick)
-        self._record("out", message.type.name, message.sequence, nbytes, begin)
-        if message.type is MessageType.RESULTS:
-            self._results += 1
-            self._waiting.extend(self._strategy.due(self._results))
+        with device_at_work():
+            kind = self._device.receive(octets, self._now_ns)
+        if not isinstance(kind, str):
+            raise FirmwareError(f"receive of the device on the SPI must return a str, not {kind!r}")
+        self._record("out", kind, nbytes, begin)
         self._finish(self._env.active_process)
 
     def _finish(self, transfer: simpy.Event | None) -> None:
@@ -92,11 +90,11 @@ class Spi:
     def receive(self, row: Row) -> tuple[Transfer, int]:
         """Begin to take the next message into `row`; return the transfer and its bytes.
 
-        DMA takes as many words as `row` has room for; what the strategy unit sends beyond them is lost.
+        DMA takes as many words as `row` has room for; what the device sends beyond them is lost.
         """
-        octets = self._waiting.popleft()
-        nbytes = min(len(octets), row.nbytes // WORD_BYTES * WORD_BYTES, OUTSIDE_BYTES)
-        self._memories.bytes_from(self._outside, nbytes)[:] = np.frombuffer(octets, np.uint8, nbytes)
+        message = self._next_message()
+        nbytes = min(len(message.octets), row.nbytes // WORD_BYTES * WORD_BYTES)
+        self._memories.bytes_from(self._outside, nbytes)[:] = np.frombuffer(message.octets, np.uint8, nbytes)
         plan = self._bus.plan_receive(
             w.SPI, self._walk(self._outside, nbytes), self._walk(row.offset, nbytes), nbytes // WORD_BYTES,
             element_bytes=WORD_BYTES, pace=self._pace(nbytes),
@@ -104,18 +102,21 @@ class Spi:
         transfer = self._bus.post(plan)
         begin, self.busy = self._env.tick, self._bus.when_done(transfer)
         assert self.busy.callbacks is not None
+        kind = message.type if nbytes == len(message.octets) else f"{message.type} (cut short)"
         self.busy.callbacks.append(
-            lambda done: self._received(done, octets[:nbytes], begin)
+            lambda done: self._received(done, kind, nbytes, begin)
         )  # before any core goes on
         return transfer, nbytes
 
-    def _received(self, transfer: simpy.Event, octets: bytes, begin: int) -> None:
-        try:
-            message = decode(octets)
-        except MessageError:  # the firmware is to find out
-            self._record("in", DAMAGED, 0, len(octets), begin)
-        else:
-            self._record("in", message.type.name, message.sequence, len(octets), begin)
+    def _next_message(self) -> SpiMessage:
+        with device_at_work():
+            message = self._device.send(self._now_ns)
+        if not isinstance(message, SpiMessage):
+            raise FirmwareError(f"send of the device on the SPI must return an SpiMessage, not {message!r}")
+        return message
+
+    def _received(self, transfer: simpy.Event, kind: str, nbytes: int, begin: int) -> None:
+        self._record("in", kind, nbytes, begin)
         self._finish(transfer)
 
     def _walk(self, offset: int, nbytes: int) -> Walk:
@@ -125,10 +126,11 @@ class Spi:
         words = nbytes // WORD_BYTES
         return Pace(self._env.tick, words, self._word_ticks, words * self._word_ticks)
 
-    def _record(self, direction: str, kind: str, sequence: int, nbytes: int, begin: int) -> None:
+    def _record(self, direction: str, kind: str, nbytes: int, begin: int) -> None:
+        cclk_ticks = self._clocks.cclk_ticks
         self.records.append(
             MessageRecord(
-                direction=direction, type=kind, sequence=sequence, nbytes=nbytes,
-                begin_cclk=begin // self._cclk_ticks, end_cclk=-(-self._env.tick // self._cclk_ticks),
+                direction=direction, type=kind, nbytes=nbytes,
+                begin_cclk=begin // cclk_ticks, end_cclk=-(-self._env.tick // cclk_ticks),
             )
         )  # fmt: skip

@@ -1,6 +1,6 @@
 """Messages as they go over the SPI, both ways: 16-bit words around a payload.
 
-The framing is bfsim's own ([ours], `bfsim/machine/spi/protocol.py`): sync word, type, sequence number, bytes of the payload,
+The framing is [ours], the thesis has none (`strategy_unit/messages.py` is the other end): sync word, type, sequence number, bytes of the payload,
 the payload, and the CRC-16 of CCITT over all but the sync word, byte by byte in the order of memory.
 """
 

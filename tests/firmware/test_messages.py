@@ -9,7 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.errors import BfsimError
-from bfsim.machine.spi.protocol import Message, MessageError, MessageType, decode, encode, message_nbytes
+from tinyphoon.strategy_unit.messages import (
+    Message,
+    MessageError,
+    MessageType,
+    decode,
+    encode,
+    message_nbytes,
+)
 
 MESSAGES = st.builds(Message, st.sampled_from(MessageType), st.integers(0, 0xFFFF), st.binary(max_size=300))
 EXAMPLE = Message(MessageType.MODE, 7, b"\x01\x02\x03")

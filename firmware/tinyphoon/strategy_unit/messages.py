@@ -1,4 +1,4 @@
-"""Messages between the vision sensor and the strategy unit, as they go over SPI: [ours], the thesis has none.
+"""Messages as the strategy unit makes and reads them; the format is [ours], the thesis has none.
 
 A message is 16-bit words: a sync word, the type, a sequence number, the bytes of the payload, the payload
 (with a zero byte behind it where its size is odd) and a CRC of all that is between sync word and CRC. Bytes here
@@ -12,24 +12,24 @@ import struct
 from dataclasses import dataclass
 from enum import IntEnum
 
-from bfsim.errors import BfsimError
+from bfsim.api import FirmwareError
+from tinyphoon.strategy import framing
 
-SYNC = 0xB5F1
 LARGEST_PAYLOAD_BYTES = 0xFFFF
 _HEADER = struct.Struct("<4H")
 _CRC = struct.Struct("<H")
 
 
-class MessageError(BfsimError, ValueError):
+class MessageError(FirmwareError):
     """Raised when bytes from the SPI are no message, or something cannot be sent as one."""
 
 
 class MessageType(IntEnum):
     """What a message is about. RESULTS come from the vision sensor, the others go to it."""
 
-    RESULTS = 1
-    MODE = 2
-    MODELS = 3
+    RESULTS = framing.RESULTS
+    MODE = framing.MODE
+    MODELS = framing.MODELS
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,9 @@ def message_nbytes(payload_nbytes: int) -> int:
 def encode(message: Message) -> bytes:
     """Return the bytes of a message."""
     size = len(message.payload)
-    framed = _HEADER.pack(SYNC, message.type, message.sequence, size) + message.payload + bytes(size % 2)
+    framed = (
+        _HEADER.pack(framing.SYNC, message.type, message.sequence, size) + message.payload + bytes(size % 2)
+    )
     return framed + _CRC.pack(_crc(framed))
 
 
@@ -68,8 +70,8 @@ def decode(octets: bytes) -> Message:
             f"a message must have a header of {_HEADER.size} bytes, but is cut short after {len(octets)}"
         )
     sync, type_number, sequence, size = _HEADER.unpack_from(octets)
-    if sync != SYNC:
-        raise MessageError(f"a message must begin with the sync word 0x{SYNC:04X}, not 0x{sync:04X}")
+    if sync != framing.SYNC:
+        raise MessageError(f"a message must begin with the sync word 0x{framing.SYNC:04X}, not 0x{sync:04X}")
     if len(octets) < message_nbytes(size):
         raise MessageError(
             f"a message with a payload of {size} bytes must have {message_nbytes(size)} bytes, "

@@ -1,4 +1,4 @@
-"""What the strategy unit may order, by name → the payload of its message. No part of the firmware on the chip."""
+"""What the strategy unit may order, by name → the payload of its message."""
 
 from __future__ import annotations
 
@@ -17,17 +17,23 @@ def payload(words: Sequence[int]) -> bytes:
     return np.array(words, np.int64).astype("<i4").tobytes()
 
 
-def mode_payload(names: object) -> bytes:
-    """Return the payload of the mode that differs from `INDOOR_FIELD` by `names`: fields, or fields of fields."""
-    return payload(named_words(INDOOR_FIELD, names, "mode"))
+def mode_payload(names: object, at: str = "mode") -> bytes:
+    """Return the payload of the mode that differs from `INDOOR_FIELD` by `names`: fields, or fields of fields.
+
+    Raises FirmwareError that names the field under `at`.
+    """
+    return payload(named_words(INDOOR_FIELD, names, at))
 
 
-def models_payload(models: object) -> bytes:
-    """Return the payload of models: each the name of one of `MODELS`, or its fields; those not given are as in that one."""
+def models_payload(models: object, at: str = "models") -> bytes:
+    """Return the payload of models: each the name of one of `MODELS`, or its fields; those not given are as in that one.
+
+    Raises FirmwareError that names the model or its field under `at`.
+    """
     if not isinstance(models, list) or not models:
-        raise FirmwareError(f"models must be a list of them, not {models!r}")
+        raise FirmwareError(f"{at} must be a list of them, not {models!r}")
     return payload(
-        [word for number, each in enumerate(models) for word in _words_of_model(each, f"models.{number}")]
+        [word for number, each in enumerate(models) for word in _words_of_model(each, f"{at}.{number}")]
     )
 
 

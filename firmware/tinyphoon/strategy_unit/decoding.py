@@ -1,4 +1,4 @@
-"""The results as the strategy unit reads them: the payload of a message taken apart. No part of the firmware on the chip."""
+"""The results as the strategy unit reads them: the payload of a message taken apart."""
 
 from __future__ import annotations
 

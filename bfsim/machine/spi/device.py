@@ -1,0 +1,112 @@
+"""The other end of the SPI: how firmware brings the device that its board talks to.
+
+The board is the master of the SPI and moves 16-bit words in one direction at a time, by DMA. A device is a class that
+says what happens at the far end of the wire:
+
+    class Echo(SpiDevice):
+        '''Sends everything back, a millisecond after it came.'''
+
+        def __init__(self):
+            self._answers = deque()
+
+        def receive(self, octets, now_ns):
+            self._answers.append((now_ns + 1_000_000, octets))
+            return "question"
+
+        def requests(self, now_ns):
+            return bool(self._answers) and self._answers[0][0] <= now_ns
+
+        def send(self, now_ns):
+            _, octets = self._answers.popleft()
+            return SpiMessage("answer", octets)
+
+Firmware names a function that makes one for each run, from the script that the user gives with `--script FILE`:
+
+    firmware = Firmware(..., spi=lambda script: Echo())
+
+and talks to it from a main loop:
+
+    yield from core.send(row, nbytes)          # to `receive`, as soon as the last word is out
+    nbytes = yield from core.receive(row)      # from `send`, if `requests`; 0 bytes if not
+
+What is simulated is the board's side: registers, DMA, the time of each word on the wire, the interrupt SPI_DMA. A device
+itself takes no time of the board; when something of its own takes time, it says so in `requests`, by `now_ns`. Equal
+runs must be equal: a device may depend on its script, on what it received and on `now_ns`, and on nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from bfsim.errors import BfsimError, FirmwareError
+from bfsim.machine.firmware_lines import line_of
+
+WORD_BYTES = 2  # SPI_CTL with SIZE
+LARGEST_MESSAGE_BYTES = 4096
+"""Room for a message on its way. [ours]"""
+
+Script = Mapping[str, Any]
+"""What a JSON or TOML file for a device says, as dicts, lists, strings and numbers; empty without a file."""
+
+
+@dataclass(frozen=True, slots=True)
+class SpiMessage:
+    """What a device sends in one transfer: what the report calls it, and its words as bytes, low byte first."""
+
+    type: str
+    octets: bytes
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.type, str) or not isinstance(self.octets, bytes):
+            raise FirmwareError(
+                f"an SpiMessage must have a str and bytes, not {type(self.type).__name__} and {type(self.octets).__name__}"
+            )
+        if not 0 < len(self.octets) <= LARGEST_MESSAGE_BYTES or len(self.octets) % WORD_BYTES:
+            raise FirmwareError(
+                f"a message over SPI must have 2 to {LARGEST_MESSAGE_BYTES} bytes, whole 16-bit words, not {len(self.octets)}"
+            )
+
+
+class SpiDevice:
+    """A device at the other end of the SPI. As it stands it takes everything and never has anything to say.
+
+    Derive from it and override what your device does. One object serves one run. Raise FirmwareError to end the run, for
+    instance in `receive` when what came is nothing that the device understands: the message is shown to the user.
+    """
+
+    def receive(self, octets: bytes, now_ns: int) -> str:
+        """Take what the board sent, words as bytes, low byte first; return what the report is to call it.
+
+        Called once a transfer, when its last word is in, at `now_ns` ns after the start of the run.
+        """
+        return "words"
+
+    def requests(self, now_ns: int) -> bool:
+        """Whether the request line is asserted at `now_ns`: there is something to send. Asked whenever firmware looks."""
+        return False
+
+    def send(self, now_ns: int) -> SpiMessage:
+        """Return the next message, for firmware begins to take it at `now_ns`. Called only where `requests` is true.
+
+        What has no room in the firmware's buffer is lost, as on a wire that is no longer clocked.
+        """
+        raise NotImplementedError("a device that requests must send")
+
+    def finish(self) -> Sequence[str]:
+        """Return what the user should know when the run is over, a sentence each, such as what was never fetched."""
+        return ()
+
+
+@contextmanager
+def device_at_work() -> Iterator[None]:
+    """Turn what goes wrong inside a device into a FirmwareError that names the device's line."""
+    try:
+        yield
+    except BfsimError:
+        raise
+    except Exception as error:
+        what = f"{type(error).__name__}: {error}{line_of(error)}"
+        raise FirmwareError(f"the device on the SPI failed with {what}") from error

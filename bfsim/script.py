@@ -1,0 +1,36 @@
+"""Reading the script that a user gives to the firmware's device: JSON or TOML. What stands in it is the device's."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from bfsim.errors import ConfigError
+
+_PARSERS = {".json": json.loads, ".toml": tomllib.loads}
+
+
+def read_script(path: Path) -> tuple[Mapping[str, Any], str]:
+    """Return what a script says, by its keys, and the digest of its file.
+
+    Raises ConfigError that names the file, and the line where it is no JSON or TOML.
+    """
+    parse = _PARSERS.get(path.suffix)
+    if parse is None:
+        raise ConfigError(f"{path} must end in .json or .toml")
+    try:
+        octets = path.read_bytes()
+        script = parse(octets.decode())
+    except OSError as error:
+        raise ConfigError(f"{path} must be a readable file: {error.strerror}") from error
+    except RecursionError as error:
+        raise ConfigError(f"{path} must not be nested so deep") from error
+    except ValueError as error:  # of either parser, and of the text's encoding
+        raise ConfigError(f"{path} must be {path.suffix[1:].upper()}: {error}") from error
+    if not isinstance(script, dict):
+        raise ConfigError(f"{path} must have keys with values at its top, not be a {type(script).__name__}")
+    return script, hashlib.sha256(octets).hexdigest()
