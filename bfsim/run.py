@@ -50,17 +50,18 @@ def simulate(
     """Run `firmware` on a recording and return the records: a built-in one, "FILE.py:NAME" or "PACKAGE:NAME".
 
     Without `recording` and `ldf` the built-in ones are taken; `frames` stops early. `progress` is called with
-    (frames done, frames in all); `profile` names the compiler whose code is costed; `script` is what the
-    firmware's device on the SPI is told, JSON or TOML; `on_seen` is called with what was seen in each frame, if the firmware has a view, which
-    changes nothing in the records. Ctrl-C ends the run with the frames done. Raises a BfsimError for anything
-    that is wrong with what was given.
+    (frames done, frames in all); `profile` names the compiler whose code is costed; `script` is a JSON or TOML file
+    that tells the firmware's device on the SPI what to do; `on_seen` is called with what was seen in each frame, if
+    the firmware has a view, which changes nothing in the records. Ctrl-C ends the run with the frames done. Raises a
+    BfsimError for anything that is wrong with what was given.
     """
     if frames is not None and frames < 1:
         raise ConfigError(f"frames must be at least 1, not {frames}")
     spec, compiler = board_named(board), profile_named(profile)
     loaded = load_firmware(firmware)
     require_cores(loaded.firmware, spec)
-    device, script_digest = _device(script, loaded)
+    with loaded.own.named():
+        device, script_digest = _device(script, loaded)
     placement = read_placement(ldf, spec)
     with (
         loaded.own.named(),
