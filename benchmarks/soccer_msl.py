@@ -122,6 +122,18 @@ def take_field(paths: Sequence[Path], folder: Path, size: tuple[int, int]) -> li
     return boxes
 
 
+def see_balls(
+    paths: Sequence[Path], folder: Path, size: tuple[int, int]
+) -> tuple[list[Seen], list[list[Box]]]:
+    """Return what the firmware sees in the area of interest of each picture, and the balls there; `folder` is for files."""
+    recording = folder / "field.mcap"
+    boxes = take_field(paths, folder, size)
+    geometry = ["--geometry", *map(str, geometry_of(*size))]
+    command = ["bfsim", "record", "import", str(recording), str(folder), "--mono", *geometry]
+    subprocess.run([sys.executable, "-m", *command], check=True, stdout=subprocess.DEVNULL)
+    return see(recording, hall_mode()), boxes
+
+
 def balls_of(path: Path) -> list[Box]:
     """Return the boxes of the balls in a picture, as shares of it, from the annotation beside it."""
     rows = (line.split() for line in path.with_suffix(".txt").read_text().splitlines())
@@ -173,12 +185,7 @@ def main(folder: Path, size: str) -> None:
     width, height = (int(each) for each in size.split("x"))
     paths = sorted(each for each in folder.glob("*.jpg") if each.with_suffix(".txt").exists())
     with tempfile.TemporaryDirectory() as made:
-        recording = Path(made) / "field.mcap"
-        boxes = take_field(paths, Path(made), (width, height))
-        geometry = ["--geometry", *map(str, geometry_of(width, height))]
-        command = ["bfsim", "record", "import", str(recording), made, "--mono", *geometry]
-        subprocess.run([sys.executable, "-m", *command], check=True, stdout=subprocess.DEVNULL)
-        seen = see(recording, hall_mode())
+        seen, boxes = see_balls(paths, Path(made), (width, height))
     for name, first in (("Thresholds chosen by them", 0), ("Held out", 1)):
         print_report(report(name, seen[first::2], boxes[first::2]))
 

@@ -1,0 +1,1 @@
+"""Real pictures: which there are, and what is measured on them."""

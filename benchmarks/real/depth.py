@@ -1,0 +1,108 @@
+"""3-D edges and 3-D lines of real stereo pairs beside a dense matcher, and beside the true disparities where there are some.
+
+The dense matcher is OpenCV's SGBM over all of the rows' disparities, with its check from left to right. At the border of a
+near thing a pixel has two disparities, the thing's and that of what is behind: an edge is right where one of the nine
+dense ones round it is near its own. `plain` is without that, the pixel's own alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.real.sets import Disparities, PictureSet
+from bfsim.api import Seen
+from bfsim.report.tables import percent
+
+TITLE = "3-D edges and lines beside dense disparities"
+COLUMNS = "beside", "kind", "of them judged", "within 1 px %", "plain %", "over 5 px off %", "of left edges %"
+NOTE = "In % of those judged: where the dense disparity is known. Of left edges: how many of the stored edges have a depth."
+
+NEAR_PX, FAR_PX = 1.0, 5.0
+MOST_DISPARITIES = 128
+STEPS_OF_LINE = 9
+Points = NDArray[np.float64]
+"""Rows of x, y and disparity, in pixels of the left picture."""
+
+
+def sgbm(left: NDArray[np.uint8], right: NDArray[np.uint8]) -> Disparities:
+    """Return the disparities that OpenCV's semi-global matcher finds in a grey pair; NaN where it finds none."""
+    block = 5
+    matcher = cv2.StereoSGBM.create(
+        minDisparity=0, numDisparities=MOST_DISPARITIES, blockSize=block, P1=8 * block**2, P2=32 * block**2,
+        disp12MaxDiff=1, uniquenessRatio=10, speckleWindowSize=60, speckleRange=2, mode=cv2.STEREO_SGBM_MODE_HH,
+    )  # fmt: skip
+    padded = [
+        cv2.copyMakeBorder(each, 0, 0, MOST_DISPARITIES, 0, cv2.BORDER_REPLICATE) for each in (left, right)
+    ]
+    found = matcher.compute(*padded)[:, MOST_DISPARITIES:].astype(np.float64) / 16
+    return np.where(found > 0, found, np.nan)
+
+
+def edge_points(left: Seen) -> Points:
+    """Return the 3-D edges."""
+    assert left.geometry
+    edges = left.edges_3d
+    at = edges.left_edges
+    reach = left.geometry.focal_px * left.geometry.baseline_mm
+    return np.column_stack([left.edges.x_px[at], left.edges.y_px[at], reach / edges.places_mm[:, 2]])
+
+
+def line_points(left: Seen) -> Points:
+    """Return points spread along the 3-D lines, their ends left out: those are where things end."""
+    assert left.geometry
+    geometry = left.geometry
+    points = []
+    for line in left.lines_3d:
+        ends = [
+            np.array(_on_picture(geometry.focal_px, geometry.principal_px, end))
+            for end in (line.start_mm, line.end_mm)
+        ]
+        reach = geometry.focal_px * geometry.baseline_mm
+        disparities = [reach / end[2] for end in (line.start_mm, line.end_mm)]
+        for share in np.linspace(0, 1, STEPS_OF_LINE + 2)[1:-1]:
+            x, y = (1 - share) * ends[0] + share * ends[1]
+            points.append((x, y, (1 - share) * disparities[0] + share * disparities[1]))
+    return np.array(points).reshape(-1, 3)
+
+
+def _on_picture(
+    focal_px: float, principal_px: tuple[float, float], place_mm: Sequence[float]
+) -> tuple[float, float]:
+    x, y, z = place_mm
+    return principal_px[0] + focal_px * x / z, principal_px[1] + focal_px * y / z
+
+
+def _errors(points: Points, dense: Disparities, reach: int) -> NDArray[np.float64]:
+    """Return how far each point's disparity is from the nearest dense one within `reach` pixels; NaN where there is none."""
+    height, width = dense.shape
+    best = np.full(len(points), np.nan)
+    columns, rows = np.rint(points[:, 0]).astype(int), np.rint(points[:, 1]).astype(int)
+    for down in range(-reach, reach + 1):
+        for across in range(-reach, reach + 1):
+            at = dense[np.clip(rows + down, 0, height - 1), np.clip(columns + across, 0, width - 1)]
+            best = np.fmin(best, np.abs(points[:, 2] - at))
+    return best
+
+
+def rows_of(pictures: PictureSet, seen: Sequence[tuple[Seen, ...]]) -> list[list[str]]:
+    """Return the rows of the table for a set of stereo pairs."""
+    found = []
+    for number, (frame, cameras) in enumerate(zip(pictures.frames, seen, strict=True)):
+        left = next(each for each in cameras if each.camera == "left")
+        lumas = [np.ascontiguousarray(each[:, 1::2]) for each in (frame.left, frame.right)]
+        dense = {"SGBM": sgbm(*lumas)} | ({"truth": pictures.truth[number]} if pictures.truth else {})
+        stored = len(left.edges.x_px)
+        for kind, points in (("edges", edge_points(left)), ("lines", line_points(left))):
+            for beside, disparities in dense.items():
+                near, plain = (_errors(points, disparities, reach) for reach in (1, 0))
+                near, plain = near[~np.isnan(near)], plain[~np.isnan(plain)]
+                found.append([
+                    beside, kind, f"{len(near)} of {len(points)}", percent((near <= NEAR_PX).sum(), len(near)),
+                    percent((plain <= NEAR_PX).sum(), len(plain)), percent((near > FAR_PX).sum(), len(near)),
+                    percent(len(points), stored) if kind == "edges" else "",
+                ])  # fmt: skip
+    return found
