@@ -1,7 +1,7 @@
 """The errors of bfsim: one class per kind of mistake, each a child of the built-in that a caller expects.
 
 A message says what must be, what was, and where. The command line prints it as one paragraph and
-exits with code 2. Values of any length stand in it as `shown`. A missed deadline or a missed frame is a result and never an error.
+exits with code 2. Values of any length stand in it as `shown` or `cut`. A missed deadline or a missed frame is a result and never an error.
 """
 
 from __future__ import annotations
@@ -11,12 +11,17 @@ LONGEST_VALUE = 80
 
 
 def shown(value: object) -> str:
-    """Return a value as a message has it: text in quotes, all on one line, and its middle left out where it is long."""
-    text = repr(value)
-    if len(text) <= LONGEST_VALUE:
-        return text
-    half = LONGEST_VALUE // 2
-    return f"{text[:half]}[{len(text) - 2 * half} more characters]{text[-half:]}"
+    """Return a value as a message has it: text in quotes, and `cut`."""
+    return cut(repr(value))
+
+
+def cut(text: str) -> str:
+    """Return foreign text as a message has it: on one line, and without its middle where it is long."""
+    hidden = len(text) - LONGEST_VALUE
+    if hidden > 0:
+        half = LONGEST_VALUE // 2
+        text = f"{text[:half]}[{hidden} more characters]{text[-half:]}"
+    return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
 
 
 class BfsimError(Exception):

@@ -16,15 +16,26 @@ from typing import IO
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.reader import SeekingReader
-from mcap.records import Attachment, Channel, Message, Metadata, Schema
+from mcap.records import (
+    Attachment,
+    AttachmentIndex,
+    Channel,
+    ChunkIndex,
+    Header,
+    Message,
+    Metadata,
+    MetadataIndex,
+    Schema,
+    Statistics,
+)
 from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
 from zstandard import ZstdError
 
-from bfsim.errors import RecordingError
+from bfsim.errors import RecordingError, shown
+from bfsim.recording.chunks import RECORD_HEAD, ChunkReader, records_in
 
-# All that mcap 1.x lets through when the bytes under it are wrong; its CRCValidationError is a ValueError.
+# All that mcap 1.x and the decompressors let through when the bytes under them are wrong.
 _DAMAGE = (
     McapError,
     ZstdError,
@@ -41,7 +52,6 @@ _DAMAGE = (
 # CRC32 of the summary and of the footer up to here. The closing magic follows.
 _FOOTER = struct.Struct("<BQQQI")
 _TAIL_BYTES = _FOOTER.size + len(MCAP0_MAGIC)
-_RECORD_HEAD_BYTES = 9  # opcode, length
 _CRC_BYTES = 4
 
 
@@ -58,11 +68,9 @@ class McapContainer:
             ) from None
         try:
             self.size_bytes = os.fstat(self._stream.fileno()).st_size
-            self._check_ends()
-            self._stream.seek(0)
-            self._reader = SeekingReader(self._stream, validate_crcs=True, record_size_limit=self.size_bytes)
-            self.summary = self._read_summary()
-            self.library = self._reader.get_header().library
+            self.summary = self._summary_of(self._index())
+            header, _ = self._record(Opcode.HEADER, len(MCAP0_MAGIC), "header")
+            self.library: str = Header.read(ReadDataStream(io.BytesIO(header))).library
         except _DAMAGE as error:
             self.close()
             if isinstance(error, RecordingError):
@@ -75,14 +83,17 @@ class McapContainer:
 
     def messages(self, topics: list[str]) -> Iterator[tuple[Channel, Message]]:
         """Messages of `topics` in the order of their time stamps, a few chunks in memory at a time."""
-        messages = self._reader.iter_messages(topics)
+        chunks = ChunkReader(self._stream, self.path, self.size_bytes, self.summary)
+        messages = chunks.messages(topics)
         while True:
             try:
-                _, channel, message = next(messages)
+                channel, message = next(messages)
             except StopIteration:
                 return
+            except RecordingError:
+                raise
             except _DAMAGE as error:
-                raise self._damaged(f"the chunk at byte {self._chunk_under_way()}", error) from None
+                raise self._damaged(f"the chunk at byte {chunks.offset}", error) from None
             yield channel, message
 
     def channel(self, topic: str) -> tuple[Channel, Schema | None] | None:
@@ -103,7 +114,10 @@ class McapContainer:
         for index in self.summary.metadata_indexes:
             if index.name == name:
                 body, _ = self._record(Opcode.METADATA, index.offset, name)
-                where, stream = f"metadata {name!r} at byte {index.offset}", ReadDataStream(io.BytesIO(body))
+                where, stream = (
+                    f"metadata {shown(name)} at byte {index.offset}",
+                    ReadDataStream(io.BytesIO(body)),
+                )
                 try:
                     metadata: Metadata = Metadata.read(stream)
                 except _DAMAGE as error:
@@ -117,7 +131,7 @@ class McapContainer:
         """Bytes of the attachment `name`, or None."""
         for index in self.summary.attachment_indexes:
             if index.name == name:
-                where = f"attachment {name!r} at byte {index.offset}"
+                where = f"attachment {shown(name)} at byte {index.offset}"
                 body, crc = self._record(Opcode.ATTACHMENT, index.offset, name)
                 if crc not in (0, zlib.crc32(body[:-_CRC_BYTES])):
                     raise self._damaged(where, "its checksum does not match")
@@ -130,15 +144,19 @@ class McapContainer:
 
     def _record(self, opcode: Opcode, offset: int, name: str) -> tuple[bytes, int]:
         """Return the body of the record at `offset` and its last four bytes as a number."""
+        room = self.size_bytes - offset - RECORD_HEAD.size
+        where = f"record {shown(name)} at byte {offset}"
+        if room < 0:
+            raise self._damaged(where, "it lies behind the end of the file")
         self._stream.seek(offset)
-        head = self._stream.read(_RECORD_HEAD_BYTES)
-        found, length = struct.unpack("<BQ", head) if len(head) == _RECORD_HEAD_BYTES else (0, 0)
-        if found != opcode or not _CRC_BYTES <= length <= self.size_bytes - offset:
-            raise self._damaged(f"record {name!r} at byte {offset}", "it is not where the index says")
+        found, length = RECORD_HEAD.unpack(self._stream.read(RECORD_HEAD.size))
+        if found != opcode or not _CRC_BYTES <= length <= room:
+            raise self._damaged(where, "it is not where the index says")
         body = self._stream.read(length)
         return body, int.from_bytes(body[-_CRC_BYTES:], "little")
 
-    def _check_ends(self) -> None:
+    def _index(self) -> bytes:
+        """Return the bytes of the index, after a look at both ends of the file."""
         head = self._stream.read(len(MCAP0_MAGIC))
         if head != MCAP0_MAGIC:
             start = f"one that starts with {head!r}" if head else "an empty one"
@@ -165,21 +183,34 @@ class McapContainer:
         summary = self._stream.read(summary_end - summary_start)
         if crc not in (0, zlib.crc32(tail[: _FOOTER.size - _CRC_BYTES], zlib.crc32(summary))):
             raise self._damaged(f"the index at byte {summary_start}", "its checksum does not match")
+        return summary
 
-    def _read_summary(self) -> Summary:
-        summary = self._reader.get_summary()
-        if summary is None or summary.statistics is None or not summary.chunk_indexes:
+    def _summary_of(self, index: bytes) -> Summary:
+        """Return what the index lists. No other records are read in it: a chunk there would be one that nothing bounds."""
+        summary = Summary()
+        for opcode, start, end in records_in(index):
+            stream = ReadDataStream(io.BytesIO(index[start:end]))
+            match opcode:
+                case Opcode.STATISTICS:
+                    summary.statistics = Statistics.read(stream)
+                case Opcode.SCHEMA:
+                    schema: Schema = Schema.read(stream)
+                    summary.schemas[schema.id] = schema
+                case Opcode.CHANNEL:
+                    channel: Channel = Channel.read(stream)
+                    summary.channels[channel.id] = channel
+                case Opcode.CHUNK_INDEX:
+                    summary.chunk_indexes.append(ChunkIndex.read(stream))
+                case Opcode.METADATA_INDEX:
+                    summary.metadata_indexes.append(MetadataIndex.read(stream))
+                case Opcode.ATTACHMENT_INDEX:
+                    summary.attachment_indexes.append(AttachmentIndex.read(stream))
+        if summary.statistics is None or not summary.chunk_indexes:
             raise RecordingError(
                 f"{self.path}: recording must be a chunked MCAP file with statistics and a chunk index, "
                 "not one without; `mcap recover` writes them"
             )
         return summary
-
-    def _chunk_under_way(self) -> int:
-        """Return the offset of the chunk last read: the file stands in it, or right behind it."""
-        position = self._stream.tell()
-        offsets = [index.chunk_start_offset for index in self.summary.chunk_indexes]
-        return max((offset for offset in offsets if offset < position), default=position)
 
     def _damaged(self, what: str, why: BaseException | str) -> RecordingError:
         reason = str(why) or type(why).__name__

@@ -15,7 +15,7 @@ from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
 from google.protobuf.message import DecodeError
 from mcap.records import Message
 
-from bfsim.errors import RecordingError
+from bfsim.errors import RecordingError, cut, shown
 from bfsim.recording import layout
 from bfsim.recording.container import McapContainer
 from bfsim.recording.frames import (
@@ -28,6 +28,7 @@ from bfsim.recording.frames import (
 
 # One camera may start before the other. Farther ahead its clock is another, and waiting would fill memory.
 _AHEAD_BYTES = 64 << 20
+_AHEAD_PICTURES = 2  # of any size
 
 
 class RecordingReader:
@@ -130,7 +131,8 @@ class RecordingReader:
                 raise RecordingError(f"time stamps must rise, but {message.log_time} ns comes twice {place}")
             last_ns[channel.topic] = message.log_time
             waiting[channel.topic].append(message)
-            if len(waiting[channel.topic]) * len(message.data) > _AHEAD_BYTES:
+            ahead = len(waiting[channel.topic])
+            if ahead > _AHEAD_PICTURES and ahead * len(message.data) > _AHEAD_BYTES:
                 raise RecordingError(
                     f"left and right camera must be on one clock, but one is far ahead {place}"
                 )
@@ -163,7 +165,7 @@ class RecordingReader:
         try:
             truth = json.loads(message.data)
         except (ValueError, RecursionError) as error:
-            raise RecordingError(f"ground truth must be JSON: {error} {where}") from None
+            raise RecordingError(f"ground truth must be JSON: {cut(str(error))} {where}") from None
         if not isinstance(truth, dict):
             raise RecordingError(f"ground truth must be a JSON object, not {type(truth).__name__} {where}")
         return truth
@@ -187,14 +189,14 @@ class RecordingReader:
             if found is None:
                 raise RecordingError(
                     f"{self.path}: recording must have the topics {layout.LEFT_TOPIC} and "
-                    f"{layout.RIGHT_TOPIC}, not {', '.join(topics) or 'none'}"
+                    f"{layout.RIGHT_TOPIC}, not {cut(', '.join(topics)) if topics else 'none'}"
                 )
             channel, schema = found
             name = schema.name if schema else "no schema"
             if (channel.message_encoding, name) != ("protobuf", layout.IMAGE_SCHEMA):
                 raise RecordingError(
                     f"{self.path}: topic {topic} must hold {layout.IMAGE_SCHEMA} messages in protobuf, "
-                    f"not {name} in {channel.message_encoding or 'no encoding'}"
+                    f"not {cut(name)} in {cut(channel.message_encoding) if channel.message_encoding else 'no encoding'}"
                 )
 
     def _count_frames(self) -> int:
@@ -204,6 +206,8 @@ class RecordingReader:
                 f"{self.path}: recording must have as many images from the left camera as from the right, "
                 f"not {left} and {right}"
             )
+        if not left:
+            raise RecordingError(f"{self.path}: recording must have at least one stereo frame, not none")
         return left
 
     def _image_size(self) -> tuple[int, int]:
@@ -244,7 +248,9 @@ class RecordingReader:
                 f"{self.path}: metadata {layout.GEOMETRY_RECORD!r} must give {error.args[0]}"
             ) from None
         except ValueError as error:
-            raise RecordingError(f"{self.path}: metadata {layout.GEOMETRY_RECORD!r}: {error}") from None
+            raise RecordingError(
+                f"{self.path}: metadata {layout.GEOMETRY_RECORD!r}: {cut(str(error))}"
+            ) from None
 
     def _read_rectification(self) -> RectificationTables | None:
         found = {side: self._file.attachment(name) for side, name in layout.RECTIFICATION_NAMES.items()}
@@ -277,11 +283,16 @@ def _parse_image(message: Message, where: str) -> RawImage:
     """Return the message as an image whose sizes fit each other and its data."""
     image = _parse_message(message, where)
     if image.encoding not in layout.IMAGE_ENCODINGS:
-        raise RecordingError(f"image must be in UYVY (encoding 'uyvy'), not {image.encoding!r} {where}")
+        raise RecordingError(f"image must be in UYVY (encoding 'uyvy'), not {shown(image.encoding)} {where}")
     if image.width == 0 or image.height == 0 or image.width % 2:
         raise RecordingError(
             f"image width must be even (UYVY pixels come in pairs) and no side 0, "
             f"not {image.width}x{image.height} {where}"
+        )
+    if len(image.data) > layout.LARGEST_PICTURE_BYTES:
+        raise RecordingError(
+            f"image must have at most {layout.LARGEST_PICTURE_BYTES >> 20} MiB, not {image.width}x{image.height} pixels "
+            f"in {len(image.data)} bytes {where}"
         )
     if image.step < 2 * image.width:
         raise RecordingError(

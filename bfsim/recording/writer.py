@@ -59,6 +59,11 @@ class RecordingWriter:
             )
         if height <= 0:
             raise RecordingError(f"{path}: image height must be above 0, not {height}")
+        if 2 * width * height > layout.LARGEST_PICTURE_BYTES:
+            most = f"{layout.LARGEST_PICTURE_BYTES >> 20} MiB"
+            raise RecordingError(
+                f"{path}: image must have at most {most} in UYVY, not {width}x{height} pixels"
+            )
         try:
             description.encode()
         except UnicodeEncodeError:
