@@ -5,7 +5,7 @@ A `BareCore` answers firmware as a `Core` does, but copies lines at once and nev
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any
 
@@ -69,6 +69,9 @@ class BareOutput:
 class BareCore:
     """A core without time."""
 
+    counted = False
+    """Whether kernels run with their counters."""
+
     def __init__(
         self, name: str, firmware: Firmware, frames: Sequence[StereoFrame], memories: Memories
     ) -> None:
@@ -110,11 +113,11 @@ class BareCore:
         return self.rows(ring) if isinstance(ring, str) else ring
 
     def run(self, kernel: Kernel, *arguments: Any) -> Work:
-        """Run the build of `kernel` that has no counters."""
+        """Run `kernel`."""
         key = (kernel, kernel.arrays_of(arguments))
         call = self._calls.get(key)
         if call is None:
-            code = kernel.compile(VDSP_O2, counted=False)
+            code = kernel.compile(VDSP_O2, counted=self.counted)
             rows = [arguments[each].array for each in kernel.array_positions]
             call = self._calls[key] = kernel.prepare(code, rows, code.new_totals())
         return call.run(arguments)
@@ -161,11 +164,16 @@ class BareCore:
         yield
 
 
-def run_bare(firmware: Firmware, frames: Sequence[StereoFrame]) -> None:
-    """Run both main loops over `frames`, frame by frame; the last core first, since core A reads what core B left."""
+def run_bare(
+    firmware: Firmware, frames: Sequence[StereoFrame], core: Callable[..., BareCore] = BareCore
+) -> None:
+    """Run both main loops over `frames`, frame by frame; the last core first, since core A reads what core B left.
+
+    `core` makes a core from its name, the firmware, the frames and the memories.
+    """
     memories = Memories(CM_BF561)
     cores = reversed(firmware.mains.items())
-    tasks: list[Any] = [main(BareCore(name, firmware, frames, memories)) for name, main in cores]  # type: ignore[arg-type]
+    tasks: list[Any] = [main(core(name, firmware, frames, memories)) for name, main in cores]  # type: ignore[arg-type]
     for _ in range(len(frames) + 1):  # up to the first frame, and every frame
         for task in tasks:
             _play_frame(task)

@@ -1,0 +1,77 @@
+/* Twin of tinyphoon/stages/circle_fit.py: `fit_circle`. */
+#include "circle_fit.h"
+#include "arithmetic.h"
+#include "circle_edges.h"
+#include "line_fit.h"
+
+#define OUTSIDE 8
+#define NORMAL_BITS 8
+#define SHORTEST_ARC (1 << 10)
+
+KERNEL int32_t distance(int32_t x, int32_t y, const int32_t fit[])
+{
+    int32_t dx = x - fit[CENTRE_X];
+    int32_t dy = y - fit[CENTRE_Y];
+    return (int32_t)isqrt32((uint32_t)(dx * dx) + (uint32_t)(dy * dy));
+}
+
+HELPER void sum_up(const uint32_t points[], int32_t count, int32_t fit[], int32_t fit_range)
+{
+    for (int32_t word = WEIGHT; word < SUM_NYE + 1; word++)
+        fit[word] = 0;
+    for (int32_t number = 0; number < count; number++) {
+        int32_t x = (int32_t)(points[number] & 0xFFFF);
+        int32_t y = (int32_t)(points[number] >> 16);
+        int32_t away = distance(x, y, fit);
+        int32_t outside = away - fit[RADIUS];
+        if (away > 0 && abs(outside) <= fit_range) {
+            int32_t weight = outside > 0 ? OUTSIDE : 1;
+            int32_t nx = floor_div((x - fit[CENTRE_X]) << NORMAL_BITS, away);
+            int32_t ny = floor_div((y - fit[CENTRE_Y]) << NORMAL_BITS, away);
+            fit[WEIGHT] = fit[WEIGHT] + weight;
+            fit[SUM_NX] = fit[SUM_NX] + weight * nx;
+            fit[SUM_NY] = fit[SUM_NY] + weight * ny;
+            fit[SUM_NXX] = fit[SUM_NXX] + weight * nx * nx;
+            fit[SUM_NXY] = fit[SUM_NXY] + weight * nx * ny;
+            fit[SUM_NYY] = fit[SUM_NYY] + weight * ny * ny;
+            fit[SUM_E] = fit[SUM_E] + weight * outside;
+            fit[SUM_NXE] = fit[SUM_NXE] + weight * nx * outside;
+            fit[SUM_NYE] = fit[SUM_NYE] + weight * ny * outside;
+        }
+    }
+}
+
+HELPER void move_circle(int32_t fit[], int32_t fit_range)
+{
+    int32_t weight = fit[WEIGHT];
+    if (weight == 0)
+        return;
+    int32_t xx = floor_div(spread(fit[SUM_NXX], fit[SUM_NX], fit[SUM_NX], weight), weight) >> 4;
+    int32_t xy = floor_div(spread(fit[SUM_NXY], fit[SUM_NX], fit[SUM_NY], weight), weight) >> 4;
+    int32_t yy = floor_div(spread(fit[SUM_NYY], fit[SUM_NY], fit[SUM_NY], weight), weight) >> 4;
+    int32_t xe = floor_div(spread(fit[SUM_NXE], fit[SUM_NX], fit[SUM_E], weight), weight);
+    int32_t ye = floor_div(spread(fit[SUM_NYE], fit[SUM_NY], fit[SUM_E], weight), weight);
+    int32_t size = (xx * yy - xy * xy) >> 4;
+    int32_t along_x = 0;
+    int32_t along_y = 0;
+    if (size >= SHORTEST_ARC) {
+        along_x = floor_div(xe * yy - ye * xy + (size >> 1), size);
+        along_y = floor_div(ye * xx - xe * xy + (size >> 1), size);
+        along_x = min(max(along_x, -fit_range), fit_range);
+        along_y = min(max(along_y, -fit_range), fit_range);
+        fit[CENTRE_X] = fit[CENTRE_X] + along_x;
+        fit[CENTRE_Y] = fit[CENTRE_Y] + along_y;
+    }
+    int32_t towards = (fit[SUM_NX] * along_x + fit[SUM_NY] * along_y) >> NORMAL_BITS;
+    fit[RADIUS] = fit[RADIUS] + floor_div(2 * (fit[SUM_E] - towards) + weight, 2 * weight);
+}
+
+KERNEL void fit_circle(const uint32_t points[], int32_t fit[], int32_t fit_range, int32_t rounds)
+{
+    int32_t near = FINE * fit_range;
+    for (int32_t i = 0; i < rounds; i++) {
+        sum_up(points, fit[REFINED], fit, near);
+        move_circle(fit, near);
+        near = max(near >> 1, FINE);
+    }
+}
