@@ -207,11 +207,12 @@ def main(folder: Path | None, overlays: Path) -> None:
     try:
         with tempfile.TemporaryDirectory() as rendered:
             if folder is None:
-                from bfsim.recording.scenes.rendering import render
+                from bfsim.recording.scenes import render
+                from tinyphoon.scenes.thesis import FIGURES
 
                 folder = Path(rendered)
                 with progress_bar("Rendering the scenes") as progress:
-                    render("thesis", folder, progress=progress)
+                    render(FIGURES, folder, progress=progress)
             print_report(comparison(folder, overlays))
     except BfsimError as error:
         raise click.ClickException(str(error)) from None

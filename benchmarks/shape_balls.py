@@ -25,8 +25,8 @@ from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.recording.scenes.drive import Pose
 from bfsim.recording.scenes.objects import Ball
 from bfsim.recording.scenes.scene import Scene
-from bfsim.recording.scenes.soccer_data import FLOOR, SOCCER, YELLOW
 from bfsim.recording.scenes.studio import record_scene
+from tinyphoon.scenes.soccer import FLOOR, SOCCER, YELLOW
 from tinyphoon.stores.circles import CENTRE_PASSED, CIRCLE_TESTS, RADIUS_PASSED
 from tinyphoon.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES
 

@@ -151,11 +151,12 @@ def with_recording(path: Path | None, show: Callable[[Path], None]) -> None:
     if path is not None:
         show(path)
         return
-    from bfsim.recording import scenes
+    from bfsim.recording.scenes import render
+    from tinyphoon.scenes.distances import BOX_DISTANCES
 
     with TemporaryDirectory() as folder:
         with progress_bar("Rendering") as progress:
-            (rendered,) = scenes.render("box-distances", Path(folder) / "box.mcap", progress=progress)
+            (rendered,) = render(BOX_DISTANCES, Path(folder) / "box.mcap", progress=progress)
         show(rendered)
 
 

@@ -144,10 +144,11 @@ def main(recording: Path | None) -> None:
     """Print T Table 6.3 with our distances beside the thesis's, from RECORDING or from pictures rendered here."""
     with tempfile.TemporaryDirectory() as folder:
         if recording is None:
-            from bfsim.recording.scenes.rendering import render
+            from bfsim.recording.scenes import render
+            from tinyphoon.scenes.distances import BALL_DISTANCES
 
             with progress_bar("Rendering the ball") as progress:
-                (recording,) = render("ball-distances", Path(folder) / "ball.mcap", progress=progress)
+                (recording,) = render(BALL_DISTANCES, Path(folder) / "ball.mcap", progress=progress)
         plain, refined = (measured(see(recording, mode)) for mode in (PLAIN, INDOOR_FIELD))
     print_report(comparison(plain, refined))
     print_report(summary(plain, refined))

@@ -68,7 +68,7 @@ _RUN_PARAMETERS = (
         metavar="NAME",
         default=FIRMWARE[0],
         show_default=True,
-        help="Firmware to run: tinyphoon or one_eye, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
+        help=f"Firmware to run: {' or '.join(FIRMWARE)}, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
     ),
     click.option(
         "--board",
@@ -81,7 +81,7 @@ _RUN_PARAMETERS = (
         "--ldf",
         metavar="FILE",
         type=click.Path(path_type=Path),
-        help="Linker description file that places the buffers.  [default: the thesis placement]",
+        help="Linker description file that places the buffers.  [default: one for the board's chip]",
     ),
     click.option(
         "--profile",
@@ -147,7 +147,7 @@ def run(
     \b
     Examples:
       bfsim run
-      bfsim run drive.mcap --frames 20 --ldf ldf/thesis.ldf
+      bfsim run drive.mcap --frames 20 --ldf ldf/l2.ldf
       bfsim run drive.mcap --feed recorded --json drive.json
       bfsim run drive.mcap --overlay drive-seen --mcap drive-seen.mcap
     """

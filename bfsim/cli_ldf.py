@@ -34,7 +34,7 @@ class _Size(click.ParamType[tuple[int, int]]):
     metavar="NAME",
     default=FIRMWARE[0],
     show_default=True,
-    help="Firmware to place: tinyphoon or one_eye, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
+    help=f"Firmware to place: {' or '.join(FIRMWARE)}, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
 )
 @click.option(
     "--board", metavar="NAME", default="cm-bf561", show_default=True, help="Board with the memories."
@@ -75,7 +75,7 @@ def ldf(
 ) -> None:
     """Link the firmware by FILE and print the memory map: what lies where, what is free, what to look at.
 
-    FILE is a linker description file of VisualDSP++; without it, the placement of the thesis is shown. An LDF for
+    FILE is a linker description file of VisualDSP++; without it, the default placement is shown. An LDF for
     other cores than the firmware's is shown without it.
 
     \b

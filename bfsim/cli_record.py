@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 from dataclasses import asdict
 from pathlib import Path
+from textwrap import fill
 
 import click
 from rich.table import Table
 
-from bfsim import recording
+from bfsim import recording, shipped
 from bfsim.recording import scenes
 from bfsim.terminal import print_report, progress_bar
 
@@ -182,8 +183,27 @@ def calibrate_command(
     )
 
 
-@record.command(name="render", short_help="Render a scene with exact ground truth.")
-@click.argument("name", metavar="SCENE", type=click.Choice(scenes.SCENE_NAMES))
+_RENDER_HELP = f"""Render SCENE with exact ground truth to the recording OUTPUT.
+
+SCENE is one scene or several of bfsim.recording.scenes, by FILE.py:NAME or PACKAGE:NAME, or built in:
+
+\b
+{fill(", ".join(shipped.SCENES), 76, break_on_hyphens=False)}
+
+Several scenes go to the folder OUTPUT, each to a recording of its name. Needs mitsuba: pip install "bfsim[scenes]".
+
+\b
+Examples:
+  bfsim record render ball-with-seam ball.mcap
+  bfsim record render box-distances box.mcap --distances 250,500
+  bfsim record render soccer bent.mcap --distort -0.25 0.08 0 0 \\
+      --turn-right 1 -1 0.5 --chessboards boards/
+  bfsim record render my_scenes.py:night night.mcap
+"""
+
+
+@record.command(name="render", short_help="Render a scene with exact ground truth.", help=_RENDER_HELP)
+@click.argument("name", metavar="SCENE")
 @click.argument("output", type=click.Path(path_type=Path))
 @click.option("--frames", type=click.IntRange(min=1), help="Render only so many frames.")
 @click.option("--samples", type=click.IntRange(min=1), help="Light paths a pixel.  [default: the scene's]")
@@ -191,7 +211,7 @@ def calibrate_command(
     "--distances",
     type=_Distances(),
     metavar="MM,MM,...",
-    help="Of box-distances and ball-distances: a frame for each.",
+    help="A frame for each, of a scene that is made for distances.",
 )
 @click.option(
     "--geometry",
@@ -241,23 +261,9 @@ def render_command(
     chessboards: Path | None,
     force: bool,
 ) -> None:
-    """Render SCENE with exact ground truth to the recording OUTPUT.
+    """Render one scene, or several."""
+    from bfsim.scenery import load_scenes
 
-    \b
-    SCENE is soccer (the built-in recording); a figure of the thesis, one of
-    field-of-circles, ball-beside-goal, camera-initialised, robot-marker,
-    hidden-ball, ball-with-seam, ball-too-close and goal-sharp-angle, or thesis
-    for all of these in the folder OUTPUT; box-distances or ball-distances (its
-    Tables 6.2 and 6.3). Needs mitsuba: pip install "bfsim[scenes]".
-
-    \b
-    Examples:
-      bfsim record render ball-with-seam ball.mcap
-      bfsim record render thesis scenes/
-      bfsim record render box-distances box.mcap --distances 250,500
-      bfsim record render soccer bent.mcap --distort -0.25 0.08 0 0 \\
-          --turn-right 1 -1 0.5 --chessboards boards/
-    """
     misfit = None
     if distort or turn_right or shift_right:
         zeros = (0.0, 0.0, 0.0)
@@ -265,7 +271,7 @@ def render_command(
         misfit = scenes.Misfit(lens, turn_right or zeros, shift_right or zeros)
     with progress_bar("Rendering") as progress:
         paths = scenes.render(
-            name,
+            load_scenes(name),
             output,
             frames=frames,
             samples=samples,

@@ -58,11 +58,11 @@ def load_firmware(name: str) -> LoadedFirmware:
     """
     is_built_in = name in shipped.FIRMWARE
     if is_built_in:
-        module, own = _import(shipped.FIRMWARE_PACKAGE, SHIPPED)
+        module, own = import_own(shipped.FIRMWARE_PACKAGE, SHIPPED)
         attribute = name
     else:
         place, attribute = parted(name)
-        module, own = _import(*located(place, _advice(attribute)))
+        module, own = import_own(*located(place, _advice(attribute)))
         attribute = attribute or _only_firmware(module, name)
     firmware = getattr(module, attribute, None)
     path = _path_of(module)
@@ -87,7 +87,7 @@ def load_kernel(name: str, firmware: str) -> Kernel:
     else:
         module = own.modules.get(place)
         if module is None:
-            module, own = _import(*located(parted(name)[0]))
+            module, own = import_own(*located(parted(name)[0]))
         found = [each for each in [getattr(module, attribute, None)] if isinstance(each, Kernel)]
     if len(found) != 1:
         advice = _apart(found) if found else _nearest(attribute, {each.name for each in _kernels_of(own)})
@@ -132,8 +132,11 @@ def _only_firmware(module: ModuleType, name: str) -> str:
     )
 
 
-def _import(module: str, root: Root) -> tuple[ModuleType, OwnModules]:
-    """Import a module from `root`, and what it imports of built-in firmware from what is shipped."""
+def import_own(module: str, root: Root) -> tuple[ModuleType, OwnModules]:
+    """Import a module from `root`, and what it imports of built-in firmware from what is shipped.
+
+    Raises FirmwareError when that fails.
+    """
     known = _imported.get((module, root))
     if known and not known[1].changed:
         return known

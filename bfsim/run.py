@@ -28,8 +28,7 @@ from bfsim.trace import Identity, RunRecord
 
 BUILT_IN_RECORDING = shipped.RECORDING
 PLACEMENTS = shipped.LDF_FOLDER
-DEFAULT_LDF = PLACEMENTS / "thesis.ldf"
-DEFAULT_LDFS = {"ADSP-BF561": DEFAULT_LDF, "ADSP-BF533": PLACEMENTS / "cm-bf533.ldf"}
+DEFAULT_LDF = shipped.DEFAULT_LDFS["ADSP-BF561"]
 
 
 def simulate(
@@ -112,7 +111,7 @@ def has_view(firmware: str) -> bool:
 def read_placement(ldf: Path | None, spec: BoardSpec) -> LinkerScript:
     """Read an LDF, or the shipped one that suits the board's chip, for the SDRAM of the board."""
     return parse_ldf(
-        ldf or DEFAULT_LDFS[spec.chip.name], defines={"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes)}
+        ldf or shipped.DEFAULT_LDFS[spec.chip.name], defines={"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes)}
     )
 
 

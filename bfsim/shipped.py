@@ -15,3 +15,13 @@ FIRMWARE_FOLDER = _PACKAGE.parent if _IS_INSTALLED else _PACKAGE.parent / "firmw
 FIRMWARE_PACKAGE = "tinyphoon"
 FIRMWARE = ("tinyphoon", "one_eye")
 """Names in that package that `--firmware` takes alone. The first one is the default."""
+
+DEFAULT_LDFS = {"ADSP-BF561": LDF_FOLDER / "thesis.ldf", "ADSP-BF533": LDF_FOLDER / "cm-bf533.ldf"}
+"""The placement of each chip."""
+
+SCENES_MODULE = "tinyphoon.scenes"
+SCENES = (
+    "soccer", "field-of-circles", "ball-beside-goal", "camera-initialised", "robot-marker", "hidden-ball",
+    "ball-with-seam", "ball-too-close", "goal-sharp-angle", "thesis", "box-distances", "ball-distances",
+)  # fmt: skip
+"""Names in that module that `bfsim record render` takes alone. The first one is the scene of RECORDING."""

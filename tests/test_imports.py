@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -40,6 +41,7 @@ MAY_IMPORT = {
     "loading": {"errors", "importing", "kernel", "locating", "machine", "shipped"},
     "explain": {"errors", "kernel", "loading", "trace"},
     "script": {"errors"},
+    "scenery": {"errors", "loading", "locating", "recording", "shipped"},
     "run": {
         "script",
         "errors",
@@ -58,7 +60,7 @@ MAY_IMPORT = {
     "terminal": set(),
     "cli_boards": {"chip", "report", "terminal"},
     "cli_ldf": {"mapping", "report", "shipped", "terminal"},
-    "cli_record": {"recording", "terminal"},
+    "cli_record": {"recording", "scenery", "shipped", "terminal"},
     "cli_seen": {"errors", "recording", "report", "run", "seen"},
     "cli": {
         "endings",
@@ -167,7 +169,28 @@ def test_simpy_stays_in_the_machine(path: Path) -> None:
     "path", sorted((ROOT / "firmware").rglob("*.py")), ids=lambda path: str(path.relative_to(ROOT))
 )
 def test_firmware_imports_only_the_api(path: Path) -> None:
-    """Firmware imports bfsim.api, numpy, itself and the standard library."""
+    """Firmware imports bfsim.api, numpy, itself and the standard library; its scenes are data of the renderer."""
     allowed = {"numpy", "tinyphoon", *sys.stdlib_module_names}
+    facade = "bfsim.recording.scenes" if path.parent.name == "scenes" else "bfsim.api"
     for module in imported_modules(path):
-        assert module == "bfsim.api" or module.split(".")[0] in allowed, f"{path} imports {module}"
+        assert module == facade or module.split(".")[0] in allowed, f"{path} imports {module}"
+
+
+ROBOT_WORDS = re.compile(
+    r"tinyphoon|\bthesis|\bT (§|Table|Fig|Eq)|strategy|edge detection|open & closing|blob detection|line detection"
+    r"|shape detection|object detection",
+    re.IGNORECASE,
+)
+"""What the built-in firmware is about: its robot, the thesis behind it, its stages, who gives it orders and how."""
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_the_simulator_knows_no_robot(path: Path) -> None:
+    """Another firmware, with another device beside another robot, must not need a change of bfsim.
+
+    Two places may: `shipped` has the names of what comes with bfsim, and chip/ the thesis as the source of a number.
+    """
+    named = [line for line in path.read_text().splitlines() if ROBOT_WORDS.search(line)]
+    if room_of(path) == "chip":
+        named = [line for line in named if "#" not in line]
+    assert room_of(path) == "shipped" or not named

@@ -12,7 +12,7 @@ CIRCLE: Colour = (150, 255, 90)
 FAILED: Colour = (170, 110, 110)
 
 NEAR_MM, FAR_MM = 200.0, 1600.0
-"""Of the scale of depths: the table of T Table 6.2 begins and a field ends about there."""
+"""Of the scale of depths: from what just fits into both pictures to the end of a room."""
 
 _NEAR_HUE, _FAR_HUE = 0.02, 0.62  # red to blue
 _LIGHTNESS = 0.66

@@ -11,8 +11,10 @@ from click.testing import CliRunner
 from benchmarks.figure_6_4 import curves, main
 from benchmarks.seen_stereo import SeenStereo, see_stereo
 from benchmarks.table_6_2 import MODES, THESIS, border_lines, measured
-from bfsim.recording import RecordingReader, StereoFrame, StereoGeometry, scenes
+from bfsim.recording import RecordingReader, StereoFrame, StereoGeometry
+from bfsim.recording.scenes import render
 from bfsim.run import calibration_of
+from tinyphoon.scenes.distances import BOX_DISTANCES
 
 LEFT_MM, RIGHT_MM = 15.0, -15.0
 """Where the cameras are across."""
@@ -66,7 +68,7 @@ def test_rendered_box(tmp_path: Path) -> None:
     """Two distances of the table, the thesis's best and one where it finds nothing, with fewer samples."""
     pytest.importorskip("mitsuba")
     distances = (350.0, 800.0)
-    (path,) = scenes.render("box-distances", tmp_path / "box.mcap", distances_mm=distances, samples=16)
+    (path,) = render(BOX_DISTANCES, tmp_path / "box.mcap", distances_mm=distances, samples=16)
     with RecordingReader(path) as reader:
         frames, calibration = list(reader.frames()), calibration_of(reader)
     errors = {

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from bfsim.api import FirmwareError
-from bfsim.recording.scenes.soccer_data import BALL as TRUE_BALL
-from bfsim.recording.scenes.soccer_data import GOAL as TRUE_GOAL
-from bfsim.recording.scenes.soccer_data import ROBOT as TRUE_ROBOT
+from tinyphoon.scenes.soccer import BALL as TRUE_BALL
+from tinyphoon.scenes.soccer import GOAL as TRUE_GOAL
+from tinyphoon.scenes.soccer import ROBOT as TRUE_ROBOT
 from tinyphoon.strategy.models import (
     ALL_COLOURS,
     BLUE,

@@ -16,9 +16,7 @@ from bfsim.cli_record import record
 from bfsim.errors import RecordingError
 from bfsim.recording import RecordingReader, StereoGeometry
 from bfsim.recording.planes import YuvPlanes
-from bfsim.recording.scenes import rendering
-from bfsim.recording.scenes.catalog import SCENE_NAMES, THESIS_SCENES, scenes_named
-from bfsim.recording.scenes.distances import BALL_DISTANCES_MM, BOX_DISTANCES_MM, ball_at, box_at
+from bfsim.recording.scenes import SceneAtDistances, Scenes, rendering
 from bfsim.recording.scenes.lens import Lens, Misfit
 from bfsim.recording.scenes.objects import Ball, FieldArc
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
@@ -26,6 +24,9 @@ from bfsim.recording.scenes.renderer import Renderer
 from bfsim.recording.scenes.scene import Scene
 from bfsim.recording.scenes.shapes import scene_shapes
 from bfsim.recording.scenes.truth import disparity, frame_truth
+from tinyphoon.scenes.distances import BALL_DISTANCES, BOX_DISTANCES
+from tinyphoon.scenes.soccer import SOCCER
+from tinyphoon.scenes.thesis import FIGURES
 
 GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
 
@@ -35,20 +36,20 @@ def truth_of(scene: Scene, frame: int = 0) -> dict[str, Any]:
     return frame_truth(scene, scene.poses[frame].cameras(scene.geometry), lambda _camera, _point: True)
 
 
-@pytest.mark.parametrize("name", THESIS_SCENES)
+@pytest.mark.parametrize("name", FIGURES)
 def test_thesis_scenes_are_taken_by_the_robot(name: str) -> None:
     """Each has some frames, the cameras of the robot, and truth that is plain JSON."""
-    scene = THESIS_SCENES[name]
+    scene = FIGURES[name]
     assert 3 <= len(scene.poses) <= 10
     assert scene.geometry == GEOMETRY
     for frame in range(len(scene.poses)):
         json.dumps(truth_of(scene, frame), allow_nan=False)
 
 
-@pytest.mark.parametrize("name", THESIS_SCENES)
+@pytest.mark.parametrize("name", FIGURES)
 def test_what_a_thesis_scene_is_about_is_in_view(name: str) -> None:
     """Balls and marks are at least in part inside the left picture of every frame."""
-    scene = THESIS_SCENES[name]
+    scene = FIGURES[name]
     for frame in range(len(scene.poses)):
         for thing in truth_of(scene, frame).values():
             if isinstance(thing, dict) and thing.get("kind") == "ball":
@@ -63,17 +64,16 @@ def test_what_a_thesis_scene_is_about_is_in_view(name: str) -> None:
 
 def test_shapes_of_every_scene_have_names_of_their_own() -> None:
     """No two things of a scene end up under one name: all are drawn."""
-    for name in SCENE_NAMES:
-        for scene in scenes_named(name).values():
-            balls = sum(isinstance(thing, Ball) for thing in scene.things.values())
-            kinds = [shape["type"] for shape in scene_shapes(scene).values()]
-            assert kinds.count("sphere") == balls
-            assert kinds.count("constant") == 1
+    for scene in (SOCCER, *FIGURES.values(), BOX_DISTANCES.scene(), BALL_DISTANCES.scene()):
+        balls = sum(isinstance(thing, Ball) for thing in scene.things.values())
+        kinds = [shape["type"] for shape in scene_shapes(scene).values()]
+        assert kinds.count("sphere") == balls
+        assert kinds.count("constant") == 1
 
 
 def test_camera_settles_from_yellow_to_white() -> None:
     """The first picture has too little blue; the gains go to 1 in a straight line and stay in order."""
-    gains = np.array(THESIS_SCENES["camera-initialised"].gains)
+    gains = np.array(FIGURES["camera-initialised"].gains)
     assert gains[0, 2] < 0.5
     assert gains[0, 1] > 1
     assert gains[-1] == pytest.approx([1, 1, 1])
@@ -82,7 +82,7 @@ def test_camera_settles_from_yellow_to_white() -> None:
 
 def test_post_carries_on_the_left_border_of_the_mark() -> None:
     """In the left picture the post behind the robot starts where the mark's border ends, to half a pixel."""
-    truth = truth_of(THESIS_SCENES["robot-marker"])
+    truth = truth_of(FIGURES["robot-marker"])
     (mark_x, mark_y) = truth["robot"]["mark_edges"]["front left"]["left"]["ends_px"][1]
     (low_x, low_y), (high_x, high_y) = truth["post"]["edges"]["front left"]["left"]["ends_px"]
     assert np.interp(mark_y, [high_y, low_y], [high_x, low_x]) == pytest.approx(mark_x, abs=0.5)
@@ -91,10 +91,10 @@ def test_post_carries_on_the_left_border_of_the_mark() -> None:
 @pytest.mark.parametrize("geometry", [None, StereoGeometry(200.0, 60.0, 90.0, 0.0)])
 def test_box_distances(geometry: StereoGeometry | None) -> None:
     """The front's upright edges are f w / 2d beside the middle, shifted by half the disparity f b / d."""
-    scene = box_at(geometry=geometry)
+    scene = BOX_DISTANCES.scene(geometry=geometry)
     focal_px, baseline_mm = scene.geometry.focal_px, scene.geometry.baseline_mm
-    assert len(scene.poses) == len(BOX_DISTANCES_MM)
-    for frame, distance_mm in enumerate(BOX_DISTANCES_MM):
+    assert len(scene.poses) == len(BOX_DISTANCES.distances_mm)
+    for frame, distance_mm in enumerate(BOX_DISTANCES.distances_mm):
         edges = truth_of(scene, frame)["box"]["edges"]
         half_px, shift_px = focal_px * 50 / distance_mm, focal_px * baseline_mm / distance_mm / 2
         for name, sign in (("front left", -1), ("front right", 1)):
@@ -105,22 +105,22 @@ def test_box_distances(geometry: StereoGeometry | None) -> None:
 
 def test_ball_distances() -> None:
     """The centre is each distance deep, between the axes, and its disparity is f b / d."""
-    scene = ball_at()
-    for frame, distance_mm in enumerate(BALL_DISTANCES_MM):
+    scene = BALL_DISTANCES.scene()
+    for frame, distance_mm in enumerate(BALL_DISTANCES.distances_mm):
         ball = truth_of(scene, frame)["ball"]
         assert ball["left"]["camera_mm"][::2] == pytest.approx([15.0, distance_mm])
         assert ball["right"]["camera_mm"][::2] == pytest.approx([-15.0, distance_mm])
         assert ball["disparity_px"] == pytest.approx(311 * 30 / distance_mm)
 
 
-@pytest.mark.parametrize("name", ["box-distances", "ball-distances"])
-def test_things_at_the_shortest_distance_are_whole(name: str) -> None:
+@pytest.mark.parametrize("made", [BOX_DISTANCES, BALL_DISTANCES])
+def test_things_at_the_shortest_distance_are_whole(made: SceneAtDistances) -> None:
     """At every distance both borders of the box, or of the ball, are inside both pictures."""
-    scene = scenes_named(name)[name]
+    scene = made.scene()
     for frame in range(len(scene.poses)):
         truth = truth_of(scene, frame)
         for side in ("left", "right"):
-            if name == "box-distances":
+            if made is BOX_DISTANCES:
                 assert all(truth["box"]["edges"][edge][side] for edge in ("front left", "front right"))
             else:
                 (x, y), (long_px, _) = (
@@ -132,7 +132,7 @@ def test_things_at_the_shortest_distance_are_whole(name: str) -> None:
 
 def test_disparity_is_zero_where_there_is_nothing() -> None:
     """f b / depth, exactly; an empty pixel is infinitely deep."""
-    cameras = box_at().poses[0].cameras(GEOMETRY)
+    cameras = BOX_DISTANCES.scene().poses[0].cameras(GEOMETRY)
     found = disparity(np.array([[500.0, np.inf]]), cameras)
     assert found.dtype == np.float32
     assert found == pytest.approx(np.array([[386 * 30.47 / 500, 0]]))
@@ -140,7 +140,7 @@ def test_disparity_is_zero_where_there_is_nothing() -> None:
 
 def test_rays_go_through_their_pixels() -> None:
     """A point along the ray of a pixel projects to that pixel, and its depth is the length given."""
-    camera = box_at().poses[0].cameras(GEOMETRY)["left"]
+    camera = BOX_DISTANCES.scene().poses[0].cameras(GEOMETRY)["left"]
     points_mm = camera.position_mm + 700 * camera.rays()
     pixels = np.stack(np.meshgrid(np.arange(320), np.arange(240)), axis=-1)
     np.testing.assert_allclose(camera.project(points_mm), pixels, atol=1e-9)
@@ -157,19 +157,25 @@ def test_arc_is_made_of_strokes_on_its_circle() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "distances_mm", "message"),
+    ("scenes", "distances_mm", "message"),
     [
-        ("soccer", (300.0,), "distances must be given for box-distances or ball-distances, not for soccer"),
-        ("thesis", (300.0,), "not for thesis"),
-        ("box-distances", (300.0, -1.0), r"above 0 mm, not 300, -1"),
-        ("box-distances", (), "at least one"),
-        ("ball-distances", (float("nan"),), "above 0 mm"),
+        (
+            SOCCER,
+            (300.0,),
+            "distances must be given for a scene that is made for distances, and for no other one",
+        ),
+        (FIGURES, (300.0,), "and for no other one"),
+        (BOX_DISTANCES, (300.0, -1.0), r"above 0 mm, not 300, -1"),
+        (BOX_DISTANCES, (), "at least one and above 0 mm, not none"),
+        (BALL_DISTANCES, (float("nan"),), "above 0 mm"),
     ],
 )
-def test_distances_that_cannot_be(name: str, distances_mm: tuple[float, ...], message: str) -> None:
+def test_distances_that_cannot_be(
+    tmp_path: Path, scenes: Scenes, distances_mm: tuple[float, ...], message: str
+) -> None:
     """Distances are for the scenes that have some, and ahead."""
     with pytest.raises(RecordingError, match=message):
-        scenes_named(name, distances_mm)
+        rendering.render(scenes, tmp_path / "a.mcap", distances_mm=distances_mm)
 
 
 def run(*arguments: object) -> str:
@@ -222,7 +228,7 @@ class TestRendered:
 
     def test_a_scene_looks_the_same_each_time(self) -> None:
         """Two lamps alike stay two: what chance does to their order must not be seen."""
-        scene = scenes_named("ball-distances", [400.0], None)["ball-distances"]
+        scene = BALL_DISTANCES.scene([400.0])
         camera = scene.poses[0].cameras(scene.geometry)["left"]
         looks = [Renderer(scene_shapes(scene)).look(camera, samples=1, seed=1) for _ in range(25)]
         assert all(np.array_equal(each, looks[0]) for each in looks)

@@ -1,14 +1,21 @@
 """Synthetic stereo scenes: rendered with mitsuba to recordings with exact ground truth.
 
-The optional extra `scenes` installs the renderer; nothing here is needed to run a recording.
-World frame of every scene: millimetres, x towards the far goal, y to the left, z up, origin on the floor.
+The optional extra `scenes` installs the renderer; nothing here is needed to run a recording. What is in a scene is data
+that comes from outside: a `Scene`, several by their names, or one that is made for distances.
+World frame of every scene: millimetres, x ahead (towards the far goal), y to the left, z up, origin on the floor.
 Pixels are counted as array indices: (0.0, 0.0) is the centre of the first pixel.
 """
 
 from __future__ import annotations
 
-from bfsim.recording.scenes.catalog import SCENE_NAMES
+from bfsim.recording.frames import StereoGeometry
+from bfsim.recording.scenes.drive import Drive, Pose
 from bfsim.recording.scenes.lens import Lens, Misfit
+from bfsim.recording.scenes.objects import Ball, Box, Colour, FieldArc, FieldLine, Goal, Lamp, Robot, Thing
 from bfsim.recording.scenes.rendering import render
+from bfsim.recording.scenes.scene import Floor, Light, Scene, SceneAtDistances, Scenes
 
-__all__ = ["SCENE_NAMES", "Lens", "Misfit", "render"]
+__all__ = [
+    "Ball", "Box", "Colour", "Drive", "FieldArc", "FieldLine", "Floor", "Goal", "Lamp", "Lens", "Light", "Misfit", "Pose",
+    "Robot", "Scene", "SceneAtDistances", "Scenes", "StereoGeometry", "Thing", "render",
+]  # fmt: skip

@@ -1,22 +1,23 @@
-"""From the name of a scene to files: its recording, and chessboard pictures of its cameras."""
+"""From scenes to files: their recordings, and chessboard pictures of their cameras."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from bfsim.errors import RecordingError
 from bfsim.recording.frames import StereoGeometry
 from bfsim.recording.importer import Progress
-from bfsim.recording.scenes.catalog import THESIS, scenes_named
 from bfsim.recording.scenes.chessboard import write_chessboards
 from bfsim.recording.scenes.lens import Misfit
+from bfsim.recording.scenes.scene import Scene, SceneAtDistances, Scenes
 from bfsim.recording.scenes.studio import record_scene
 
 
 def render(
-    name: str,
+    scenes: Scenes,
     output: str | os.PathLike[str],
     *,
     frames: int | None = None,
@@ -28,35 +29,51 @@ def render(
     force: bool = False,
     progress: Progress | None = None,
 ) -> list[Path]:
-    """Render the scene `name` to the recording `output`, or all thesis scenes to the folder `output`.
+    """Render a scene to the recording `output`, or several, each to a recording of its name in the folder `output`.
 
     frames and samples (light paths a pixel) are the scene's own by default, distances_mm and geometry too. With a
     misfit the cameras are real ones; the folder `chessboards` takes pictures of a chessboard by the same cameras.
     An existing recording needs `force`. Returns the recordings. Raises RecordingError.
     """
-    chosen = scenes_named(name, distances_mm, geometry)
-    folder = Path(output) if name == THESIS else None
-    paths = {each: folder / f"{each}.mcap" if folder else Path(output) for each in chosen}
-    for path in paths.values():
+    chosen = _by_path(scenes, Path(output), distances_mm, geometry)
+    for path in chosen:
         if path.exists() and not force:
             raise RecordingError(f"{path}: recording must not exist yet; `--force` overwrites it")
-    if folder:
-        _make(folder)
+    if isinstance(scenes, Mapping):
+        _make(Path(output))
     if chessboards is not None:
         scene = next(iter(chosen.values()))
         _make(Path(chessboards))
         write_chessboards(Path(chessboards), scene.geometry, misfit or Misfit(), seed=scene.seed)
-    counts = {each: len(scene.poses[:frames]) for each, scene in chosen.items()}
+    counts = {path: len(scene.poses[:frames]) for path, scene in chosen.items()}
     done = 0
 
     def tell(of_scene: int) -> None:
         if progress is not None:
             progress(done + of_scene, sum(counts.values()))
 
-    for each, scene in chosen.items():
-        record_scene(scene, paths[each], frames=frames, samples=samples, misfit=misfit, progress=tell)
-        done += counts[each]
-    return list(paths.values())
+    for path, scene in chosen.items():
+        record_scene(scene, path, frames=frames, samples=samples, misfit=misfit, progress=tell)
+        done += counts[path]
+    return list(chosen)
+
+
+def _by_path(
+    scenes: Scenes, output: Path, distances_mm: Sequence[float] | None, geometry: StereoGeometry | None
+) -> dict[Path, Scene]:
+    """Return the scenes to render by the files that they are rendered to."""
+    if isinstance(scenes, SceneAtDistances):
+        return {output: scenes.scene(distances_mm, geometry)}
+    if distances_mm is not None:
+        raise RecordingError(
+            "distances must be given for a scene that is made for distances, and for no other one"
+        )
+    chosen = (
+        {output / f"{name}.mcap": scene for name, scene in scenes.items()}
+        if isinstance(scenes, Mapping)
+        else {output: scenes}
+    )
+    return {path: replace(scene, geometry=geometry or scene.geometry) for path, scene in chosen.items()}
 
 
 def _make(folder: Path) -> None:

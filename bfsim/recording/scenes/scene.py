@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from bfsim.errors import RecordingError
 from bfsim.recording.frames import StereoGeometry
 from bfsim.recording.scenes.drive import Pose
 from bfsim.recording.scenes.objects import Colour, FieldArc, FieldLine, Lamp, Thing
@@ -52,3 +54,26 @@ class Scene:
     samples: int
     seed: int
     gains: tuple[Colour, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SceneAtDistances:
+    """A scene that is made for distances, a frame for each: `at` makes it, the others are what it is made for by default."""
+
+    at: Callable[[Sequence[float], StereoGeometry], Scene]
+    distances_mm: tuple[float, ...]
+    geometry: StereoGeometry
+
+    def scene(
+        self, distances_mm: Sequence[float] | None = None, geometry: StereoGeometry | None = None
+    ) -> Scene:
+        """Return the scene for these distances and this geometry. Raises RecordingError if they cannot be."""
+        distances_mm = self.distances_mm if distances_mm is None else distances_mm
+        if not all(0 < distance < math.inf for distance in distances_mm or (0,)):
+            listed = ", ".join(f"{distance:g}" for distance in distances_mm) or "none"
+            raise RecordingError(f"distances must be at least one and above 0 mm, not {listed}")
+        return self.at(distances_mm, geometry or self.geometry)
+
+
+Scenes = Scene | SceneAtDistances | Mapping[str, Scene]
+"""What can be rendered: to a recording, or each of several to one of its name."""

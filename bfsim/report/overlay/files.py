@@ -22,7 +22,7 @@ from bfsim.report.save import require_place
 from bfsim.seen import SeenFrame
 
 FRAME_MS = 200
-"""How long an animated file shows a frame: about as long as the robot works on one (T §6.6)."""
+"""How long an animated file shows a frame: long enough to look at it."""
 
 TAG = "bfsim overlay"
 """A remark in each file, by which an earlier overlay is known."""

@@ -1,4 +1,4 @@
-"""The scenes of the thesis' figures, rebuilt from what its text says of them: numbers only.
+"""The scenes of the thesis's figures, rebuilt from what its text says of them: numbers only.
 
 The pictures themselves are not reproduced: where things stand, and all colours and lights, are [assumed]; what
 the text gives is marked [T] with its section. Each scene shows the effect that the text reports, as strongly as
@@ -9,9 +9,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bfsim.recording.scenes.drive import Drive
-from bfsim.recording.scenes.objects import Ball, Box, Colour, FieldArc, Lamp
-from bfsim.recording.scenes.soccer_data import (
+from bfsim.recording.scenes import Ball, Box, Colour, Drive, FieldArc, Lamp, Scene
+from tinyphoon.scenes.soccer import (
     BALL,
     BLACK,
     BLUE,
@@ -182,3 +181,15 @@ FIELD_OF_CIRCLES = replace(
     samples=4 * SAMPLES,  # the thesis's picture was made by a computer: little noise
     seed=508,
 )
+
+FIGURES: dict[str, Scene] = {
+    "field-of-circles": FIELD_OF_CIRCLES,
+    "ball-beside-goal": BALL_BESIDE_GOAL,
+    "camera-initialised": CAMERA_INITIALISED,
+    "robot-marker": ROBOT_MARKER,
+    "hidden-ball": HIDDEN_BALL,
+    "ball-with-seam": BALL_WITH_SEAM,
+    "ball-too-close": BALL_TOO_CLOSE,
+    "goal-sharp-angle": GOAL_SHARP_ANGLE,
+}
+"""T Figures 5.8, 6.7, 6.8, 6.9, 6.10, 6.12, 6.13 and 6.14."""

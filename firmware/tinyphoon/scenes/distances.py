@@ -6,19 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from bfsim.recording.frames import StereoGeometry
-from bfsim.recording.scenes.drive import Pose
-from bfsim.recording.scenes.objects import Box
-from bfsim.recording.scenes.scene import Scene
-from bfsim.recording.scenes.soccer_data import BALL, FLOOR, RED, SOCCER
-
-# Distances, focal length and baseline of the synthetic pictures: [T 6.2], [T 6.3.1]. The thesis gives the focal
-# length in mm and uses it in px. Height and tilt: [assumed]; level before the box, so that its upright edges are
-# as deep at the top as at the bottom, and as on the robot before the ball [T 6.4].
-BOX_DISTANCES_MM = (250.0, 300.0, 350.0, 400.0, 450.0, 500.0, 600.0, 700.0, 800.0, 1000.0)
-BALL_DISTANCES_MM = (300.0, 400.0, 500.0, 600.0, 700.0, 800.0, 900.0, 1000.0, 1100.0)
-BOX_GEOMETRY = StereoGeometry(focal_px=311.0, baseline_mm=30.0, height_mm=60.0, tilt_deg=0.0)
-BALL_GEOMETRY = StereoGeometry(focal_px=311.0, baseline_mm=30.0, height_mm=120.0, tilt_deg=10.0)
+from bfsim.recording.scenes import Box, Pose, Scene, SceneAtDistances, StereoGeometry
+from tinyphoon.scenes.soccer import BALL, FLOOR, RED, SOCCER
 
 # Both borders in both pictures at the shortest distance. [assumed]
 _BOX_MM = (80.0, 100.0, 100.0)
@@ -31,12 +20,8 @@ _BALL = replace(BALL, x_mm=_THING_X_MM, y_mm=0)
 _FLOOR = replace(FLOOR, size_mm=(4000.0, 4000.0), lines=())
 
 
-def box_at(distances_mm: Sequence[float] | None = None, geometry: StereoGeometry | None = None) -> Scene:
-    """Return a box between the axes of the cameras; its front is each of `distances_mm` from them, over the floor.
-
-    The distances and the geometry are those of the thesis by default.
-    """
-    distances_mm, geometry = distances_mm or BOX_DISTANCES_MM, geometry or BOX_GEOMETRY
+def _box_at(distances_mm: Sequence[float], geometry: StereoGeometry) -> Scene:
+    """Return a box between the axes of the cameras; its front is each of `distances_mm` from them, over the floor."""
     return replace(
         SOCCER,
         description=f"T Table 6.2: a box with its front {_listed(distances_mm)} mm before the cameras.",
@@ -49,13 +34,11 @@ def box_at(distances_mm: Sequence[float] | None = None, geometry: StereoGeometry
     )
 
 
-def ball_at(distances_mm: Sequence[float] | None = None, geometry: StereoGeometry | None = None) -> Scene:
+def _ball_at(distances_mm: Sequence[float], geometry: StereoGeometry) -> Scene:
     """Return a ball of 6 cm between the axes of the cameras; its centre is each of `distances_mm` deep.
 
-    Depth is along the axes, as T Eq. 4.1 measures it. The distances and the geometry are those of the thesis by
-    default.
+    Depth is along the axes, as T Eq. 4.1 measures it.
     """
-    distances_mm, geometry = distances_mm or BALL_DISTANCES_MM, geometry or BALL_GEOMETRY
     tilt = math.radians(geometry.tilt_deg)
     lower_mm = geometry.height_mm - _BALL.radius_mm
     ways_mm = [(distance - lower_mm * math.sin(tilt)) / math.cos(tilt) for distance in distances_mm]
@@ -73,3 +56,18 @@ def ball_at(distances_mm: Sequence[float] | None = None, geometry: StereoGeometr
 
 def _listed(distances_mm: Sequence[float]) -> str:
     return ", ".join(f"{distance:g}" for distance in distances_mm)
+
+
+# Distances, focal length and baseline of the synthetic pictures: [T 6.2], [T 6.3.1]. The thesis gives the focal
+# length in mm and uses it in px. Height and tilt: [assumed]; level before the box, so that its upright edges are
+# as deep at the top as at the bottom, and as on the robot before the ball [T 6.4].
+BOX_DISTANCES = SceneAtDistances(
+    at=_box_at,
+    distances_mm=(250.0, 300.0, 350.0, 400.0, 450.0, 500.0, 600.0, 700.0, 800.0, 1000.0),
+    geometry=StereoGeometry(focal_px=311.0, baseline_mm=30.0, height_mm=60.0, tilt_deg=0.0),
+)
+BALL_DISTANCES = SceneAtDistances(
+    at=_ball_at,
+    distances_mm=(300.0, 400.0, 500.0, 600.0, 700.0, 800.0, 900.0, 1000.0, 1100.0),
+    geometry=StereoGeometry(focal_px=311.0, baseline_mm=30.0, height_mm=120.0, tilt_deg=10.0),
+)

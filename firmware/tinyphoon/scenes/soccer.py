@@ -6,10 +6,20 @@ memory; [assumed].
 
 from __future__ import annotations
 
-from bfsim.recording.frames import StereoGeometry
-from bfsim.recording.scenes.drive import Drive
-from bfsim.recording.scenes.objects import Ball, Box, Colour, FieldLine, Goal, Lamp, Robot
-from bfsim.recording.scenes.scene import Floor, Light, Scene
+from bfsim.recording.scenes import (
+    Ball,
+    Box,
+    Colour,
+    Drive,
+    FieldLine,
+    Floor,
+    Goal,
+    Lamp,
+    Light,
+    Robot,
+    Scene,
+    StereoGeometry,
+)
 
 # Focal length after rectification and baseline: [T 6.2]; height above the floor and tilt: [T 6.4].
 GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
