@@ -174,6 +174,7 @@ def run(
         done = _simulate(watchers=watchers, **what)
     if json_path == STDOUT:
         click.echo(json_text(done, seen), nl=False)
+        _warn(done)
     else:
         print_report(run_report(done))
         if json_path:
@@ -231,12 +232,15 @@ def explain(kernel: str, runs: bool, as_json: bool, **what: Any) -> None:
 
     named = kernel, what["firmware"], what["profile"]
     explanation = explain_named(*named)  # a slip in a name is told before the run
-    if runs or what["recording"]:
-        explanation = explain_named(*named, _simulate(**what))
+    done = _simulate(**what) if runs or what["recording"] else None
+    if done:
+        explanation = explain_named(*named, done)
     if as_json:
         click.echo(explain_json(explanation), nl=False)
     else:
         print_report(explain_report(explanation))
+    if done:
+        _warn(done)
 
 
 @main.command(short_help="Fail if a frame costs more than a baseline allows.")
@@ -276,9 +280,10 @@ def check(path: Path, update: bool, **what: Any) -> None:
     if limits is None:
         baseline.write_baseline(path, done, budget)
         click.echo(f"{path} holds the limits now: {budget.frame_rate_hz:.2f} frames/s.")
+        _warn(done)
         return
     outcome = judge(done, budget, limits, path)
-    print_report(check_report(outcome))
+    print_report(check_report(outcome, done))
     if not outcome.passed:
         raise SystemExit(LIMIT_BROKEN)
 
@@ -301,6 +306,14 @@ def _simulate(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
     if not done.frames:
         raise ConfigError("a run must have at least one frame to report on, and this one finished none")
     return done
+
+
+def _warn(done: RunRecord) -> None:
+    """Tell the warnings of a run beside an output that has no place for them."""
+    from bfsim.report.warnings import warnings_of
+
+    for each in warnings_of(done):
+        click.secho(f"bfsim: warning: {each.kind}: {each.text}", fg="yellow", err=True)
 
 
 def _exit_if_interrupted(done: RunRecord) -> None:

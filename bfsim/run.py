@@ -19,12 +19,12 @@ from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Fidelity, Outcome, require_cores, symbols_of
 from bfsim.machine.bus.ahead import compiled_ahead
 from bfsim.machine.cameras.capture import Feed
-from bfsim.machine.program import Calibration, FrameSize, SourcePixels
+from bfsim.machine.program import Calibration, Firmware, FrameSize, SourcePixels
 from bfsim.machine.spi.device import SpiDevice
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.script import read_script
 from bfsim.seen import Seen, SeenFrame
-from bfsim.trace import Identity, RunRecord
+from bfsim.trace import Identity, RunRecord, RunWarning, WarningKind
 
 BUILT_IN_RECORDING = shipped.RECORDING
 PLACEMENTS = shipped.LDF_FOLDER
@@ -68,7 +68,8 @@ def simulate(
         compiled_ahead() as weave,
     ):
         size = FrameSize(reader.width, reader.height)
-        program = loaded.firmware.calibrated(calibration_of(reader))
+        calibration = calibration_of(reader)
+        program = loaded.firmware.calibrated(calibration)
         symbols = symbols_of(program, size, compiler)
         link_map = link(placement, symbols, spec.chip.regions, chip=spec.chip.name)
         machine = Board(
@@ -100,7 +101,26 @@ def simulate(
                 on_seen(SeenFrame(index=index, times_ns=source.take_times_ns(index), cameras=cameras))
 
         outcome = machine.run(iter(source), count, show if on_seen else None)
-    return _record(outcome, spec, loaded, placement, feed, fidelity, size, source, compiler, script_digest)
+    assumptions = (*_assumed_geometry(program, calibration), *_assumed_clocks(spec))
+    return _record(
+        outcome, assumptions, spec, loaded, placement, feed, fidelity, size, source, compiler, script_digest
+    )
+
+
+def _assumed_geometry(program: Firmware, calibration: Calibration) -> Iterator[RunWarning]:
+    if program.assumed_geometry and not calibration.geometries:
+        text = (
+            f"the recording does not say where its cameras are: {program.assumed_geometry} was assumed, and what is "
+            "measured by it may be wrong; `bfsim record import --geometry` puts yours into a recording"
+        )
+        yield RunWarning(kind=WarningKind.GEOMETRY, text=text)
+
+
+def _assumed_clocks(spec: BoardSpec) -> Iterator[RunWarning]:
+    if spec.pll is None:
+        clocks = f"{float(spec.clocks.cclk_hz) / 1e6:.6g} and {float(spec.clocks.sclk_hz) / 1e6:.6g} MHz"
+        text = f"no PLL setting makes the clocks of {spec.name}, {clocks}, of one crystal"
+        yield RunWarning(kind=WarningKind.CLOCKS, text=text)
 
 
 def has_view(firmware: str) -> bool:
@@ -175,6 +195,7 @@ def _name(path: Path) -> str:
 
 def _record(
     outcome: Outcome,
+    assumptions: tuple[RunWarning, ...],
     spec: BoardSpec,
     loaded: LoadedFirmware,
     placement: LinkerScript,
@@ -221,6 +242,8 @@ def _record(
         code=outcome.code,
         messages=outcome.messages,
         device_notes=outcome.device_notes,
+        assumptions=assumptions,
+        losses=loaded.firmware.losses,
         interrupts=outcome.interrupts,
         events=outcome.events,
     )

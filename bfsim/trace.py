@@ -7,7 +7,7 @@ issue + stall + idle = elapsed.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 REST = "(the rest)"
@@ -208,6 +208,26 @@ class MessageRecord:
     end_cclk: int
 
 
+class WarningKind(StrEnum):
+    """What a warning is about."""
+
+    GEOMETRY = "geometry"
+    CLOCKS = "clocks"
+    MISSED = "missed frames"
+    DEVICE = "SPI device"
+    LOST = "lost"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunWarning:
+    """Something about a run that must not be overlooked, and the numbers in its text. `result` is the published number, if it is of one."""
+
+    kind: WarningKind
+    text: str
+    numbers: Mapping[str, int] = field(default_factory=dict)
+    result: str = ""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunRecord:
     """One run. `messages` went over SPI; `interrupts` were taken, by core and source. `missed` are the recording's frames that came while the firmware was busy.
@@ -215,6 +235,8 @@ class RunRecord:
     `firmware_place` is the file that was named as firmware, or "built in".
     `device_notes` are what the device on the SPI had to say when the run was over.
     `reference` says what the `reference_ms` of `rows` are, None where the firmware has no reference.
+    `assumptions` are warnings of what was not given and had to be assumed; `losses` say in words what those published
+    numbers count that the firmware lost.
     When `interrupted` by Ctrl-C, `kernels` and `traffic` also hold what was done of the frame that was not finished.
     """
 
@@ -230,6 +252,8 @@ class RunRecord:
     code: tuple[CodeRecord, ...]
     messages: tuple[MessageRecord, ...]
     device_notes: tuple[str, ...]
+    assumptions: tuple[RunWarning, ...]
+    losses: Mapping[str, str]
     interrupts: Mapping[str, int]
     events: int
 

@@ -140,6 +140,10 @@ class Firmware:
     that names the key of the script and what it must be. Without it nobody listens there.
     `view`: what a core has in memory at the end of a frame → what it saw, for people and files, if there is anything to
     show; it is not simulated.
+    `losses`: what the firmware had to leave out, as published number → in words what it counts, such as {"edges_lost":
+    "edges without room in the store"}; a run that lost something ends with a warning.
+    `assumed_geometry`: in words, where the firmware takes the cameras to be if the recording does not say; the run ends
+    with a warning then. Empty for firmware that does not ask.
     `write_through`: memory segments of the LDF in SDRAM that the data caches write through; the rest is written back.
     """
 
@@ -151,6 +155,8 @@ class Firmware:
     calibration: Callable[[Calibration], Buffers] | None = None
     spi: Callable[[Script], SpiDevice] | None = None
     view: Callable[[Readout], Seen | None] | None = None
+    losses: Mapping[str, str] = field(default_factory=dict)
+    assumed_geometry: str = ""
     write_through: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

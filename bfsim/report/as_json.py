@@ -11,7 +11,8 @@ from pydantic_core import to_jsonable_python
 
 from bfsim.report.budget import budget_of
 from bfsim.report.digest import cycle_digest, identity_digest
-from bfsim.trace import RunRecord
+from bfsim.report.warnings import warnings_of
+from bfsim.trace import RunRecord, RunWarning
 
 SCHEMA = "bfsim.run/2"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
@@ -24,7 +25,7 @@ _NUMBERS = re.compile(r"\[\n\s+(-?[\d.e+-]+(?:,\n\s+-?[\d.e+-]+)*)\n\s+\]")
 
 
 def as_json(run: RunRecord, seen: Seen | None = None) -> dict[str, Any]:
-    """Return the records of a run of at least one frame as they are, and beside them the budget and the digests.
+    """Return the records of a run of at least one frame as they are, and beside them warnings, budget and digests.
 
     Each frame of `seen` has it beside its records. Keys are the field names of `bfsim.trace` and `bfsim.report.budget`, so each carries its unit.
     """
@@ -34,7 +35,15 @@ def as_json(run: RunRecord, seen: Seen | None = None) -> dict[str, Any]:
     for frame in plain["frames"]:
         if seen and frame["index"] in seen:
             frame["seen"] = seen[frame["index"]]
-    return {"schema": SCHEMA, "digests": digests, "budget": budget, **plain}
+    warnings = [_flat(each) for each in warnings_of(run)]
+    del plain["assumptions"]  # they are among the warnings
+    return {"schema": SCHEMA, "digests": digests, "warnings": warnings, "budget": budget, **plain}
+
+
+def _flat(warning: RunWarning) -> dict[str, Any]:
+    """Return a warning with its numbers beside kind and text."""
+    result = {"result": warning.result} if warning.result else {}
+    return {"kind": warning.kind.value, "text": warning.text, **result, **warning.numbers}
 
 
 def json_text(run: RunRecord, seen: Seen | None = None) -> str:

@@ -9,14 +9,17 @@ from rich.table import Table
 from rich.text import Text
 
 from bfsim.report.check import Check, Quantity, Verdict
-from bfsim.report.tables import new_table, stacked
+from bfsim.report.tables import new_table, stacked, warning_table
+from bfsim.trace import RunRecord
 
 
-def check_report(check: Check) -> RenderableType:
-    """Return what the check found: the broken limits first, then what became better."""
+def check_report(check: Check, run: RunRecord) -> RenderableType:
+    """Return what the check of a run found: the broken limits first, then what became better, then the run's warnings."""
     broken = [verdict for verdict in check.verdicts if verdict.broken]
     better = [verdict for verdict in check.verdicts if verdict.better]
-    return stacked(Text("\n".join(_lines(check, broken, better))), *_tables(broken, better))
+    return stacked(
+        Text("\n".join(_lines(check, broken, better))), *_tables(broken, better), *warning_table(run)
+    )
 
 
 def _lines(check: Check, broken: Sequence[Verdict], better: Sequence[Verdict]) -> Iterator[str]:

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from bfsim.report.budget import budget_of
 from bfsim.report.profile import KernelProfile, Profile, profile_of
-from bfsim.report.tables import configuration, headline, new_table, percent, stacked
+from bfsim.report.tables import configuration, headline, new_table, percent, stacked, warning_table
 from bfsim.trace import RunRecord
 
 
@@ -24,6 +24,7 @@ def profile_report(run: RunRecord, core: str | None = None, top: int = 20) -> Re
         *_access_table(profile),
         *_traffic_table(profile),
         configuration(run),
+        *warning_table(run),
     )
 
 

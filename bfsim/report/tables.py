@@ -23,13 +23,11 @@ from bfsim.report.budget import (
     milliseconds,
 )
 from bfsim.report.digest import cycle_digest, identity_digest
+from bfsim.report.warnings import MISSED_LISTED, warnings_of
 from bfsim.trace import REST, BudgetRow, CodeRecord, FrameRecord, Reference, RunRecord, StallReason
 
 SHOWN_AT_EACH_END = 4
 """Frames listed at the beginning and at the end of a long run."""
-
-MISSED_LISTED = 10
-"""Missed frames that are listed by number."""
 
 REMARKS_LISTED = 20
 """Different remarks that are listed."""
@@ -50,6 +48,7 @@ def run_report(run: RunRecord) -> RenderableType:
         *_results_table(run),
         *_remarks(run),
         configuration(run),
+        *warning_table(run),
     )
 
 
@@ -250,6 +249,18 @@ def _remarks(run: RunRecord) -> Iterator[Table]:
     yield table
 
 
+def warning_table(run: RunRecord) -> Iterator[Table]:
+    """Yield the warnings, if there are any, in the colour of warnings."""
+    warnings = warnings_of(run)
+    if warnings:
+        table = new_table("Warnings", "About")
+        table.title_style, table.style = "bold not italic yellow", "yellow"
+        table.add_column("", overflow="fold")
+        for each in warnings:
+            table.add_row(each.kind, each.text)
+        yield table
+
+
 def configuration(run: RunRecord) -> Table:
     """Return what was run on what, and the digests of it and of its cycles."""
     identity = run.identity
@@ -266,8 +277,6 @@ def configuration(run: RunRecord) -> Table:
     table.add_row("Fidelity", identity.fidelity)
     if run.messages:
         table.add_row("SPI messages", _messages(run))
-    for note in run.device_notes:
-        table.add_row("SPI device", note)
     if run.interrupts:
         table.add_row(
             "Interrupts", ", ".join(f"{source} {count:,}" for source, count in run.interrupts.items())

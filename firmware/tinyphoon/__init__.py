@@ -6,6 +6,8 @@ from bfsim.api import BudgetRow, Firmware, Reference
 from tinyphoon.buffers import buffers, calibration_buffers, one_core_buffers
 from tinyphoon.core_a import core_a
 from tinyphoon.core_b import core_b
+from tinyphoon.geometry import THESIS_GEOMETRY
+from tinyphoon.losses import LOSSES
 from tinyphoon.one_core import one_core
 from tinyphoon.strategy_unit.device import StrategyUnit
 from tinyphoon.view.view import view
@@ -34,6 +36,8 @@ tinyphoon = Firmware(
     calibration=calibration_buffers,
     spi=StrategyUnit,
     view=view,
+    losses=LOSSES,
+    assumed_geometry=THESIS_GEOMETRY,
 )
 
 one_eye = Firmware(
@@ -45,5 +49,7 @@ one_eye = Firmware(
     calibration=calibration_buffers,
     spi=StrategyUnit,
     view=view,
+    losses=LOSSES,
+    assumed_geometry=THESIS_GEOMETRY,
 )
 """The same stages for a board with one core and one camera, such as cm-bf533."""

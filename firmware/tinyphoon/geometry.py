@@ -40,19 +40,27 @@ FARTHEST_MM = 32767
 """A point that is farther away does not go into a 16-bit word."""
 
 
+THESIS_FOCAL_PX, THESIS_WIDTH_PX = 386.0, 320  # T §6.2: measured in pictures of 320x240
+THESIS_BASELINE_MM, THESIS_HEIGHT_MM, THESIS_TILT_DEG = 30.47, 120.0, 10.0  # T §6.2, §6.4
+THESIS_GEOMETRY = (
+    f"that of the thesis's robot (focal length {THESIS_FOCAL_PX:g} px at {THESIS_WIDTH_PX} px of width, "
+    f"baseline {THESIS_BASELINE_MM:g} mm, height {THESIS_HEIGHT_MM:g} mm, tilt {THESIS_TILT_DEG:g} degrees)"
+)
+
+
 def geometry_buffer(geometry: Geometry) -> Buffer:
     """Return the geometry of a recording as a buffer."""
     return _buffer(geometry.focal_px, geometry.baseline_mm, geometry.height_mm, geometry.tilt_deg)
 
 
 def thesis_geometry_buffer(size: FrameSize) -> Buffer:
-    """Return the geometry of the thesis's robot (T §6.2, §6.4), for recordings that do not say theirs.
+    """Return the geometry of the thesis's robot, for recordings that do not say theirs.
 
     Raises FirmwareError for pictures so large that nothing can be computed with its cameras.
     """
-    focal_px = 386.0 * size.width_px / 320  # measured in pictures of 320x240
+    focal_px = THESIS_FOCAL_PX * size.width_px / THESIS_WIDTH_PX
     try:
-        return _buffer(focal_px, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
+        return _buffer(focal_px, THESIS_BASELINE_MM, THESIS_HEIGHT_MM, THESIS_TILT_DEG)
     except FirmwareError as error:
         raise FirmwareError(
             f"a recording of {size} pixels must say its geometry (bfsim record import --geometry), "

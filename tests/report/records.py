@@ -90,6 +90,8 @@ def run_of(frames: Sequence[FrameRecord], missed: tuple[int, ...] = ()) -> RunRe
         traffic=(),
         messages=(),
         device_notes=(),
+        assumptions=(),
+        losses={"edges_lost": "edges without room"},
         interrupts={},
         events=0,
     )

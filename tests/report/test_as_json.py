@@ -43,3 +43,21 @@ def test_json_is_plain_whatever_mapping_the_machine_used() -> None:
     plain = as_json(run_of([frame(0, core_frame("A", 0, cost("Edge detection", 1, stalls)))]))
     assert plain == json.loads(json.dumps(plain))
     assert plain["frames"][0]["cores"][0]["stages"][0]["stall_cclk"] == {"ring empty": 3}
+
+
+def test_json_has_the_warnings_with_their_numbers() -> None:
+    """Kind, text, the published result, and what the text says in numbers."""
+    lossy = frame(4, core_frame("A", 0, cost("Edge detection", 9)))
+    run = run_of([replace(lossy, results={"edges_lost_A": 20})])
+    assert as_json(run)["warnings"] == [
+        {
+            "kind": "lost",
+            "text": "edges without room: 20 on core A, in 1 of 1 frames; most in frame 4: 20",
+            "result": "edges_lost_A",
+            "total": 20,
+            "frames": 1,
+            "worst": 20,
+            "worst_frame": 4,
+        }
+    ]
+    assert as_json(run_of([lossy]))["warnings"] == []

@@ -16,7 +16,7 @@ from bfsim.report.check_tables import check_report
 from bfsim.report.digest import cycle_digest
 from bfsim.report.profile_tables import profile_report
 from bfsim.report.tables import run_report
-from bfsim.trace import REST, BudgetRow, LineCost, RunRecord, StallReason
+from bfsim.trace import REST, BudgetRow, LineCost, RunRecord, RunWarning, StallReason, WarningKind
 from tests.report.records import core_frame, cost, edge_run, frame, kernel, run_of, traffic
 
 
@@ -195,6 +195,31 @@ def test_remarks_are_summed_up() -> None:
     assert "Remarks" not in printed(run_report(run))
 
 
+def test_warnings_end_every_report(tmp_path: Path) -> None:
+    """What was assumed, missed and lost; none where there is nothing to warn of."""
+    kept = frame(0, core_frame("A", 0, cost("Edge detection", 9)))
+    lossy = replace(
+        kept, index=2, results={"edges_A": 7, "edges_lost_A": 5, "ppi_words_lost_A": 1_000, "blobs_lost_A": 1}
+    )
+    run = replace(
+        run_of([kept, replace(lossy, index=1, results={"edges_lost_A": 20}), lossy]),
+        missed=(3,),
+        assumptions=(RunWarning(kind=WarningKind.GEOMETRY, text="there was none"),),
+    )
+    path = tmp_path / "bfsim.toml"
+    write_baseline(path, run, budget_of(run))
+    checked = check_report(check(run, budget_of(run), read_baseline(path), path), run)
+    for report in (run_report(run), profile_report(run), checked):
+        lines = [*map(squeezed, printed(report, 130))]
+        assert [each for each in lines[lines.index("Warnings") :] if each][3:] == [
+            "geometry there was none",
+            "missed frames 1 of 4 frames came while the firmware was busy, and were missed: 3",
+            "lost words of the camera that the DMA was too late for: 1,000 on core A, in 1 of 3 frames; most in frame 2: 1,000",
+            "lost edges without room: 25 on core A, in 2 of 3 frames; most in frame 1: 20",
+        ]
+    assert not any("Warnings" in each for each in printed(run_report(run_of([kept]))))
+
+
 def test_what_the_device_says_at_the_end_is_in_the_report() -> None:
     """As it says it."""
     run = edge_run(100, 100)
@@ -208,7 +233,7 @@ def test_check_report_lists_broken_limits_and_gains(tmp_path: Path) -> None:
     path = tmp_path / "bfsim.toml"
     write_baseline(path, edge_run(950, 1050), budget_of(edge_run(950, 1050)))
     run = edge_run(900, 1155)
-    lines = printed(check_report(check(run, budget_of(run), read_baseline(path), path)))
+    lines = printed(check_report(check(run, budget_of(run), read_baseline(path), path), run))
     assert lines[0].startswith("FAILED: ")
     assert "better than the baseline; --update makes them the new limits." in lines[1]
     assert "A Edge detection max 1,050 1,155 +105 +10.00" in map(squeezed, lines)
@@ -219,5 +244,5 @@ def test_check_report_of_a_pass_is_one_line(tmp_path: Path) -> None:
     """Silence is what a passing check owes its reader."""
     path, run = tmp_path / "bfsim.toml", edge_run(950)
     write_baseline(path, run, budget_of(run))
-    lines = printed(check_report(check(run, budget_of(run), read_baseline(path), path)))
+    lines = printed(check_report(check(run, budget_of(run), read_baseline(path), path), run))
     assert [line for line in lines if line] == ["Passed: all 18 limits kept."]

@@ -1,0 +1,51 @@
+"""What a user must not overlook in a run: what was assumed, missed, lost, or not taken."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from bfsim.trace import RunRecord, RunWarning, WarningKind
+
+MISSED_LISTED = 10
+"""Missed frames that are listed by number."""
+
+MACHINE_LOSSES = {"ppi_words_lost": "words of the camera that the DMA was too late for"}
+"""What the simulated machine publishes as lost, as `RunRecord.losses` for what the firmware does."""
+
+
+def warnings_of(run: RunRecord) -> tuple[RunWarning, ...]:
+    """Return the warnings about a run of at least one frame, those about all of it first."""
+    device = (RunWarning(kind=WarningKind.DEVICE, text=each) for each in run.device_notes)
+    return (*run.assumptions, *_missed(run), *device, *_lost(run))
+
+
+def _missed(run: RunRecord) -> Iterator[RunWarning]:
+    missed, frames = len(run.missed), len(run.missed) + len(run.frames)
+    if missed:
+        listed = ", ".join(str(index) for index in run.missed[:MISSED_LISTED])
+        more = ", …" if missed > MISSED_LISTED else ""
+        yield RunWarning(
+            kind=WarningKind.MISSED,
+            text=f"{missed:,} of {frames:,} frames came while the firmware was busy, and were missed: {listed}{more}",
+            numbers={"missed": missed, "frames": frames},
+        )
+
+
+def _lost(run: RunRecord) -> Iterator[RunWarning]:
+    for name, what in (*MACHINE_LOSSES.items(), *run.losses.items()):
+        for core in run.frames[0].cores:
+            counts = [(frame.results.get(f"{name}_{core.core}", 0), frame.index) for frame in run.frames]
+            lost = [each for each in counts if each[0]]
+            if not lost:
+                continue
+            total, (worst, at) = (
+                sum(count for count, _ in lost),
+                max(lost, key=lambda each: (each[0], -each[1])),
+            )
+            yield RunWarning(
+                kind=WarningKind.LOST,
+                text=f"{what}: {total:,} on core {core.core}, in {len(lost):,} of {len(counts):,} frames; "
+                f"most in frame {at}: {worst:,}",
+                numbers={"total": total, "frames": len(lost), "worst": worst, "worst_frame": at},
+                result=f"{name}_{core.core}",
+            )

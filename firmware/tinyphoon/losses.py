@@ -1,0 +1,19 @@
+"""What the stages had to leave out for want of room or time, by the numbers that they publish: a run ends with a warning of it."""
+
+from __future__ import annotations
+
+LOSSES = {
+    "edges_lost": "edges that had no room in the edge store, so that the lower part of the picture has none",
+    "edge_groups_shared": "groups of edges that share a label, so that hysteresis keeps or drops them together",
+    "labels_lost": "runs of colour without a label left, which are in no blob",
+    "blobs_lost": "blobs without room in the blob store",
+    "blobs_unmerged": "blobs of several parts without room in the blob store",
+    "line_edges_lost": "edges without a segment left, which are on no line",
+    "circles_lost": "blobs without room for a circle",
+    "circle_edges_lost": "edges of blobs without room in the search for circles",
+    "rectangles_lost": "rectangles without room in their store",
+    "seen_lost": "objects of one camera without room in their table",
+    "edges_3d_lost": "3-D edges without room in their store",
+    "objects_lost": "objects without room in the history",
+    "orders_refused": "orders that were refused (the remarks say why)",
+}

@@ -1,0 +1,51 @@
+"""What the firmware loses is told: every published count of it has its words."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bfsim.recording import RecordingWriter, StereoGeometry
+from bfsim.report.as_json import as_json
+from bfsim.run import simulate
+from bfsim.shipped import FIRMWARE_FOLDER
+from tinyphoon import one_eye, tinyphoon
+from tinyphoon.losses import LOSSES
+
+
+def published() -> Iterator[str]:
+    """Names of the numbers that the sources of the firmware publish."""
+    for path in (FIRMWARE_FOLDER / "tinyphoon").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if (
+                isinstance(node, ast.Call)
+                and isinstance(node.func, ast.Attribute)
+                and node.func.attr == "publish"
+            ):
+                yield from (each.arg for each in node.keywords if each.arg)
+
+
+def test_every_loss_has_its_words() -> None:
+    """And no words are of a number that is not published."""
+    names = set(published())
+    assert {each for each in names if each.endswith(("_lost", "_refused", "_shared", "_unmerged"))} == set(
+        LOSSES
+    )
+    assert tinyphoon.losses is one_eye.losses is LOSSES
+
+
+@pytest.mark.parametrize("geometry", [None, StereoGeometry(300.0, 60.0, 200.0, 5.0)])
+def test_a_run_on_noise_ends_with_warnings(tmp_path: Path, geometry: StereoGeometry | None) -> None:
+    """More edges than there is room for; and cameras that are nowhere, unless the recording says where."""
+    rng = np.random.default_rng(12)
+    with RecordingWriter(tmp_path / "noise.mcap", width=320, height=96, geometry=geometry) as writer:
+        writer.add(*rng.integers(0, 256, (2, 96, 640), np.uint8), 0, 0)
+    run = simulate(tmp_path / "noise.mcap")
+    warnings = {(each["kind"], each.get("result")): each for each in as_json(run)["warnings"]}
+    assert (("geometry", None) in warnings) == (geometry is None)
+    lost = run.frames[0].results["edges_lost_A"]
+    assert warnings["lost", "edges_lost_A"]["total"] == lost > 0
