@@ -197,15 +197,15 @@ def test_remarks_are_summed_up() -> None:
 
 def test_warnings_end_every_report(tmp_path: Path) -> None:
     """What was assumed, missed and lost; none where there is nothing to warn of."""
-    kept = frame(0, core_frame("A", 0, cost("Edge detection", 9)))
-    lossy = replace(
-        kept, index=2, results={"edges_A": 7, "edges_lost_A": 5, "ppi_words_lost_A": 1_000, "blobs_lost_A": 1}
+    kept = edge_run(100, 100, 100)
+    results = (
+        {},
+        {"edges_lost_A": 20},
+        {"edges_A": 7, "edges_lost_A": 5, "ppi_words_lost_A": 1_000, "blobs_lost_A": 1},
     )
-    run = replace(
-        run_of([kept, replace(lossy, index=1, results={"edges_lost_A": 20}), lossy]),
-        missed=(3,),
-        assumptions=(RunWarning(kind=WarningKind.GEOMETRY, text="there was none"),),
-    )
+    frames = (replace(each, results=result) for each, result in zip(kept.frames, results, strict=True))
+    assumed = RunWarning(kind=WarningKind.GEOMETRY, text="there was none")
+    run = replace(kept, frames=tuple(frames), missed=(3,), assumptions=(assumed,))
     path = tmp_path / "bfsim.toml"
     write_baseline(path, run, budget_of(run))
     checked = check_report(check(run, budget_of(run), read_baseline(path), path), run)
@@ -217,7 +217,7 @@ def test_warnings_end_every_report(tmp_path: Path) -> None:
             "lost words of the camera that the DMA was too late for: 1,000 on core A, in 1 of 3 frames; most in frame 2: 1,000",
             "lost edges without room: 25 on core A, in 2 of 3 frames; most in frame 1: 20",
         ]
-    assert not any("Warnings" in each for each in printed(run_report(run_of([kept]))))
+    assert not any("Warnings" in each for each in printed(run_report(kept)))
 
 
 def test_what_the_device_says_at_the_end_is_in_the_report() -> None:
