@@ -6,13 +6,19 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 from textwrap import fill
+from typing import TYPE_CHECKING
 
 import click
 from rich.table import Table
 
-from bfsim import recording, shipped
-from bfsim.recording import scenes
+from bfsim import shipped
 from bfsim.terminal import print_report, progress_bar
+
+if TYPE_CHECKING:
+    from bfsim import recording
+
+SOURCE_FORMATS = ("images", "uyvy", "i420", "y4m", "video")
+"""Those of bfsim.recording, which takes its time to import."""
 
 
 class _Size(click.ParamType[tuple[int, int]]):
@@ -53,7 +59,7 @@ def record() -> None:
 @click.option("--mono", is_flag=True, help="The one camera of SOURCE feeds both sides.")
 @click.option(
     "--format",
-    type=click.Choice(recording.SOURCE_FORMATS),
+    type=click.Choice(SOURCE_FORMATS),
     help="What the sources are, if names do not tell.",
 )
 @click.option("--size", type=_Size(), metavar="WxH", help="Size of the frames in raw UYVY and I420 files.")
@@ -106,6 +112,8 @@ def import_command(
       bfsim record import run.mcap left.uyvy right.uyvy --size 320x240
       bfsim record import run.mcap phone.mp4 --mono --resize 320x240
     """
+    from bfsim import recording
+
     with progress_bar("Importing") as progress:
         summary = recording.import_recording(
             sources,
@@ -139,6 +147,8 @@ def info_command(path: Path, as_json: bool) -> None:
       bfsim record info run.mcap
       bfsim record info run.mcap --json
     """
+    from bfsim import recording
+
     with recording.RecordingReader(path) as reader, progress_bar("Reading") as progress:
         info = recording.describe_recording(reader, progress)
     if as_json:
@@ -173,6 +183,8 @@ def calibrate_command(
       bfsim record calibrate boards/ run.mcap
       bfsim record calibrate boards/ run.mcap --corners 8x5 --square 25
     """
+    from bfsim import recording
+
     found = recording.calibrate_recording(chessboards, path, output, corners=corners, square_mm=square)
     click.echo(
         f"{output or path}: rectification tables from {found.pair_count} chessboard pairs\n"
@@ -262,6 +274,8 @@ def render_command(
     force: bool,
 ) -> None:
     """Render one scene, or several."""
+    from bfsim import recording
+    from bfsim.recording import scenes
     from bfsim.scenery import load_scenes
 
     misfit = None

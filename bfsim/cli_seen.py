@@ -97,5 +97,5 @@ def _lasting_folder() -> Iterator[Path]:
 def _show(path: Path) -> None:
     """Say where a picture is and, if there is a display, open it with the program that the system has for it."""
     click.echo(f"bfsim: what was seen is drawn in {path}", err=True)
-    if sys.platform == "darwin" or {"DISPLAY", "WAYLAND_DISPLAY"} & set(os.environ):
+    if sys.platform in {"darwin", "win32"} or {"DISPLAY", "WAYLAND_DISPLAY"} & set(os.environ):
         click.launch(str(path))

@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from bfsim import __version__
+from bfsim import __version__, recording
 from bfsim.cli import main
+from bfsim.cli_record import SOURCE_FORMATS
 
 
 def call(*arguments: str) -> Result:
@@ -39,12 +40,39 @@ def test_help_of_a_command_teaches_by_example(command: str) -> None:
     assert "[default: cm-bf561]" in output
 
 
-def test_help_is_quick() -> None:
-    """Help must not wait for the simulator's libraries."""
-    heavy = "{'numba', 'llvmlite', 'simpy', 'pydantic', 'tomlkit'}"
-    program = f"import sys, bfsim.cli; print(sorted({heavy} & set(sys.modules)))"
+HEAVY = {
+    "numpy",
+    "numba",
+    "llvmlite",
+    "simpy",
+    "pydantic",
+    "tomlkit",
+    "lark",
+    "mcap",
+    "PIL",
+    "bfsim.recording",
+}
+
+
+@pytest.mark.parametrize(
+    "command", ["--version", "--help", "run --help", "record import --help", "ldf --help"]
+)
+def test_help_is_quick(command: str) -> None:
+    """Help must not wait for the simulator's libraries, nor for the recordings."""
+    program = f"""
+import atexit, sys
+sys.argv[1:] = {command.split()!r}
+atexit.register(lambda: print(sorted({HEAVY} & set(sys.modules))))
+from bfsim.__main__ import main
+main()
+"""
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert done.stdout == "[]\n"
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_the_formats_of_pictures_are_all_offered() -> None:
+    """The command line knows them without importing what reads them."""
+    assert SOURCE_FORMATS == recording.SOURCE_FORMATS
 
 
 @pytest.mark.parametrize(

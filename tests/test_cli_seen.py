@@ -12,6 +12,7 @@ from click.testing import CliRunner, Result
 from mcap.reader import make_reader
 from PIL import Image
 
+from bfsim import cli_seen
 from bfsim.cli import main
 from tests.report.records import edge_run
 
@@ -83,6 +84,17 @@ def test_show_opens_the_picture_where_there_is_a_display(
     monkeypatch.setenv("DISPLAY", ":0")
     run("--show", "--overlay", tmp_path / "mine.webp")
     assert opened == [str(tmp_path / "mine.webp")]
+
+
+def test_windows_has_a_display(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And says so in no variable."""
+    opened: list[str] = []
+    monkeypatch.setattr(click, "launch", opened.append)
+    monkeypatch.setattr("sys.platform", "win32")
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.delenv("DISPLAY", raising=False)
+    cli_seen._show(Path("seen.gif"))
+    assert opened == ["seen.gif"]
 
 
 def test_mistakes_are_told_before_the_run(tmp_path: Path) -> None:

@@ -23,6 +23,7 @@ from bfsim.report.budget import (
     milliseconds,
 )
 from bfsim.report.digest import cycle_digest, identity_digest
+from bfsim.report.split_table import SplitTable
 from bfsim.report.warnings import MISSED_LISTED, warnings_of
 from bfsim.trace import REST, BudgetRow, CodeRecord, FrameRecord, Reference, RunRecord, StallReason
 
@@ -59,7 +60,7 @@ def stacked(*parts: RenderableType) -> RenderableType:
 
 def new_table(title: str, first: str, *numbers: str) -> Table:
     """Return an empty table: a column of names on the left, columns of numbers to the right of it."""
-    table = Table(
+    table = SplitTable(
         title=title,
         title_style="bold not italic",
         title_justify="left",
@@ -265,6 +266,8 @@ def configuration(run: RunRecord) -> Table:
     """Return what was run on what, and the digests of it and of its cycles."""
     identity = run.identity
     table = Table.grid(padding=(0, 2))
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold")
     table.title, table.title_style, table.title_justify = "Configuration", "bold not italic", "left"
     table.add_row("Recording", f"{identity.recording}, {identity.width_px}x{identity.height_px} px")
     table.add_row("Firmware", _firmware(run))

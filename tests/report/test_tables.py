@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import re
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -193,6 +195,20 @@ def test_remarks_are_summed_up() -> None:
     assert len([line for line in lines if "no. " in line]) == 20
     assert "(980 others; the JSON has all)" in lines
     assert "Remarks" not in printed(run_report(run))
+
+
+@pytest.mark.parametrize("width", [20, 33, 47, 60, 79])
+def test_a_narrow_terminal_loses_no_column(width: int) -> None:
+    """Numbers stand whole, in pieces of the tables under each other, each with the names of its rows."""
+    wide, narrow = (printed(run_report(busy_run()), each) for each in (100, width))
+    assert max(map(len, narrow)) <= width
+    for heading in ("min", "p95", "share", "idle"):
+        assert sum(heading in line.split() for line in narrow) == sum(
+            heading in line.split() for line in wide
+        )
+    numbers = [re.findall(r"\d+\.\d\d? ", " ".join(lines) + " ") for lines in (wide, narrow)]
+    assert Counter(numbers[0]) == Counter(numbers[1])
+    assert cycle_digest(busy_run().frames) in "".join("".join(narrow).split())
 
 
 def test_warnings_end_every_report(tmp_path: Path) -> None:
