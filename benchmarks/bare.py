@@ -1,4 +1,4 @@
-"""The floor of the speed benchmark: the same firmware and kernels on the same pixels, without counters or time.
+"""The floor of the speed benchmark: the same firmware and kernels on the same pixels, without counters, checks or time.
 
 A `BareCore` answers firmware as a `Core` does, but copies lines at once and never waits; no SimPy is involved.
 """
@@ -70,7 +70,7 @@ class BareCore:
     """A core without time."""
 
     counted = False
-    """Whether kernels run with their counters."""
+    """Whether kernels run with their counters and checks."""
 
     def __init__(
         self, name: str, firmware: Firmware, frames: Sequence[StereoFrame], memories: Memories
@@ -117,7 +117,7 @@ class BareCore:
         key = (kernel, kernel.arrays_of(arguments))
         call = self._calls.get(key)
         if call is None:
-            code = kernel.compile(VDSP_O2, counted=self.counted)
+            code = kernel.compile(VDSP_O2, counted=self.counted, checked=self.counted)
             rows = [arguments[each].array for each in kernel.array_positions]
             call = self._calls[key] = kernel.prepare(code, rows, code.new_totals())
         return call.run(arguments)

@@ -1,10 +1,10 @@
-"""What counting costs, and what compiling costs, over the 20 reference kernels.
+"""What counting and checking cost, and what compiling costs, over the 20 reference kernels.
 
     python benchmarks/kernels.py
 
-Side by side in one run: a kernel with counters, the same without, and numba's own compilation of the same source.
-Each is called many times in a row from machine code, the three in turns; the least time of a turn counts. Compile
-times are of a process with an empty kernel cache.
+Side by side in one run: a kernel with counters and with every index checked, as it runs in bfsim; with counters alone; with
+neither; and numba's own compilation of the same source. Each is called many times in a row from machine code, in turns; the
+least time of a turn counts. Compile times are of a process with an empty kernel cache.
 """
 
 from __future__ import annotations
@@ -37,6 +37,7 @@ class Timing:
     """Of one kernel: nanoseconds per call of each variant, milliseconds to compile it cold and to load it warm."""
 
     kernel: str
+    checked_ns: float
     counted_ns: float
     plain_ns: float
     numba_ns: float
@@ -91,11 +92,13 @@ def numba_loop(kernel: Any, arguments: tuple[Any, ...]) -> Callable[[int], Any]:
     return lambda times: loop(times, *arguments)
 
 
-def our_loop(kernel: Any, arguments: tuple[Any, ...], *, counted: bool) -> Callable[[int], Any]:
+def our_loop(
+    kernel: Any, arguments: tuple[Any, ...], *, counted: bool, checked: bool
+) -> Callable[[int], Any]:
     """Return a machine-code loop of our kernel on these arguments."""
     from bfsim.kernel import VDSP_O2
 
-    code = kernel.compile(VDSP_O2, counted=counted)
+    code = kernel.compile(VDSP_O2, counted=counted, checked=checked)
     arrays = [each for each in arguments if isinstance(each, np.ndarray)]
     call = kernel.prepare(code, arrays, code.new_totals())
     call.run(arguments)  # puts the integers and the argument block in place
@@ -132,7 +135,7 @@ def measure(case: Any) -> Timing:
     start = time.perf_counter()
     case.kernel.compile(VDSP_O2)
     cold = time.perf_counter() - start
-    jit.compiled.cache_clear()
+    jit.compile_kernel.cache_clear()
     costs.counters_of.cache_clear()
     start = time.perf_counter()
     case.kernel.compile(VDSP_O2)
@@ -142,14 +145,15 @@ def measure(case: Any) -> Timing:
     def fresh() -> tuple[Any, ...]:
         return tuple(each.copy() if isinstance(each, np.ndarray) else each for each in arguments)
 
-    counted, plain, other = least_ns(
+    checked, counted, plain, other = least_ns(
         [
-            our_loop(case.kernel, fresh(), counted=True),
-            our_loop(case.kernel, fresh(), counted=False),
+            our_loop(case.kernel, fresh(), counted=True, checked=True),
+            our_loop(case.kernel, fresh(), counted=True, checked=False),
+            our_loop(case.kernel, fresh(), counted=False, checked=False),
             numba_loop(case.kernel, fresh()),
         ]
     )
-    return Timing(case.name, counted, plain, other, 1000 * cold, 1000 * warm)
+    return Timing(case.name, checked, counted, plain, other, 1000 * cold, 1000 * warm)
 
 
 def geometric_mean(values: list[float]) -> float:
@@ -170,8 +174,10 @@ def main() -> None:
     table = Table(box=None, padding=(0, 1, 0, 0))
     for name in (
         "kernel",
+        "checked us",
         "counted us",
         "plain us",
+        "checked/counted",
         "counted/plain",
         "numba us",
         "plain/numba",
@@ -182,13 +188,16 @@ def main() -> None:
     for each in rows:
         table.add_row(
             each.kernel,
-            f"{each.counted_ns / 1000:.2f}", f"{each.plain_ns / 1000:.2f}", f"{each.counted_ns / each.plain_ns:.2f}",
+            f"{each.checked_ns / 1000:.2f}", f"{each.counted_ns / 1000:.2f}", f"{each.plain_ns / 1000:.2f}",
+            f"{each.checked_ns / each.counted_ns:.2f}", f"{each.counted_ns / each.plain_ns:.2f}",
             f"{each.numba_ns / 1000:.2f}", f"{each.plain_ns / each.numba_ns:.2f}", f"{each.cold_ms:.0f}", f"{each.warm_ms:.1f}",
         )  # fmt: skip
     console = Console(width=None if sys.stdout.isatty() else 110)
     console.print(table)
+    checking = geometric_mean([each.checked_ns / each.counted_ns for each in rows])
     counting = geometric_mean([each.counted_ns / each.plain_ns for each in rows])
     against_numba = geometric_mean([each.plain_ns / each.numba_ns for each in rows])
+    console.print(f"checked / counted: geometric mean {checking:.2f}")
     console.print(f"counted / plain: geometric mean {counting:.2f}")
     console.print(f"plain / numba: geometric mean {against_numba:.2f}")
     cold, warm = (

@@ -111,7 +111,12 @@ _RUN_PARAMETERS = (
         show_default=True,
         help="How the buses are simulated: fast, or with every transaction an event, to judge the fast way. Slow.",
     ),
-    click.option("--sanitize", is_flag=True, help="Stop at the first index outside an array. Slower."),
+    click.option(
+        "--sanitize",
+        is_flag=True,
+        help="Run every kernel twice, first as it is written: an index outside an array or a division by zero is then an "
+        "error even where the compiler would leave it out. Without it, what the compiled code does is checked. Slower.",
+    ),
 )
 
 

@@ -282,29 +282,54 @@ def main(core):
     while (yield from core.next_frame()) is not None:
         yield core.run(outside, core.array("row"), 16)
 
+@kernel
+def mark(row: u8[:], x: i32):
+    row[x] = 1
+
+def later(core):
+    while (frame := (yield from core.next_frame())) is not None:
+        with core.stage("Marks"):
+            yield core.run(mark, core.array("far" if core.name == "B" else "row"), 14 + 2 * frame.index)
+
+def takes(core):
+    while (yield from core.next_frame()) is not None:
+        pass
+
 def waits(core):
     while (yield from core.next_frame()) is not None:
         yield from core.wait(f"never posted for {core.name}")
 
 def buffers(size):
     return {core: [Buffer("camera", u8, 2 * size.width_px, f"sdram_bank{n}", rows=size.height_px),
-                   Buffer("row", u8, 16, "L1_data_a")] for n, core in enumerate("AB")}
+                   Buffer("row", u8, 16, "L1_data_a"), Buffer("far", u8, 16, f"sdram_bank{n}")] for n, core in enumerate("AB")}
 
+rows = (BudgetRow(stage="Marks"),)
 bad_index = Firmware(mains={"A": main, "B": main}, buffers=buffers, camera="camera", rows=())
+late_in_l1 = Firmware(mains={"A": later, "B": takes}, buffers=buffers, camera="camera", rows=rows)
+late_in_sdram = Firmware(mains={"A": takes, "B": later}, buffers=buffers, camera="camera", rows=rows)
 deadlock = Firmware(mains={"A": waits, "B": waits}, buffers=buffers, camera="camera", rows=())
 """
 
 
 def test_mistakes_of_the_firmware_are_named(tmp_path: Path) -> None:
-    """An index outside its array (with --sanitize) and two cores waiting for ever have file and line."""
+    """An index outside its array and two cores waiting for ever have file and line."""
     (tmp_path / "mine.py").write_text(BAD_FIRMWARE)
     recording = write_recording(tmp_path / "small.mcap")
-    message = refused("run", recording, "--firmware", "mine:bad_index", "--sanitize", cwd=tmp_path)
-    assert "mine.py:7" in message
-    assert "index 16 is outside of row" in message
+    for options in ((), ("--sanitize",)):
+        message = refused("run", recording, "--firmware", "mine:bad_index", *options, cwd=tmp_path)
+        assert "mine.py:7: index 16 is outside of row in kernel outside" in message
+        assert "core B, frame 0, outside of stages (" in message
+    for core, firmware in (("A", "late_in_l1"), ("B", "late_in_sdram")):
+        message = refused("run", recording, "--firmware", f"mine:{firmware}", cwd=tmp_path)
+        assert (
+            "index 16 is outside of row in kernel mark; an index must be 0 or more and less than len(row), which is 16"
+            in message
+        )
+        assert f"core {core}, frame 1, stage Marks (" in message
+        assert "mine.py:20)" in message
     message = refused("run", recording, "--firmware", "mine:deadlock", cwd=tmp_path)
     for words in ("core A waits for semaphore 'never posted for A'", "core B waits for semaphore 'never posted for B'",
-                  "mine.py:15"):  # fmt: skip
+                  "mine.py:28"):  # fmt: skip
         assert words in message
 
 

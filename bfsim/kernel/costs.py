@@ -55,10 +55,10 @@ def _counter(row: dict[str, Any]) -> Counter:
 
 
 @cache
-def optimised(function: tree.Function, profile: CompilerProfile, *, checked: bool = False) -> str:
+def optimised(function: tree.Function, profile: CompilerProfile) -> str:
     """Return the optimised IR of `function` and its callees: the code that is costed and counted."""
     machine = _generic_machine()
-    module = emit(function, checked=checked)
+    module = emit(function)
     module.triple, module.data_layout = GENERIC_TRIPLE, str(machine.target_data)
     # "no-builtins": a loop that fills or copies stays a loop, whose iterations can be counted. "optforfuzzing": branches
     # stay branches; what a compiler for the Blackfin makes of them is for the lowering to say

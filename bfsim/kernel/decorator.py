@@ -12,16 +12,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
-from bfsim.kernel import sanitizer, tree
+from bfsim.kernel import tree
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.costs import counters_of
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import FIRST_ARGUMENT
 from bfsim.kernel.jit import CompiledKernel, compile_kernel
 from bfsim.kernel.language import read_kernel
-from bfsim.kernel.profile import VDSP_O2, CompilerProfile
+from bfsim.kernel.profile import GCC_O0, VDSP_O2, CompilerProfile
 from bfsim.kernel.types import ArrayType, FloatType, IntType
 from bfsim.kernel.work import PreparedCall, is_single
+
+AS_WRITTEN = GCC_O0
+"""A profile that leaves every access and division in the code."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,14 +60,14 @@ class Kernel:
         return tuple(i for i, each in enumerate(self.function.parameters) if isinstance(each.type, FloatType))
 
     def compile(
-        self, profile: CompilerProfile, *, traced: bool = False, counted: bool = True
+        self, profile: CompilerProfile, *, traced: bool = False, counted: bool = True, checked: bool = True
     ) -> CompiledKernel:
-        """Compile for `profile`, or take it from the cache on disk. See `jit.compiled`.
+        """Compile for `profile`, or take it from the cache on disk. See `jit.compile_kernel`.
 
         Raises KernelError where the kernel has floats and the profile has no library for them.
         """
         self._refuse_floats(profile)
-        return compile_kernel(self.function, profile, traced=traced, counted=counted)
+        return compile_kernel(self.function, profile, traced=traced, counted=counted, checked=checked)
 
     def counters(self, profile: CompilerProfile) -> tuple[Counter, ...]:
         """Return what is counted in a run and what it costs, callees included. Raises KernelError as `compiled`."""
@@ -176,8 +179,19 @@ class Kernel:
             )
 
     def sanitize(self, arguments: Sequence[Any]) -> None:
-        """Run with every index checked and undo it; raise KernelError at the first index outside its array."""
-        sanitizer.check(self.function, arguments)
+        """Run the kernel as it is written, unoptimised, with every index and divisor checked, and undo what it stored.
+
+        Raises KernelError at the first that is wrong, even where the compiler would leave it out.
+        """
+        arrays = [arguments[each] for each in self.array_positions]
+        before = [each.copy() for each in arrays]
+        code = compile_kernel(self.function, AS_WRITTEN, counted=False)
+        try:
+            self.prepare(code, arrays, code.new_totals()).run(arguments)
+        finally:
+            for array, contents in zip(arrays, before, strict=True):
+                if array.flags.writeable:
+                    array[:] = contents
 
     def __call__(self, *arguments: Any, **named: Any) -> Any:
         """Run on numpy arrays and ints, as the firmware would, but without a machine around it."""

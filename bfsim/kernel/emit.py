@@ -16,38 +16,44 @@ from bfsim.kernel import divisions, floats, tree
 from bfsim.kernel.floats import register_type
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, u32
 
-I1, I32, I64, POINTER = ir.IntType(1), ir.IntType(32), ir.IntType(64), ir.PointerType()
+Sites = tuple[tree.Load | tree.Store | tree.Binary, ...]
+I1, I32, POINTER = ir.IntType(1), ir.IntType(32), ir.PointerType()
 SIMPLE = {"+": "add", "-": "sub", "*": "mul", "&": "and_", "|": "or_", "^": "xor"}
 # [predict.def of GCC 12] hit rates 67 % (continue) and 66 % (early return); both sides even otherwise
 CONTINUES, RETURNS, GOES_ON = 33, 34, 67
 EVEN = (GOES_ON, GOES_ON)
 WORD_BITS = 32
 SHIFT_MASK = 31  # a shift count uses its low five bits; the language refuses constants outside 0..31
+MOST_SITES = (1 << 16) - 1  # LLVM keeps 16 bits of a column
 
 
-TRAP = "bfsim.trap"  # line, number of the function, position of the array, index; line 0: nothing happened
-TRAP_WORDS = 4
+def emit(function: tree.Function) -> ir.Module:
+    """Emit `function` and every kernel it calls as one module."""
+    return _emitted(function)[0]
 
 
-def emit(function: tree.Function, *, checked: bool = False) -> ir.Module:
-    """Emit `function` and every kernel it calls as one module.
+def sites_of(function: tree.Function) -> dict[str, Sites]:
+    """Return, by symbol, the accesses and divisions of `function` and of every kernel it calls, in the order of their numbers.
 
-    With `checked`, the first index outside its array is noted in the global `TRAP` and every kernel returns.
+    A number, from 1 on, is the column in the debug location of the instruction; what is none of them has column 0.
     """
+    return _emitted(function)[1]
+
+
+def _emitted(function: tree.Function) -> tuple[ir.Module, dict[str, Sites]]:
     module = ir.Module(name=function.symbol)
     module.add_named_metadata(
         "llvm.module.flags", module.add_metadata([I32(2), "Debug Info Version", I32(3)])
     )
-    trap = None
-    if checked:
-        trap = ir.GlobalVariable(module, ir.ArrayType(I64, TRAP_WORDS), TRAP)
-        trap.initializer = ir.Constant(trap.value_type, [0] * TRAP_WORDS)
     family = (*function.callees(), function)
     for each in family:
         _declare(module, each)
-    for number, each in enumerate(family):
-        _Emitter(module, each, number, trap).run()
-    return module
+    sites = {}
+    for each in family:
+        emitter = _Emitter(module, each)
+        emitter.run()
+        sites[each.symbol] = tuple(emitter.sites)
+    return module, sites
 
 
 def _weight(body: tuple[tree.Stmt, ...]) -> int:
@@ -79,9 +85,10 @@ def _declare(module: ir.Module, function: tree.Function) -> None:
 class _Emitter:
     module: ir.Module
     function: tree.Function
-    number: int
-    trap: ir.GlobalVariable | None
+    sites: list[tree.Load | tree.Store | tree.Binary] = field(init=False, default_factory=list)
+    """Accesses and divisions: what can go wrong in a run."""
     builder: ir.IRBuilder = field(init=False)
+    line: int = field(init=False, default=1)
     scope: ir.values.MDValue = field(init=False)
     slots: dict[str, ir.Value] = field(init=False, default_factory=dict)
     arrays: dict[str, tuple[ir.Value, ir.Value]] = field(init=False, default_factory=dict)
@@ -134,16 +141,25 @@ class _Emitter:
         kind = self.module.add_debug_info("DISubroutineType", {"types": self.module.add_metadata([])})
         scope = self.module.add_debug_info(
             "DISubprogram",
-            {"name": self.function.name, "file": file, "line": 1, "type": kind, "unit": unit, "spFlags": 8},
+            {"name": self.function.symbol, "file": file, "line": 1, "type": kind, "unit": unit, "spFlags": 8},
             is_distinct=True,
         )
         target.set_metadata("dbg", scope)
         return scope
 
-    def _at(self, line: int) -> None:
+    def _at(self, line: int, site: int = 0) -> None:
+        self.line = line
         self.builder.debug_metadata = self.module.add_debug_info(
-            "DILocation", {"line": line, "column": 1, "scope": self.scope}
+            "DILocation", {"line": line, "column": site if site <= MOST_SITES else 0, "scope": self.scope}
         )
+
+    @contextmanager
+    def _site(self, node: tree.Load | tree.Store | tree.Binary) -> Iterator[None]:
+        """Number what is emitted inside as `node`."""
+        self.sites.append(node)
+        self._at(self.line, len(self.sites))
+        yield
+        self._at(self.line)
 
     # Statements
 
@@ -161,7 +177,8 @@ class _Emitter:
         address = self._address(node.array, node.element, node.index)
         if node.element.bits < WORD_BITS:
             value = self.builder.trunc(value, ir.IntType(node.element.bits))
-        self.builder.store(value, address)
+        with self._site(node):
+            self.builder.store(value, address)
 
     def _evaluate(self, node: tree.Evaluate) -> None:
         self.value(node.call)
@@ -261,33 +278,17 @@ class _Emitter:
         return self.arrays[node.array][1]
 
     def _address(self, array: str, element: Number, index: tree.Expr) -> ir.Value:
-        pointer, length = self.arrays[array]
-        offset = self.value(index)
-        if self.trap:
-            inside = self.builder.icmp_unsigned("<", offset, length)
-            with self.builder.if_then(self.builder.not_(inside)):
-                position = list(self.arrays).index(array)
-                wide = self.builder.zext(offset, I64) if index.type is u32 else self.builder.sext(offset, I64)
-                self._note([I64(index.line), I64(self.number), I64(position), wide])
-                self._leave()
-        return self.builder.gep(pointer, [offset], source_etype=ir.IntType(element.bits))
-
-    def _note(self, words: list[ir.Value]) -> None:
-        for position, word in enumerate(words):
-            self.builder.store(word, self.builder.gep(self.trap, [I32(0), I32(position)]))
-
-    def _leave(self) -> None:
-        if self.function.result:
-            self.builder.ret(register_type(self.function.result)(0))
-        else:
-            self.builder.ret_void()
+        pointer, _ = self.arrays[array]
+        return self.builder.gep(pointer, [self.value(index)], source_etype=ir.IntType(element.bits))
 
     def _load(self, node: tree.Load) -> ir.Value:
         address = self._address(node.array, node.element, node.index)
-        if isinstance(node.element, FloatType):
-            return self.builder.load(address, typ=floats.FLOAT)
-        value = self.builder.load(address, typ=ir.IntType(node.element.bits))
-        return self._extend(value, node.element)
+        is_float = isinstance(node.element, FloatType)
+        with self._site(node):
+            value = self.builder.load(
+                address, typ=floats.FLOAT if is_float else ir.IntType(node.element.bits)
+            )
+        return self._extend(value, node.element) if isinstance(node.element, IntType) else value
 
     def _extend(self, value: ir.Value, kind: IntType) -> ir.Value:
         if kind.bits == WORD_BITS:
@@ -334,10 +335,11 @@ class _Emitter:
             return self._shift(node, left, right)
         if node.op in ("min", "max"):
             return self._intrinsic(f"llvm.{'u' if unsigned else 's'}{node.op}.i32", [I32, I32], [left, right])
-        if unsigned:
-            return divisions.unsigned(self.builder, node.op, left, right)
-        constant = int(node.right.value) if isinstance(node.right, tree.Const) else None
-        return divisions.signed(self.builder, node.op, left, right, constant)
+        with self._site(node):
+            if unsigned:
+                return divisions.unsigned(self.builder, node.op, left, right)
+            constant = int(node.right.value) if isinstance(node.right, tree.Const) else None
+            return divisions.signed(self.builder, node.op, left, right, constant)
 
     def _shift(self, node: tree.Binary, left: ir.Value, right: ir.Value) -> ir.Value:
         if not isinstance(node.right, tree.Const):
@@ -393,9 +395,4 @@ class _Emitter:
         arguments: list[ir.Value] = []
         for each in node.arguments:
             arguments.extend(self.arrays[each] if isinstance(each, str) else [self.value(each)])
-        result = self.builder.call(self.module.get_global(node.callee.symbol), arguments)
-        if self.trap:
-            line = self.builder.load(self.builder.gep(self.trap, [I32(0), I32(0)]))
-            with self.builder.if_then(self.builder.icmp_signed("!=", line, I64(0))):
-                self._leave()
-        return result
+        return self.builder.call(self.module.get_global(node.callee.symbol), arguments)

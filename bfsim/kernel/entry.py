@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 from bfsim.kernel import tree
 from bfsim.kernel.counters import Counter
+from bfsim.kernel.guards import RETURN
 from bfsim.kernel.types import ArrayType, FloatType
 
 FIRST_ARGUMENT = 1  # word 0 of the block is the address of the totals
@@ -19,6 +20,7 @@ STALL_SHIFT = (
     32  # of the result of an entry, the lower half is issue cycles and the upper one interlock cycles
 )
 REFUSED = -1  # returned instead of cycles when an integer does not fit in its 32 bits; nothing was run then
+FAILED = -2  # returned when a guard failed, which is noted then; the run was cut short
 
 
 def cell_name(entry: str) -> str:
@@ -26,10 +28,16 @@ def cell_name(entry: str) -> str:
     return f"{entry}_arguments"
 
 
+def running_name(entry: str) -> str:
+    """Return the name of the variable that is not 0 while the kernel runs."""
+    return f"{entry}_running"
+
+
 def globals_of(counters: Sequence[Counter], entry: str, *, traced: bool) -> str:
     """Return the variables of a counted module: the cell, the totals and the cycles."""
     rows = [
         f"@{cell_name(entry)} = global ptr null",
+        f"@{running_name(entry)} = global i64 0",
         "@bfsim.totals = internal global ptr null",
         "@bfsim.cclk = internal global i64 0",
     ]
@@ -57,9 +65,12 @@ def settle(counters: Sequence[tuple[int, Counter, str]], place: str) -> list[str
     return [*rows, f"  store i64 %{place}.cclk.{len(counters)}, ptr @bfsim.cclk"]
 
 
-def entry_point(function: tree.Function, counters: Sequence[Counter], entry: str, *, traced: bool) -> str:
+def entry_point(
+    function: tree.Function, counters: Sequence[Counter], entry: str, *, traced: bool, checked: bool
+) -> str:
     """Return the entry point of `function`: call it, settle what its callees counted, return the cycles."""
     rows = [
+        f"  %counts = alloca [{max(1, len(counters))} x i64]",
         f"  %arguments = load ptr, ptr @{cell_name(entry)}",
         "  %totals = load ptr, ptr %arguments",
         "  store ptr %totals, ptr @bfsim.totals",
@@ -96,12 +107,12 @@ def entry_point(function: tree.Function, counters: Sequence[Counter], entry: str
         ]
         values.append(f"i32 {word}.low")
         refused = f"{word}.refused"
-    rows += [f"  br i1 {refused}, label %refuse, label %run", "refuse:", f"  ret i64 {REFUSED}", "run:"]
+    rows += [f"  br i1 {refused}, label %refuse, label %accept", "refuse:", f"  ret i64 {REFUSED}", "accept:"]
+    rows += _begin(entry, checked=checked)
     if traced:
         rows.append(f"  store ptr {take('ptr')}, ptr @bfsim.state")
         rows.append("  store i64 0, ptr @bfsim.clock")
     called = [number for number, each in enumerate(counters) if each.routine != function.symbol]
-    rows.append(f"  %counts = alloca [{max(1, len(counters))} x i64]")
     for number in called:
         rows.append(f"  %count.{number} = getelementptr i64, ptr %counts, i64 {number}")
         rows.append(f"  store i64 0, ptr %count.{number}")
@@ -118,8 +129,32 @@ def entry_point(function: tree.Function, counters: Sequence[Counter], entry: str
     if function.result:
         rows.append(f"  %result = getelementptr i64, ptr %arguments, i64 {slot}")
         rows.append("  store i64 %wide, ptr %result")
-    body = "\n".join([*rows, *_callees(called, counters)])
-    return f"define i64 @{entry}() {{\n{body}\n  %cclk = load i64, ptr @bfsim.cclk\n  ret i64 %cclk\n}}\n"
+    rows += [
+        *_callees(called, counters),
+        f"  store volatile i64 0, ptr @{running_name(entry)}",
+        "  %cclk = load i64, ptr @bfsim.cclk",
+        "  ret i64 %cclk",
+    ]
+    body = "\n".join(rows)
+    head = "declare i32 @_setjmp(ptr) returns_twice\n" if checked else ""
+    return f"{head}define i64 @{entry}() {{\n{body}\n}}\n"
+
+
+def _begin(entry: str, *, checked: bool) -> list[str]:
+    """Say that the kernel runs. A guard that fails comes back here, and leaves with what it has noted."""
+    running = f"  store volatile i64 1, ptr @{running_name(entry)}"
+    if not checked:
+        return [running]
+    return [
+        running,
+        f"  %jumped = call i32 @_setjmp(ptr {RETURN}) returns_twice",
+        "  %failed = icmp ne i32 %jumped, 0",
+        "  br i1 %failed, label %fail, label %run",
+        "fail:",
+        f"  store volatile i64 0, ptr @{running_name(entry)}",
+        f"  ret i64 {FAILED}",
+        "run:",
+    ]
 
 
 def _callees(called: Sequence[int], counters: Sequence[Counter]) -> list[str]:

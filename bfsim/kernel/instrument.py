@@ -17,11 +17,10 @@ from bfsim.kernel import tree
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.derived import Sum, derived
 from bfsim.kernel.entry import entry_point, globals_of, settle
-from bfsim.kernel.ir_text import DEFINE, LABEL, read_module
+from bfsim.kernel.guards import Guarded
+from bfsim.kernel.ir_text import DEFINE, KERNEL_CALL, LABEL, read_module
 
-DIVISION = re.compile(r"^(  %[\w.$-]+ = )(sdiv|udiv|srem|urem)(?: exact)? (i\d+) ([^,]+), (.+)$")
 ACCESS = re.compile(r"^  (?:%[\w.$-]+ = load|store) (i\d+|float)(?: [^,]+)?, ptr (%[\w.$-]+)")
-CALL = re.compile(r"\bcall [^@]*@([\w.$-]+)\(")
 FLOAT_BYTES = 4
 # [ours] In a program of so many counters, a routine of so many of them stays a routine on the host: LLVM takes twice as long
 # for what it inlines there, and the program runs no faster.
@@ -32,20 +31,6 @@ NOISE = re.compile(r" local_unnamed_addr| #\d+| !dbg !\d+")
 LEFT_OUT = ("!", "attributes", "target", "source_filename", ";")
 TERMINATORS = ("  br ", "  ret ", "  switch ", "  unreachable")
 
-# A division by zero must not stop the host; its result means nothing, as in C. The lowest integer // -1 wraps.
-SAFE_DIVISION = """
-define internal {kind} @bfsim.{op}.{kind}({kind} %a, {kind} %b) alwaysinline {{
-  %zero = icmp eq {kind} %b, 0
-  %low = icmp eq {kind} %a, {lowest}
-  %minus = icmp eq {kind} %b, -1
-  %both = and i1 %low, %minus
-  %wraps = and i1 %both, {signed}
-  %unsafe = or i1 %zero, %wraps
-  %divisor = select i1 %unsafe, {kind} 1, {kind} %b
-  %result = {op} {kind} %a, %divisor
-  ret {kind} %result
-}}
-"""
 TRACE_ACCESS = """
 define internal void @bfsim.trace_access(ptr %address, i64 %access) alwaysinline {
   %state = load ptr, ptr @bfsim.state
@@ -66,21 +51,28 @@ class _NumberedCounter:
 
 
 def instrument(
-    text: str, function: tree.Function, counters: Sequence[Counter], entry: str, *, traced: bool
+    text: str,
+    function: tree.Function,
+    counters: Sequence[Counter],
+    entry: str,
+    *,
+    traced: bool,
+    checked: bool,
 ) -> str:
-    """Return the module `text` with counters, safe divisions and the entry point `entry`.
+    """Return the module `text` with counters and the entry point `entry`.
 
-    With `traced`, every access to an array is also reported to the access trace that the argument block names.
+    With `traced`, every access to an array is also reported to the access trace that the argument block names. With `checked`,
+    every index and divisor is checked (`guards`).
     """
-    # LLVM divides narrow values in their own width, so there may be i8 and i16 divisions
-    divisions = sorted({(found[2], found[3]) for found in map(DIVISION.match, text.splitlines()) if found})
+    known = _derived(text, counters)
+    guarded = Guarded(text, entry) if checked else None
     return "\n".join(
         [
             globals_of(counters, entry, traced=traced),
-            _Rewriter(function, counters, traced, _derived(text, counters)).rewrite(text),
-            *(_safe_division(op, kind) for op, kind in divisions),
+            _Rewriter(function, counters, traced, known).rewrite(guarded.text if guarded else text),
+            guarded.run_time() if guarded else "",
             TRACE_ACCESS if traced else "",
-            entry_point(function, counters, entry, traced=traced),
+            entry_point(function, counters, entry, traced=traced, checked=checked),
         ]
     )
 
@@ -90,11 +82,6 @@ def _derived(text: str, counters: Sequence[Counter]) -> dict[int, Sum]:
     for routine in read_module(text) if counters else ():
         found |= derived(routine, counters)
     return found
-
-
-def _safe_division(op: str, kind: str) -> str:
-    lowest = -1 << int(kind[1:]) - 1
-    return SAFE_DIVISION.format(op=op, kind=kind, lowest=lowest, signed=str(op[0] == "s").lower())
 
 
 @dataclass(slots=True)
@@ -161,9 +148,9 @@ class _Rewriter:
             yield from self._leave(f".exit{self.exits}", is_top=is_top)
         if self.traced:
             yield from _access(row)
-        if (call := CALL.search(row)) and call.group(1) in self.routines:
+        if (call := KERNEL_CALL.search(row)) and call.group(1) in self.routines:
             row = _with_table(row, f"@{call.group(1)}(")
-        yield DIVISION.sub(r"\1call \3 @bfsim.\2.\3(\3 \4, \3 \5)", row)
+        yield row
 
     def _allocations(self) -> list[str]:
         slots = [f"  %.bf.{number} = alloca i64" for number in self._counted()]

@@ -22,6 +22,7 @@ WEIGHT = re.compile(r"i32 (-?\d+)")  # LLVM writes unsigned numbers as signed on
 PHI_ARM = re.compile(r"\[ ([^,\]]+), (%[\w.$-]+) \]")
 CASE = re.compile(r"i\d+ (-?\d+), label (%[\w.$-]+)")
 WIDTH = re.compile(r"\bi(\d+)\b")
+KERNEL_CALL = re.compile(r"\bcall [^@]*@([\w.$-]+)\(")
 OPCODE_NOISE = {"tail", "musttail", "notail"}
 
 

@@ -6,22 +6,23 @@ This pass may vectorise and unroll as it likes, because the counters are in the 
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 
-import llvmlite.binding as llvm
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.kernel import store, tree
+from bfsim.errors import KernelError
+from bfsim.kernel import crashes, failures, machine_code, store, tree
 from bfsim.kernel.costs import counters_of, optimised
 from bfsim.kernel.counters import Counter
-from bfsim.kernel.entry import cell_name
+from bfsim.kernel.entry import cell_name, running_name
+from bfsim.kernel.guards import Guarded, note_name
 from bfsim.kernel.instrument import instrument
 from bfsim.kernel.profile import CompilerProfile
 
 ENTRY = ctypes.CFUNCTYPE(ctypes.c_int64)
-HOST_SPEED_LEVEL = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +32,8 @@ class CompiledKernel:
     entry: ctypes._CFunctionType
     cell: ctypes.c_int64
     counters: tuple[Counter, ...]
+    failure: Callable[[], KernelError]
+    """Returns what a guard has noted in the last call; see `guards`."""
 
     def new_totals(self) -> NDArray[np.int64]:
         """Return zeros for the events of each counter (one word at least, to have an address)."""
@@ -39,77 +42,44 @@ class CompiledKernel:
 
 @cache
 def compile_kernel(
-    function: tree.Function, profile: CompilerProfile, *, traced: bool = False, counted: bool = True
+    function: tree.Function,
+    profile: CompilerProfile,
+    *,
+    traced: bool = False,
+    counted: bool = True,
+    checked: bool = True,
 ) -> CompiledKernel:
     """Compile `function`, or take it from the cache on disk; once per process.
 
-    `traced` kernels report every access to the memory followers; without `counted` there are no counters
-    (the floor that benchmarks compare with) and every call costs 0 cycles.
+    `traced` kernels report every access to the access trace; without `counted` there are no counters
+    (the floor that benchmarks compare with) and every call costs 0 cycles; without `checked` no index and no divisor
+    is checked, which must be known to be right.
     """
-    key = store.key(function, profile, f"traced={traced} counted={counted}")
+    key = store.key(function, profile, f"traced={traced} counted={counted} checked={checked}")
     entry = _entry_name(key)
     counters = counters_of(function, profile) if counted else ()
     code = store.load(key)
     if code is None:
-        code = host_code(instrument(optimised(function, profile), function, counters, entry, traced=traced))
+        text = instrument(
+            optimised(function, profile), function, counters, entry, traced=traced, checked=checked
+        )
+        code = machine_code.host_code(text)
         store.save(key, code)
-    return load(code, entry, counters)
-
-
-def host_code(text: str) -> bytes:
-    """Compile a module's text to an object file for this host."""
-    machine = _host_machine()
-    parsed = llvm.parse_assembly(text)
-    parsed.triple, parsed.data_layout = machine.triple, str(machine.target_data)
-    parsed.verify()
-    _optimise(parsed, machine)
-    code: bytes = machine.emit_object(parsed)
-    return code
-
-
-def _optimise(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
-    """Optimise for the host."""
-    options = llvm.create_pipeline_tuning_options(speed_level=HOST_SPEED_LEVEL)
-    options.loop_vectorization = options.loop_unrolling = options.loop_interleaving = True
-    # it takes a fifth of the time to compile, most of it on counters, and kernels run no faster for it
-    options.slp_vectorization = False
-    builder = llvm.create_pass_builder(machine, options)
-    builder.getModulePassManager().run(module, builder)
-
-
-@cache
-def _host_machine() -> llvm.TargetMachine:
-    llvm.initialize_native_target()
-    llvm.initialize_native_asmprinter()
-    return llvm.Target.from_default_triple().create_target_machine(
-        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(), opt=3, jit=True
-    )
-
-
-@cache
-def _engine() -> llvm.ExecutionEngine:
-    return llvm.create_mcjit_compiler(llvm.parse_assembly(""), _host_machine())
-
-
-def load(code: bytes, entry: str, counters: tuple[Counter, ...]) -> CompiledKernel:
-    """Add an object file to this process and return the kernel in it."""
-    add(code)
+    machine_code.add(code)
+    crashes.watch(machine_code.address_of(running_name(entry)), function)
     return CompiledKernel(
-        ENTRY(address_of(entry)), ctypes.c_int64.from_address(address_of(cell_name(entry))), counters
+        ENTRY(machine_code.address_of(entry)),
+        ctypes.c_int64.from_address(machine_code.address_of(cell_name(entry))),
+        counters,
+        partial(_failure, function, profile, entry),
     )
 
 
-def add(code: bytes) -> None:
-    """Add an object file to this process."""
-    engine = _engine()
-    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
-    engine.finalize_object()
-
-
-def address_of(name: str) -> int:
-    """Return the host address of a function or variable of a loaded object file."""
-    engine = _engine()
-    return int(engine.get_function_address(name) or engine.get_global_value_address(name))
+def _failure(function: tree.Function, profile: CompilerProfile, entry: str) -> KernelError:
+    """Return what the guards of a loaded kernel have noted."""
+    guarded = Guarded(optimised(function, profile), entry)
+    note = (ctypes.c_int64 * guarded.note_words).from_address(machine_code.address_of(note_name(entry)))
+    return failures.failure(function, guarded, list(note))
 
 
 def _entry_name(key: str) -> str:

@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 
 import llvmlite.binding as llvm
 
-from bfsim.kernel import jit, store
+from bfsim.kernel import machine_code, store
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -66,7 +66,7 @@ class NativeEntry:
 
     def compile(self) -> bytes:
         """Compile it, and keep it in the cache; return the object file."""
-        code = jit.host_code(_ir(self))
+        code = machine_code.host_code(_ir(self))
         store.save(_key(self.symbol), code)
         return code
 
@@ -79,8 +79,8 @@ def native_entry(result: str, *arguments: str) -> Callable[[Callable[..., Any]],
 @cache
 def _loaded(each: NativeEntry) -> int:
     code = store.load(_key(each.symbol)) or each.compile()
-    jit.add(code)
-    return jit.address_of(each.symbol)
+    machine_code.add(code)
+    return machine_code.address_of(each.symbol)
 
 
 @cache

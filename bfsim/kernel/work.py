@@ -62,6 +62,7 @@ class PreparedCall:
         "_check",
         "_count",
         "_entry",
+        "_failure",
         "_floats",
         "_integers",
         "_is_float",
@@ -101,6 +102,7 @@ class PreparedCall:
         self._at = ctypes.addressof(self._block)
         self._cell = compiled.cell
         self._entry = compiled.entry
+        self._failure = compiled.failure
         self._integers = tuple(integers)
         self._floats = tuple(floats)
         self._check = check
@@ -122,6 +124,7 @@ class PreparedCall:
         cycles: int = self._entry()
         if cycles < 0 or len(arguments) != self._count:
             self._check(arguments)
+            raise self._failure()
         if self._is_plain:
             return Work(cycles & ISSUE_MASK, cycles >> STALL_SHIFT)
         value: float | None = self._block[self._value_word] if self._value_word else None

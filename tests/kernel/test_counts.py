@@ -14,7 +14,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from bfsim.kernel import GCC_O0, VDSP_O2, Kernel, counters
+from bfsim.kernel import GCC_O0, VDSP_O2, Kernel, instrument
 from tests.kernel.modules import import_text
 from tests.kernel.programs import programs
 from tests.kernel.test_semantics import arrays_of
@@ -127,6 +127,6 @@ def test_a_routine_counts_alike_whether_inlined_or_called(
         totals = code.new_totals()
         cclk = kernel.prepare(code, arrays, totals).run(arrays).issue_cclk
         counts.append((cclk, totals.tolist(), arrays[1].tolist()))
-        monkeypatch.setattr(counters, "LARGE_PROGRAM_COUNTERS", 0)
-        monkeypatch.setattr(counters, "LARGE_ROUTINE_COUNTERS", 0)
+        monkeypatch.setattr(instrument, "LARGE_PROGRAM_COUNTERS", 0)
+        monkeypatch.setattr(instrument, "LARGE_ROUTINE_COUNTERS", 0)
     assert counts[0] == counts[1]

@@ -193,7 +193,7 @@ class Core(SynchronisedCore):
         self._invalidate(rows)
         if lost := pair.lost.get(self.name, 0):
             self.publish(ppi_words_lost=lost)
-        self._frame = Frame(pair.index, rows, width, len(rows))
+        self._frame, self._frame_index = Frame(pair.index, rows, width, len(rows)), pair.index
         return self._frame
 
     def publish(self, **results: int) -> None:
@@ -299,5 +299,5 @@ class Core(SynchronisedCore):
                 seen=self._view(Readout(self, self._frame, self._results)) if self._view else None,
             )
         )
-        self._frame, self._results, self._remarks = None, {}, []
+        self._frame, self._frame_index, self._results, self._remarks = None, None, {}, []
         self._on_finished()

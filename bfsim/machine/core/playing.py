@@ -8,7 +8,7 @@ from typing import Any
 import simpy
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.errors import BfsimError, FirmwareError
+from bfsim.errors import BfsimError, FirmwareError, KernelError
 from bfsim.kernel import Kernel, Work
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.calls.call_cache import CallCache, DeferredWork
@@ -17,7 +17,7 @@ from bfsim.machine.core.interrupts import Handler, Interrupts
 from bfsim.machine.firmware_lines import line_at, line_of
 from bfsim.machine.memories import Row
 from bfsim.machine.simulation import Simulation
-from bfsim.trace import StallReason
+from bfsim.trace import REST, StallReason
 
 BUS_STALLS = (
     StallReason.L2_LATENCY, StallReason.L2_PORT, StallReason.SDRAM_PAGE_HIT, StallReason.SDRAM_PAGE_MISS,
@@ -49,6 +49,8 @@ class PlayingCore(CoreClock):
         self._unclaimed: Work | None = None
         self._task: Generator[Any, Any, Any] | None = None  # the main loop, or the handler that came between
         self._in_handler = False
+        self._frame_index: int | None = None
+        """Index of the picture that is worked on, None between two."""
         self.is_done = False
         """Whether the main loop has ended."""
 
@@ -113,7 +115,7 @@ class PlayingCore(CoreClock):
                 self._unclaimed = None
                 if isinstance(item, DeferredWork):
                     yield from self._sync()
-                    item = item.run()
+                    item = self._made(item, task)
                     if item.accesses:
                         yield from self._outside_l1(item)
                 self._cclk += item.issue_cclk + item.stall_cclk
@@ -138,9 +140,24 @@ class PlayingCore(CoreClock):
     def _told(self, error: Exception | SystemExit) -> BfsimError:
         """Return what went wrong in the firmware, with its line there."""
         line = line_of(error)
+        if isinstance(error, KernelError):
+            return self._in_call(error, line)
         if isinstance(error, BfsimError):
             return type(error)(f"{error}{line}")
         return FirmwareError(f"core {self.name}: firmware failed with {type(error).__name__}: {error}{line}")
+
+    def _made(self, work: DeferredWork, task: Generator[Any, Any, Any]) -> Work:
+        """Make a call that `task` has yielded."""
+        try:
+            return work.run()
+        except KernelError as error:
+            raise self._in_call(error, line_at(task)) from error
+
+    def _in_call(self, error: KernelError, line: str) -> KernelError:
+        """Return a mistake in a kernel with where and when the firmware called it."""
+        frame = "between two frames" if self._frame_index is None else f"frame {self._frame_index}"
+        stage = "outside of stages" if self._calls.stage == REST else f"stage {self._calls.stage}"
+        return KernelError(f"{error}\n    core {self.name}, {frame}, {stage}{line}")
 
     def _check_claimed(self) -> None:
         if self._unclaimed is not None:

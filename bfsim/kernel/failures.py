@@ -1,0 +1,72 @@
+"""What a guard has noted → the error for the person who wrote the kernel: file and line, kernel, array, index and length."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from bfsim.errors import KernelError
+from bfsim.kernel import tree
+from bfsim.kernel.emit import Sites, sites_of
+from bfsim.kernel.guards import CALLS, FIRST, NUMBER, SECOND, Guard, Guarded, Place
+from bfsim.kernel.types import i32, u32
+
+
+def failure(function: tree.Function, guarded: Guarded, note: Sequence[int]) -> KernelError:
+    """Return the error for a note of `guarded`, the code of `function` and its callees."""
+    routines = {each.symbol: each for each in (*function.callees(), function)}
+    guard = guarded.guards[note[NUMBER] - 1]
+    here, *callers = _way(guarded, guard, note)
+    routine, sites = routines[here.routine], _sites(guard, sites_of(function)[here.routine])
+    first, *others = sorted({each.line for each in sites})
+    same = f"; or line {' or '.join(str(routine.first_line + each - 1) for each in others)}" if others else ""
+    calls = "".join(f"; called at {_place(routines[each.routine], each.line)}" for each in callers)
+    told = _of_divisor if guard.node is tree.Binary else _of_index
+    what, must_be = told(sites, note[FIRST], note[SECOND])
+    return KernelError(
+        f"{_place(routine, first)}: {what} in kernel {routine.name}{same}; {must_be}{calls}\n"
+        f"    {routine.source.splitlines()[first - 1].strip()}"
+    )
+
+
+def _way(guarded: Guarded, guard: Guard, note: Sequence[int]) -> Iterator[Place]:
+    """Yield the place of `guard`, and of each call on the way to it, the last one first."""
+    yield from guard.places
+    while number := note[CALLS + guarded.routines.index(guard.routine)]:
+        guard = guarded.guards[number - 1]
+        yield from guard.places
+
+
+def _sites(guard: Guard, known: Sites) -> Sites:
+    """Return what `guard` stands before: one access or division, or several of which the compiler has made one."""
+    here, is_inlined = guard.places[0], len(guard.places) > 1
+    if here.site:
+        return (known[here.site - 1],)
+    alike = [each for each in known if type(each) is guard.node]
+    by_array = [each for each in alike if not is_inlined and getattr(each, "array", None) == guard.array]
+    by_line = [each for each in by_array or alike if each.line == here.line]
+    return tuple(by_line or by_array or alike or known)
+
+
+def _of_index(sites: Sites, index: int, length: int) -> tuple[str, str]:
+    """Return what is wrong with an index, and what it must be."""
+    accesses = [each for each in sites if not isinstance(each, tree.Binary)]
+    shown = index if accesses[0].index.type is u32 else i32(index)
+    arrays = list(dict.fromkeys(each.array for each in accesses))
+    lengths = " or ".join(f"len({each})" for each in arrays)
+    return (
+        f"index {shown} is outside of {' or '.join(arrays)}",
+        f"an index must be 0 or more and less than {lengths}, which is {length}",
+    )
+
+
+def _of_divisor(sites: Sites, dividend: int, divisor: int) -> tuple[str, str]:
+    """Return what is wrong with a division, and what the divisor must be."""
+    operator = sites[0].op if isinstance(sites[0], tree.Binary) else "//"
+    condition = f" where the dividend is {dividend}" if divisor else ""
+    is_function = operator.isidentifier()
+    shown = f"{operator}({dividend}, {divisor})" if is_function else f"{dividend} {operator} {divisor}"
+    return f"{shown} is undefined", f"the divisor must not be {divisor}{condition}"
+
+
+def _place(routine: tree.Function, line: int) -> str:
+    return f"{routine.file}:{routine.first_line + max(1, line) - 1}"
