@@ -53,7 +53,7 @@ class OwnModules(MetaPathFinder):
     def __init__(self, roots: Sequence[Root]) -> None:
         self.roots = tuple(roots)
         self.modules: dict[str, ModuleType] = {}
-        self.sources: dict[str, Source] = {}
+        self.sources: dict[str, ImportedFile] = {}
 
     def load(self, name: str) -> ModuleType:
         """Import the module `name`, and what it imports."""
@@ -122,7 +122,7 @@ class OwnModules(MetaPathFinder):
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class ImportedFile:
     """A file that was imported, and its name below the folder that it was imported from."""
 
     path: Path
@@ -153,7 +153,7 @@ class _FromSource(SourceFileLoader):
         stat, written = path.stat(), path.read_bytes()
         below = len(fullname.split(".")) + (path.name == "__init__.py")  # parts of the path
         relative = "/".join(path.parts[-below:])
-        self._own.sources[fullname] = Source(path, relative, hashlib.sha256(written).hexdigest())
+        self._own.sources[fullname] = ImportedFile(path, relative, hashlib.sha256(written).hexdigest())
         code: CodeType = self.source_to_code(written, self.path)
         # Kernels read their source there, which must be what was compiled.
         lines = io.StringIO(importlib.util.decode_source(written)).readlines()

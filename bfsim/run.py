@@ -12,6 +12,7 @@ import llvmlite.binding as llvm
 from bfsim import __version__, shipped
 from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
+from bfsim.device_script import read_script
 from bfsim.errors import ConfigError, FirmwareError, RecordingError
 from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
 from bfsim.linker import LinkerScript, link, parse_ldf
@@ -22,7 +23,6 @@ from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.program import Calibration, Firmware, FrameSize, SourcePixels
 from bfsim.machine.spi.device import SpiDevice
 from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.script import read_script
 from bfsim.seen import Seen, SeenFrame
 from bfsim.trace import Identity, RunRecord, RunWarning, WarningKind
 

@@ -40,10 +40,10 @@ MAY_IMPORT = {
     "locating": {"errors", "importing", "shipped"},
     "loading": {"errors", "importing", "kernel", "locating", "machine", "shipped"},
     "explain": {"errors", "kernel", "loading", "trace"},
-    "script": {"errors"},
+    "device_script": {"errors"},
     "scenery": {"errors", "loading", "locating", "recording", "shipped"},
     "run": {
-        "script",
+        "device_script",
         "errors",
         "seen",
         "trace",

@@ -27,7 +27,7 @@ from bfsim.linker.script import (
 )
 from bfsim.linker.source import Source
 
-# What would change a placement and is not modelled, with the reason that the error gives.
+# Keywords that would change a placement and are not modelled, each with the reason that the error gives.
 _REFUSED = {
     "OVERLAY_INPUT": "overlays share an address at different times, and bfsim places each symbol once",
     "OVERLAY_GROUP": "overlays share an address at different times, and bfsim places each symbol once",
@@ -62,7 +62,7 @@ _Item = Segment | OutputSection | Reserve | FixedReserve | Resolve | Masters | A
 
 @v_args(inline=True)
 class ScriptBuilder(Evaluator):
-    """One method per rule of ldf.lark; raises LinkError at the first statement that cannot be meant."""
+    """One method per rule of ldf.lark; raises LinkError at the first statement that makes no sense."""
 
     def __init__(self, source: Source) -> None:
         super().__init__(source)

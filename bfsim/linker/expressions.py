@@ -11,7 +11,7 @@ _WIDEST_BITS = 64  # of a value in between; an address has 32
 
 
 class ExpressionError(Exception):
-    """Carries what is wrong with the expression whose text starts at `offset` up to where the file is known."""
+    """Raised for what is wrong with the expression at `offset`; the file is added where it is known."""
 
     def __init__(self, offset: int, problem: str) -> None:
         super().__init__(problem)

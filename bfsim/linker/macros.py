@@ -40,9 +40,9 @@ class MacroError(Exception):
 
 
 def expand(text: str, macros: Mapping[str, Macro], active: tuple[str, ...] = ()) -> str:
-    """Expand the macros in `text`, but those that are `active`, which is to say being expanded, already.
+    """Expand the macros in `text`, except those in `active`, which are being expanded already.
 
-    An argument that is being expanded adds "" to `active`, so that its length is how deep it is.
+    The expansion of an argument adds "" to `active`, so that the length of `active` is the depth of nesting.
     """
     expanded: list[str] = []
     length = position = 0

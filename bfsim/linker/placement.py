@@ -72,7 +72,7 @@ def link(
 
 
 class _Linker:
-    """One link: the segments as they fill, what has its place, and what found no room where."""
+    """One link: the segments as they fill, the symbols that have a place, and which sections had no room for which symbol."""
 
     def __init__(self, script: LinkerScript) -> None:
         self._script = script
@@ -86,7 +86,7 @@ class _Linker:
         self._refusals: dict[Symbol, list[Refusal]] = {}
 
     def fill(self, processor: str | None, output: OutputSection, symbols: Sequence[Symbol]) -> None:
-        """Place those of `symbols` that `output` takes and has room for, and do what else stands there."""
+        """Place those of `symbols` that `output` takes and has room for, and obey its other statements."""
         filling = self.fillings[output.segment]
         start = filling.location
         for statement in output.statements:

@@ -11,7 +11,7 @@ from bfsim.errors import LinkError
 from bfsim.linker.conditions import holds
 from bfsim.linker.macros import TOKEN, Macro, MacroError, Macros, expand_use
 from bfsim.linker.predefined import macros_for
-from bfsim.linker.source import File, Piece, Source
+from bfsim.linker.source import File, Fragment, Source
 
 _DIRECTIVE = re.compile(r"\s*#\s*(?P<name>\w*)(?P<rest>.*)", re.DOTALL)
 _DEFINE = re.compile(
@@ -34,7 +34,7 @@ _MOST_INCLUSIONS = 500
 
 @dataclass(slots=True)
 class _Condition:
-    """An #if and its branches: whether the text around it counts, this branch does, and one did before."""
+    """An #if: is the text around it read, is its present branch taken, was one of its branches taken before."""
 
     offset: int
     is_read: bool
@@ -185,10 +185,10 @@ def preprocess(path: Path, macros: Mapping[str, str], include_dirs: Sequence[Pat
     defined = macros_for(file.written) | dict(macros)
     run = _Preprocessor({name: Macro(None, body) for name, body in defined.items()}, include_dirs)
     expanded: list[str] = []
-    pieces: list[Piece] = []
+    pieces: list[Fragment] = []
     length = 0
     for text, written_in, written_at, is_copy in run.pieces(file, (path.resolve(),)):
-        pieces.append(Piece(length, written_in, written_at, is_copy))
+        pieces.append(Fragment(length, written_in, written_at, is_copy))
         expanded.append(text)
         length += len(text)
     return Source(path, "".join(expanded), tuple(pieces), tuple(run.warnings))

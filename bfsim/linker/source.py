@@ -53,7 +53,7 @@ class File:
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class Fragment:
     """A stretch of expanded text and where it was written; not `is_copy` where a macro was expanded."""
 
     expanded_at: int
@@ -68,7 +68,7 @@ class Source:
 
     path: Path
     expanded: str
-    pieces: tuple[Piece, ...]
+    pieces: tuple[Fragment, ...]
     warnings: tuple[str, ...]
 
     def place_of(self, offset: int) -> Place:

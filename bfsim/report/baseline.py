@@ -133,7 +133,7 @@ def _validated(document: TOMLDocument, path: Path) -> Baseline:
             case "missing":
                 raise ConfigError(f"{path}: the key {key} must be there; --update writes it") from error
             case "extra_forbidden":
-                raise ConfigError(f"{path}: {key} must be a key of a baseline, and is none") from error
+                raise ConfigError(f"{path}: {key} must not be there: a baseline has no such key") from error
         must_be = first["msg"].replace("Input should", "must").removesuffix(" instance")
         raise ConfigError(f"{path}: {key} {must_be}, not {first['input']!r}") from error
 

@@ -98,7 +98,7 @@ def _missed(run: RunRecord) -> str:
 
 
 def percent(part: float, whole: float) -> str:
-    """Return a share in percent, with one digit behind the point; nothing of nothing is 0."""
+    """Return a share in percent, with one digit behind the point; 0 of 0 is 0."""
     return f"{100 * part / whole:.1f}" if whole else "0.0"
 
 
@@ -124,7 +124,7 @@ def _budget_table(core: CoreBudget, hz: float, reference: Reference | None) -> T
 
 
 def _name(row: StageRow) -> str:
-    """Return the name of a row; that of a part stands in from the row before, which holds it."""
+    """Return the name of a row, indented if the row is a part of the one above."""
     return row.name if row.within is None else f"  {row.name}"
 
 

@@ -9,7 +9,7 @@ from tinyphoon.core_b import core_b
 from tinyphoon.geometry import THESIS_GEOMETRY
 from tinyphoon.losses import LOSSES
 from tinyphoon.one_core import one_core
-from tinyphoon.strategy_unit.device import StrategyUnit
+from tinyphoon.strategy_unit.unit import StrategyUnit
 from tinyphoon.view.view import view
 
 THESIS = Reference(

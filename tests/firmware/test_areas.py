@@ -23,7 +23,7 @@ from tests.firmware.test_rectification import tables
 from tests.firmware.whole_pictures import buffer, check_core, random_frames
 from tinyphoon import tinyphoon
 from tinyphoon.areas import Area, area_in, principal_shift
-from tinyphoon.strategy_unit.device import StrategyUnit
+from tinyphoon.strategy_unit.unit import StrategyUnit
 
 
 def run(

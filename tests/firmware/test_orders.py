@@ -18,7 +18,7 @@ from tinyphoon.fields import to_words
 from tinyphoon.strategy import order_checks as checks
 from tinyphoon.strategy.models import MODELS
 from tinyphoon.strategy_unit.decoding import decode_results
-from tinyphoon.strategy_unit.device import StrategyUnit
+from tinyphoon.strategy_unit.unit import StrategyUnit
 
 Entry = dict[str, Any]
 

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from bfsim.api import FirmwareError
 from tinyphoon.fields import to_words
 from tinyphoon.strategy.modes import INDOOR_FIELD
-from tinyphoon.strategy_unit.device import Received, StrategyUnit
 from tinyphoon.strategy_unit.messages import Message, MessageError, MessageType, decode, encode
 from tinyphoon.strategy_unit.payloads import payload
+from tinyphoon.strategy_unit.unit import Received, StrategyUnit
 
 REPORT = encode(Message(MessageType.RESULTS, 0, b""))
 

@@ -12,10 +12,10 @@ import pytest
 
 from bfsim.api import Buffer, Core, Frame, SpiDevice, SpiMessage, u16
 from bfsim.chip.boards import CM_BF561
+from bfsim.device_script import read_script
 from bfsim.errors import BfsimError, ConfigError, FirmwareError
 from bfsim.machine.board import Outcome
 from bfsim.run import simulate
-from bfsim.script import read_script
 from tests.machine.kernels import spin
 from tests.machine.made_boards import made_board
 from tests.machine.rig import Play, every_frame, noise

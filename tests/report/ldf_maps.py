@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from bfsim.report.ldf.map import SHARED, CacheRange, Kind, MapSection, MapSegment, MapSymbol, MemoryMap, Piece
+from bfsim.report.ldf.map import (
+    SHARED,
+    CacheRange,
+    Kind,
+    MapPiece,
+    MapSection,
+    MapSegment,
+    MapSymbol,
+    MemoryMap,
+)
 
 BANK_BYTES = 8 * 1024**2
 DATA_A = 0xFF800000
@@ -34,7 +43,7 @@ def a_segment(
     for each in symbols:
         pieces.append(_free(here, each.address))
         pieces.append(
-            Piece(name=each.name, kind=each.kind, owner=each.owner, start=each.address, nbytes=each.nbytes)
+            MapPiece(name=each.name, kind=each.kind, owner=each.owner, start=each.address, nbytes=each.nbytes)
         )
         here = each.address + each.nbytes
     pieces.append(_free(here, start + nbytes))
@@ -44,8 +53,8 @@ def a_segment(
     )  # fmt: skip
 
 
-def _free(start: int, end: int) -> Piece:
-    return Piece(name="free", kind=Kind.FREE, owner=SHARED, start=start, nbytes=max(0, end - start))
+def _free(start: int, end: int) -> MapPiece:
+    return MapPiece(name="free", kind=Kind.FREE, owner=SHARED, start=start, nbytes=max(0, end - start))
 
 
 def a_map(*segments: MapSegment, caches: tuple[CacheRange, ...] = ()) -> MemoryMap:

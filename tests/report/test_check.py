@@ -206,7 +206,7 @@ def test_missing_file_is_told_how_to_make_one(tmp_path: Path) -> None:
             r"core\.A\.Edge detection\.max_cclk must be a valid integer, not '1050'",
         ),
         ("max_cclk = 1_050", "max_ms = 2", r"core\.A\.Edge detection\.max_cclk must be there"),
-        ("\n[run]", "\n[run]\nfps = 4", r"run\.fps must be a key of a baseline, and is none"),
+        ("\n[run]", "\n[run]\nfps = 4", r"run\.fps must not be there: a baseline has no such key"),
         ("\n[run]", "\n[run", r"must be TOML: .* at line \d+"),
     ],
 )

@@ -96,7 +96,7 @@ class SpiDevice:
         raise NotImplementedError("a device that requests must send")
 
     def finish(self) -> Sequence[str]:
-        """Return what the user should know when the run is over, a sentence each, such as what was never fetched."""
+        """Return what the user is to be warned of when the run is over, a sentence each, such as what was never fetched."""
         return ()
 
 

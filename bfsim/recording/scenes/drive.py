@@ -1,4 +1,4 @@
-"""Where the robot stands and looks, and its way over the floor."""
+"""Where the cameras stand and look, and their way over the floor."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ class Renderer:
         scene = {name: self._loaded(shape) for name, shape in shapes.items()}
         integrator = {"type": "path", "max_depth": MAX_DEPTH}
         whole = {"type": "scene", "integrator": integrator, **scene}
-        # Optimised, equal lamps would become one, in an order that chance decides, and one picture in twenty another.
+        # The optimiser merges equal lamps in an order that varies: one rendering in twenty would be another picture.
         self._scene = self._mitsuba.load_dict(whole, optimize=False)
 
     @property

@@ -34,7 +34,7 @@ class Floor:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scene:
-    """A scene that does not change while the robot takes its frames, one from each pose.
+    """A scene that does not change while the cameras take its frames, one from each pose.
 
     `things` have the names that they have in the ground truth; `roughness` is that of their coats. Frame k is
     taken `k * period_ns` after the first, its red, green and blue light multiplied by `gains[k]`; without gains

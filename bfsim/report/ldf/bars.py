@@ -10,7 +10,7 @@ from rich.style import Style
 from rich.text import Text
 
 from bfsim.report.ldf.colours import colours_of
-from bfsim.report.ldf.map import Kind, MapSegment, MemoryMap, Piece
+from bfsim.report.ldf.map import Kind, MapPiece, MapSegment, MemoryMap
 from bfsim.report.units import size
 
 CELLS = 64
@@ -43,8 +43,8 @@ def _segment(segment: MapSegment, colours: dict[str, str]) -> Iterator[Text]:
     yield legend
 
 
-def cells_of(segment: MapSegment, cells: int) -> Iterator[Piece]:
-    """Yield for each of `cells` equal parts of a segment the piece that has most of it, symbols before others."""
+def cells_of(segment: MapSegment, cells: int) -> Iterator[MapPiece]:
+    """Yield for each of `cells` equal parts of a segment the piece that fills most of it; a symbol wins over a reserve or free space."""
     for number in range(cells):
         start = segment.start + segment.nbytes * number // cells
         end = segment.start + segment.nbytes * (number + 1) // cells
@@ -57,11 +57,11 @@ def cells_of(segment: MapSegment, cells: int) -> Iterator[Piece]:
         )
 
 
-def _overlap(piece: Piece, start: int, end: int) -> int:
+def _overlap(piece: MapPiece, start: int, end: int) -> int:
     return max(0, min(piece.start + piece.nbytes, end) - max(piece.start, start))
 
 
-def _named(segment: MapSegment) -> Sequence[Piece]:
+def _named(segment: MapSegment) -> Sequence[MapPiece]:
     return [each for each in segment.pieces if each.is_named]
 
 
@@ -71,11 +71,11 @@ def _letters() -> Iterator[str]:
         yield MANY
 
 
-def _sign(piece: Piece, letters: dict[Piece, str]) -> str:
+def _sign(piece: MapPiece, letters: dict[MapPiece, str]) -> str:
     if piece.kind is Kind.FREE:
         return FREE
     return letters.get(piece, RESERVED)
 
 
-def _style(piece: Piece, colours: dict[str, str]) -> Style:
+def _style(piece: MapPiece, colours: dict[str, str]) -> Style:
     return Style(color=colours[piece.name]) if piece.is_named else Style(dim=True)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from itertools import groupby
 
 from bfsim.report.ldf.colours import colours_of
-from bfsim.report.ldf.map import SHARED, Kind, MapSegment, MemoryMap, Piece
+from bfsim.report.ldf.map import SHARED, Kind, MapPiece, MapSegment, MemoryMap
 from bfsim.report.units import size
 
 # lengths in px
@@ -28,7 +28,7 @@ FREE_COLOUR, RESERVED_COLOUR = "#eef1f5", "#c3cad6"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Box:
+class FilledBox:
     """A filled rectangle; coordinates in px from the upper left corner."""
 
     x: float
@@ -57,7 +57,7 @@ class Sheet:
 
     width: float
     height: float = 0
-    boxes: list[Box] = field(default_factory=list)
+    boxes: list[FilledBox] = field(default_factory=list)
     words: list[Words] = field(default_factory=list)
 
 
@@ -143,7 +143,9 @@ class _Pen:
                 middle = y + BAR_HEIGHT / 2
                 self._write(left + 3, middle - 8, segment.label(piece), font_px=SMALL_FONT)
                 self._write(left + 3, middle + 8, size(piece.nbytes), font_px=SMALL_FONT)
-        self.sheet.boxes.append(Box(x=x, y=y, width=PANEL_WIDTH, height=BAR_HEIGHT, fill="", outline=FAINT))
+        self.sheet.boxes.append(
+            FilledBox(x=x, y=y, width=PANEL_WIDTH, height=BAR_HEIGHT, fill="", outline=FAINT)
+        )
 
     def _entry(self, x: float, y: float, fill: str, label: str) -> float:
         """Draw a line of a legend; return where the next one can begin."""
@@ -151,13 +153,13 @@ class _Pen:
         self._write(x + SWATCH + 6, y, label, font_px=SMALL_FONT)
         return x + SWATCH + 6 + _width(label, SMALL_FONT) + 24
 
-    def _fill(self, piece: Piece) -> str:
+    def _fill(self, piece: MapPiece) -> str:
         if piece.kind is Kind.FREE:
             return FREE_COLOUR
         return RESERVED_COLOUR if piece.kind is Kind.RESERVED else self.colours[piece.name]
 
     def _box(self, x: float, y: float, width: float, height: float, fill: str, outline: str = "") -> None:
-        self.sheet.boxes.append(Box(x=x, y=y, width=width, height=height, fill=fill, outline=outline))
+        self.sheet.boxes.append(FilledBox(x=x, y=y, width=width, height=height, fill=fill, outline=outline))
 
     def _write(
         self, x: float, y: float, text: str, *, font_px: int = FONT, colour: str = INK, is_right: bool = False

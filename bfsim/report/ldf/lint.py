@@ -68,7 +68,7 @@ def streams_by_bank(streams: Sequence[Stream]) -> Mapping[int, Sequence[Stream]]
 
 
 def _shared_banks(memory_map: MemoryMap) -> Iterator[Finding]:
-    """Different masters in one bank: they stream at the same time, whatever the firmware does."""
+    """Find banks in which several masters stream: they do so at the same time, whatever the firmware does."""
     by_bank = streams_by_bank(streams_of(memory_map.symbols))
     for bank, streams in by_bank.items():
         if len({each.master for each in streams}) > 1:
@@ -82,7 +82,7 @@ def _shared_banks(memory_map: MemoryMap) -> Iterator[Finding]:
 
 
 def _own_banks(memory_map: MemoryMap) -> Iterator[Finding]:
-    """One master in one bank: it depends on the main loop whether it streams two of its buffers at a time."""
+    """Find banks with two buffers of one master: it depends on the main loop whether both stream at a time."""
     for bank, streams in streams_by_bank(streams_of(memory_map.symbols)).items():
         if len(streams) > 1 and len({each.master for each in streams}) == 1:
             yield Finding(
@@ -119,7 +119,7 @@ def _other_bank(memory_map: MemoryMap, by_bank: Mapping[int, Sequence[Stream]]) 
 
 
 def _hot_code(memory_map: MemoryMap) -> Iterator[Finding]:
-    """Kernels outside L1, where no code cache stands between."""
+    """Find kernels outside L1 on a core whose code cache is off."""
     cached = {each.owner for each in memory_map.caches if each.memory.endswith("L1_CODE_CACHE")}
     for segment in memory_map.segments:
         code = [each for each in segment.symbols if each.kind is Kind.CODE and each.owner not in cached]
@@ -134,7 +134,7 @@ def _hot_code(memory_map: MemoryMap) -> Iterator[Finding]:
 
 
 def _cached_halves(memory_map: MemoryMap) -> Iterator[Finding]:
-    """What lies where the LDF has a cache."""
+    """Find symbols in the half of an L1 memory that the LDF turns into cache."""
     for cache in memory_map.caches:
         inside = [
             each
@@ -153,7 +153,7 @@ def _cached_halves(memory_map: MemoryMap) -> Iterator[Finding]:
 
 
 def _scratchpad(memory_map: MemoryMap) -> Iterator[Finding]:
-    """What may be a DMA buffer, in the memory without DMA."""
+    """Find buffers of several rows in the scratchpad, which DMA cannot reach."""
     for segment in memory_map.segments:
         streamed = [each for each in segment.symbols if each.kind in STREAMED]
         if streamed and segment.memory.endswith("SCRATCH"):
@@ -167,7 +167,7 @@ def _scratchpad(memory_map: MemoryMap) -> Iterator[Finding]:
 
 
 def _nearly_full(memory_map: MemoryMap) -> Iterator[Finding]:
-    """Nothing more fits, here or in a memory as fast that takes the same input sections."""
+    """Find segments with no room left, and none in a memory as fast that takes the same input sections."""
     for segment in memory_map.segments:
         if segment.used_share > FULL_SHARE and not any(
             _has_room_for(segment, each) for each in memory_map.segments
@@ -182,7 +182,7 @@ def _nearly_full(memory_map: MemoryMap) -> Iterator[Finding]:
 
 
 def _has_room_for(full: MapSegment, other: MapSegment) -> bool:
-    """Say whether all that a full segment takes can go to the other one, and is as fast there."""
+    """Say whether the other segment takes all that the full one does, is as fast, and has room."""
     as_fast = other.owner == full.owner and _level(other) == _level(full)
     return as_fast and other.used_share <= FULL_SHARE and _taken(full) <= _taken(other)
 
@@ -196,7 +196,7 @@ def _taken(segment: MapSegment) -> set[str]:
 
 
 def _tables(memory_map: MemoryMap) -> Iterator[Finding]:
-    """Tables in SDRAM that no cache is before."""
+    """Find tables in SDRAM that no data cache holds."""
     cached = {each.owner for each in memory_map.caches if "L1_DATA" in each.memory}
     for segment in memory_map.segments:
         tables = [each for each in segment.symbols if each.kind is Kind.TABLE and each.owner not in cached]

@@ -43,7 +43,7 @@ class MapSymbol:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Piece:
+class MapPiece:
     """A stretch of a segment: one buffer, one core's code that lies side by side, a reserve, or what is free."""
 
     name: str
@@ -54,7 +54,7 @@ class Piece:
 
     @property
     def is_named(self) -> bool:
-        """Say whether there is a symbol in it."""
+        """Whether a symbol is in it."""
         return self.kind not in (Kind.FREE, Kind.RESERVED)
 
 
@@ -74,7 +74,7 @@ class MapSection:
 class MapSegment:
     """A memory segment of the LDF, in the board's `memory`. `used_bytes` counts symbols, reserves and gaps.
 
-    `pieces` fill it from its start to its end. Of a reserve that expands into what is free only the least is used.
+    `pieces` fill it from its start to its end. A reserve that expands into free space counts with its minimum only.
     """
 
     name: str
@@ -85,15 +85,15 @@ class MapSegment:
     used_bytes: int
     sections: tuple[MapSection, ...]
     symbols: tuple[MapSymbol, ...]
-    pieces: tuple[Piece, ...]
+    pieces: tuple[MapPiece, ...]
 
     @property
     def free_bytes(self) -> int:
         """Bytes that are still free."""
         return self.nbytes - self.used_bytes
 
-    def label(self, piece: Piece) -> str:
-        """Return the name of one of the pieces; where both cores have theirs, with its core."""
+    def label(self, piece: MapPiece) -> str:
+        """Return the name of a piece, followed by its core if the piece belongs to another owner than the segment."""
         return piece.name if piece.owner in (SHARED, self.owner) else f"{piece.name} ({piece.owner})"
 
     @property

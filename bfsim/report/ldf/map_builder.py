@@ -13,11 +13,11 @@ from bfsim.report.ldf.map import (
     SHARED,
     CacheRange,
     Kind,
+    MapPiece,
     MapSection,
     MapSegment,
     MapSymbol,
     MemoryMap,
-    Piece,
 )
 
 CACHE_SWITCHES = {
@@ -135,12 +135,12 @@ class _Builder:
                     nbytes=sum(each.symbol.nbytes for each in inside),
                 )
 
-    def reserves(self, segment: Segment) -> Iterator[Piece]:
+    def reserves(self, segment: Segment) -> Iterator[MapPiece]:
         """Yield the reserves in a segment; without a link only those that have an address."""
         found = self.link_map.reserves if self.link_map else self.script.reserves
         inside = {each.start: each for each in found if segment.start <= each.start <= segment.end}
         for each in inside.values():
-            yield Piece(
+            yield MapPiece(
                 name=each.name, kind=Kind.RESERVED, owner=SHARED, start=each.start, nbytes=each.nbytes
             )
 
@@ -152,8 +152,8 @@ def _takes(statements: Sequence[InputSections]) -> Iterator[str]:
 
 
 def _pieces(
-    segment: Segment, used_bytes: int, symbols: Sequence[MapSymbol], reserves: Sequence[Piece]
-) -> Iterator[Piece]:
+    segment: Segment, used_bytes: int, symbols: Sequence[MapSymbol], reserves: Sequence[MapPiece]
+) -> Iterator[MapPiece]:
     """Yield what fills a segment. What is used and has no name is a gap before a symbol, or after the last one."""
     placed = [_piece(each) for each in symbols if each.nbytes]
     named = _merged([*placed, *(each for each in reserves if each.nbytes)])
@@ -173,21 +173,21 @@ def _pieces(
         here = max(here, piece.start + piece.nbytes)
 
 
-def _unnamed(kind: Kind, start: int, nbytes: int) -> Piece:
-    return Piece(
+def _unnamed(kind: Kind, start: int, nbytes: int) -> MapPiece:
+    return MapPiece(
         name="free" if kind is Kind.FREE else "gap", kind=kind, owner=SHARED, start=start, nbytes=nbytes
     )
 
 
-def _piece(symbol: MapSymbol) -> Piece:
-    return Piece(
+def _piece(symbol: MapSymbol) -> MapPiece:
+    return MapPiece(
         name=symbol.name, kind=symbol.kind, owner=symbol.owner, start=symbol.address, nbytes=symbol.nbytes
     )
 
 
-def _merged(pieces: Iterable[Piece]) -> list[Piece]:
+def _merged(pieces: Iterable[MapPiece]) -> list[MapPiece]:
     """Return the pieces by address, one core's code that lies side by side as one."""
-    merged: list[Piece] = []
+    merged: list[MapPiece] = []
     ordered = sorted(pieces, key=lambda piece: piece.start)
     for (kind, _), group in groupby(ordered, key=lambda piece: (piece.kind, piece.owner)):
         run = list(group)

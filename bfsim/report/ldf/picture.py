@@ -10,7 +10,7 @@ from xml.sax.saxutils import escape
 from PIL import Image, ImageDraw, ImageFont
 
 from bfsim.errors import ConfigError
-from bfsim.report.ldf.drawing import PAPER, Box, Sheet, Words, drawing_of
+from bfsim.report.ldf.drawing import PAPER, FilledBox, Sheet, Words, drawing_of
 from bfsim.report.ldf.map import MemoryMap
 
 PIXELS = 2
@@ -69,7 +69,7 @@ def _svg_lines(sheet: Sheet) -> Iterator[str]:
     yield from (_svg_words(each) for each in sheet.words)
 
 
-def _svg_box(box: Box) -> str:
+def _svg_box(box: FilledBox) -> str:
     outline = f' stroke="{box.outline}"' if box.outline else ""
     return (
         f'<rect x="{box.x:.2f}" y="{box.y:.2f}" width="{box.width:.2f}" height="{box.height:.2f}" '

@@ -86,7 +86,7 @@ class OverlayWriter:
 
 
 def _images(frames: Sequence[Path]) -> Iterator[Image.Image]:
-    """Yield the pictures, smaller ones on paper as large as the largest: modes of the firmware change their size."""
+    """Yield the pictures, all on paper as large as the largest: firmware may change the size during a run."""
     sizes = []
     for each in frames:
         with Image.open(each) as image:
@@ -184,7 +184,7 @@ def _earlier(folder: Path) -> Iterator[Path]:
 
 
 def _is_overlay(file: Path) -> bool:
-    """Whether a file has the remark of an overlay: each of the formats has it as it is, in clear text."""
+    """Whether a file has the remark of an overlay, which every format stores as plain text."""
     if not file.stat().st_size:
         return False
     with file.open("rb") as stream, mmap(stream.fileno(), 0, access=ACCESS_READ) as content:

@@ -115,7 +115,7 @@ def group_edges_row(
 
 @kernel
 def hold_groups(labels: u16[:], groups: u16[:], strongest: u8[:]) -> None:
-    """Make the groups of a row of labels strong, for the time being: edges may come that are."""
+    """Count the groups of a row of labels as strong for now: strong edges may still join them."""
     for x in range(len(labels)):
         if labels[x] != 0:
             strongest[group_of(groups, labels[x])] = 255

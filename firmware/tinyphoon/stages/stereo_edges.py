@@ -71,7 +71,7 @@ def take_edges(edges: u32[:], first: i32, count: i32, row: u32[:], level_range: 
 
 @kernel
 def take_right_row(right_edges: u32[:], right_rows: u32[:], y: i32, row: u32[:], level_range: i32) -> i32:
-    """Do so with row `y` of the edge store that core B shares."""
+    """Copy row `y` of the edge store that core B shares, without the level edges; return how many are left."""
     here = right_rows[y]
     return take_edges(right_edges, i32(here & 0xFFFF), i32(here >> 16), row, level_range)
 

@@ -159,7 +159,7 @@ BLUE = hues(9, 11)
 YELLOW = hues(21, 23)
 RED = hues(25, 27)
 
-# Goals 400 mm wide [MiroSot] and 100 mm high [assumed, as in bfsim/recording/scenes/soccer_data.py]: 4 to 1 from the
+# Goals 400 mm wide [MiroSot] and 100 mm high [assumed, as in scenes/soccer.py]: 4 to 1 from the
 # front, and not even as wide as high at a sharp angle (T Figure 6.14) or half in view.
 _GOAL_MM = {"width_mm": 400, "height_mm": 100, "floor_mm": 0, "aspect_min": 12, "aspect_max": 96}
 

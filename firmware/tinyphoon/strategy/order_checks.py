@@ -1,4 +1,4 @@
-"""Is a message of the strategy unit one that can be obeyed? Kernels that look at every word of it, and why they refuse.
+"""Can a message of the strategy unit be obeyed? Kernels that check every word of it, and the reasons to refuse it.
 
 A refusal is a number: the reason in bits 0..7, and above them which word, or which model, is meant. `order_texts.py`
 has it in words. Orders are words of 32 bits, low half first, in the frame of `framing.py`.
@@ -49,7 +49,7 @@ BALL = int(Shape.BALL)
 
 @kernel
 def frame_refusal(message: u16[:], nbytes: i32) -> i32:
-    """Return why the `nbytes` that came in are no order whatever is in it, or 0."""
+    """Return why the `nbytes` that came in are no message with an order, or 0."""
     if nbytes < FRAME_BYTES:
         return CUT_SHORT
     if message[0] != SYNC:

@@ -50,7 +50,7 @@ CAMERA, AREA = _NAMES.index("camera.width"), _NAMES.index("area.x")
 
 
 def shared_order_buffers(size: FrameSize, section: str) -> Sequence[Buffer]:
-    """Return the buffers of the orders in force, which both cores read, of what may be ordered, and of what comes in."""
+    """Return the buffers that both cores share: orders in force, limits of what may be ordered, and incoming messages."""
     return (
         Buffer("orders", u16, ORDER_WORDS, section),
         Buffer("ordered_mode", i32, len(MODE_WORDS), section, values=np.array(to_words(INDOOR_FIELD))),
@@ -91,7 +91,7 @@ def copy_order(words: i32[:], copy: i32[:]) -> None:
 
 
 def take_orders(core: Core) -> Generator[Any, Any, int]:
-    """Take the messages that wait, and let the good ones be in force; returns why the last bad one is refused, or 0.
+    """Take the messages that wait and put the good ones in force; returns why the last bad one is refused, or 0.
 
     Publishes how many `orders_taken` and `orders_refused`, and remarks on each that is refused.
     """

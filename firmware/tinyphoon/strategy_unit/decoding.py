@@ -26,7 +26,7 @@ class Side(IntEnum):
 class ReportedObject:
     """An object as the strategy unit is told of it.
 
-    `tests`, `cameras`, `measures`: the bits of `object_store`. `towards`: its place in mm in the left camera's frame, or
+    `tests`, `cameras`, `measures`: the bits of `stores/objects.py`. `towards`: its place in mm in the left camera's frame, or
     without `measures` a vector that points there. `image_px`: middle, width and height in the picture.
     """
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from bfsim.api import Script, SpiDevice, SpiMessage
+from tinyphoon.strategy_unit.entries import entries_of
 from tinyphoon.strategy_unit.messages import Message, MessageType, decode
-from tinyphoon.strategy_unit.script import entries_of
 
 
 @dataclass(frozen=True, slots=True)
