@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -22,7 +23,7 @@ from bfsim.terminal import print_report, progress_bar
 
 if TYPE_CHECKING:
     from bfsim.seen import SeenFrame
-    from bfsim.trace import RunRecord
+    from bfsim.trace import Identity, RunRecord
 
 STDOUT = Path("-")
 
@@ -274,12 +275,22 @@ def check(path: Path, update: bool, **what: Any) -> None:
     from bfsim.report import baseline
     from bfsim.report.budget import budget_of
     from bfsim.report.check import check as judge
+    from bfsim.report.check import require_comparable
     from bfsim.report.check_tables import check_report
     from bfsim.report.save import require_place
+    from bfsim.run import recording_digest
 
     limits = None if update else baseline.read_baseline(path)
     require_place(path)
-    done = _simulate(**what)
+
+    def compare(identity: Identity, frames: int) -> None:
+        if limits:
+            theirs = limits.measured_on
+            digest = recording_digest(what["recording"], theirs.frames)
+            ours = baseline.measured_on(replace(identity, recording_digest=digest), frames)
+            require_comparable(theirs, ours, path)
+
+    done = _simulate(before=compare, **what)
     _exit_if_interrupted(done)
     budget = budget_of(done)
     if limits is None:

@@ -75,13 +75,13 @@ def ldf(
 ) -> None:
     """Link the firmware by FILE and print the memory map: what lies where, what is free, what to look at.
 
-    FILE is a linker description file of VisualDSP++; without it, the default placement is shown. An LDF for
-    other cores than the firmware's is shown without it.
+    FILE is a linker description file of VisualDSP++, or the name of a shipped one: thesis, cache, l2, sdram or cm-bf533;
+    without it, the board's placement is shown. An LDF for other cores than the firmware's is shown without it.
 
     \b
     Examples:
       bfsim ldf
-      bfsim ldf ldf/l2.ldf --size 640x480 --no-symbols
+      bfsim ldf l2 --size 640x480 --no-symbols
       bfsim ldf my.ldf --picture my.png
     """
     from bfsim.mapping import map_memory

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import llvmlite.binding as llvm
@@ -13,7 +14,7 @@ from bfsim import __version__, shipped
 from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
 from bfsim.device_script import read_script
-from bfsim.errors import ConfigError, FirmwareError, RecordingError
+from bfsim.errors import ConfigError, FirmwareError, LinkError, RecordingError
 from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
 from bfsim.linker import LinkerScript, link, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
@@ -43,12 +44,15 @@ def simulate(
     sanitize: bool = False,
     profile: str = VDSP_O2.name,
     script: Path | None = None,
+    before: Callable[[Identity, int], None] | None = None,
     progress: Callable[[int, int], None] | None = None,
     on_seen: Callable[[SeenFrame], None] | None = None,
 ) -> RunRecord:
     """Run `firmware` on a recording and return the records: a built-in one, "FILE.py:NAME" or "PACKAGE:NAME".
 
-    Without `recording` and `ldf` the built-in ones are taken; `frames` stops early. `progress` is called with
+    Without `recording` and `ldf` the built-in ones are taken; `ldf` may also be the name of a shipped one; `frames` stops
+    early. `before` is called with what will run and how many frames of it, before the first one does, and may raise; the
+    digest of the recording is not known then. `progress` is called with
     (frames done, frames in all); `profile` names the compiler whose code is costed; `script` is a JSON or TOML file
     that tells the firmware's device on the SPI what to do; `on_seen` is called with what was seen in each frame, if
     the firmware has a view, which changes nothing in the records. Ctrl-C ends the run with the frames done. Raises a
@@ -88,6 +92,11 @@ def simulate(
         if not total:
             raise RecordingError(f"{reader.path}: a recording must have at least one stereo frame, not none")
         source = _DigestedFrames(reader, total)
+        identity = _identity(
+            spec, loaded, placement, feed, fidelity, size, source.name, compiler, script_digest
+        )
+        if before:
+            before(identity, total)
         done = 0
 
         def count(_frame: object) -> None:
@@ -101,10 +110,11 @@ def simulate(
                 on_seen(SeenFrame(index=index, times_ns=source.take_times_ns(index), cameras=cameras))
 
         outcome = machine.run(iter(source), count, show if on_seen else None)
-    assumptions = (*_assumed_geometry(program, calibration), *_assumed_clocks(spec))
-    return _record(
-        outcome, assumptions, spec, loaded, placement, feed, fidelity, size, source, compiler, script_digest
+    identity = replace(
+        identity, recording_digest=source.digest, firmware_digest=loaded.digest, firmware_files=loaded.files
     )
+    assumptions = (*_assumed_geometry(program, calibration), *_assumed_clocks(spec))
+    return _record(outcome, identity, assumptions, loaded, placement)
 
 
 def _assumed_geometry(program: Firmware, calibration: Calibration) -> Iterator[RunWarning]:
@@ -129,9 +139,15 @@ def has_view(firmware: str) -> bool:
 
 
 def read_placement(ldf: Path | None, spec: BoardSpec) -> LinkerScript:
-    """Read an LDF, or the shipped one that suits the board's chip, for the SDRAM of the board."""
+    """Read an LDF, one that is shipped by its name, or the one that suits the board's chip, for the SDRAM of the board."""
+    path = shipped.ldf_at(ldf) if ldf else shipped.DEFAULT_LDFS[spec.chip.name]
+    if len(path.parts) == 1 and not path.exists():
+        known = ", ".join(sorted(each.stem for each in shipped.LDF_FOLDER.glob("*.ldf")))
+        raise LinkError(f"LDF must be a file or a shipped one ({known}), not {str(path)!r}")
     return parse_ldf(
-        ldf or shipped.DEFAULT_LDFS[spec.chip.name], defines={"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes)}
+        path,
+        defines={"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes)},
+        include_dirs=(shipped.LDF_FOLDER,),
     )
 
 
@@ -188,27 +204,36 @@ class _DigestedFrames:
         return self._digest.hexdigest()
 
 
+def recording_digest(recording: Path | None, frames: int) -> str:
+    """Digest of the first `frames` frames of a recording, as in the identity of a run; empty where there are fewer."""
+    with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
+        source = _DigestedFrames(reader, frames)
+        return source.digest if sum(1 for _ in source) == frames else ""
+
+
 def _name(path: Path) -> str:
-    """Return the name of a file as text that can be written, also where it is none."""
-    return os.fsencode(path.name).decode(errors="replace")
+    return _written(path.name)
 
 
-def _record(
-    outcome: Outcome,
-    assumptions: tuple[RunWarning, ...],
+def _written(path: str | Path) -> str:
+    """Return a path or a name as text that can be written, also where it is none."""
+    return os.fsencode(path).decode(errors="replace")
+
+
+def _identity(
     spec: BoardSpec,
     loaded: LoadedFirmware,
     placement: LinkerScript,
     feed: Feed,
     fidelity: Fidelity,
     size: FrameSize,
-    source: _DigestedFrames,
+    recording: str,
     compiler: CompilerProfile,
     script_digest: str,
-) -> RunRecord:
-    identity = Identity(
-        recording=source.name,
-        recording_digest=source.digest,
+) -> Identity:
+    return Identity(
+        recording=recording,
+        recording_digest="",
         firmware=loaded.name,
         firmware_digest=loaded.digest,
         firmware_files=loaded.files,
@@ -227,11 +252,21 @@ def _record(
         width_px=size.width_px,
         height_px=size.height_px,
     )
+
+
+def _record(
+    outcome: Outcome,
+    identity: Identity,
+    assumptions: tuple[RunWarning, ...],
+    loaded: LoadedFirmware,
+    placement: LinkerScript,
+) -> RunRecord:
     return RunRecord(
         identity=identity,
-        firmware_place="built in"
-        if loaded.is_built_in
-        else os.fsencode(loaded.path).decode(errors="replace"),
+        firmware_place="built in" if loaded.is_built_in else _written(loaded.path),
+        ldf_place="shipped"
+        if placement.path.parent == shipped.LDF_FOLDER
+        else _written(placement.path.absolute()),
         rows=loaded.firmware.rows,
         reference=loaded.firmware.reference,
         frames=outcome.frames,

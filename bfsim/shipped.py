@@ -25,3 +25,11 @@ SCENES = (
     "ball-with-seam", "ball-too-close", "goal-sharp-angle", "thesis", "box-distances", "ball-distances",
 )  # fmt: skip
 """Names in that module that `bfsim record render` takes alone. The first one is the scene of RECORDING."""
+
+
+def ldf_at(path: Path) -> Path:
+    """Return the LDF that is meant by `path`: that file, or else the shipped one of that name, with or without `.ldf`."""
+    if len(path.parts) != 1 or (path.exists() and not path.is_dir()):
+        return path
+    named = [LDF_FOLDER / path.name, LDF_FOLDER / f"{path.name}.ldf"]
+    return next((each for each in named if each.is_file()), path)

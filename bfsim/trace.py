@@ -232,7 +232,7 @@ class RunWarning:
 class RunRecord:
     """One run. `messages` went over SPI; `interrupts` were taken, by core and source. `missed` are the recording's frames that came while the firmware was busy.
 
-    `firmware_place` is the file that was named as firmware, or "built in".
+    `firmware_place` is the file that was named as firmware, or "built in"; `ldf_place` is the LDF's, or "shipped".
     `device_notes` are what the device on the SPI had to say when the run was over.
     `reference` says what the `reference_ms` of `rows` are, None where the firmware has no reference.
     `assumptions` are warnings of what was not given and had to be assumed; `losses` say in words what those published
@@ -242,6 +242,7 @@ class RunRecord:
 
     identity: Identity
     firmware_place: str
+    ldf_place: str
     rows: tuple[BudgetRow, ...]
     reference: Reference | None
     frames: tuple[FrameRecord, ...]

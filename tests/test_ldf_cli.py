@@ -49,6 +49,37 @@ def test_the_thesis_placement_is_shown_by_default() -> None:
     assert max(map(len, done.output.splitlines())) <= 100
 
 
+@pytest.mark.parametrize("name", ["l2", "l2.ldf"])
+def test_shipped_ldfs_are_found_by_name_from_anywhere(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A file of that name in the current folder is meant before; a folder is not."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "l2").mkdir()
+    assert call(name, "--no-symbols").output == call(str(FOLDER / "l2.ldf"), "--no-symbols").output
+    (tmp_path / "l2").rmdir()
+    (tmp_path / name).write_text(BF533)
+    assert "no firmware: it is for other cores" in call(name, "--no-symbols").output
+
+
+def test_shipped_parts_of_ldfs_are_included_from_anywhere(tmp_path: Path) -> None:
+    """A placement of one's own is a few lines; a file of that name beside it is meant before."""
+    own = tmp_path / "mine.ldf"
+    own.write_text((FOLDER / "thesis.ldf").read_text())
+    done = call(str(own), "--no-symbols")
+    assert done.exit_code == 0
+    assert done.output.replace("mine.ldf", "thesis.ldf") == call("thesis", "--no-symbols").output
+    (tmp_path / "cm-bf561.ldfi").write_text("#error mine")
+    assert "#error mine" in call(str(own)).output
+
+
+def test_an_unknown_name_is_told_the_known_ones() -> None:
+    """Those that are shipped."""
+    done = call("l3")
+    assert done.exit_code == 2
+    assert "LDF must be a file or a shipped one (cache, cm-bf533, l2, sdram, thesis), not 'l3'" in done.stderr
+
+
 def test_findings_do_not_fail() -> None:
     """Lint is advice: exit code 0."""
     done = call(str(FOLDER / "sdram.ldf"), "--no-symbols")

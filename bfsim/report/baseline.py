@@ -48,6 +48,7 @@ class MeasuredOn(_Table):
     compiler: str
     feed: str
     fidelity: str = "fast"  # all there was when the first baselines were written
+    script_digest: str = ""
 
 
 class MeasuredBy(_Table):
@@ -103,10 +104,10 @@ def write_baseline(path: Path, run: RunRecord, budget: Budget) -> None:
     write_text(path, tomlkit.dumps(document))
 
 
-def measured_on(run: RunRecord) -> MeasuredOn:
-    """Return what a run was measured on; the frames that were missed count as well."""
-    given = {name: getattr(run.identity, name) for name in MeasuredOn.model_fields if name != "frames"}
-    return MeasuredOn(frames=len(run.frames) + len(run.missed), **given)
+def measured_on(identity: Identity, frames: int) -> MeasuredOn:
+    """Return what a run of so many frames, missed ones included, is measured on."""
+    given = {name: getattr(identity, name) for name in MeasuredOn.model_fields if name != "frames"}
+    return MeasuredOn(frames=frames, **given)
 
 
 def measured_by(identity: Identity) -> MeasuredBy:
@@ -141,7 +142,7 @@ def _validated(document: TOMLDocument, path: Path) -> Baseline:
 def _measured(run: RunRecord, budget: Budget) -> dict[str, Any]:
     """Return the numbers of a run in the layout of the file."""
     return {
-        "measured_on": measured_on(run).model_dump(),
+        "measured_on": measured_on(run.identity, len(run.frames) + len(run.missed)).model_dump(),
         "measured_by": measured_by(run.identity).model_dump(),
         "run": {"frame_rate_hz": budget.frame_rate_hz, "missed_frames": len(run.missed)},
         "core": {

@@ -67,7 +67,8 @@ def check(run: RunRecord, budget: Budget, baseline: Baseline, path: Path) -> Che
 
     Raises ConfigError if the baseline was measured on something else, or limits a row that the run does not have.
     """
-    _require_comparable(baseline.measured_on, measured_on(run), path)
+    frames = len(run.frames) + len(run.missed)
+    require_comparable(baseline.measured_on, measured_on(run.identity, frames), path)
     rows = {core.core: {row.name: row for row in core.all_rows} for core in budget.cores}
     verdicts = [*_run_verdicts(run, budget, baseline)]
     for core, limits_of in baseline.core.items():
@@ -85,20 +86,28 @@ def _listed(rows: dict[str, dict[str, StageRow]]) -> str:
     return "; ".join(f"core {core}: {', '.join(names)}" for core, names in rows.items())
 
 
-def _require_comparable(theirs: MeasuredOn, ours: MeasuredOn, path: Path) -> None:
+def require_comparable(theirs: MeasuredOn, ours: MeasuredOn, path: Path) -> None:
+    """Raise ConfigError, with every difference, unless a run is of what the limits in `path` were measured on."""
+    differences = [
+        f"{key.removesuffix('_digest')} must be {limit or 'none'}, not {now or 'none'}"
+        for key in ("firmware", "board", "ldf", "compiler", "feed", "fidelity", "script_digest", "frames")
+        if (limit := getattr(theirs, key)) != (now := getattr(ours, key))
+    ]
     if theirs.recording_digest != ours.recording_digest:
+        differences.insert(0, f"recording must be {_recording(theirs)}, not {_recording(ours)}")
+    if differences:
         raise ConfigError(
-            f"{path}: the recording must be the one that the limits were measured on, "
-            f"{theirs.recording} (sha256 {theirs.recording_digest}), not {ours.recording} "
-            f"(sha256 {ours.recording_digest}); give another baseline file, or replace this one with --update"
+            f"{path}: {'; '.join(differences)}: the limits were measured so; give another baseline file, or replace this "
+            "one with --update"
         )
-    for key in ("firmware", "board", "ldf", "compiler", "feed", "fidelity", "frames"):
-        limit, now = getattr(theirs, key), getattr(ours, key)
-        if limit != now:
-            raise ConfigError(
-                f"{path}: {key} must be {limit}, as where the limits were measured, not {now}; "
-                "give another baseline file, or replace this one with --update"
-            )
+
+
+def _recording(what: MeasuredOn) -> str:
+    return (
+        f"{what.recording} (sha256 {what.recording_digest})"
+        if what.recording_digest
+        else f"{what.recording} (shorter)"
+    )
 
 
 def _run_verdicts(run: RunRecord, budget: Budget, baseline: Baseline) -> Iterator[Verdict]:

@@ -272,7 +272,7 @@ def configuration(run: RunRecord) -> Table:
     table.add_row("Recording", f"{identity.recording}, {identity.width_px}x{identity.height_px} px")
     table.add_row("Firmware", _firmware(run))
     table.add_row("Board", f"{identity.board}, CCLK {_mhz(identity.cclk_hz)}, SCLK {_mhz(identity.sclk_hz)}")
-    table.add_row("LDF", identity.ldf)
+    table.add_row("LDF", f"{identity.ldf} ({run.ldf_place})")
     table.add_row("Compiler", f"{identity.compiler}, LLVM {identity.llvm_version}")
     for each in run.code:
         table.add_row(f"Code of {each.core}", _code(each))

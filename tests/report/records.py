@@ -80,6 +80,7 @@ def run_of(frames: Sequence[FrameRecord], missed: tuple[int, ...] = ()) -> RunRe
     return RunRecord(
         identity=IDENTITY,
         firmware_place="built in",
+        ldf_place="shipped",
         rows=ROWS,
         reference=REFERENCE,
         frames=tuple(frames),
