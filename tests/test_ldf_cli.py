@@ -142,7 +142,7 @@ def test_an_ldf_of_other_cores_is_shown_without_the_firmware(text: str, tmp_path
         (["--firmware", "nowhere:at_all"], "'nowhere' must be installed"),
         (["--picture", "map.jpg"], "--picture must be a file *.png or *.svg, not map.jpg"),
         (["--picture", "/no/such/folder/map.png"], "the folder /no/such/folder must exist"),
-        (["no.ldf"], "LDF must be a readable file, not no.ldf"),
+        (["far/no.ldf"], "LDF must be a readable file, not far/no.ldf"),
         (["--size", "1280x960"], "Out of memory in output section"),
     ],
 )
