@@ -17,7 +17,7 @@ from bfsim.cli_record import record
 from bfsim.cli_seen import Watchers, require_view, takes_views, watching
 from bfsim.endings import LIMIT_BROKEN, exit_code_of
 from bfsim.errors import ConfigError
-from bfsim.shipped import FIRMWARE
+from bfsim.shipped import FIRMWARE, LDFS
 from bfsim.signals import ending_deaf_kernels, interrupted_code
 from bfsim.terminal import print_report, progress_bar
 

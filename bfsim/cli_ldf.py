@@ -75,8 +75,8 @@ def ldf(
 ) -> None:
     """Link the firmware by FILE and print the memory map: what lies where, what is free, what to look at.
 
-    FILE is a linker description file of VisualDSP++, or the name of a shipped one: thesis, cache, l2, sdram or cm-bf533;
-    without it, the board's placement is shown. An LDF for other cores than the firmware's is shown without it.
+    FILE is a linker description file of VisualDSP++, or the name of a shipped one, such as l2; without it,
+    the board's placement is shown. An LDF for other cores than the firmware's is shown without it.
 
     \b
     Examples:

@@ -142,7 +142,7 @@ def read_placement(ldf: Path | None, spec: BoardSpec) -> LinkerScript:
     """Read an LDF, one that is shipped by its name, or the one that suits the board's chip, for the SDRAM of the board."""
     path = shipped.ldf_at(ldf) if ldf else shipped.DEFAULT_LDFS[spec.chip.name]
     if len(path.parts) == 1 and not path.exists():
-        known = ", ".join(sorted(each.stem for each in shipped.LDF_FOLDER.glob("*.ldf")))
+        known = ", ".join(shipped.LDFS)
         raise LinkError(f"LDF must be a file or a shipped one ({known}), not {str(path)!r}")
     return parse_ldf(
         path,

@@ -19,6 +19,9 @@ FIRMWARE = ("tinyphoon", "one_eye")
 DEFAULT_LDFS = {"ADSP-BF561": LDF_FOLDER / "thesis.ldf", "ADSP-BF533": LDF_FOLDER / "cm-bf533.ldf"}
 """The placement of each chip."""
 
+LDFS = tuple(sorted(each.stem for each in LDF_FOLDER.glob("*.ldf")))
+"""Names that `--ldf` takes alone."""
+
 SCENES_MODULE = "tinyphoon.scenes"
 SCENES = (
     "soccer", "field-of-circles", "ball-beside-goal", "camera-initialised", "robot-marker", "hidden-ball",
