@@ -82,7 +82,7 @@ _RUN_PARAMETERS = (
         "--ldf",
         metavar="FILE",
         type=click.Path(path_type=Path),
-        help="Linker description file that places the buffers.  [default: one for the board's chip]",
+        help=f"Linker description file that places buffers and code, or a shipped one: {', '.join(LDFS)}.  [default: the board's]",
     ),
     click.option(
         "--profile",
@@ -153,7 +153,7 @@ def run(
     \b
     Examples:
       bfsim run
-      bfsim run drive.mcap --frames 20 --ldf ldf/l2.ldf
+      bfsim run drive.mcap --frames 20 --ldf l2
       bfsim run drive.mcap --feed recorded --json drive.json
       bfsim run drive.mcap --overlay drive-seen --mcap drive-seen.mcap
     """
