@@ -130,6 +130,7 @@ def test_check_says_what_differs_before_it_simulates(
         measured.identity,
         recording="soccer.mcap",
         recording_digest=recording_digest(None, 8),
+        script_digest="",
         ldf="thesis.ldf",
         compiler="vdsp-O2",
     )
