@@ -7,13 +7,23 @@ from __future__ import annotations
 
 from collections import Counter as Tally
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from bfsim.errors import ConfigError
 from bfsim.kernel import CompilerProfile, Kernel, profile_named, tree
 from bfsim.kernel.counters import Counter
+from bfsim.kernel.inlining import decisions
 from bfsim.kernel.isa import MNEMONICS, Op
 from bfsim.loading import load_kernel
-from bfsim.trace import ExplainedLine, ExplainedOperation, Explanation, KernelRecord, RunRecord
+from bfsim.trace import (
+    ExplainedCall,
+    ExplainedLine,
+    ExplainedOperation,
+    Explanation,
+    InlinedKernel,
+    KernelRecord,
+    RunRecord,
+)  # fmt: skip
 
 BRANCHES = {Op.BRANCH_TAKEN, Op.BRANCH_NOT_TAKEN, Op.BRANCH_TAKEN_BP, Op.BRANCH_NOT_TAKEN_BP}
 
@@ -33,7 +43,7 @@ def explain(
     function = kernel.function
     counters = [each for each in kernel.counters(profile) if each.routine == function.symbol]
     mine = None if records is None else _of_kernel(function, records)
-    lines = {line for each in counters for line, _, _ in each.line_cclk}
+    used = {each.line.routine for counter in counters for each in counter.charges}
     return Explanation(
         kernel=function.name,
         file=function.file,
@@ -41,11 +51,53 @@ def explain(
         profile=profile.name,
         code_bytes=sum(each.nbytes for each in counters),
         calls=None if mine is None else sum(each.calls for each in mine),
-        lines=tuple(
-            row
-            for line, text in enumerate(function.source.splitlines(), start=1)
-            for row in _line(function, line, text, counters if line in lines else (), mine)
+        lines=_lines(function, counters, mine),
+        kernel_calls=_kernel_calls(function, profile),
+        inlined=tuple(
+            InlinedKernel(kernel=each.name, file=each.file, lines=_lines(each, counters, None))
+            for each in function.callees()
+            if each.symbol in used
         ),
+    )
+
+
+def _kernel_calls(function: tree.Function, profile: CompilerProfile) -> tuple[ExplainedCall, ...]:
+    """What becomes of the calls in the code of `function`, those in kernels that are inlined into it among them."""
+    kernels = {each.symbol: each for each in (*function.callees(), function)}
+    found, waiting = [], [function.symbol]
+    every = decisions(function, profile)
+    while waiting:
+        caller = kernels[waiting.pop(0)]
+        for each in (each for each in every if each.caller == caller.symbol):
+            callee = kernels[each.callee]
+            row = ExplainedCall(
+                caller=caller.name,
+                file=caller.file,
+                line=caller.first_line + each.line - 1,
+                callee=callee.name,
+                inlined=each.inlined,
+                why=each.why.value,
+                growth=each.growth,
+            )
+            if row not in found:
+                found.append(row)
+                waiting += [callee.symbol] * each.inlined
+    return tuple(found)
+
+
+def _lines(
+    function: tree.Function, counters: Sequence[Counter], records: Sequence[KernelRecord] | None
+) -> tuple[ExplainedLine, ...]:
+    """The lines of a kernel, with what of `counters` comes from them."""
+    own = [
+        replace(each, charges=tuple(one for one in each.charges if one.line.routine == function.symbol))
+        for each in counters
+    ]
+    used = {one.line.line for each in own for one in each.charges}
+    return tuple(
+        row
+        for line, text in enumerate(function.source.splitlines(), start=1)
+        for row in _line(function, line, text, own if line in used else (), records)
     )
 
 
@@ -67,7 +119,9 @@ def _line(
     records: Sequence[KernelRecord] | None,
 ) -> Iterable[ExplainedLine]:
     """One row per depth of loops at which a line has operations: what enters a loop runs once, its turns often."""
-    depths = sorted({each.depth for each in counters if any(charge.line == line for charge in each.charges)})
+    depths = sorted(
+        {each.depth for each in counters if any(charge.line.line == line for charge in each.charges)}
+    )
     number = function.first_line + line - 1
     for row, depth in enumerate(depths or [0]):
         here = [each for each in counters if each.depth == depth]
@@ -86,7 +140,7 @@ def _line(
                 each.count * each.stall_cclk
                 for counter in here
                 for each in counter.charges
-                if each.line == line
+                if each.line.line == line
             ),
             executions=sum(cost.executions for cost in costs) if counted else None,
             total_cclk=sum(cost.issue_cclk + cost.stall_cclk for cost in costs) if counted else None,
@@ -97,7 +151,9 @@ def _cycles(line: int, counters: Sequence[Counter]) -> tuple[int, list[int]]:
     """Cycles of a line when every test is false, and what each test adds when it is true."""
     always, sides = 0, []
     for each in counters:
-        cclk = sum(one.count * (one.issue_cclk + one.stall_cclk) for one in each.charges if one.line == line)
+        cclk = sum(
+            one.count * (one.issue_cclk + one.stall_cclk) for one in each.charges if one.line.line == line
+        )
         if each.value is None:
             always += cclk
         else:
@@ -110,7 +166,7 @@ def _operations(line: int, counters: Sequence[Counter]) -> tuple[ExplainedOperat
     counts: Tally[Op] = Tally()
     for counter in counters:
         for each in counter.charges:
-            if each.line == line and (each.count > 0 or counter.value is None):
+            if each.line.line == line and (each.count > 0 or counter.value is None):
                 counts[each.op] = (
                     max(counts[each.op], each.count) if counter.value else counts[each.op] + each.count
                 )

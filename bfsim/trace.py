@@ -290,8 +290,36 @@ class ExplainedLine:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ExplainedCall:
+    """Calls of `callee` in one line: whether its code takes their place, and why or why not.
+
+    `growth` is by how many statements, as the compiler counts them, the caller's code grows or would grow for each.
+    """
+
+    caller: str
+    file: str
+    line: int
+    callee: str
+    inlined: bool
+    why: str
+    growth: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InlinedKernel:
+    """A kernel whose code stands in that of another one: its lines there, at all its calls together."""
+
+    kernel: str
+    file: str
+    lines: tuple[ExplainedLine, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Explanation:
-    """One kernel as one compiler profile sees it. `calls` are those of a run, None without one."""
+    """One kernel as one compiler profile sees it. `calls` are those of a run, None without one.
+
+    `lines` are its own; `kernel_calls` says what became of its calls of other kernels.
+    """
 
     kernel: str
     file: str
@@ -300,3 +328,5 @@ class Explanation:
     code_bytes: int
     calls: int | None
     lines: tuple[ExplainedLine, ...]
+    kernel_calls: tuple[ExplainedCall, ...]
+    inlined: tuple[InlinedKernel, ...]

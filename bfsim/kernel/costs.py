@@ -13,15 +13,16 @@ from typing import Any
 
 import llvmlite.binding as llvm
 
-from bfsim.kernel import store, tree
+from bfsim.kernel import generic, store, tree
 from bfsim.kernel.counters import Counter, cost
 from bfsim.kernel.emit import emit
-from bfsim.kernel.ir_text import read_module
+from bfsim.kernel.inlining import inlined_calls
+from bfsim.kernel.ir_text import SourceLine, read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.charges import Charge
 from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.unrolled import marked
-from bfsim.kernel.profile import GENERIC_FEATURES, GENERIC_TRIPLE, CompilerProfile
+from bfsim.kernel.profile import CompilerProfile
 
 UNROLLED_NESTING = 3  # loops in loops that are written out, the inner ones first
 CLEANING = (
@@ -49,43 +50,39 @@ def counters_of(function: tree.Function, profile: CompilerProfile) -> tuple[Coun
 
 def _counter(row: dict[str, Any]) -> Counter:
     """Build a counter from its JSON."""
-    charges = tuple(Charge(**each | {"op": Op(each["op"])}) for each in row["charges"])
+    charges = tuple(
+        Charge(**each | {"op": Op(each["op"]), "line": SourceLine(*each["line"])}) for each in row["charges"]
+    )
     accesses = tuple((name, reads, writes) for name, reads, writes in row["accesses"])
-    return Counter(**row | {"charges": charges, "accesses": accesses})
+    return Counter(**row | {"charges": charges, "accesses": accesses, "enters": tuple(row["enters"])})
 
 
 @cache
 def optimised(function: tree.Function, profile: CompilerProfile) -> str:
     """Return the optimised IR of `function` and its callees: the code that is costed and counted."""
-    machine = _generic_machine()
-    module = emit(function)
-    module.triple, module.data_layout = GENERIC_TRIPLE, str(machine.target_data)
-    # "no-builtins": a loop that fills or copies stays a loop, whose iterations can be counted. "optforfuzzing": branches
-    # stay branches; what a compiler for the Blackfin makes of them is for the lowering to say
-    parsed = llvm.parse_assembly(str(module).replace(" noinline", ' noinline optforfuzzing "no-builtins"'))
+    inlined = inlined_calls(function, profile)
+    module = generic.parsed(emit(function, inlined))
     if not profile.optimises:
-        return str(parsed)
-    _run(PASSES, parsed, machine)
-    text = str(parsed)
+        return str(module)
+    if inlined:
+        _inline(module, function)
+    generic.run(PASSES, module)
+    text = str(module)
     for _ in range(UNROLLED_NESTING):
         if (unrolling := marked(text)) is None:
             break
-        parsed = llvm.parse_assembly(unrolling)
-        _run(("loop_unroll", *CLEANING), parsed, machine)
-        text = str(parsed)
+        module = llvm.parse_assembly(unrolling)
+        generic.run(("loop_unroll", *CLEANING), module)
+        text = str(module)
     return with_preheaders(text)
 
 
-def _run(names: tuple[str, ...], module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
-    """Run passes whose like every optimising compiler has, but none that reorders sums or merges branches."""
-    passes = llvm.create_new_module_pass_manager()
-    for name in names:
-        getattr(passes, f"add_{name}_pass")()
-    passes.run(module, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options()))
-
-
-@cache
-def _generic_machine() -> llvm.TargetMachine:
-    llvm.initialize_all_targets()
-    llvm.initialize_all_asmprinters()
-    return llvm.Target.from_triple(GENERIC_TRIPLE).create_target_machine(features=GENERIC_FEATURES)
+def _inline(module: llvm.ModuleRef, function: tree.Function) -> None:
+    """Inline the calls that are marked, and leave out what nothing calls any more, as a linker does."""
+    defined = [each for each in module.functions if not each.is_declaration and each.name != function.symbol]
+    for each in defined:
+        each.linkage = "internal"
+    generic.run(("always_inliner", "global_dead_code_eliminate"), module)
+    for each in module.functions:
+        if not each.is_declaration:
+            each.linkage = "external"

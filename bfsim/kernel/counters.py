@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from bfsim.kernel.ir_text import BasicBlock, Routine
+from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering import optimised, unoptimised
 from bfsim.kernel.lowering.charges import Charge
@@ -22,7 +22,8 @@ from bfsim.kernel.profile import CompilerProfile
 class Counter:
     """An event that is counted: the execution of block `label`, or of its test `value` being true.
 
-    `charges`: what the event costs. `accesses`: (array, reads, writes) per event.
+    `charges`: what the event costs. `accesses`: (array, reads, writes) per event. `enters`: the kernels that it enters, as the
+    first block of the routine does, and blocks where an inlined one begins.
     """
 
     routine: str
@@ -35,12 +36,13 @@ class Counter:
     """Code of the block."""
     depth: int = 0
     """Loops around the block."""
+    enters: tuple[str, ...] = ()
 
     @cached_property
-    def line_cclk(self) -> tuple[tuple[int, int, int], ...]:
+    def line_cclk(self) -> tuple[tuple[SourceLine, int, int], ...]:
         """(source line, issue cycles, interlock cycles) per event."""
-        issue: Tally[int] = Tally()
-        stall: Tally[int] = Tally()
+        issue: Tally[SourceLine] = Tally()
+        stall: Tally[SourceLine] = Tally()
         for each in self.charges:
             issue[each.line] += each.count * each.issue_cclk
             stall[each.line] += each.count * each.stall_cclk
@@ -67,9 +69,10 @@ def cost(routine: Routine, profile: CompilerProfile) -> tuple[Counter, ...]:
         found = blocks[block.label]
         place, depth = (routine.symbol, block.label), len(flow.loops_of(block.label))
         accesses, charges = _accesses(flow, block), _merged(found.charges)
-        if not charges and not accesses and not found.tests and block is not routine.blocks[0]:
+        enters = (*([routine.symbol] if block is routine.blocks[0] else []), *block.enters)
+        if not charges and not accesses and not found.tests and not enters:
             continue  # nothing to count: the block holds no code
-        counters.append(Counter(*place, None, None, charges, accesses, found.nbytes, depth))
+        counters.append(Counter(*place, None, None, charges, accesses, found.nbytes, depth, enters))
         for test in found.tests:
             charges = _merged(test.charges)
             if any(each.issue_cclk for each in charges):

@@ -14,8 +14,11 @@ from llvmlite import ir
 
 from bfsim.kernel import divisions, floats, tree
 from bfsim.kernel.floats import register_type
+from bfsim.kernel.ir_text import ENTERS
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, u32
 
+InlinedCall = tuple[str, str, int]
+"""Symbols of caller and callee, and the line in the caller."""
 Sites = tuple[tree.Load | tree.Store | tree.Binary, ...]
 I1, I32, POINTER = ir.IntType(1), ir.IntType(32), ir.PointerType()
 SIMPLE = {"+": "add", "-": "sub", "*": "mul", "&": "and_", "|": "or_", "^": "xor"}
@@ -27,9 +30,9 @@ SHIFT_MASK = 31  # a shift count uses its low five bits; the language refuses co
 MOST_SITES = (1 << 16) - 1  # LLVM keeps 16 bits of a column
 
 
-def emit(function: tree.Function) -> ir.Module:
-    """Emit `function` and every kernel it calls as one module."""
-    return _emitted(function)[0]
+def emit(function: tree.Function, inlined: frozenset[InlinedCall] = frozenset()) -> ir.Module:
+    """Emit `function` and every kernel it calls as one module; calls that are to be inlined are marked so."""
+    return _emitted(function, inlined)[0]
 
 
 def sites_of(function: tree.Function) -> dict[str, Sites]:
@@ -37,23 +40,35 @@ def sites_of(function: tree.Function) -> dict[str, Sites]:
 
     A number, from 1 on, is the column in the debug location of the instruction; what is none of them has column 0.
     """
-    return _emitted(function)[1]
+    return _emitted(function, frozenset())[1]
 
 
-def _emitted(function: tree.Function) -> tuple[ir.Module, dict[str, Sites]]:
+def emit_alone(function: tree.Function) -> ir.Module:
+    """Emit `function` only; the kernels that it calls are declared."""
+    module = _module(function)
+    _Emitter(module, function, frozenset()).run()
+    return module
+
+
+def _emitted(function: tree.Function, inlined: frozenset[InlinedCall]) -> tuple[ir.Module, dict[str, Sites]]:
+    module = _module(function)
+    sites = {}
+    for each in (*function.callees(), function):
+        emitter = _Emitter(module, each, inlined)
+        emitter.run()
+        sites[each.symbol] = tuple(emitter.sites)
+    return module, sites
+
+
+def _module(function: tree.Function) -> ir.Module:
+    """Make a module in which `function` and every kernel it calls is declared."""
     module = ir.Module(name=function.symbol)
     module.add_named_metadata(
         "llvm.module.flags", module.add_metadata([I32(2), "Debug Info Version", I32(3)])
     )
-    family = (*function.callees(), function)
-    for each in family:
+    for each in (*function.callees(), function):
         _declare(module, each)
-    sites = {}
-    for each in family:
-        emitter = _Emitter(module, each)
-        emitter.run()
-        sites[each.symbol] = tuple(emitter.sites)
-    return module, sites
+    return module
 
 
 def _weight(body: tuple[tree.Stmt, ...]) -> int:
@@ -85,6 +100,7 @@ def _declare(module: ir.Module, function: tree.Function) -> None:
 class _Emitter:
     module: ir.Module
     function: tree.Function
+    inlined: frozenset[InlinedCall]
     sites: list[tree.Load | tree.Store | tree.Binary] = field(init=False, default_factory=list)
     """Accesses and divisions: what can go wrong in a run."""
     builder: ir.IRBuilder = field(init=False)
@@ -395,4 +411,22 @@ class _Emitter:
         arguments: list[ir.Value] = []
         for each in node.arguments:
             arguments.extend(self.arrays[each] if isinstance(each, str) else [self.value(each)])
-        return self.builder.call(self.module.get_global(node.callee.symbol), arguments)
+        result: ir.Value = self.builder.call(
+            self.module.get_global(node.callee.symbol), arguments, attrs=self._entered(node)
+        )
+        return result
+
+    def _entered(self, node: tree.KernelCall) -> tuple[str, ...]:
+        """Say where the code of a kernel begins that is to be inlined; return what LLVM is to be told of its call."""
+        callee = node.callee.symbol
+        if (self.function.symbol, callee, node.line) not in self.inlined:
+            return ()
+        name = f"{ENTERS}{callee}"
+        mark = self.module.globals.get(name)
+        if mark is None:
+            mark = ir.Function(self.module, ir.FunctionType(ir.VoidType(), []), name)
+            # it stays in its block, and stands in nothing's way
+            mark.attributes.add("inaccessiblememonly")
+            mark.attributes.add("nounwind")
+        self.builder.call(mark, [])
+        return ("alwaysinline",)

@@ -18,7 +18,7 @@ from bfsim.kernel.counters import Counter
 from bfsim.kernel.derived import Sum, derived
 from bfsim.kernel.entry import entry_point, globals_of, settle
 from bfsim.kernel.guards import Guarded
-from bfsim.kernel.ir_text import DEFINE, KERNEL_CALL, LABEL, read_module
+from bfsim.kernel.ir_text import DEFINE, ENTRY, KERNEL_CALL, LABEL, read_module
 
 ACCESS = re.compile(r"^  (?:%[\w.$-]+ = load|store) (i\d+|float)(?: [^,]+)?, ptr (%[\w.$-]+)")
 FLOAT_BYTES = 4
@@ -133,6 +133,8 @@ class _Rewriter:
             yield row
 
     def _instruction(self, row: str) -> Iterator[str]:
+        if ENTRY.match(row):
+            return
         if not self.behind_phis and " = phi " not in row:
             self.behind_phis = True
             for each in self.here:

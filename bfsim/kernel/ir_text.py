@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import NamedTuple
 
 DEFINE = re.compile(r"^define .*?@([\w.$-]+)\((.*)\)")
 LABEL = re.compile(r"^([\w.$-]+):")
@@ -15,7 +16,10 @@ RESULT = re.compile(r"^  (%[\w.$-]+) = (.*)$")
 NAME = re.compile(r"%[\w.$-]+")
 TARGET = re.compile(r"label (%[\w.$-]+)")
 DEBUG = re.compile(r", !dbg !(\d+)")
-LOCATION = re.compile(r"^!(\d+) = !DILocation\(line: (\d+)")
+LOCATION = re.compile(
+    r"^!(\d+) = (?:distinct )?!DILocation\(line: (\d+),(?: column: \d+,)? scope: !(\d+)(?:, inlinedAt: !(\d+))?"
+)
+SUBPROGRAM = re.compile(r'^!(\d+) = distinct !DISubprogram\(name: "([\w.$-]+)"')
 PROFILE = re.compile(r", !prof !(\d+)")
 WEIGHTS = re.compile(r"^!(\d+) = !\{!\"branch_weights\"(.*)\}")
 WEIGHT = re.compile(r"i32 (-?\d+)")  # LLVM writes unsigned numbers as signed ones
@@ -24,6 +28,17 @@ CASE = re.compile(r"i\d+ (-?\d+), label (%[\w.$-]+)")
 WIDTH = re.compile(r"\bi(\d+)\b")
 KERNEL_CALL = re.compile(r"\bcall [^@]*@([\w.$-]+)\(")
 OPCODE_NOISE = {"tail", "musttail", "notail"}
+ENTERS = "bfsim.enters."
+"""Before the symbol of a kernel: a call that does nothing, where the code of an inlined kernel begins."""
+ENTRY = re.compile(rf"^  (?:tail )?call void @{re.escape(ENTERS)}([\w.$-]+)\(")
+
+
+class SourceLine(NamedTuple):
+    """Where an operation comes from: a line of the kernel `routine`, and through which inlined call, 0 if through none."""
+
+    routine: str
+    line: int
+    site: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +49,7 @@ class Instruction:
     opcode: str
     text: str
     operands: tuple[str, ...]
-    line: int
+    line: SourceLine
     weights: tuple[int, ...] = ()
     """Of a branch: how likely each side is, where the source gives a hint."""
 
@@ -67,6 +82,8 @@ class BasicBlock:
 
     label: str
     instructions: tuple[Instruction, ...]
+    enters: tuple[str, ...] = ()
+    """Symbols of the inlined kernels whose code begins here."""
 
     @property
     def terminator(self) -> Instruction:
@@ -99,7 +116,7 @@ def read_module(text: str) -> tuple[Routine, ...]:
         number: tuple(int(each) & 0xFFFFFFFF for each in WEIGHT.findall(row))
         for number, row in _matches(WEIGHTS, text)
     }
-    lines_of = {number: int(line) for number, line in _matches(LOCATION, text)}
+    lines_of = _source_lines(text)
     routines = []
     rows = iter(text.splitlines())
     for row in rows:
@@ -110,8 +127,21 @@ def read_module(text: str) -> tuple[Routine, ...]:
                     break
                 body.append(inner)
             parameters = tuple(NAME.findall(found.group(2)))
-            routines.append(Routine(found.group(1), parameters, _blocks(_joined(body), lines_of, weights_of)))
+            first = SourceLine(found.group(1), 1)
+            routines.append(
+                Routine(first.routine, parameters, _blocks(_joined(body), first, lines_of, weights_of))
+            )
     return tuple(routines)
+
+
+def _source_lines(text: str) -> dict[str, SourceLine]:
+    """Return the source line of each note of one, by the note's number.
+
+    Line 0 is LLVM's word for code merged from several lines: it is no note, so that the code stays with the line before it.
+    """
+    routines = {found[1]: found[2] for found in map(SUBPROGRAM.match, text.splitlines()) if found}
+    notes = [found for found in map(LOCATION.match, text.splitlines()) if found and found[2] != "0"]
+    return {each[1]: SourceLine(routines[each[3]], int(each[2]), int(each[4] or 0)) for each in notes}
 
 
 def _matches(pattern: re.Pattern[str], text: str) -> list[tuple[str, str]]:
@@ -130,25 +160,27 @@ def _joined(body: list[str]) -> list[str]:
 
 
 def _blocks(
-    rows: list[str], lines_of: dict[str, int], weights_of: dict[str, tuple[int, ...]]
+    rows: list[str], line: SourceLine, lines_of: dict[str, SourceLine], weights_of: dict[str, tuple[int, ...]]
 ) -> tuple[BasicBlock, ...]:
+    """Read the blocks of a routine; `line` is its first one."""
     blocks: list[BasicBlock] = []
-    label, instructions, line = "", list[Instruction](), 0
+    label, instructions, enters = "", list[Instruction](), list[str]()
     for row in rows:
         if found := LABEL.match(row):
-            label, instructions = found.group(1), []
+            label, instructions, enters = found.group(1), [], []
+        elif found := ENTRY.match(row):
+            enters.append(found.group(1))
         elif row.startswith("  "):
             debug = DEBUG.search(row)
-            # line 0 is LLVM's word for code merged from several lines; it stays with the line before it
-            line = (lines_of.get(debug.group(1), 0) if debug else 0) or line or 1
+            line = lines_of.get(debug.group(1), line) if debug else line
             hint = PROFILE.search(row)
             instructions.append(_instruction(row, line, weights_of.get(hint.group(1), ()) if hint else ()))
             if instructions[-1].opcode in ("br", "ret", "switch", "unreachable"):
-                blocks.append(BasicBlock(label, tuple(instructions)))
+                blocks.append(BasicBlock(label, tuple(instructions), tuple(enters)))
     return tuple(blocks)
 
 
-def _instruction(row: str, line: int, weights: tuple[int, ...]) -> Instruction:
+def _instruction(row: str, line: SourceLine, weights: tuple[int, ...]) -> Instruction:
     text = DEBUG.sub("", row).split(", !")[0].strip()
     found = RESULT.match(row)
     result = found.group(1) if found else None

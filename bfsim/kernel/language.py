@@ -11,9 +11,11 @@ import ast
 import builtins
 import inspect
 import re
+from collections import Counter as Tally
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 from bfsim.errors import KernelError
@@ -54,6 +56,8 @@ def read_kernel(python: Callable[..., Any]) -> tree.Function:
         file=source.file,
         first_line=source.first_line,
         source=source.text,
+        names=python.__globals__,
+        is_static=_is_static(python, definition),
         parameters=parameters,
         result=reader.result,
         locals=tuple(scope.locals.items()),
@@ -61,6 +65,29 @@ def read_kernel(python: Callable[..., Any]) -> tree.Function:
     )
     _check_callees(source, definition, function)
     return function
+
+
+def _is_static(python: Callable[..., Any], definition: ast.FunctionDef) -> bool:
+    """Whether other kernels of the file name this one, and nothing else there does."""
+    lines, _ = inspect.findsource(python)
+    marks = frozenset(ast.unparse(each) for each in definition.decorator_list)
+    by_kernels, by_others = _names_in("".join(lines), marks)
+    return by_kernels[definition.name] > 0 and definition.name not in by_others
+
+
+@cache
+def _names_in(text: str, marks: frozenset[str]) -> tuple[Tally[str], frozenset[str]]:
+    """Return the names that the kernels of a file use, and those that the rest of it uses; a kernel has one of `marks`."""
+    by_kernels, by_others = Tally[str](), set[str]()
+    for each in ast.parse(text).body:
+        names = {node.id for node in ast.walk(each) if isinstance(node, ast.Name)}
+        if isinstance(each, ast.FunctionDef) and any(
+            ast.unparse(mark) in marks for mark in each.decorator_list
+        ):
+            by_kernels.update(names)
+        else:
+            by_others |= names
+    return by_kernels, frozenset(by_others)
 
 
 def _definition(python: Callable[..., Any]) -> tuple[KernelSource, ast.FunctionDef]:

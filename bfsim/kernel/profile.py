@@ -8,6 +8,7 @@ the README); [libgcc] measured: GCC 12.2's library for the Blackfin under the GN
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 from bfsim.errors import ConfigError
 from bfsim.kernel.isa import Op
@@ -62,6 +63,16 @@ class FloatLibrary:
     square_root: LibraryRoutine
 
 
+class Inlines(StrEnum):
+    """Which calls a compiler may inline: those of kernels that it sees."""
+
+    NOTHING = "nothing"
+    FILE = "file"
+    """Kernels of the caller's file; C files are compiled one by one."""
+    PROGRAM = "program"
+    """All kernels: one C file, or optimised when it is linked."""
+
+
 @dataclass(frozen=True, slots=True)
 class CompilerProfile:
     """How a compiler for the Blackfin treats a kernel."""
@@ -81,6 +92,7 @@ class CompilerProfile:
     library: Library
     floats: FloatLibrary | None
     """None: kernels with floats are refused."""
+    inlines: Inlines
     without: tuple[Learnt, ...] = ()
     """Fitted rules that are left out, to see what they are worth."""
 
@@ -138,15 +150,15 @@ ADI_FLOATS = FloatLibrary(     # the manual counts the call: 5 cycles less here
 
 GCC_O0 = CompilerProfile(
     name="gcc-O0", optimises=False, interlocks=False, parallel_issue=False, accumulates=False, push_multiple_cclk=14, pop_multiple_cclk=11,  # [SIM]
-    library=LIBGCC, floats=None,
+    library=LIBGCC, floats=None, inlines=Inlines.NOTHING,
 )  # fmt: skip
 GCC_O2 = CompilerProfile(
     name="gcc-O2", optimises=True, interlocks=False, parallel_issue=False, accumulates=False, push_multiple_cclk=14, pop_multiple_cclk=11,  # [SIM]
-    library=LIBGCC, floats=LIBGCC_FLOATS,
+    library=LIBGCC, floats=LIBGCC_FLOATS, inlines=Inlines.FILE,
 )  # fmt: skip
 VDSP_O2 = CompilerProfile(
     name="vdsp-O2", optimises=True, interlocks=True, parallel_issue=True, accumulates=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]
-    library=ADI, floats=ADI_FLOATS,
+    library=ADI, floats=ADI_FLOATS, inlines=Inlines.FILE,  # [assumed] as GCC
 )  # fmt: skip
 PROFILES = {each.name: each for each in (GCC_O0, GCC_O2, VDSP_O2)}
 

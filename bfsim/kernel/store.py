@@ -24,6 +24,7 @@ import platformdirs
 
 from bfsim.errors import BfsimWarning, shown
 from bfsim.kernel import tree
+from bfsim.kernel.inlining import compiled_with
 from bfsim.kernel.profile import CompilerProfile
 
 CHECKSUM_BYTES = 32
@@ -45,10 +46,15 @@ def key(function: tree.Function, profile: CompilerProfile, variant: str) -> str:
 def _source(function: tree.Function, profile: CompilerProfile) -> str:
     """Digest of what every entry about a kernel depends on."""
     digest = hashlib.sha256()
-    for part in (tools(), repr(profile), repr(function)):
+    for part in (tools(), repr(profile), *map(_text, (function, *compiled_with(function, profile)))):
         digest.update(part.encode())
         digest.update(b"\0")
     return digest.hexdigest()
+
+
+@cache
+def _text(function: tree.Function) -> str:
+    return repr(function)
 
 
 def sources() -> list[Path]:

@@ -5,7 +5,7 @@ Every node carries `line`, counted from the first line of the kernel's source (i
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 
@@ -206,7 +206,9 @@ class Parameter:
 class Function:
     """A whole kernel. `locals` gives the type of every local name; `symbol` is its name in the machine code.
 
-    `file`, `first_line` and `source` say where it stands; the code does not depend on them, nor does `repr`.
+    `file`, `first_line` and `source` say where it stands, `names` what the names of its file mean; `repr` is without them.
+    A kernel `is_static`, as C calls it, if other kernels of its file name it and nothing else there does: the file's main loops
+    do not run it. Whether another file imports it is not looked at.
     """
 
     name: str
@@ -214,6 +216,8 @@ class Function:
     file: str = field(repr=False)
     first_line: int = field(repr=False)
     source: str = field(repr=False)
+    names: Mapping[str, object] = field(repr=False)
+    is_static: bool
     parameters: tuple[Parameter, ...]
     result: Number | None
     locals: tuple[tuple[str, Value], ...]
@@ -232,6 +236,15 @@ class Function:
         )
         return 1 if in_head else min(lines, default=None)
 
+    def siblings(self) -> tuple[Function, ...]:
+        """The other kernels of its file."""
+        found = [getattr(each, "function", None) for each in self.names.values()]
+        return tuple(
+            each
+            for each in found
+            if isinstance(each, Function) and each.file == self.file and each is not self
+        )
+
     def callees(self) -> tuple[Function, ...]:
         """Kernels that this one calls, directly or not, each once, callees first."""
         return _callees(self)
@@ -248,6 +261,19 @@ def _callees(function: Function) -> tuple[Function, ...]:
 def calls_in(node: object) -> list[KernelCall]:
     """Every call of a kernel in `node`, a part of a tree; the outer one of `f(g(x))` first."""
     return [each for each in _parts(node) if isinstance(each, KernelCall)]
+
+
+@cache
+def measured_arrays(function: Function) -> frozenset[str]:
+    """Array parameters whose length `function` or a kernel called by it asks for: in C, they come with it."""
+    parts = list(_parts(function.body))
+    found = {each.array for each in parts if isinstance(each, Length)}
+    for call in parts:
+        if isinstance(call, KernelCall):
+            inner = measured_arrays(call.callee)
+            pairs = zip(call.callee.parameters, call.arguments, strict=True)
+            found |= {each for parameter, each in pairs if isinstance(each, str) and parameter.name in inner}
+    return frozenset(found)
 
 
 def written_arrays(function: Function) -> frozenset[str]:

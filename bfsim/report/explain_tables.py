@@ -29,10 +29,27 @@ def explain_report(explanation: Explanation) -> RenderableType:
     whole = sum(each.total_cclk or 0 for each in explanation.lines)
     for each in explanation.lines:
         _add(table, each, whole)
+    for kernel in explanation.inlined:
+        table.add_section()
+        table.add_row(f"{kernel.kernel} ({PurePath(kernel.file).name}), inlined")
+        for each in kernel.lines:
+            _add(table, each, whole)
     table.expand = True
     table.columns[0].ratio, table.columns[-1].ratio = 5, 4
     table.columns[-1].overflow = "fold"
-    return stacked(table, _legend(explanation))
+    calls = [_calls(explanation)] if explanation.kernel_calls else []
+    return stacked(table, *calls, _legend(explanation))
+
+
+def _calls(explanation: Explanation) -> Table:
+    """What became of each call of another kernel."""
+    table = new_table("Calls of kernels", "In", "Of", "Code grows by", "")
+    for number in (1, 3):
+        table.columns[number].justify = "left"
+    for each in explanation.kernel_calls:
+        verdict = f"{'inlined' if each.inlined else 'called'}: {each.why}"
+        table.add_row(f"{each.caller}, line {each.line}", each.callee, f"{each.growth:+}", verdict)
+    return table
 
 
 def explain_json(explanation: Explanation) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.charges import Charge, charge
@@ -144,18 +145,18 @@ class BlockLayout:
         """Whether `target` follows `name` in the code."""
         return self.next_of.get(name) == target
 
-    def jump(self, name: str, target: str, line: int) -> list[Charge]:
+    def jump(self, name: str, target: str, line: SourceLine) -> list[Charge]:
         """Return the cost of going on to `target`."""
         return [] if self.falls(name, target) else [charge(Op.JUMP, line)]
 
-    def on(self, label: str, target: str, line: int) -> list[Charge]:
+    def on(self, label: str, target: str, line: SourceLine) -> list[Charge]:
         """Return the cost of going from the end of `label` to the block `target`, its edge's copies included."""
         edge = edge_name((label, target))
         if (label, target) not in self.copies:
             return self.jump(label, self.landing(target), line)
         return [*self.jump(label, edge, line), *self._behind(label, target, line)]
 
-    def _behind(self, label: str, target: str, line: int) -> list[Charge]:
+    def _behind(self, label: str, target: str, line: SourceLine) -> list[Charge]:
         if (label, target) not in self.copies:
             return []
         return [
@@ -163,7 +164,7 @@ class BlockLayout:
             *self.jump(edge_name((label, target)), self.landing(target), line),
         ]
 
-    def sides(self, label: str, line: int) -> tuple[list[Charge], list[Charge]]:
+    def sides(self, label: str, line: SourceLine) -> tuple[list[Charge], list[Charge]]:
         """Return the cost of a conditional branch when its condition is true, and when it is false."""
         ways = self.ways(label)
         targets = self.flow.blocks[label].successors

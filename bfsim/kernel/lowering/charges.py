@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
+from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.isa import COSTS, Op
 
 
@@ -13,7 +14,7 @@ class Charge:
     """`count` executions of one operation per event; negative where a test moves a cost to its other side."""
 
     op: Op
-    line: int
+    line: SourceLine
     issue_cclk: int
     """Cycles of one execution, without interlocks."""
     stall_cclk: int = 0
@@ -21,7 +22,7 @@ class Charge:
     count: int = 1
 
 
-def charge(op: Op, line: int) -> Charge:
+def charge(op: Op, line: SourceLine) -> Charge:
     """Return one execution of `op` at its cost in the instruction set."""
     return Charge(op, line, COSTS[op].cclk)
 
@@ -52,7 +53,7 @@ class BlockCost:
     tests: list[Test] = field(default_factory=list)
     nbytes: int = 0
 
-    def add(self, line: int, *ops: Op) -> None:
+    def add(self, line: SourceLine, *ops: Op) -> None:
         """Append operations of one source line, and their code."""
         self.charges.extend(charge(op, line) for op in ops)
         self.nbytes += sum(COSTS[op].nbytes for op in ops)

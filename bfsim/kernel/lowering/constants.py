@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from bfsim.kernel import isa
+from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 
 
 def load_constant(
-    constant: str, line: int, result: str | None = None, bank: RegisterBank = RegisterBank.ANY
+    constant: str, line: SourceLine, result: str | None = None, bank: RegisterBank = RegisterBank.ANY
 ) -> MachineInstruction:
     """Return the operation that loads a constant, written #5."""
     digits = constant[1:].lstrip("-")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction
+from bfsim.kernel.ir_text import PHI_ARM, Instruction, SourceLine
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.scalar_evolution import Affine, Increment, ScalarEvolution
@@ -21,7 +21,7 @@ class InductionVariable:
     loop: Loop
     root: str
     increment: Increment
-    line: int
+    line: SourceLine
     accesses: list[tuple[str, Instruction, int]] = field(default_factory=list)
     """(block, access, offset in bytes)"""
     start: tuple[tuple[str, int], ...] = ()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
+from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.isa import COSTS, Op
 
 
@@ -21,7 +22,7 @@ class MachineInstruction:
     """One operation. `uses` are names of values, or constants written #5; `overwrites`: the operand it destroys."""
 
     op: Op
-    line: int
+    line: SourceLine
     result: str | None
     bank: RegisterBank
     uses: tuple[tuple[str, RegisterBank], ...] = ()

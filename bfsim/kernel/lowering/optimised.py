@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bfsim.kernel import isa
-from bfsim.kernel.ir_text import BasicBlock, Routine
+from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine
 from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import Loop
@@ -112,7 +112,7 @@ class _OptimisedLowering:
 
     # Function
 
-    def _enter(self, cost: BlockCost, line: int) -> None:
+    def _enter(self, cost: BlockCost, line: SourceLine) -> None:
         for op in _saving(self.allocation, Op.PUSH, Op.PUSH_MULTIPLE):
             cost.charges.append(self._stack(op, line))
         if self.allocation.calls:
@@ -122,7 +122,7 @@ class _OptimisedLowering:
             cost.charges.append(charge(Op.PUSH, line))
         cost.charges += [self._charge(instruction) for instruction in self.allocation.entry]
 
-    def _return(self, cost: BlockCost, line: int) -> None:
+    def _return(self, cost: BlockCost, line: SourceLine) -> None:
         if self.allocation.calls:
             ops = (Op.ALU, Op.POP, Op.POP) if self.allocation.saves_frame_pointer else (Op.ALU, Op.POP)
             cost.charges += [charge(op, line) for op in ops]
@@ -132,7 +132,7 @@ class _OptimisedLowering:
             cost.charges.append(self._stack(op, line))
         cost.charges.append(charge(Op.RETURN, line))
 
-    def _stack(self, op: Op, line: int) -> Charge:
+    def _stack(self, op: Op, line: SourceLine) -> Charge:
         saved = self.allocation.saved_data + self.allocation.saved_pointers
         fixed = {
             Op.PUSH_MULTIPLE: self.profile.push_multiple_cclk,
@@ -195,7 +195,7 @@ class _OptimisedLowering:
             sides = self._branch(label, line)
         cost.branch(block.terminator.operands[0], tuple(sides[0]), tuple(sides[1]))
 
-    def _second_part(self, label: str, line: int) -> tuple[list[Charge], ...]:
+    def _second_part(self, label: str, line: SourceLine) -> tuple[list[Charge], ...]:
         """What it costs more if the second part of a test does not hold after all: the branch was before."""
         tested = self.context.ranges[label]
         before = self.layout.sides(tested.first, line)
@@ -220,7 +220,7 @@ class _OptimisedLowering:
             and block.label not in self.context.if_conversion.by_label
         )
 
-    def _branch(self, label: str, line: int) -> tuple[list[Charge], list[Charge]]:
+    def _branch(self, label: str, line: SourceLine) -> tuple[list[Charge], list[Charge]]:
         loop = next(
             (
                 each

@@ -6,7 +6,7 @@ no branch predicted. Measured against GCC's own code: see the README.
 
 from __future__ import annotations
 
-from bfsim.kernel.ir_text import BasicBlock, Routine
+from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine
 from bfsim.kernel.isa import COSTS, REGISTER_ARGUMENTS, Op
 from bfsim.kernel.lowering.charges import BlockCost, Charge, charge
 from bfsim.kernel.lowering.unoptimised_paths import Paths
@@ -97,7 +97,7 @@ class _UnoptimisedLowering:
         cost.charges += restoring
         cost.nbytes += _nbytes(restoring)
 
-    def _save(self, op: Op, cclk: int | None, line: int) -> list[Charge]:
+    def _save(self, op: Op, cclk: int | None, line: SourceLine) -> list[Charge]:
         """Save or restore the registers whose values wait during calls."""
         return [Charge(op, line, len(self.saved) if cclk is None else cclk)] if self.saved else []
 

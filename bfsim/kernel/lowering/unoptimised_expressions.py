@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.isa import ADD_IMMEDIATE, Op
 from bfsim.kernel.lowering.powers import by_power
 
@@ -70,7 +71,7 @@ class TreeStatement:
 
     value: Expr
     target: Expr | None
-    line: int
+    line: SourceLine
 
 
 def const(value: int) -> Expr:

@@ -7,6 +7,7 @@ pointer registers can do too]. An addition runs where it needs fewer moves.
 
 from __future__ import annotations
 
+from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.isa import ADD_IMMEDIATE, COSTS, LONG_IMMEDIATE, SHORT_IMMEDIATE, Op
 from bfsim.kernel.lowering.charges import Charge
 from bfsim.kernel.profile import CompilerProfile
@@ -23,7 +24,7 @@ LARGEST_SIGNED = (1 << 15) - 1
 class Registers:
     """Code in the making: `charges` and `nbytes`; `saved`: registers that its function must save for it."""
 
-    def __init__(self, profile: CompilerProfile, line: int) -> None:
+    def __init__(self, profile: CompilerProfile, line: SourceLine) -> None:
         self.profile = profile
         self.line = line
         self.charges: list[Charge] = []

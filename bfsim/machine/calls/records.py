@@ -9,6 +9,7 @@ from functools import cache
 from typing import TypeVar
 
 from bfsim.kernel import Kernel, tree
+from bfsim.kernel.ir_text import SourceLine
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.trace import KernelRecord, LineCost
 
@@ -61,25 +62,27 @@ def _add(group: CallGroup, tallies: dict[tuple[str, str], _Tally]) -> None:
     top = group.kernel.function
     functions = {each.symbol: each for each in (*top.callees(), top)}
     memory_of = arrays_of_callees(group.kernel, group.memories)
-    entered: set[str] = set()
-    executions: dict[tuple[str, int], int] = {}
+    executions: dict[tuple[str, SourceLine], int] = {}
+
+    def tally(symbol: str) -> _Tally:
+        return tallies.setdefault((group.stage, symbol), _Tally(functions[symbol]))
+
     for counter, events in zip(group.code.counters, group.totals.tolist(), strict=False):
-        tally = tallies.setdefault((group.stage, counter.routine), _Tally(functions[counter.routine]))
-        if counter.value is None and counter.routine not in entered:
-            entered.add(counter.routine)  # a routine's first block runs once per call
-            tally.calls += events
-        for line, issue_cclk, stall_cclk in counter.line_cclk:
-            tally.issue_cclk[line] += events * issue_cclk
-            tally.stall_cclk[line] += events * stall_cclk
+        for symbol in counter.enters:
+            tally(symbol).calls += events
+        for place, issue_cclk, stall_cclk in counter.line_cclk:
+            own = tally(place.routine)
+            own.issue_cclk[place.line] += events * issue_cclk
+            own.stall_cclk[place.line] += events * stall_cclk
             if counter.value is None:
-                place = (counter.routine, line)
-                executions[place] = max(executions.get(place, 0), events)
+                once = (counter.routine, place)
+                executions[once] = max(executions.get(once, 0), events)
         for array, reads, writes in counter.accesses:
-            sums = tally.accesses[memory_of[counter.routine, array]]
+            sums = tally(counter.routine).accesses[memory_of[counter.routine, array]]
             sums[0] += events * reads
             sums[1] += events * writes
-    for (routine, line), events in executions.items():
-        tallies[group.stage, routine].executions[line] += events
+    for (_, place), events in executions.items():
+        tally(place.routine).executions[place.line] += events
 
 
 def arrays_of_callees(kernel: Kernel, labels: tuple[Label, ...]) -> dict[_Array, Label]:
