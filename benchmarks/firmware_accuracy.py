@@ -6,8 +6,9 @@
 
 The kernels that make up 98 % of a frame stand in `firmware_twins/c/` once more, as C. Both are run on the same calls, a
 sample of those of the built-in recording, and leave the same bits. Measured: GCC 12.2 and the GNU simulator 13.1, in
-variants: `calls`, where every kernel is called; `inlined`, where GCC inlines and clones within a file of the firmware;
-`one file`, where each kernel stands in one file with all that it calls. Of the frame there are two errors: `signed`,
+variants: `inlined`, where GCC inlines and clones within a file of the firmware; `calls`, where every kernel is called;
+`one file`, where each kernel stands in one file with all that it calls. Each is compared with the profile that inlines as
+much. Of the frame there are two errors: `signed`,
 where one kernel's makes up for another's, and `by share`, where it does not.
 """
 
@@ -27,9 +28,14 @@ from benchmarks.firmware_twins.measured import measured
 from benchmarks.firmware_twins.recorded import recorded
 from benchmarks.firmware_twins.twins import TWINS, frame_cycles, predict
 from bfsim.kernel import GCC_O0, GCC_O2
+from bfsim.kernel.profile import Inlines
 
 PROFILES = {"O2": GCC_O2, "O0": GCC_O0}
-VARIANTS = {"O2": ("calls", "inlined", "one_file"), "O0": ("O0",)}
+VARIANTS = {
+    "O2": {"inlined": Inlines.FILE, "calls": Inlines.NOTHING, "one_file": Inlines.PROGRAM},
+    "O0": {"O0": Inlines.NOTHING},
+}
+"""By level: what each variant may inline. The first one is the profile's own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,12 +43,17 @@ class Comparison:
     """One kernel: cycles of a stereo frame, both cores, as predicted and as measured in each variant."""
 
     kernel: str
-    predicted: float
+    predicted: Mapping[str, float]
     measured: Mapping[str, float]
+
+    @property
+    def cycles(self) -> float:
+        """Predicted cycles of the profile itself."""
+        return next(iter(self.predicted.values()))
 
     def error(self, variant: str) -> float:
         """Return by how much the prediction is off, in percent of what was measured."""
-        return 100 * (self.predicted / self.measured[variant] - 1)
+        return 100 * (self.predicted[variant] / self.measured[variant] - 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,28 +70,32 @@ def compare(level: str) -> list[Comparison]:
     rows = []
     for kernel in TWINS:
         calls, truth = recorded()[kernel], measured()[kernel.name]
-        found = predict(kernel, calls, PROFILES[level])
-        if found.checksum != truth.checksum:
-            raise ValueError(
-                f"{kernel.name} must leave {truth.checksum} as its C twin did when it was measured, not {found.checksum}; "
-                "change the twin as the kernel was changed, and measure it again"
-            )
         weight = calls.per_frame / len(calls.arguments)
+        found = {}
+        for variant, inlines in VARIANTS[level].items():
+            profile = dataclasses.replace(PROFILES[level], inlines=inlines)
+            prediction = predict(kernel, calls, profile)
+            if prediction.checksum != truth.checksum:
+                raise ValueError(
+                    f"{kernel.name} must leave {truth.checksum} as its C twin did when it was measured, not "
+                    f"{prediction.checksum}; change the twin as the kernel was changed, and measure it again"
+                )
+            found[variant] = weight * sum(prediction.cycles)
         cycles = {variant: weight * sum(truth.cycles[variant]) for variant in VARIANTS[level]}
-        rows.append(Comparison(kernel.name, weight * sum(found.cycles), cycles))
-    return sorted(rows, key=lambda row: -row.predicted)
+        rows.append(Comparison(kernel.name, found, cycles))
+    return sorted(rows, key=lambda row: -row.cycles)
 
 
 def frame_error(rows: Sequence[Comparison], variant: str) -> FrameError:
     """Add up the kernels to a frame."""
     whole = sum(row.measured[variant] for row in rows)
-    off = [row.predicted - row.measured[variant] for row in rows]
+    off = [row.predicted[variant] - row.measured[variant] for row in rows]
     return FrameError(100 * sum(off) / whole, 100 * sum(map(abs, off)) / whole)
 
 
 def covered(rows: Sequence[Comparison], level: str) -> float:
     """Return which part of the frame's predicted cycles the twins are, in percent."""
-    return 100 * sum(row.predicted for row in rows) / sum(frame_cycles(PROFILES[level]).values())
+    return 100 * sum(row.cycles for row in rows) / sum(frame_cycles(PROFILES[level]).values())
 
 
 def table(rows: Sequence[Comparison], level: str) -> Table:
@@ -92,10 +107,10 @@ def table(rows: Sequence[Comparison], level: str) -> Table:
     result.add_column("kernel", no_wrap=True)
     for head in ("share %", "predicted", *(f"{each.replace('_', ' ')} %" for each in VARIANTS[level])):
         result.add_column(head, justify="right")
-    whole = sum(row.predicted for row in rows)
+    whole = sum(row.cycles for row in rows)
     for row in rows:
         errors = (f"{row.error(variant):+.1f}" for variant in VARIANTS[level])
-        result.add_row(row.kernel, f"{100 * row.predicted / whole:.2f}", f"{row.predicted:,.0f}", *errors)
+        result.add_row(row.kernel, f"{100 * row.cycles / whole:.2f}", f"{row.cycles:,.0f}", *errors)
     found = [frame_error(rows, variant) for variant in VARIANTS[level]]
     result.add_section()
     result.add_row("frame, signed", "100.00", f"{whole:,.0f}", *(f"{each.signed:+.1f}" for each in found))

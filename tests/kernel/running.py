@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from bfsim.kernel import VDSP_O2, CompilerProfile, Kernel, Work
+from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel, Work
 from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.profile import Inlines
+
+CALLING_GCC, CALLING_VDSP = (replace(each, inlines=Inlines.NOTHING) for each in (GCC_O2, VDSP_O2))
+"""Profiles in which every call of a kernel is one."""
 
 
 def run(
@@ -35,6 +40,6 @@ def line_executions(kernel: Kernel, *arguments: Any) -> dict[int, int]:
     found: dict[int, int] = {}
     for counter, events in zip(code.counters, totals.tolist(), strict=False):
         if counter.value is None and counter.routine == kernel.function.symbol:
-            for line, _, _ in counter.line_cclk:
-                found[line] = max(found.get(line, 0), events)
+            for place, _, _ in counter.line_cclk:
+                found[place.line] = max(found.get(place.line, 0), events)
     return found

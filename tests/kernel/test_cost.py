@@ -12,7 +12,7 @@ from bfsim.kernel import GCC_O2, VDSP_O2, Kernel
 from bfsim.kernel.isa import COSTS, Op
 from tests.kernel import cost_kernels
 from tests.kernel.conftest import ImportText
-from tests.kernel.running import line_executions, run
+from tests.kernel.running import CALLING_GCC, CALLING_VDSP, line_executions, run
 
 RETURN = COSTS[Op.RETURN].cclk
 SKIP, ENTER = COSTS[Op.BRANCH_TAKEN_BP].cclk, COSTS[Op.BRANCH_NOT_TAKEN_BP].cclk  # over a body, and into it
@@ -90,7 +90,8 @@ def test_a_loop_with_a_call_branches_and_pays_the_call() -> None:
     """A loop that calls is no hardware loop; an iteration costs CALL, the callee with its RTS, and the branch."""
     row = np.zeros(20, np.uint8)
     callee = cclk(cost_kernels.store_three, row, 3)
-    per_iteration = cclk(cost_kernels.store_each, row, 9) - cclk(cost_kernels.store_each, row, 8)
+    nine, eight = (run(cost_kernels.store_each, row, n, profile=CALLING_GCC).issue_cclk for n in (9, 8))
+    per_iteration = nine - eight
     arguments = 2  # moved to R0 and R1
     assert per_iteration == arguments + COSTS[Op.CALL].cclk + callee + 1 + 1 + SKIP  # increment, compare
 
@@ -98,8 +99,8 @@ def test_a_loop_with_a_call_branches_and_pays_the_call() -> None:
 def test_registers_are_saved_as_the_profile_says() -> None:
     """GNU's simulator charges 14 and 11 cycles for a push and a pop multiple; the chip one per register."""
     row = np.zeros(1, np.uint8)
-    gnu = run(cost_kernels.store_each, row, 1, profile=GCC_O2).issue_cclk
-    chip = run(cost_kernels.store_each, row, 1, profile=VDSP_O2).issue_cclk
+    gnu = run(cost_kernels.store_each, row, 1, profile=CALLING_GCC).issue_cclk
+    chip = run(cost_kernels.store_each, row, 1, profile=CALLING_VDSP).issue_cclk
     saved = 3  # the count, the pointer and the limit, which live across the call
     assert gnu - chip == 14 + 11 - 2 * saved
 

@@ -14,9 +14,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from bfsim.kernel import GCC_O0, VDSP_O2, Kernel, instrument
+from bfsim.kernel import GCC_O0, Kernel, instrument
 from tests.kernel.modules import import_text
 from tests.kernel.programs import programs
+from tests.kernel.running import CALLING_VDSP
 from tests.kernel.test_semantics import arrays_of
 from tests.kernel.words import NAMES, Row, Word
 
@@ -55,8 +56,8 @@ def counted_lines(program: Kernel, arrays: dict[str, Any], x: int, y: int) -> di
     found: dict[int, int] = {}
     for counter, events in zip(code.counters, totals.tolist(), strict=False):
         if counter.value is None and counter.routine == program.function.symbol:
-            for line, _, _ in counter.line_cclk:
-                found[line] = max(found.get(line, 0), events)
+            for place, _, _ in counter.line_cclk:
+                found[place.line] = max(found.get(place.line, 0), events)
     return found
 
 
@@ -123,7 +124,7 @@ def test_a_routine_counts_alike_whether_inlined_or_called(
     counts = []
     for name in ("inlined", "called"):
         kernel = import_text(CALLER, tmp_path, name).f
-        code, arrays = kernel.compile(VDSP_O2), [a, a[::-1].copy()]
+        code, arrays = kernel.compile(CALLING_VDSP), [a, a[::-1].copy()]
         totals = code.new_totals()
         cclk = kernel.prepare(code, arrays, totals).run(arrays).issue_cclk
         counts.append((cclk, totals.tolist(), arrays[1].tolist()))

@@ -35,6 +35,7 @@ done:                                             ; preds = %other.1thread-pre-s
   %9 = phi i32 [ %8, %entry ], [ poison, %other.1thread-pre-split ], [ %8, %entry ]
   ret i32 %9, !dbg !7
 }
+!3 = distinct !DISubprogram(name: "f", line: 1)
 !6 = !DILocation(line: 4, column: 1, scope: !3)
 !7 = !DILocation(line: 5, column: 1, scope: !3)
 """
@@ -97,7 +98,7 @@ def test_every_form_of_instruction_is_read() -> None:
     assert flow.blocks["entry"].successors == ("done", "other.1thread-pre-split", "done")
     assert flow.blocks["entry"].cases == ((-3, "other.1thread-pre-split"), (5, "done"))
     assert flow.blocks["done"].instructions[0].operands == ("%8", "poison", "%8")
-    assert [each.line for each in flow.blocks["entry"].instructions] == [4] * 10 + [5]
+    assert [each.line.line for each in flow.blocks["entry"].instructions] == [4] * 10 + [5]
 
 
 def test_every_form_of_instruction_has_a_cost() -> None:

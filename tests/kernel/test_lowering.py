@@ -10,7 +10,7 @@ import pytest
 
 from benchmarks.twins.lines import grow_segments
 from bfsim.errors import ConfigError
-from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel, profile_named
+from bfsim.kernel import GCC_O2, CompilerProfile, Kernel, profile_named
 from bfsim.kernel.costs import optimised
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import COSTS, Op
@@ -21,6 +21,7 @@ from bfsim.kernel.lowering.multiples import multiple
 from bfsim.kernel.lowering.predict import combined
 from bfsim.kernel.lowering.schedule import issues
 from tests.kernel.modules import import_text
+from tests.kernel.running import CALLING_VDSP
 
 
 def lowered(text: str, folder: Path, profile: CompilerProfile = GCC_O2) -> Tally[Op]:
@@ -213,7 +214,7 @@ def test_a_kernel_has_a_size(tmp_path: Path) -> None:
         "@kernel\ndef g(x: i32) -> i32:\n    return x ^ 5\n@kernel\ndef f(x: i32) -> i32:\n    return g(x) + g(x + 1)\n",
         tmp_path,
     )
-    sizes = module.f.code_bytes(VDSP_O2)
+    sizes = module.f.code_bytes(CALLING_VDSP)
     assert set(sizes) == {module.f.function.symbol, module.g.function.symbol}
     assert sizes[module.g.function.symbol] == sum(COSTS[op].nbytes for op in (Op.IMM, Op.ALU, Op.RETURN))
 

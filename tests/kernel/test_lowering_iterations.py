@@ -13,6 +13,7 @@ from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.context import Context
 from tests.kernel.modules import import_text
+from tests.kernel.running import CALLING_GCC
 from tests.kernel.test_lowering import context, lowered
 
 WINDOW = """
@@ -146,6 +147,8 @@ def test_half_of_a_number_as_the_index_of_half_words_is_a_cleared_bit(tmp_path: 
 def test_a_result_that_is_wanted_behind_the_next_call_moves_out_of_its_way(tmp_path: Path) -> None:
     """R0 is overwritten by the second call; what the second one returns stays there."""
     text = "def g(x: i32) -> i32:\n    s = 0\n    for i in range(x):\n        s = (s * 5) ^ i\n    return s\n\n\n@kernel\ndef f(x: i32) -> i32:\n    first = g(x)\n    return g({}) - {}\n"
-    behind, before = (lowered(text.format(*each), tmp_path) for each in (("3", "first"), ("first", "3")))
+    behind, before = (
+        lowered(text.format(*each), tmp_path, CALLING_GCC) for each in (("3", "first"), ("first", "3"))
+    )
     assert behind[Op.CALL] == before[Op.CALL] == 2
     assert behind[Op.MOVE] == before[Op.MOVE] + 1
