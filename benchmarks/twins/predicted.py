@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter as Tally
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from benchmarks.twins.case import Case
 from bfsim.kernel import CompilerProfile
+from bfsim.kernel.profile import Inlines
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,8 +21,9 @@ class Predicted:
 
 
 def predict(case: Case, profile: CompilerProfile) -> Predicted:
-    """Run a twin and add up what its operations cost."""
-    kernel, code = case.kernel, case.kernel.compile(profile)
+    """Run a twin and add up what its operations cost; its helpers are called, as those of the C twins are (noinline)."""
+    kernel = case.kernel
+    code = kernel.compile(replace(profile, inlines=Inlines.NOTHING))
     totals = code.new_totals()
 
     def run(*arguments: Any) -> int | None:
