@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bfsim.chip.dma_registers import Flow, WdSize
 from bfsim.chip.ppi_registers import PpiStatusBit
-from bfsim.errors import FirmwareError
+from bfsim.errors import FirmwareError, cut, shown
 from bfsim.kernel import Kernel, Work, f32, i8, i16, i32, kernel, quotient, remainder, sqrt, u8, u16, u32
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.core import Core, Frame
@@ -37,5 +37,5 @@ __all__ = [
     "BudgetRow", "Buffer", "Buffers", "Calibration", "CameraSettings", "Colour", "Core", "DmaConfig", "Firmware", "FirmwareError", "Flow", "Frame",
     "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "OutputRing", "PpiStatusBit", "Readout", "Reference", "Row", "Script", "Seen", "SeenBlob",
     "SeenCircle", "SeenEdges", "SeenEdges3D", "SeenGeometry", "SeenLine", "SeenLine3D", "SeenObject", "SeenRectangle", "Solid", "SourcePixels",
-    "SpiDevice", "SpiMessage", "WdSize", "Work", "f32", "i8", "i16", "i32", "kernel", "no_edges_3d", "quotient", "remainder", "sqrt", "u8", "u16", "u32", "write_descriptor",
+    "SpiDevice", "SpiMessage", "WdSize", "Work", "cut", "f32", "i8", "i16", "i32", "kernel", "no_edges_3d", "quotient", "remainder", "shown", "sqrt", "u8", "u16", "u32", "write_descriptor",
 ]  # fmt: skip

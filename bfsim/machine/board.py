@@ -11,7 +11,7 @@ from functools import partial
 import simpy
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.errors import BfsimError, DeadlockError, FirmwareError
+from bfsim.errors import BfsimError, DeadlockError, FirmwareError, shown
 from bfsim.kernel import VDSP_O2, CompilerProfile
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.linker import LinkMap, Symbol
@@ -365,4 +365,9 @@ class Board:
 
     def _device_notes(self) -> tuple[str, ...]:
         with device_at_work():
-            return tuple(map(str, self.device.finish()))
+            notes = self.device.finish()
+        if isinstance(notes, str) or not all(isinstance(each, str) for each in notes):
+            raise FirmwareError(
+                f"finish of the device on the SPI must return a list of str, not {shown(notes)}"
+            )
+        return tuple(notes)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.errors import FirmwareError
+from bfsim.errors import FirmwareError, shown
 from bfsim.kernel.types import FloatType, Number
 from bfsim.machine.spi.device import Script, SpiDevice, device_at_work
 from bfsim.seen import Seen
@@ -173,7 +173,7 @@ class Firmware:
         with device_at_work():
             device = self.spi(script)
         if not isinstance(device, SpiDevice):
-            raise FirmwareError(f"spi must make a bfsim.api.SpiDevice, not {device!r}")
+            raise FirmwareError(f"spi must make a bfsim.api.SpiDevice, not {shown(device)}")
         return device
 
     def calibrated(self, calibration: Calibration) -> Firmware:

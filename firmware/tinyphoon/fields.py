@@ -15,7 +15,7 @@ from enum import IntEnum
 from functools import cache
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
-from bfsim.api import FirmwareError
+from bfsim.api import FirmwareError, cut, shown
 
 LOWEST, HIGHEST = -(1 << 31), (1 << 31) - 1
 
@@ -148,9 +148,9 @@ def named_words(base: Any, names: object, at: str) -> list[int]:
             raise FirmwareError(f"{at} must be {len(known)} numbers ({', '.join(known)}), not {len(names)}")
         names = dict(zip(known, names, strict=True))
     if not isinstance(names, Mapping):
-        raise FirmwareError(f"{at} must have some of {', '.join(known)}, not be {names!r}")
+        raise FirmwareError(f"{at} must have some of {', '.join(known)}, not be {shown(names)}")
     if unknown := [name for name in names if name not in known]:
-        raise FirmwareError(f"{at}.{unknown[0]} must be one of {', '.join(known)}")
+        raise FirmwareError(f"{at}.{cut(str(unknown[0]))} must be one of {', '.join(known)}")
     words: list[int] = []
     for name, hint, _ in parts:
         part = getattr(base, name)
@@ -165,8 +165,10 @@ def _number(value: object, hint: Any, at: str) -> int:
     """Return the number that a field gets; members of an IntEnum go by their names too, in any case."""
     if isinstance(value, str) and isinstance(hint, type) and issubclass(hint, IntEnum):
         if value.upper() not in hint.__members__:
-            raise FirmwareError(f"{at} must be one of {', '.join(hint.__members__).lower()}, not {value!r}")
+            raise FirmwareError(
+                f"{at} must be one of {', '.join(hint.__members__).lower()}, not {shown(value)}"
+            )
         return int(hint[value.upper()])
     if not isinstance(value, int) or not LOWEST <= value <= HIGHEST:
-        raise FirmwareError(f"{at} must be a whole number of 32 bits, not {value!r}")
+        raise FirmwareError(f"{at} must be a whole number of 32 bits, not {shown(value)}")
     return int(value)

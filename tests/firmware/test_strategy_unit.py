@@ -130,7 +130,10 @@ def test_orders_by_name_words_and_bytes_as_they_are() -> None:
             {"mode": {}, "after_frames": True},
             "send.1.after_frames must be a whole number from 0 to 2147483647, not True",
         ),
-        ({"mode": {}, "after_frames": 1 << 20_000}, "send.1.after_frames .* not a number of 20001 bits"),
+        (
+            {"mode": {}, "after_frames": 1 << 20_000},
+            "send.1.after_frames .* not a number of thousands of digits",
+        ),
         ({"type": "RESULTS", "words": []}, "send.1.type must be MODE or MODELS, not 'RESULTS'"),
         (
             {"type": "MODE", "words": [8, 65536]},
@@ -156,6 +159,12 @@ def test_orders_by_name_words_and_bytes_as_they_are() -> None:
             "send.1.mode.edges.edge_treshold must be one of gauss_px, edge_",
         ),
         ({"models": []}, "send.1.models must be a list of them"),
+        (
+            {"mode": {"edges": {"edge_threshold": "7" * 40_000}}},
+            "edge_threshold must be a whole number of 32 bits",
+        ),
+        ({"mode": {"k" * 40_000: 3}}, "send.1.mode.kkk"),
+        ({"models": ["b" * 40_000]}, "send.1.models.0 must be or have the name"),
         ({"models": ["bal"]}, "send.1.models.0 must be or have the name of one of ball"),
     ],
 )

@@ -100,6 +100,14 @@ def failing(*_: object) -> Any:
     ("device", "message"),
     [
         (
+            device_with(finish=lambda *_: "a note"),
+            "finish of the device .* must return a list of str, not 'a note'",
+        ),
+        (
+            device_with(receive=lambda *_: sys.exit(3)),
+            "the device on the SPI failed with SystemExit: 3 .*test_spi_dev",
+        ),
+        (
             device_with(receive=lambda *_: None),
             "receive of the device on the SPI must return a str, not None",
         ),

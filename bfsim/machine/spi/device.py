@@ -107,6 +107,6 @@ def device_at_work() -> Iterator[None]:
         yield
     except BfsimError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         what = f"{type(error).__name__}: {error}{line_of(error)}"
         raise FirmwareError(f"the device on the SPI failed with {what}") from error

@@ -12,7 +12,7 @@ import simpy
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.chip.spi_registers import SpiRate
-from bfsim.errors import FirmwareError
+from bfsim.errors import FirmwareError, shown
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus, Pace, Transfer, Walk
 from bfsim.machine.memories import Memories, Row
@@ -77,7 +77,7 @@ class Spi:
         with device_at_work():
             kind = self._device.receive(octets, self._now_ns)
         if not isinstance(kind, str):
-            raise FirmwareError(f"receive of the device on the SPI must return a str, not {kind!r}")
+            raise FirmwareError(f"receive of the device on the SPI must return a str, not {shown(kind)}")
         self._record("out", kind, nbytes, begin)
         self._finish(self._env.active_process)
 
@@ -112,7 +112,9 @@ class Spi:
         with device_at_work():
             message = self._device.send(self._now_ns)
         if not isinstance(message, SpiMessage):
-            raise FirmwareError(f"send of the device on the SPI must return an SpiMessage, not {message!r}")
+            raise FirmwareError(
+                f"send of the device on the SPI must return an SpiMessage, not {shown(message)}"
+            )
         return message
 
     def _received(self, transfer: simpy.Event, kind: str, nbytes: int, begin: int) -> None:

@@ -20,14 +20,13 @@ that go over the wire as they are, to see what the firmware does with a damaged 
 
 from __future__ import annotations
 
-import reprlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from bfsim.api import FirmwareError, Script, SpiMessage
+from bfsim.api import FirmwareError, Script, SpiMessage, shown
 from tinyphoon.strategy_unit.messages import Message, MessageError, MessageType, decode, encode
 from tinyphoon.strategy_unit.payloads import BY_NAME
 
@@ -63,7 +62,7 @@ def entries_of(script: Script) -> tuple[Entry, ...]:
     _require_keys(script, (), ("send",), "the script")
     send = script.get("send", [])
     if not isinstance(send, list):
-        raise FirmwareError(f"send must be a list of tables, not {_shown(send)}")
+        raise FirmwareError(f"send must be a list of tables, not {shown(send)}")
     asked = [_asked(each, f"send.{number}") for number, each in enumerate(send)]
     return tuple(_numbered(sorted(asked, key=lambda each: each.after_frames)))
 
@@ -92,7 +91,7 @@ def _type_of(octets: bytes) -> str:
 
 def _asked(entry: object, at: str) -> _Asked:
     if not isinstance(entry, Mapping):
-        raise FirmwareError(f"{at} must be a table, not {_shown(entry)}")
+        raise FirmwareError(f"{at} must be a table, not {shown(entry)}")
     kinds = (*BY_NAME, "words", "bytes")
     found = [each for each in kinds if each in entry]
     if len(found) != 1:
@@ -119,19 +118,19 @@ def _asked(entry: object, at: str) -> _Asked:
 def _order(name: object, at: str) -> MessageType:
     known = {each.name: each for each in ORDERS}
     if not isinstance(name, str) or name not in known:
-        raise FirmwareError(f"{at} must be {' or '.join(known)}, not {_shown(name)}")
+        raise FirmwareError(f"{at} must be {' or '.join(known)}, not {shown(name)}")
     return known[name]
 
 
 def _numbers(values: object, lowest: int, highest: int, at: str) -> list[int]:
     if not isinstance(values, list):
-        raise FirmwareError(f"{at} must be a list of whole numbers, not {_shown(values)}")
+        raise FirmwareError(f"{at} must be a list of whole numbers, not {shown(values)}")
     return [_whole(each, lowest, highest, f"{at}.{number}") for number, each in enumerate(values)]
 
 
 def _whole(value: object, lowest: int, highest: int, at: str) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or not lowest <= value <= highest:
-        raise FirmwareError(f"{at} must be a whole number from {lowest} to {highest}, not {_shown(value)}")
+        raise FirmwareError(f"{at} must be a whole number from {lowest} to {highest}, not {shown(value)}")
     return value
 
 
@@ -140,15 +139,8 @@ def _require_keys(table: Mapping[str, Any], needed: Sequence[str], optional: Seq
     for each in table:
         if each not in known:
             raise FirmwareError(
-                f"{at} must have no other keys than {', '.join(known)}, but has {_shown(each)}"
+                f"{at} must have no other keys than {', '.join(known)}, but has {shown(each)}"
             )
     for each in needed:
         if each not in table:
             raise FirmwareError(f"the key {at}.{each} must be there")
-
-
-def _shown(value: object) -> str:
-    """Return a value as a message shows it, cut where it is long."""
-    if isinstance(value, int) and value.bit_length() > 64:
-        return f"a number of {value.bit_length()} bits"
-    return reprlib.repr(value)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from bfsim.api import FirmwareError
+from bfsim.api import FirmwareError, shown
 from tinyphoon.fields import named_words
 from tinyphoon.strategy.models import MODELS
 from tinyphoon.strategy.modes import INDOOR_FIELD
@@ -31,7 +31,7 @@ def models_payload(models: object, at: str = "models") -> bytes:
     Raises FirmwareError that names the model or its field under `at`.
     """
     if not isinstance(models, list) or not models:
-        raise FirmwareError(f"{at} must be a list of them, not {models!r}")
+        raise FirmwareError(f"{at} must be a list of them, not {shown(models)}")
     return payload(
         [word for number, each in enumerate(models) for word in _words_of_model(each, f"{at}.{number}")]
     )
@@ -41,7 +41,9 @@ def _words_of_model(wanted: object, at: str) -> list[int]:
     changes = {"name": wanted} if isinstance(wanted, str) else wanted
     known = {each.name: each for each in MODELS}
     if not isinstance(changes, Mapping) or changes.get("name") not in [*known]:
-        raise FirmwareError(f"{at} must be or have the name of one of {', '.join(known)}, not be {wanted!r}")
+        raise FirmwareError(
+            f"{at} must be or have the name of one of {', '.join(known)}, not be {shown(wanted)}"
+        )
     return named_words(
         known[changes["name"]], {key: value for key, value in changes.items() if key != "name"}, at
     )
