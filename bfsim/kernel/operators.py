@@ -29,6 +29,32 @@ OF_TWO: dict[Callable[..., object], str] = {
 DIVISIONS = ("//", "%", "quotient", "remainder")
 
 
+BUILT_IN = ("len", "min", "max", "abs")
+"""Functions of Python that the language has."""
+INSTEAD = {
+    "print input open breakpoint": "return a number, or store it in an array that the firmware publishes; to print while you "
+    "search a mistake, call the kernel's `.python(...)` in a test, which runs it as plain Python",
+    "sum any all sorted reversed enumerate zip map filter iter next": "write a loop, for i in range(...)",
+    "range slice": "it counts a loop only, for i in range(...)",
+    "list tuple dict set frozenset bytes bytearray memoryview str chr ord repr format": "a kernel has numbers and the arrays "
+    "that it is given; pass an array as a parameter",
+    "int bool": "write i32(x), or a comparison such as x != 0",
+    "float complex": "write f32(x)",
+    "round": "write i32(x + 0.5) for an f32 that is not negative",
+    "pow": "multiply, or shift for a power of two",
+    "divmod": "write // and %",
+    "isinstance issubclass type hasattr getattr setattr callable id hash vars dir super object": "types are fixed when the "
+    "kernel is read; write a kernel for each",
+}
+"""What to do instead of calling other functions of Python, by their names."""
+
+
+def instead_of(name: str) -> str:
+    """Return what to do instead of calling the built-in function `name` of Python."""
+    known = (advice for names, advice in INSTEAD.items() if name in names.split())
+    return next(known, "use numbers, arrays, loops, len, min, max, abs, quotient, remainder, sqrt and casts")
+
+
 def in_words(node: ast.AST) -> str:
     """What `node` is, in words."""
     names = {"listcomp": "comprehensions", "joinedstr": "strings", "tuple": "tuples", "list": "lists",

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import ast
+import builtins
 
 from bfsim.kernel import tree
 from bfsim.kernel.expressions import Expressions
-from bfsim.kernel.operators import OF_TWO
+from bfsim.kernel.operators import BUILT_IN, OF_TWO, instead_of
 from bfsim.kernel.types import FloatType, IntType, Number, f32, i32, promoted, sqrt
 
 
@@ -16,21 +17,7 @@ class KernelScope(Expressions):
     __slots__ = ()
 
     def _call(self, node: ast.Call) -> tree.Expr:
-        if not isinstance(node.func, ast.Name) or node.keywords:
-            self.source.refuse(
-                node,
-                "a kernel can only call kernels, len, min, max, abs, quotient, remainder, sqrt and casts",
-                "call by name, without keywords",
-            )
-        name = node.func.id
-        if name == self.kernel:
-            self.source.refuse(
-                node, "a kernel cannot call itself", "write a loop, or give the other kernel another name"
-            )
-        if name in self.own:
-            self.source.refuse(
-                node, f"{name} is a variable here, not a function", "give the variable another name"
-            )
+        name = self._called(node)
         target = self.outer.get(name)
         if isinstance(target, (IntType, FloatType)):
             return self._cast(node, target)
@@ -48,6 +35,28 @@ class KernelScope(Expressions):
             return tree.Unary("sqrt", self.number(node.args[0], f32), f32, node.lineno)
         advice = f"give {name} two arguments" if known else f"make {name} a @kernel, or inline it"
         self.source.refuse(node, f"a kernel cannot call {name} like this", advice)
+
+    def _called(self, node: ast.Call) -> str:
+        """Return the name of what is called; refuse what can never be."""
+        name = node.func.id if isinstance(node.func, ast.Name) else ""
+        own = getattr(builtins, name, None)
+        if own is not None and name not in (*BUILT_IN, *self.own) and self.outer.get(name) is own:
+            self.source.refuse(node, f"a kernel cannot call {name}, which is Python's", instead_of(name))
+        if not name or node.keywords:
+            self.source.refuse(
+                node,
+                "a kernel can only call kernels, len, min, max, abs, quotient, remainder, sqrt and casts",
+                "call by name, without keywords",
+            )
+        if name == self.kernel:
+            self.source.refuse(
+                node, "a kernel cannot call itself", "write a loop, or give the other kernel another name"
+            )
+        if name in self.own:
+            self.source.refuse(
+                node, f"{name} is a variable here, not a function", "give the variable another name"
+            )
+        return name
 
     def _absolute(self, node: ast.Call) -> tree.Expr:
         operand = self.number(node.args[0])

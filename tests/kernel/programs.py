@@ -1,4 +1,4 @@
-"""Random programs of the kernel language, as source text. They end, and never index or divide wrongly."""
+"""Random programs of the kernel language, as source text. They end; only careless ones index or divide wrongly."""
 
 from __future__ import annotations
 
@@ -32,8 +32,9 @@ def program(a: u8[:], b: i8[:], c: u16[:], d: i16[:], e: u32[:], f: i32[:], x: i
 class Writer:
     """Draws a program piece by piece. `counters`: the loop names that may be read here."""
 
-    def __init__(self, draw: st.DrawFn) -> None:
+    def __init__(self, draw: st.DrawFn, *, careless: bool) -> None:
         self.draw = draw
+        self.careless = careless
         self.rows: list[str] = []
         self.counters: list[str] = []
         self.names = 0
@@ -50,7 +51,13 @@ class Writer:
     def index(self, depth: int) -> str:
         """Write an index inside every array."""
         kind = self.pick(SIGNED, SIGNED, UNSIGNED)
+        if self.is_careless():
+            return self.value(kind, depth - 1)
         return f"{self.value(kind, depth - 1)} & {ELEMENTS - 1}"
+
+    def is_careless(self) -> bool:
+        """Draw whether the next index or divisor may be wrong."""
+        return self.careless and self.draw(st.integers(0, 3)) == 0
 
     def leaf(self, kind: str) -> str:
         """Write an expression without operators."""
@@ -86,7 +93,9 @@ class Writer:
         return f"{array}[{self.index(depth)}]"
 
     def divisor(self, kind: str, depth: int) -> str:
-        """Write a divisor that is neither 0 nor -1."""
+        """Write a divisor, which is neither 0 nor -1 unless it is careless."""
+        if self.is_careless():
+            return self.value(kind, depth)
         positive = f"(({self.value(kind, depth)} & 63) + 2)"
         if kind == UNSIGNED:
             return self.pick(positive, "3", "16", "255")
@@ -184,9 +193,9 @@ class Writer:
 
 
 @st.composite
-def programs(draw: st.DrawFn) -> str:
+def programs(draw: st.DrawFn, *, careless: bool = False) -> str:
     """Draw the text of a module with the kernels `mix` and `program`."""
-    writer = Writer(draw)
+    writer = Writer(draw, careless=careless)
     result = writer.pick(SIGNED, UNSIGNED)
     for _ in range(draw(st.integers(2, 6))):
         writer.statement("    ", 2, in_loop=False)

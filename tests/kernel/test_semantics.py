@@ -25,11 +25,11 @@ def arrays_of(seed: int) -> dict[str, NDArray[Any]]:
     }
 
 
-def _plain_run(text: str, arrays: dict[str, NDArray[Any]], x: int, y: int) -> int:
+def plain_run(text: str, arrays: dict[str, NDArray[Any]], x: int, y: int) -> int:
     """Run `program` in plain Python on `arrays` and return its value."""
     names = dict(NAMES)
     exec(compile("from __future__ import annotations\n" + text, "<plain>", "exec"), names)
-    rows = [Row(each) for each in arrays.values()]
+    rows = [Row(each, name) for name, each in arrays.items()]
     return int(names["program"](*rows, Word(x, signed=True), Word(y, signed=False)))
 
 
@@ -46,7 +46,7 @@ def test_random_programs_compute_what_plain_python_computes(
     """A random kernel leaves the same arrays and value as its text run by Python on wrapping integers."""
     program: Kernel = import_text(text, tmp_path_factory.mktemp("program")).program
     expected, found = arrays_of(seed), arrays_of(seed)
-    value = _plain_run(text, expected, x, y)
+    value = plain_run(text, expected, x, y)
     assert program(*found.values(), x, y) == value
     for name, array in expected.items():
         np.testing.assert_array_equal(found[name], array, err_msg=name)

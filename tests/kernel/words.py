@@ -48,8 +48,23 @@ class Word:
         return hash(self.value)
 
 
+class Undefined(ArithmeticError):
+    """Raised where the result of a division is not defined."""
+
+
+def _defined(plain: Callable[[int, int], int]) -> Callable[[int, int], int]:
+    def divide(dividend: int, divisor: int) -> int:
+        if divisor == 0 or (dividend == -(2**31) and divisor == -1):
+            raise Undefined(f"by {divisor}")
+        return plain(dividend, divisor)
+
+    return divide
+
+
 def _install(name: str) -> None:
     plain: Callable[[int, int], int] = getattr(operator, name)
+    if name in ("floordiv", "mod"):
+        plain = _defined(plain)
     method = f"__{name.rstrip('_')}__"
 
     def forward(self: Word, other: Any) -> Word:
@@ -76,19 +91,24 @@ for _name in ("lt", "le", "gt", "ge", "eq", "ne"):
 class Row:
     """A numpy row that is read as words and keeps what its own width holds."""
 
-    def __init__(self, array: NDArray[Any]) -> None:
+    def __init__(self, array: NDArray[Any], name: str = "") -> None:
         self.array = array
+        self.name = name
+
+    def _place(self, index: Word) -> int:
+        if not 0 <= int(index) < len(self.array):
+            raise IndexError(f"index {int(index)} is outside of {self.name}")
+        return int(index)
 
     def __len__(self) -> int:
         return len(self.array)
 
     def __getitem__(self, index: Word) -> Word:
-        assert 0 <= int(index) < len(self.array)
-        return Word(int(self.array[int(index)]), signed=self.array.dtype != np.uint32)
+        return Word(int(self.array[self._place(index)]), signed=self.array.dtype != np.uint32)
 
     def __setitem__(self, index: Word, value: Any) -> None:
         kind = self.array.dtype
-        self.array[int(index)] = _wrapped(int(value), 8 * kind.itemsize, signed=kind.kind == "i")
+        self.array[self._place(index)] = _wrapped(int(value), 8 * kind.itemsize, signed=kind.kind == "i")
 
 
 def _cast(bits: int, *, signed: bool) -> Callable[[Any], Word]:
@@ -112,7 +132,7 @@ NAMES: dict[str, Any] = {
     "i8": _cast(8, signed=True), "u8": _cast(8, signed=False), "i16": _cast(16, signed=True),
     "u16": _cast(16, signed=False), "i32": _cast(32, signed=True), "u32": _cast(32, signed=False),
     "min": _chosen(min), "max": _chosen(max), "range": _range,
-    "quotient": _chosen(quotient), "remainder": _chosen(remainder),
+    "quotient": _chosen(_defined(quotient)), "remainder": _chosen(_defined(remainder)),
     "len": lambda row: Word(len(row), signed=True),
     "kernel": lambda function: function,
 }  # fmt: skip
