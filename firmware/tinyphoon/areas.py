@@ -1,8 +1,9 @@
 """What of the cameras' pictures a mode looks at: their size, and an area of interest in them (T §5.2.6).
 
-All stages see the area only, as if it were the picture: its lines are cropped by the DMA, which begins further right
-and takes fewer bytes, and the buffers are those of a picture of that size. So are all coordinates that stages leave in
-memory. The geometry has where the principal point is in them, and the report of a frame the corner of the area.
+All stages see the area only, as if it were the picture. The DMA crops its lines: it begins further right and takes fewer
+bytes. The buffers are those of a picture of that size, and all coordinates that stages leave in memory count from the
+area's corner. The buffer `geometry` says where the principal point lies in the area, and the report of a frame says where
+the area's corner lies in the picture.
 """
 
 from __future__ import annotations

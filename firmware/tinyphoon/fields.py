@@ -4,7 +4,7 @@ A field is an int, a bool, an IntEnum, a Literal of ints or a dataclass of such 
 
     edge_threshold: int = allowed(1, 255, at_most="strong_threshold")
 
-A field without that may be any number of 32 bits. What `not_ordered` marks, and every str, is no word.
+A field without that may be any number of 32 bits. Strings, and fields that `not_ordered` marks, are left out.
 """
 
 from __future__ import annotations

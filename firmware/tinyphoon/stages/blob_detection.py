@@ -149,7 +149,7 @@ def segment_row(
     y: i32,
     used: i32,
 ) -> i32:
-    """Segment row `y`, where labels 1 to `used` are taken, and return how many there would have to be for it.
+    """Segment row `y`, with labels 1 to `used` taken before it, and return how many labels are needed with it.
 
     `words` have at most one colour each, as opened pixels do; `interest` are the colours of all groups. `labels`
     are those of the line above and become those of this row. A run for which `parents` has no label left

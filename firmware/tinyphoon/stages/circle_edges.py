@@ -1,8 +1,8 @@
 """The edges of a ball's outline: those near its blob that pass the two filters of T §5.2.4.
 
-Filter 1 asks for the erosion of the opened image at an edge. There is none in memory, and the opening's own erosion
-is that of the noisy image. So the opened image comes back by DMA, only the lines of the blob, and only where
-an edge lies are its nine pixels looked at: a tenth of the pixels at most, and nothing is written.
+Filter 1 needs the erosion of the opened image at each edge. Nobody has made that: the opening erodes the noisy image.
+So DMA brings the blob's lines of the opened image back, and the filter erodes it only where there is an edge. That is a
+tenth of the pixels at most, and nothing is written.
 
 A selected edge is one word: direction in bits 0..7, y in 8..19, x in 20..31.
 """

@@ -3,7 +3,7 @@
 Rounds of least squares over the points near the circle: each moves centre and radius by what their distances and
 directions ask for (Gauss-Newton). Light falls off towards the outline of a ball, and where it is lost in shade the edges
 lie further in, never further out. So a point outside the circle counts OUTSIDE times as much as one inside: the circle
-settles on the outermost points that agree. On a disc of one colour, whose points scatter evenly, that makes 0.01 px.
+settles on the outermost points that agree. On a disc of one colour, whose points scatter evenly, this costs 0.01 px.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """The outline of a ball finer than a pixel [ours]: where the luma steps, beside the edges near the circle.
 
 The smoothing before the edge detection moves an edge by more than half a pixel where the ball's luma falls off towards
-it. So each edge is looked up again in the camera's lines: among the steps from pixel to pixel along the axis nearer to its
-gradient, the greatest, with the two beside it; what they have of the slope on either side is taken off.
+it. So each edge is looked up again in the camera's lines, along the axis that is nearer to its gradient. The greatest step
+of luma from pixel to pixel and the two steps beside it say where the outline is; before that, the slope that the luma has
+on either side is taken off all three.
 
 The luma of the latest LUMA_LINES lines lies in one array, line y in place y modulo LUMA_LINES. A point is one word, x
 in the low half and y in the high one, in 1/64 px.

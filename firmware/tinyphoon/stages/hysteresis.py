@@ -2,8 +2,8 @@
 
 While the picture is scanned, edges that touch (8-neighbourhood) get one label, and labels that meet become one
 group. Afterwards a short pass over the edge store, not over the picture, removes the edges of the groups that have
-no strong edge. It does not find its labels in memory, which would take half as much as the edge store does: a label
-depends only on the edges before it, so this pass gives every edge its label once more.
+no strong edge. The labels are not kept: they would take half as much memory as the edge store. A label depends only on
+the edges before it, so this pass labels every edge once more.
 
 Noise alone would fill the store of a picture that keeps half as many edges. So the same pass runs when the store is
 nearly full, too, on the groups that have ended by then [ours].
@@ -89,8 +89,8 @@ def group_edges_row(
 ) -> i32:
     """Label the stored edges of row `y` and join what meets there; return how many labels the picture has asked for.
 
-    `above` and `here` are the labels of the row before and of this one, `given` is the number before this row. The
-    labels beyond the last of `groups` are that last one. No edge lies in the first or the last column.
+    `above` and `here` are the labels of the row before and of this one, `given` is the number before this row. When
+    `groups` is full, all further labels are its last one. No edge lies in the first or the last column.
     """
     clear_labels(here)
     last = len(groups) - 1

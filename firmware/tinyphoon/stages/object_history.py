@@ -1,10 +1,10 @@
 """The object history: what was seen in the last frames, each object once (T §5.2.6).
 
-An object seen now takes the place of the one of its model that was seen nearest to it before; both are compared by their
-bearing, which is known of all. A goal, the only one of its model, takes its place however far from there it was; of several
-in a frame the most accurate one is it [ours]: the cameras may see different parts of it, and other things of its colour look
-like one. What is not seen any more stays with its age until it is too old, and its image moves when the area of interest
-does.
+An object seen now takes the place of the one of its model that was seen nearest to it before. Objects are compared by their
+bearing, which is known of all of them. There is only one goal of a model, so a goal seen now takes the place of the earlier
+one however far apart they are. If several are seen in a frame, the most accurate one stays [ours]: the cameras may see
+different parts of the goal, and other things of its colour may look like one. An object that is not seen any more stays
+with its age until it is too old, and its image moves when the area of interest does.
 """
 
 from __future__ import annotations

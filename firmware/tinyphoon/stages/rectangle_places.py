@@ -73,9 +73,9 @@ def bottom_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], col
 def foot_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], column: i32, cut: i32) -> i32:
     """Return where a goal stands on the floor at an end of its blob, in 1/16 px; `down` are the rows of the part that is there.
 
-    That is its bottom line, unless the part ends a little above it: then it is the foot of a post, and the line one on the
-    floor, whose front edge is nearer, and blurred further down the thinner it looks. Where the picture has `cut` the part
-    off there is no foot.
+    That is the goal's bottom line, with one exception. If the part ends a little above that line, the part's end is the
+    foot of a post, and the line is one that is painted on the floor: its front edge is nearer to the camera, and the blur
+    moves it further down the thinner it looks. Where the picture has `cut` the part off, its end is no foot.
     """
     end = bottom_row(down, rectangles, NO_OUTLINE, lines, column)
     line = bottom_row(down, rectangles, rectangle, lines, column)
@@ -167,9 +167,10 @@ def stand_between_feet(
 ) -> None:
     """Place the lower border of a goal `wide` mm wide, whose lower corners are seen at left and right, on the floor.
 
-    Between feet that are its width apart to a quarter it is in the middle. Where the picture cuts it, half its width from
-    the foot that is seen towards what is seen of the other side, if that is a quarter of it. Else something hides
-    it, and only the nearer foot tells how deep it is. Columns and rows in 1/16 px from the principal point.
+    If the feet are `wide` apart, give or take a quarter, the middle of the border is between them. If the picture cuts the
+    goal off at one side, and at least a quarter of the width is seen, the middle is half of `wide` away from the foot that
+    is seen. Otherwise something hides a part of it, and only the nearer foot tells how deep it stands. Columns and rows
+    are in 1/16 px from the principal point.
     """
     at = number * OBJECT_WORDS
     left_z = depth_by_floor(geometry, left_row, 0)
