@@ -20,7 +20,7 @@ from bfsim.kernel.inlining import inlined_calls
 from bfsim.kernel.ir_text import SourceLine, read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.charges import Charge
-from bfsim.kernel.lowering.preheaders import with_preheaders
+from bfsim.kernel.lowering.rewrites import rewritten
 from bfsim.kernel.lowering.unrolled import marked
 from bfsim.kernel.profile import CompilerProfile
 
@@ -74,7 +74,7 @@ def optimised(function: tree.Function, profile: CompilerProfile) -> str:
         module = llvm.parse_assembly(unrolling)
         generic.run(("loop_unroll", *CLEANING), module)
         text = str(module)
-    return with_preheaders(text)
+    return rewritten(text)
 
 
 def _inline(module: llvm.ModuleRef, function: tree.Function) -> None:

@@ -1,12 +1,13 @@
-"""Optimised LLVM IR as data: functions, blocks and instructions, read from LLVM's own text.
+"""LLVM IR as data: functions, blocks and instructions, read from LLVM's own text and written back as such.
 
-Only what `select` and `counters` ask for is kept. The text stays the authority: counters are written into
-the same lines that were read here.
+Passes of our own (`rewrites`) take a routine and return another one; what is costed, and what is compiled for the host, is read from
+the text that they leave. Of the notes behind an instruction, its source line and its branch weights are kept.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -14,6 +15,7 @@ DEFINE = re.compile(r"^define .*?@([\w.$-]+)\((.*)\)")
 LABEL = re.compile(r"^([\w.$-]+):")
 RESULT = re.compile(r"^  (%[\w.$-]+) = (.*)$")
 NAME = re.compile(r"%[\w.$-]+")
+NUMBERED = re.compile(r"%(\d+)\b|^(\d+)(?=:)", re.MULTILINE)
 TARGET = re.compile(r"label (%[\w.$-]+)")
 DEBUG = re.compile(r", !dbg !(\d+)")
 LOCATION = re.compile(
@@ -52,6 +54,17 @@ class Instruction:
     line: SourceLine
     weights: tuple[int, ...] = ()
     """Of a branch: how likely each side is, where the source gives a hint."""
+    location: str = ""
+    """Number of the note that has its source line."""
+    hint: str = ""
+    """Number of the note that has its weights."""
+
+    @property
+    def row(self) -> str:
+        """The instruction as a line of LLVM's text."""
+        target = f"{self.result} = " if self.result else ""
+        location = f", !dbg !{self.location}" if self.location else ""
+        return f"  {target}{self.text}{location}{f', !prof !{self.hint}' if self.hint else ''}"
 
     @property
     def is_division(self) -> bool:
@@ -84,6 +97,14 @@ class BasicBlock:
     instructions: tuple[Instruction, ...]
     enters: tuple[str, ...] = ()
     """Symbols of the inlined kernels whose code begins here."""
+
+    def rows(self) -> Iterator[str]:
+        """The block as LLVM's text."""
+        yield f"{self.label}:"
+        phis = [each for each in self.instructions if each.opcode == "phi"]
+        yield from (each.row for each in phis)
+        yield from (f"  call void @{ENTERS}{each}()" for each in self.enters)
+        yield from (each.row for each in self.instructions[len(phis) :])
 
     @property
     def terminator(self) -> Instruction:
@@ -144,6 +165,26 @@ def _source_lines(text: str) -> dict[str, SourceLine]:
     return {each[1]: SourceLine(routines[each[3]], int(each[2]), int(each[4] or 0)) for each in notes}
 
 
+def with_names(text: str) -> str:
+    """Return a module in which every value and block has a name: LLVM numbers the others by their order, which passes change."""
+    return NUMBERED.sub(lambda found: f"%.n{found[1]}" if found[1] else f".n{found[2]}", text)
+
+
+def write_module(text: str, routines: Sequence[Routine]) -> str:
+    """Return the module `text` with `routines`, one for each of its functions and in their order, as their bodies."""
+    return "\n".join(_rows(text, iter(routines)))
+
+
+def _rows(text: str, routines: Iterator[Routine]) -> Iterator[str]:
+    rows = iter(text.splitlines())
+    for row in rows:
+        yield row
+        if DEFINE.match(row):
+            for block in next(routines).blocks:
+                yield from block.rows()
+            yield next(each for each in rows if each == "}")
+
+
 def _matches(pattern: re.Pattern[str], text: str) -> list[tuple[str, str]]:
     return [(m.group(1), m.group(2)) for m in map(pattern.match, text.splitlines()) if m]
 
@@ -172,21 +213,26 @@ def _blocks(
             enters.append(found.group(1))
         elif row.startswith("  "):
             debug = DEBUG.search(row)
-            line = lines_of.get(debug.group(1), line) if debug else line
-            hint = PROFILE.search(row)
-            instructions.append(_instruction(row, line, weights_of.get(hint.group(1), ()) if hint else ()))
+            location = debug.group(1) if debug else ""
+            line = lines_of.get(location, line)
+            found_hint = PROFILE.search(row)
+            hint = found_hint.group(1) if found_hint else ""
+            weights = weights_of.get(hint, ())
+            instructions.append(_instruction(row, line, weights, location, hint if weights else ""))
             if instructions[-1].opcode in ("br", "ret", "switch", "unreachable"):
                 blocks.append(BasicBlock(label, tuple(instructions), tuple(enters)))
     return tuple(blocks)
 
 
-def _instruction(row: str, line: SourceLine, weights: tuple[int, ...]) -> Instruction:
+def _instruction(
+    row: str, line: SourceLine, weights: tuple[int, ...], location: str, hint: str
+) -> Instruction:
     text = DEBUG.sub("", row).split(", !")[0].strip()
     found = RESULT.match(row)
     result = found.group(1) if found else None
     body = text.split(" = ", 1)[1] if result else text
     words = [word for word in body.split() if word not in OPCODE_NOISE]
-    return Instruction(result, words[0], body, _operands(words[0], body), line, weights)
+    return Instruction(result, words[0], body, _operands(words[0], body), line, weights, location, hint)
 
 
 def _operands(opcode: str, body: str) -> tuple[str, ...]:

@@ -148,7 +148,7 @@ class DemandedValues(Folding):
         return phi is not None and each.result in phi.operands
 
     def _is_root(self, each: Instruction) -> bool:
-        along = (each.result or "").endswith(AGAIN)
+        along = AGAIN in (each.result or "")
         return each.opcode in ("store", "br", "switch", "ret") or each.is_call or along
 
     def _really_used(self, each: Instruction) -> tuple[str, ...]:

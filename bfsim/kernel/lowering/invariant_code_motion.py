@@ -1,7 +1,6 @@
 """Loop-invariant code motion: each value is computed outside of every loop in which its operands do not change.
 
-Arithmetic moves freely. A load moves only where it runs in every iteration and nothing in the loop may write
-what it reads; arrays of the same element width may overlap, as in C without `restrict`.
+Arithmetic moves freely, for this is about cost alone; loads have moved already (`invariant_loads`).
 """
 
 from __future__ import annotations
@@ -10,8 +9,7 @@ from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.loops import ControlFlow, Loop
 
 HOISTED = ("add", "sub", "mul", "and", "or", "xor", "shl", "lshr", "ashr")
-FIXED = ("phi", "store", "call", "br", "ret", "switch", "unreachable")
-BYTE = 8  # in C, bytes may overlap with anything
+FIXED = ("phi", "load", "store", "call", "br", "ret", "switch", "unreachable")
 
 
 class InvariantCodeMotion:
@@ -57,20 +55,7 @@ class InvariantCodeMotion:
         for loop in self.flow.loops_of(label):
             if not all(self.is_invariant(operand, loop) for operand in each.operands):
                 break
-            if each.opcode == "load" and not self._may_leave(each, label, loop):
-                break
             if each.is_division:
                 break
             place = self.flow.entering(loop)
         return place
-
-    def _may_leave(self, load: Instruction, label: str, loop: Loop) -> bool:
-        if label not in self.flow.dominators[loop.latch]:
-            return False
-        for inside in loop.blocks:
-            for each in self.flow.blocks[inside].instructions:
-                if each.is_call:
-                    return False
-                if each.opcode == "store" and (each.bits == load.bits or BYTE in (each.bits, load.bits)):
-                    return False
-        return True

@@ -11,11 +11,9 @@ from bfsim.kernel.lowering.block_layout import BlockLayout
 from bfsim.kernel.lowering.charges import BlockCost, Charge, Test, charge, instead
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineInstruction
-from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.registers import Allocation, allocate
 from bfsim.kernel.lowering.schedule import Issue, issues
 from bfsim.kernel.lowering.select import select
-from bfsim.kernel.lowering.sinking import sink
 from bfsim.kernel.profile import CompilerProfile
 
 ALONE = Issue()
@@ -23,7 +21,6 @@ ALONE = Issue()
 
 def lower(routine: Routine, profile: CompilerProfile) -> dict[str, BlockCost]:
     """Return what each block of `routine` costs, by label."""
-    routine = sink(without_redundant_loads(routine))
     lowering = _OptimisedLowering(routine, profile)
     return {block.label: lowering.block(block) for block in routine.blocks}
 

@@ -12,6 +12,7 @@ from functools import cached_property
 
 from bfsim.kernel.ir_text import BasicBlock, Instruction
 from bfsim.kernel.loops import ControlFlow, Loop
+from bfsim.kernel.lowering.preheaders import preheader_of
 
 EVEN = 0.5
 # hit rates [predict.def]
@@ -132,7 +133,7 @@ class Likelihood:
         """A test right before a loop is likely to let it iterate."""
         votes = []
         for vote, way in zip((LOOP_GUARD, 1 - LOOP_GUARD), block.successors, strict=True):
-            if any(each.header == way and each is not loop for each in self.flow.loops):
+            if any(way in (each.header, preheader_of(each)) and each is not loop for each in self.flow.loops):
                 votes.append(vote)
         return votes
 

@@ -1,51 +1,48 @@
-"""Blocks before loops that begin right behind another one: what is set up there must not run in every iteration of the first."""
+"""Preheaders: empty blocks before loops, for what must run once, and only if the loop is entered."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from dataclasses import replace
 
-from bfsim.kernel.ir_text import DEFINE, LABEL, Routine, read_module
-from bfsim.kernel.loops import ControlFlow
-
-ENDING = ".before"
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine
+from bfsim.kernel.loops import ControlFlow, Loop
 
 
-def with_preheaders(text: str) -> str:
-    """Return the module `text` with an empty block between such loops."""
-    edges = {(routine.symbol, *edge) for routine in read_module(text) for edge in _edges(routine)}
-    return "\n".join(_rows(text, edges)) if edges else text
+def preheader_of(loop: Loop) -> str:
+    """Return the label of the preheader that a loop gets here."""
+    return f"{loop.header}.before"
 
 
-def _edges(routine: Routine) -> Iterator[tuple[str, str]]:
-    """(last block of a loop, header of the one behind it)."""
+def with_preheaders(routine: Routine) -> Routine:
+    """Return `routine` with a preheader for each loop that begins right behind another one."""
     flow = ControlFlow(routine)
-    for loop in flow.loops:
+    for loop in sorted(flow.loops, key=lambda each: each.header):
         before = [each for each in flow.predecessors[loop.header] if each not in loop.blocks]
         if len(before) == 1 and flow.innermost(before[0]) is not flow.around(loop):
-            yield before[0], loop.header
+            routine = with_preheader(routine, loop, before[0])
+    return routine
 
 
-def _rows(text: str, edges: set[tuple[str, str, str]]) -> Iterator[str]:
-    symbol = label = ""
-    notes: dict[str, str] = {}
-    for line in text.splitlines():
-        row = line
-        if found := DEFINE.match(row):
-            symbol = found.group(1)
-        elif found := LABEL.match(row):
-            label = found.group(1)
-        for _, before, header in (each for each in edges if each[0] == symbol):
-            if label == before and row.startswith("  br "):
-                notes[header] = "".join(re.findall(r", !dbg !\d+", row))
-                row = re.sub(rf"label %{re.escape(header)}(?![\w.$-])", f"label %{header}{ENDING}", row)
-            elif label == header and " = phi " in row:
-                row = row.replace(f", %{before} ]", f", %{header}{ENDING} ]")
-        if label and row == "}":
-            yield from _blocks({header: notes[header] for each, _, header in edges if each == symbol})
-        yield row
+def with_preheader(routine: Routine, loop: Loop, before: str) -> Routine:
+    """Return `routine` with a preheader between `loop` and block `before`, from which it is entered."""
+    blocks = {each.label: each for each in routine.blocks}
+    branch, header, label = blocks[before].terminator, loop.header, preheader_of(loop)
+    text = re.sub(rf"label %{re.escape(header)}(?![\w.$-])", f"label %{label}", branch.text)
+    blocks[before] = replace(
+        blocks[before], instructions=(*blocks[before].instructions[:-1], replace(branch, text=text))
+    )
+    blocks[header] = replace(
+        blocks[header],
+        instructions=tuple(_from(each, before, label) for each in blocks[header].instructions),
+    )
+    jump = Instruction(None, "br", f"br label %{header}", (), branch.line, location=branch.location)
+    blocks[label] = BasicBlock(label, (jump,))
+    return replace(routine, blocks=tuple(blocks.values()))
 
 
-def _blocks(notes: dict[str, str]) -> Iterator[str]:
-    for header in sorted(notes):
-        yield from ("", f"{header}{ENDING}:", f"  br label %{header}{notes[header]}")
+def _from(each: Instruction, before: str, label: str) -> Instruction:
+    """Let a phi expect block `label` where it expected `before`."""
+    if each.opcode != "phi":
+        return each
+    return replace(each, text=each.text.replace(f", %{before} ]", f", %{label} ]"))

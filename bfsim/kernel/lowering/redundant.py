@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine
-from bfsim.kernel.loops import ControlFlow, Loop
+from bfsim.kernel.ir_text import PHI_ARM, Instruction, Routine
+from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
+from bfsim.kernel.lowering.preheaders import with_preheader
 
-AGAIN = ".again"  # ending of the name of an address that is only computed to go along
+AGAIN = ".again"  # in the name of an address that is only computed to go along
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +35,12 @@ def without_redundant_loads(routine: Routine) -> Routine:
     for loop in flow.loops:
         for each in flow.blocks[loop.header].instructions:
             carried = _carried(flow, loop, each)
-            if carried is not None:
-                return without_redundant_loads(_moved(flow, routine, carried))
+            if carried is None:
+                continue
+            entering = flow.entering(loop)
+            if len(set(flow.blocks[entering].successors)) > 1:  # the loop need not be entered
+                return without_redundant_loads(with_preheader(routine, loop, entering))
+            return without_redundant_loads(_moved(flow, routine, carried))
     return routine
 
 
@@ -53,22 +58,32 @@ def _carried(flow: ControlFlow, loop: Loop, load: Instruction) -> Carried | None
     inside = [each for label in loop.blocks for each in flow.blocks[label].instructions]
     if any(each.opcode == "store" or each.is_call for each in inside):
         return None
+    if not all(flow.is_invariant(each, loop) for each in address.operands[:-1]):
+        return None
     values = {
-        label[1:]: load.result if value == index.result else _loaded(flow, loop, address, value, label[1:])
+        label[1:]: load.result if value == index.result else _loaded(flow, loop, load, value, label[1:])
         for value, label in PHI_ARM.findall(merged.text)
     }
     known = {label: value for label, value in values.items() if value is not None}
     return Carried(loop, load, address, index, merged, known) if len(known) == len(values) else None
 
 
-def _loaded(flow: ControlFlow, loop: Loop, address: Instruction, index: str, label: str) -> str | None:
+def _loaded(flow: ControlFlow, loop: Loop, load: Instruction, index: str, label: str) -> str | None:
     """The value at the same array's `index`, if it has been loaded on the way to the end of block `label`."""
-    for before in flow.dominators[label] & loop.blocks:
-        for each in flow.blocks[before].instructions:
+    address = flow.defined[load.operands[0]][1]
+    for before in flow.inside(loop):
+        for each in flow.blocks[before].instructions if before in flow.dominators[label] else ():
             other = flow.instruction(each.operands[0]) if each.opcode == "load" else None
-            if other is not None and other.operands == (*address.operands[:-1], index):
+            if other is None or other.operands != (*address.operands[:-1], index):
+                continue
+            if pointee_nbytes(other) == pointee_nbytes(address) and _kind(each) == _kind(load):
                 return each.result
     return None
+
+
+def _kind(load: Instruction) -> str:
+    """The type that is loaded, as LLVM writes it."""
+    return load.text.split()[1].rstrip(",")
 
 
 def _moved(flow: ControlFlow, routine: Routine, carried: Carried) -> Routine:
@@ -77,7 +92,7 @@ def _moved(flow: ControlFlow, routine: Routine, carried: Carried) -> Routine:
     first, following, address = (f"{load.result}.{name}" for name in ("first", "following", "address"))
     entering = flow.entering(loop)
     arms = {label[1:]: value for value, label in PHI_ARM.findall(carried.index.text)}
-    kind = f"i{load.bits}"
+    kind = _kind(load)
     start = replace(
         carried.address,
         result=address,
@@ -102,7 +117,7 @@ def _moved(flow: ControlFlow, routine: Routine, carried: Carried) -> Routine:
             rows.insert(0, merging)
         if block.label == loop.header:
             rows.insert(0, here)
-        blocks.append(BasicBlock(block.label, tuple(rows)))
+        blocks.append(replace(block, instructions=tuple(rows)))
     return _with_addresses(flow, replace(routine, blocks=tuple(blocks)), carried)
 
 
@@ -112,9 +127,12 @@ def _with_addresses(flow: ControlFlow, routine: Routine, carried: Carried) -> Ro
     alone = all(len(set(flow.blocks[label].successors)) == 1 for label in kept)
     if not alone or not _is_wanted_behind(flow, carried):
         return routine
-    again = replace(carried.address, result=f"{carried.load.result}{AGAIN}")
+    name = f"{carried.load.result}{AGAIN}"
+    again = {label: replace(carried.address, result=f"{name}.{label}") for label in kept}
     blocks = [
-        BasicBlock(block.label, (again, *block.instructions)) if block.label in kept else block
+        replace(block, instructions=(again[block.label], *block.instructions))
+        if block.label in kept
+        else block
         for block in routine.blocks
     ]
     return replace(routine, blocks=tuple(blocks))

@@ -46,7 +46,7 @@ class _Sinking:
             if self.home.get(each.result or "", block.label) == block.label
         ]
         phis = [each for each in rows if each.opcode == "phi"]
-        return BasicBlock(block.label, (*phis, *self.arrived[block.label], *rows[len(phis) :]))
+        return replace(block, instructions=(*phis, *self.arrived[block.label], *rows[len(phis) :]))
 
     def _place(self, each: Instruction, label: str) -> str:
         """The block that all uses pass, out of as many loops as possible, or `label` if that is not worth it."""
@@ -63,11 +63,15 @@ class _Sinking:
         rarer = RARER_LOAD if each.opcode == "load" else RARER
         if self._depth(best) == self._depth(label) and self.frequency[best] >= rarer * self.frequency[label]:
             return label
-        if self._depth(best) > self._depth(label) or (
+        if not self._loops(best) <= self._loops(label) or (
             each.opcode == "load" and self._is_written(each, label, best)
         ):
             return label
         return best
+
+    def _loops(self, label: str) -> set[str]:
+        """The loops around a block, by their headers."""
+        return {loop.header for loop in self.flow.loops_of(label)}
 
     def _used(self, each: Instruction) -> set[str]:
         found = set()

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from bfsim.kernel.ir_text import DEFINE, LABEL, Instruction, Routine, read_module
 from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
+from bfsim.kernel.lowering.invariant_loads import hoist_loads
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 
 MOST_ITERATIONS = 8  # [max-completely-peel-times]
@@ -49,7 +50,7 @@ def _annotated(text: str, wishes: dict[tuple[str, str], str]) -> Iterator[str]:
 
 
 def _loops(routine: Routine) -> Iterator[tuple[Loop, bool]]:
-    flow = ControlFlow(routine)
+    flow = ControlFlow(hoist_loads(routine))
     evolution = ScalarEvolution(flow, InvariantCodeMotion(flow))
     for loop in flow.loops:
         yield loop, not loop.inner and _shrinks(flow, evolution, loop)

@@ -1,0 +1,145 @@
+"""What is costed is what is executed and traced: accesses that compilers move are reported where they are costed."""
+
+from __future__ import annotations
+
+from collections import Counter as Tally
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
+from bfsim.kernel import access_trace as log
+from bfsim.kernel.access_trace import AccessTrace
+from tests.kernel.modules import import_text
+
+ROOM = 1 << 16
+DTYPES = {"u8": np.uint8, "i16": np.int16, "u16": np.uint16, "i32": np.int32, "f32": np.float32}
+KINDS = {log.LOAD: "load", log.STORE: "store"}
+Accesses = dict[tuple[str, str], int]
+OPTIMISING = pytest.mark.parametrize("profile", [GCC_O2, VDSP_O2], ids=lambda each: each.name)
+
+
+@dataclass
+class Run:
+    """A kernel that has run once on arrays that all lie in traced memory. Accesses are by array and kind."""
+
+    kernel: Kernel
+    profile: CompilerProfile
+    arrays: dict[str, NDArray[Any]]
+    scalars: tuple[Any, ...] = ()
+    costed: Accesses = field(default_factory=dict)
+    traced: Accesses = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        placed, first = self._placed()
+        trace = AccessTrace(placed["arena"], len(placed["arena"]), np.zeros(log.LOG + ROOM, np.int64))
+        code = self.kernel.compile(self.profile, traced=True)
+        rows = [placed[each] for each in self.arrays]
+        totals = code.new_totals()
+        work = self.kernel.prepare(code, rows, totals, trace).run([*rows, *self.scalars])
+        found: Tally[tuple[str, str]] = Tally()
+        for entry in trace.entries(work.accesses).tolist():
+            at, kind = entry & log.OFFSET_MASK, entry >> log.KIND_BIT & log.KIND_MASK
+            found[max((each for each in first if first[each] <= at), key=first.__getitem__), KINDS[kind]] += 1
+        self.traced = dict(found)
+        self.arrays = {name: placed[name] for name in self.arrays}
+
+    def _placed(self) -> tuple[dict[str, NDArray[Any]], dict[str, int]]:
+        """Copies of the arrays side by side in one arena, and the offset of each."""
+        first, offset = {}, 0
+        for name, array in self.arrays.items():
+            first[name] = offset
+            offset += -(-array.nbytes // 64) * 64
+        arena = np.zeros(offset, np.uint8)
+        placed: dict[str, NDArray[Any]] = {"arena": arena}
+        for name, array in self.arrays.items():
+            placed[name] = arena[first[name] : first[name] + array.nbytes].view(array.dtype)
+            placed[name][:] = array
+        return placed, first
+
+
+TABLE = """
+@kernel
+def f(out: i32[:], table: {kind}[:], n: i32):
+    for i in range(n):
+        out[i & 15] = table[3] + i
+"""
+
+
+@OPTIMISING
+@pytest.mark.parametrize(("kind", "loads"), [("u16", 1), ("i16", 1), ("i32", 1000), ("u8", 1000)])
+def test_a_load_that_leaves_its_loop_is_made_once(
+    profile: CompilerProfile, kind: str, loads: int, tmp_path: Path
+) -> None:
+    """A store of another width cannot change it; a store of the same width, or one beside bytes, may: as in C."""
+    kernel = import_text(TABLE.format(kind=kind), tmp_path).f
+    arrays = {"out": np.zeros(16, np.int32), "table": np.arange(8).astype(DTYPES[kind])}
+    run = Run(kernel, profile, arrays, (1000,))
+    assert run.traced == {("table", "load"): loads, ("out", "store"): 1000}
+
+
+@OPTIMISING
+def test_a_loop_that_is_not_entered_loads_nothing(profile: CompilerProfile, tmp_path: Path) -> None:
+    """The load before a loop is made only if the loop is entered: the array may have no such element."""
+    kernel = import_text(TABLE.format(kind="u16"), tmp_path).f
+    assert not Run(
+        kernel, profile, {"out": np.zeros(16, np.int32), "table": np.zeros(1, np.uint16)}, (0,)
+    ).traced
+
+
+@OPTIMISING
+def test_a_load_that_a_way_out_may_skip_stays(profile: CompilerProfile, tmp_path: Path) -> None:
+    """What comes after a `break` is not made in every run of the loop, so it cannot be made before it."""
+    text = """
+    @kernel
+    def f(out: i32[:], row: u8[:], table: u16[:], n: i32):
+        for i in range(n):
+            if row[i] == 9:
+                break
+            out[i] = table[3]
+    """
+    arrays = {"out": np.zeros(8, np.int32), "row": np.full(8, 9, np.uint8), "table": np.zeros(4, np.uint16)}
+    assert Run(import_text(text, tmp_path).f, profile, arrays, (8,)).traced == {("row", "load"): 1}
+
+
+@OPTIMISING
+def test_the_value_that_goes_along_with_an_index_is_loaded_once(
+    profile: CompilerProfile, tmp_path: Path
+) -> None:
+    """`a[least]` is loaded before the loop; in it, only `a[j]` is, and the least is found."""
+    text = """
+    @kernel
+    def f(a: {kind}[:]) -> i32:
+        least = 0
+        for j in range(1, len(a)):
+            if a[j] < a[least]:
+                least = j
+        return least
+    """
+    for kind in ("u16", "i32", "f32"):
+        kernel = import_text(text.format(kind=kind), tmp_path).f
+        values = np.array([5, 4, 7, 2, 9, 2, 8], DTYPES[kind])
+        run = Run(kernel, profile, {"a": values})
+        assert run.traced == {("a", "load"): 7}
+        assert kernel(values) == 3
+        assert kernel(values[:1]) == 0
+
+
+@OPTIMISING
+def test_what_only_one_side_needs_is_loaded_there(profile: CompilerProfile, tmp_path: Path) -> None:
+    """A value that is read before a test and used on its rarer side is loaded on that side [tree-ssa-sink.cc]."""
+    text = """
+    @kernel
+    def f(row: u16[:], table: u16[:], out: i32[:]):
+        for i in range(len(row)):
+            value = table[i]
+            if row[i] == 7:
+                out[i] = value
+    """
+    arrays = {"row": np.arange(16, dtype=np.uint16), "table": np.arange(16, dtype=np.uint16)}
+    run = Run(import_text(text, tmp_path).f, profile, arrays | {"out": np.zeros(16, np.int32)})
+    assert run.traced == {("row", "load"): 16, ("table", "load"): 1, ("out", "store"): 1}
