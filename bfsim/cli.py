@@ -12,7 +12,7 @@ import click
 
 from bfsim import __version__
 from bfsim.cli_boards import boards
-from bfsim.cli_ldf import ldf
+from bfsim.cli_ldf import PREPROCESSOR_OPTIONS, ldf
 from bfsim.cli_record import record
 from bfsim.cli_seen import Watchers, require_view, takes_views, watching
 from bfsim.endings import LIMIT_BROKEN, exit_code_of
@@ -84,6 +84,7 @@ _RUN_PARAMETERS = (
         type=click.Path(path_type=Path),
         help=f"Linker description file that places buffers and code, or a shipped one: {', '.join(LDFS)}.  [default: the board's]",
     ),
+    *PREPROCESSOR_OPTIONS,
     click.option(
         "--profile",
         metavar="NAME",

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import click
 
+from bfsim.errors import shown
 from bfsim.shipped import FIRMWARE
 from bfsim.terminal import print_report
 
@@ -25,6 +27,44 @@ class _Size(click.ParamType[tuple[int, int]]):
         if found is None:
             self.fail(f"must be width x height in pixels, such as 320x240, not {value!r}", param, ctx)
         return int(found[1]), int(found[2])
+
+
+def _macros(_ctx: click.Context, _param: click.Parameter, given: tuple[str, ...]) -> dict[str, str]:
+    """Return the macros by their names; one without a value is 1, as compilers have it."""
+    macros = {}
+    for each in given:
+        name, has_value, value = each.partition("=")
+        if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+            raise click.BadParameter(f"must be NAME or NAME=VALUE, not {shown(each)}")
+        macros[name] = value if has_value else "1"
+    return macros
+
+
+PREPROCESSOR_OPTIONS = (
+    click.option(
+        "-D",
+        "defines",
+        metavar="NAME[=VALUE]",
+        multiple=True,
+        callback=_macros,
+        help="Define a macro for the LDF, such as USE_SDRAM.",
+    ),
+    click.option(
+        "-I",
+        "include_dirs",
+        metavar="FOLDER",
+        multiple=True,
+        type=click.Path(path_type=Path),
+        help="Look there, too, for what the LDF includes.",
+    ),
+)
+"""What every command takes that takes an LDF."""
+
+
+def _takes_macros(command: Callable[..., None]) -> Callable[..., None]:
+    for option in reversed(PREPROCESSOR_OPTIONS):
+        command = option(command)
+    return command
 
 
 @click.command(short_help="Print where an LDF puts buffers and code.")
@@ -54,6 +94,7 @@ class _Size(click.ParamType[tuple[int, int]]):
     show_default=True,
     help="Pictures to make room for.",
 )
+@_takes_macros
 @click.option("--symbols/--no-symbols", default=True, show_default=True, help="List every symbol.")
 @click.option(
     "--picture",
@@ -69,6 +110,8 @@ def ldf(
     board: str,
     profile: str,
     size: tuple[int, int],
+    defines: dict[str, str],
+    include_dirs: tuple[Path, ...],
     symbols: bool,
     picture: Path | None,
     as_json: bool,
@@ -82,7 +125,7 @@ def ldf(
     Examples:
       bfsim ldf
       bfsim ldf l2 --size 640x480 --no-symbols
-      bfsim ldf my.ldf --picture my.png
+      bfsim ldf my.ldf --picture my.png -D USE_SDRAM -I vdk
     """
     from bfsim.mapping import map_memory
     from bfsim.report.ldf.lint import lint
@@ -94,7 +137,14 @@ def ldf(
         format_of(picture)
         require_place(picture)
     found = map_memory(
-        file, firmware=firmware, board=board, profile=profile, width_px=size[0], height_px=size[1]
+        file,
+        firmware=firmware,
+        board=board,
+        profile=profile,
+        width_px=size[0],
+        height_px=size[1],
+        defines=defines,
+        include_dirs=include_dirs,
     )
     findings = lint(found)
     if as_json:

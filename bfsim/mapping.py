@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
@@ -24,6 +26,8 @@ def map_memory(
     profile: str,
     width_px: int,
     height_px: int,
+    defines: Mapping[str, str] = MappingProxyType({}),
+    include_dirs: Sequence[Path] = (),
 ) -> MemoryMap:
     """Return where the LDF (the board's own without one) puts `firmware` for pictures of that size.
 
@@ -31,7 +35,7 @@ def map_memory(
     BfsimError for anything that is wrong with what was given, a firmware that does not fit included.
     """
     spec, compiler = board_named(board), profile_named(profile)
-    script = read_placement(ldf, spec)
+    script = read_placement(ldf, spec, defines, include_dirs)
     loaded, size = load_firmware(firmware), FrameSize(width_px, height_px)
     program = loaded.firmware
     fits = _fits(program, script, spec)
@@ -43,7 +47,7 @@ def map_memory(
     return memory_map(
         script,
         link_map,
-        BoardMemories(board=spec.name, regions=spec.chip.regions, bank_bytes=spec.sdram.bank_bytes),
+        _memories(script, spec),
         kinds,
         firmware=loaded.name if fits else "",
         width_px=width_px,
@@ -54,8 +58,18 @@ def map_memory(
 def _fits(firmware: Firmware, script: LinkerScript, spec: BoardSpec) -> bool:
     """Say whether firmware, LDF and board are about the same cores."""
     placed = {script.core_of_processor.get(name) for block in script.blocks for name in block.processors}
-    is_of_chip = script.chip in ("", spec.chip.name)
-    return is_of_chip and set(firmware.mains) == set(spec.chip.cores) == placed
+    return _is_of_chip(script, spec) and set(firmware.mains) == set(spec.chip.cores) == placed
+
+
+def _is_of_chip(script: LinkerScript, spec: BoardSpec) -> bool:
+    return script.chip in ("", spec.chip.name)
+
+
+def _memories(script: LinkerScript, spec: BoardSpec) -> BoardMemories:
+    """Return the memories that an LDF is about: the board's, or none that bfsim knows where it is for another chip."""
+    if _is_of_chip(script, spec):
+        return BoardMemories(board=spec.name, regions=spec.chip.regions, bank_bytes=spec.sdram.bank_bytes)
+    return BoardMemories(board=script.chip, regions=(), bank_bytes=spec.sdram.bank_bytes)
 
 
 def _kinds(firmware: Firmware, size: FrameSize) -> dict[tuple[str | None, str], Kind]:

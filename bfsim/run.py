@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 
 import llvmlite.binding as llvm
 
@@ -14,7 +15,7 @@ from bfsim import __version__, shipped
 from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
 from bfsim.device_script import read_script
-from bfsim.errors import ConfigError, FirmwareError, LinkError, RecordingError
+from bfsim.errors import ConfigError, FirmwareError, LinkError, RecordingError, shown
 from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
 from bfsim.linker import LinkerScript, link, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
@@ -38,6 +39,8 @@ def simulate(
     firmware: str = shipped.FIRMWARE[0],
     board: str = "cm-bf561",
     ldf: Path | None = None,
+    defines: Mapping[str, str] = MappingProxyType({}),
+    include_dirs: Sequence[Path] = (),
     frames: int | None = None,
     feed: Feed = Feed.DEMAND,
     fidelity: Fidelity = Fidelity.FAST,
@@ -50,7 +53,8 @@ def simulate(
 ) -> RunRecord:
     """Run `firmware` on a recording and return the records: a built-in one, "FILE.py:NAME" or "PACKAGE:NAME".
 
-    Without `recording` and `ldf` the built-in ones are taken; `ldf` may also be the name of a shipped one; `frames` stops
+    Without `recording` and `ldf` the built-in ones are taken; `ldf` may also be the name of a shipped one, `defines`
+    are macros for it, and `include_dirs` folders that it may include files from; `frames` stops
     early. `before` is called with what will run and how many frames of it, before the first one does, and may raise; the
     digest of the recording is not known then. `progress` is called with
     (frames done, frames in all); `profile` names the compiler whose code is costed; `script` is a JSON or TOML file
@@ -65,7 +69,7 @@ def simulate(
     require_cores(loaded.firmware, spec)
     with loaded.own.named():
         device, script_digest = _device(script, loaded)
-    placement = read_placement(ldf, spec)
+    placement = read_placement(ldf, spec, defines, include_dirs)
     with (
         loaded.own.named(),
         RecordingReader(recording or BUILT_IN_RECORDING) as reader,
@@ -93,7 +97,7 @@ def simulate(
             raise RecordingError(f"{reader.path}: a recording must have at least one stereo frame, not none")
         source = _DigestedFrames(reader, total)
         identity = _identity(
-            spec, loaded, placement, feed, fidelity, size, source.name, compiler, script_digest
+            spec, loaded, placement, defines, feed, fidelity, size, source.name, compiler, script_digest
         )
         if before:
             before(identity, total)
@@ -138,17 +142,20 @@ def has_view(firmware: str) -> bool:
     return load_firmware(firmware).firmware.view is not None
 
 
-def read_placement(ldf: Path | None, spec: BoardSpec) -> LinkerScript:
-    """Read an LDF, one that is shipped by its name, or the one that suits the board's chip, for the SDRAM of the board."""
+def read_placement(
+    ldf: Path | None, spec: BoardSpec, defines: Mapping[str, str], include_dirs: Sequence[Path]
+) -> LinkerScript:
+    """Read an LDF, one that is shipped by its name, or the one that suits the board's chip, for chip and SDRAM of the board.
+
+    `defines` are macros beside, or instead of, those that bfsim defines.
+    """
     path = shipped.ldf_at(ldf) if ldf else shipped.DEFAULT_LDFS[spec.chip.name]
     if len(path.parts) == 1 and not path.exists():
         known = ", ".join(shipped.LDFS)
-        raise LinkError(f"LDF must be a file or a shipped one ({known}), not {str(path)!r}")
-    return parse_ldf(
-        path,
-        defines={"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes)},
-        include_dirs=(shipped.LDF_FOLDER,),
-    )
+        raise LinkError(f"LDF must be a file or a shipped one ({known}), not {shown(str(path))}")
+    macros = {"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes), **defines}
+    folders = (*include_dirs, shipped.LDF_FOLDER)
+    return parse_ldf(path, macros, folders, chip=spec.chip.name).with_cores_named()
 
 
 def _device(path: Path | None, loaded: LoadedFirmware) -> tuple[SpiDevice, str]:
@@ -224,6 +231,7 @@ def _identity(
     spec: BoardSpec,
     loaded: LoadedFirmware,
     placement: LinkerScript,
+    defines: Mapping[str, str],
     feed: Feed,
     fidelity: Fidelity,
     size: FrameSize,
@@ -239,7 +247,7 @@ def _identity(
         firmware_files=loaded.files,
         board=spec.name,
         board_digest=hashlib.sha256(repr(spec).encode()).hexdigest(),
-        ldf=_name(placement.path),
+        ldf=" -D ".join([_name(placement.path), *(f"{name}={value}" for name, value in defines.items())]),
         ldf_digest=hashlib.sha256(placement.source.expanded.encode()).hexdigest(),
         compiler=compiler.name,
         feed=feed.value,

@@ -59,7 +59,7 @@ MAY_IMPORT = {
     "endings": {"errors", "signals"},
     "terminal": set(),
     "cli_boards": {"chip", "report", "terminal"},
-    "cli_ldf": {"mapping", "report", "shipped", "terminal"},
+    "cli_ldf": {"errors", "mapping", "report", "shipped", "terminal"},
     "cli_record": {"recording", "scenery", "shipped", "terminal"},
     "cli_seen": {"errors", "recording", "report", "run", "seen"},
     "cli": {

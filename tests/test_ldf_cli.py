@@ -152,3 +152,38 @@ def test_mistakes_end_with_2(arguments: list[str], message: str) -> None:
     assert done.exit_code == 2
     assert message in done.output
     assert "Traceback" not in done.output
+
+
+NEEDS_A_MACRO = BF533.replace(
+    "MEMORY", '#if !defined(USE_SDRAM)\n#error define USE_SDRAM\n#endif\n#include "VDK.h"\nMEMORY'
+)
+
+
+def test_macros_and_folders_are_given_on_the_command_line(tmp_path: Path) -> None:
+    """As the compiler's driver takes them, so that no file must be edited."""
+    path, folder = tmp_path / "a.ldf", tmp_path / "vdk"
+    path.write_text(NEEDS_A_MACRO)
+    folder.mkdir()
+    (folder / "VDK.h").write_text("#define VDK 1\n")
+    assert "#error define USE_SDRAM" in call(str(path)).stderr
+    assert "not 'VDK.h'" in call(str(path), "-D", "USE_SDRAM").stderr
+    assert call(str(path), "-DUSE_SDRAM=1", "-I", str(folder)).exit_code == 0
+    assert "must be NAME or NAME=VALUE, not '1X=2'" in call(str(path), "-D", "1X=2").stderr
+
+
+def test_another_chip_is_not_drawn_over_the_board(tmp_path: Path) -> None:
+    """At the addresses of its memories, the board may have others."""
+    path = tmp_path / "other.ldf"
+    path.write_text(BF533)
+    found = json.loads(call(str(path), "--json").stdout)
+    assert found["board"] == "ADSP-BF533"
+    assert {each["memory"] for each in found["segments"]} == {"unknown"}
+
+
+def test_a_segment_over_two_memories_has_both_names(tmp_path: Path) -> None:
+    """Code SRAM of a BF533 and the part behind it that can be cache, in one, as its default LDF has it."""
+    path = tmp_path / "one.ldf"
+    path.write_text(BF533.replace("0xFFA0FFFF", "0xFFA13FFF").replace("p0", "P0"))
+    found = json.loads(call(str(path), "--board", "cm-bf533", "--json").stdout)
+    memories = {each["name"]: (each["memory"], each["owner"]) for each in found["segments"]}
+    assert memories["MEM_L1_CODE"] == ("COREA_L1_CODE+CACHE", "A")

@@ -92,6 +92,25 @@ def bf561_regions(sdram_nbytes: int) -> tuple[Region, ...]:
 CM_BF561_REGIONS = bf561_regions(sdram_nbytes=32 * MIB)
 
 
+def regions_under(address: int, nbytes: int, regions: Sequence[Region]) -> tuple[Region, ...]:
+    """Return the memories under `nbytes` from `address`: one, or neighbours of one owner, as SRAM and cache are.
+
+    Raises ConfigError as `region_of`.
+    """
+    first = next((region for region in regions if region.holds(address, 1)), None)
+    found = [first] if first else []
+    while found and found[-1].start + found[-1].nbytes < address + nbytes:
+        end = found[-1].start + found[-1].nbytes
+        after = next((each for each in regions if (each.start, each.owner) == (end, found[0].owner)), None)
+        if after is None:
+            break
+        found.append(after)
+    else:
+        if found:
+            return tuple(found)
+    return (region_of(address, nbytes, regions),)
+
+
 def region_of(address: int, nbytes: int, regions: Sequence[Region] = CM_BF561_REGIONS) -> Region:
     """Return the region that holds all `nbytes` from `address`; raise ConfigError if no single one does."""
     problem = "at an address where there is none"

@@ -10,7 +10,7 @@ from lark import Token, v_args
 from bfsim.errors import LinkError
 from bfsim.linker.evaluator import Evaluator, Files
 from bfsim.linker.expressions import Expression
-from bfsim.linker.predefined import is_blackfin
+from bfsim.linker.predefined import chip_named
 from bfsim.linker.script import (
     CORE_OF_PROCESSOR,
     Assignment,
@@ -71,6 +71,9 @@ class ScriptBuilder(Evaluator):
         self._reserves: list[FixedReserve] = []
 
     def start(self, *items: Block | Segment | Assignment | None) -> LinkerScript:
+        for each in self._lists.values():
+            for name in each.later.values():
+                self._files_of(name)
         everyone = tuple(self._processors) or tuple(CORE_OF_PROCESSOR)
         blocks = (item for item in items if isinstance(item, Block))
         return LinkerScript(
@@ -83,9 +86,7 @@ class ScriptBuilder(Evaluator):
         )
 
     def architecture(self, chip: Token) -> None:
-        if not is_blackfin(chip):
-            raise self._error(chip, f"ARCHITECTURE must be a Blackfin such as ADSP-BF561, not {chip}")
-        self._chip = chip.upper()
+        self._chip = chip_named(chip)
 
     # ---- blocks
 
@@ -171,8 +172,8 @@ class ScriptBuilder(Evaluator):
         is_exclusive = keyword.endswith("_EXCLUSIVE")
         return InputSections(self._place(keyword), inputs, 1, "_PIN" in keyword, is_exclusive)
 
-    def input(self, files: Files, *sections: str) -> Input:
-        return Input(files, frozenset(sections))
+    def input(self, files: Files | Token, *sections: str) -> Input:
+        return Input(self._files_of(files), frozenset(sections))
 
     def section(self, name: Token) -> str:
         return name.strip('"')

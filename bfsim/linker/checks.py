@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations, pairwise
+from itertools import pairwise
 
-from bfsim.chip.memory_map import Region, region_of
+from bfsim.chip.memory_map import Region, regions_under
 from bfsim.errors import ConfigError, LinkError
 from bfsim.linker.link_map import LinkMap, Symbol
 from bfsim.linker.script import LinkerScript, OutputSection, Segment
@@ -88,8 +88,10 @@ def check_resolves(script: LinkerScript, link_map: LinkMap) -> None:
 
 def _check_views(script: LinkerScript) -> None:
     """Check that the processors' own segments are the same memory or different ones."""
-    for left, right in combinations(script.segments, 2):
-        if left.overlaps(right) and (left.start, left.nbytes) != (right.start, right.nbytes):
+    by_address = sorted(script.segments, key=lambda each: (each.start, each.nbytes))
+    for pair in pairwise(by_address):  # if any two are a part of each other, then so are two neighbours
+        if pair[0].overlaps(pair[1]) and (pair[0].start, pair[0].nbytes) != (pair[1].start, pair[1].nbytes):
+            left, right = sorted(pair, key=script.segments.index)
             raise LinkError(
                 f"{right.place}: segment '{right.name}' of {right.processor} must be the same memory as "
                 f"'{left.name}' of {left.processor} ({left.place.beside(right.place)}) or another, not a part of it"
@@ -97,17 +99,9 @@ def _check_views(script: LinkerScript) -> None:
 
 
 def _region_under(segment: Segment, regions: Sequence[Region]) -> Region:
-    """Return the memory under a segment; the first one if neighbours of one owner, as SRAM and cache, hold it."""
-    first = next((region for region in regions if region.holds(segment.start, 1)), None)
-    last = first
-    while first and last and last.start + last.nbytes <= segment.end:
-        last = next(
-            (r for r in regions if (r.start, r.owner) == (last.start + last.nbytes, first.owner)), None
-        )
-    if first and last:
-        return first
+    """Return the memory under a segment, the first one of several."""
     try:
-        return region_of(segment.start, segment.nbytes, regions)
+        return regions_under(segment.start, segment.nbytes, regions)[0]
     except ConfigError as error:
         raise LinkError(f"{segment.place}: segment '{segment.name}': {error}") from None
 
@@ -135,7 +129,8 @@ def _check_reserves(script: LinkerScript) -> None:
     reserves = sorted(script.reserves, key=lambda reserved: reserved.start)
     for reserved in reserves:
         end = reserved.start + reserved.nbytes - 1
-        if not any(segment.start <= reserved.start and end <= segment.end for segment in script.segments):
+        segment = script.segment_of(reserved)
+        if segment is None or end > segment.end:
             raise LinkError(
                 f"{reserved.place}: RESERVE({reserved.name}) must lie inside one segment of "
                 f"MEMORY, not at 0x{reserved.start:08X}-0x{end:08X}"

@@ -6,11 +6,13 @@ linker of VisualDSP++.
 
 from __future__ import annotations
 
+from bisect import bisect, insort
 from dataclasses import dataclass
+from operator import attrgetter
 
 from lark import Token, v_args
 
-from bfsim.errors import LinkError
+from bfsim.errors import LinkError, cut
 from bfsim.linker.expression_builder import ExpressionBuilder
 from bfsim.linker.expressions import Expression, ExpressionError
 from bfsim.linker.script import (
@@ -23,6 +25,7 @@ from bfsim.linker.script import (
 from bfsim.linker.source import Place, Source
 
 Files = frozenset[str]
+_start = attrgetter("start")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +34,14 @@ class Bound:
 
     keyword: Token
     value: int
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectList:
+    """A $LIST: its files, and by name the lists in it that were not defined yet where it is."""
+
+    files: Files
+    later: dict[str, Token]
 
 
 @v_args(inline=True)
@@ -42,8 +53,10 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
         self._source = source
         self._processor = ""
         self._segments: dict[tuple[str, str], Segment] = {}  # by processor (or "") and name in the LDF
+        self._by_address: dict[str, list[Segment]] = {}  # the same, by processor
+        self._names: set[str] = set()
         self._constants: dict[str, int] = {}
-        self._lists: dict[str, Files] = {COMMAND_LINE_OBJECTS: frozenset({COMMAND_LINE_OBJECTS})}
+        self._lists = {COMMAND_LINE_OBJECTS: ObjectList(frozenset({COMMAND_LINE_OBJECTS}), {})}
 
     def _error(self, token: Token, problem: str) -> LinkError:
         return self._source.error_at(token.start_pos or 0, problem)
@@ -53,13 +66,11 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
 
     def _known_segment(self, name: str, offset: int) -> Segment:
         """Return the segment of a name: the processor's own, a global one, else another processor's."""
-        owners = sorted(
-            dict.fromkeys(owner for owner, _ in self._segments), key=lambda o: (o != self._processor, o != "")
-        )
+        owners = sorted(self._by_address, key=lambda o: (o != self._processor, o != ""))
         for owner in owners:
             if (owner, name) in self._segments:
                 return self._segments[owner, name]
-        known = ", ".join(segment.name for segment in self._segments.values()) or "none"
+        known = cut(", ".join(segment.name for segment in self._segments.values())) or "none"
         problem = f"segment must be one that MEMORY defines above ({known}), not '{name}'"
         raise self._source.error_at(offset, problem)
 
@@ -110,26 +121,27 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
         segment = Segment(self._place(name), self._unique(name), start, nbytes, self._processor)
         self._check_disjoint(name, segment)
         self._segments[self._processor, str(name)] = segment
+        self._names.add(segment.name)
+        insort(self._by_address.setdefault(self._processor, []), segment, key=_start)
         return segment
 
     def _unique(self, name: Token) -> str:
         """Return the name of a segment, with its processor's if another processor has one of that name."""
-        is_taken = any(name == segment.name for segment in self._segments.values())
-        return f"{self._processor}.{name}" if is_taken and self._processor else str(name)
+        return f"{self._processor}.{name}" if name in self._names and self._processor else str(name)
 
     def _check_disjoint(self, name: Token, segment: Segment) -> None:
-        for (owner, known), other in self._segments.items():
-            if owner not in ("", self._processor):
-                continue  # each processor has its own view of the memory they share
-            if known == name:
+        for owner in dict.fromkeys(("", self._processor)):  # each has its own view of the memory they share
+            if other := self._segments.get((owner, str(name))):
                 where = other.place.beside(segment.place)
                 raise self._error(name, f"segment must have a name of its own, not '{name}' of {where}")
-            if segment.overlaps(other):
-                place = f"{other.place.beside(segment.place)}, 0x{other.start:08X}-0x{other.end:08X}"
-                problem = f"must not overlap '{known}' of {place}"
-                raise self._error(
-                    name, f"segment '{name}', 0x{segment.start:08X}-0x{segment.end:08X}, {problem}"
-                )
+            placed = self._by_address.get(owner, [])
+            after = bisect(placed, segment.start, key=_start)
+            for other in placed[max(0, after - 1) : after + 1]:
+                if segment.overlaps(other):
+                    place = f"{other.place.beside(segment.place)}, 0x{other.start:08X}-0x{other.end:08X}"
+                    problem = f"must not overlap '{other.name}' of {place}"
+                    span = f"0x{segment.start:08X}-0x{segment.end:08X}"
+                    raise self._error(name, f"segment '{name}', {span}, {problem}")
 
     # ---- object lists
 
@@ -139,14 +151,41 @@ class Evaluator(ExpressionBuilder[LinkerScript]):
     def members(self, _library: Token, *members: Token) -> Files:
         return frozenset(member.strip('"') for member in members)
 
-    def listed(self, name: Token, is_taken: bool | None) -> Files:
-        if name not in self._lists:
-            known = ", ".join(self._lists)
-            raise self._error(name, f"object list must be one that is defined above ({known}), not {name}")
-        return frozenset() if is_taken is False else self._lists[name]
+    def listed(self, name: Token, is_taken: bool | None) -> Files | Token:
+        return frozenset() if is_taken is False else name
 
-    def object_list(self, name: Token, *parts: Files) -> None:
-        self._lists[str(name)] = frozenset().union(*parts)
+    def object_list(self, name: Token, *parts: Files | Token) -> None:
+        """Keep a list; other lists in it may be defined below it, as LDFs of VisualDSP++'s wizard have it."""
+        files, later = frozenset[str](), dict[str, Token]()
+        for part in parts:
+            if not isinstance(part, Token):
+                files |= part
+            elif part in self._lists:
+                files |= self._lists[part].files
+                later |= self._lists[part].later
+            elif part == name:
+                raise self._undefined(part)
+            else:
+                later[str(part)] = part
+        self._lists[str(name)] = ObjectList(files, later)
+
+    def _files_of(self, part: Files | Token) -> Files:
+        """Return the files of an input: its own, or those of a list and of all lists in it."""
+        if not isinstance(part, Token):
+            return part
+        files, waiting, done = frozenset[str](), {str(part): part}, set[str]()
+        while waiting:
+            name, token = waiting.popitem()
+            if name not in self._lists:
+                raise self._undefined(token)
+            done.add(name)
+            files |= self._lists[name].files
+            waiting |= {each: at for each, at in self._lists[name].later.items() if each not in done}
+        return files
+
+    def _undefined(self, name: Token) -> LinkError:
+        known = cut(", ".join(self._lists))
+        return self._error(name, f"object list must be one that the LDF defines ({known}), not {cut(name)}")
 
     def attribute(self) -> bool:
         """Value of a test such as prefersMem("internal"): no object file of bfsim carries such attributes."""

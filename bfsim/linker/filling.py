@@ -16,7 +16,7 @@ class Filling:
         self._limit = segment.start + segment.nbytes
         self._pointer = segment.start
         # Two processors that share a memory may both reserve the same bytes.
-        inside = {(r.start, r.start + r.nbytes) for r in reserves if segment.start <= r.start < self._limit}
+        inside = {(each.start, each.start + each.nbytes) for each in reserves}
         self._reserved = sorted(inside)
 
     @property

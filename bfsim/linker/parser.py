@@ -5,18 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from bfsim.errors import LinkError
+from bfsim.errors import LinkError, cut
+from bfsim.linker.predefined import ARCHITECTURE, chip_named
 from bfsim.linker.preprocessor import preprocess
 from bfsim.linker.script import LinkerScript
 
 
 def parse_ldf(
-    path: Path, defines: Mapping[str, str] | None = None, include_dirs: Sequence[Path] = ()
+    path: Path,
+    defines: Mapping[str, str] | None = None,
+    include_dirs: Sequence[Path] = (),
+    chip: str = "",
 ) -> LinkerScript:
     """Read the LDF at `path`; raise LinkError with file, line, column, the source line and a caret.
 
     `defines` are macros beside those that VisualDSP++ predefines, which they can replace; `include_dirs` are
-    searched for what is not beside the file that includes it.
+    searched for what is not beside the file that includes it; `chip` counts where the LDF has no ARCHITECTURE.
     """
     from lark.exceptions import VisitError  # lark costs 50 ms, which --help and the like need not pay
 
@@ -24,7 +28,11 @@ def parse_ldf(
     from bfsim.linker.expressions import ExpressionError
     from bfsim.linker.grammar import parse_tree
 
-    source = preprocess(path, defines or {}, include_dirs)
+    source = preprocess(path, defines or {}, include_dirs, chip)
+    for architecture in ARCHITECTURE.finditer(source.expanded):
+        if not chip_named(architecture[1]):  # the languages of other families differ, and so would the error
+            problem = f"ARCHITECTURE must be a Blackfin such as ADSP-BF561, not {cut(architecture[1])}"
+            raise source.error_at(architecture.start(1), problem)
     try:
         return ScriptBuilder(source).transform(parse_tree(source))
     except VisitError as error:

@@ -19,6 +19,7 @@ from bfsim.linker.reserves import Reserved, expanded
 from bfsim.linker.script import (
     Assignment,
     Block,
+    FixedReserve,
     InputSections,
     LinkerScript,
     Move,
@@ -53,8 +54,7 @@ def link(
     check_chip(script, chip)
     check_symbols(script, symbols)
     check_memories(script, regions)
-    linker = _Linker(script)
-    waiting = list(symbols)
+    linker = _Linker(script, symbols)
     for assignment in script.loose:
         linker.values.assign(None, assignment)
     for block in script.blocks:
@@ -62,8 +62,8 @@ def link(
             linker.values.assign(block.processor, assignment)
         for output in block.output_sections:
             if output.segment:
-                linker.fill(block.processor, output, [symbol for symbol in waiting if block.serves(symbol)])
-                waiting = [symbol for symbol in waiting if symbol not in linker.placed]
+                linker.fill(block, output)
+    waiting = [symbol for symbol in symbols if symbol not in linker.placed]
     if waiting:
         raise linker.error_about(waiting)
     link_map = linker.link_map()
@@ -74,8 +74,12 @@ def link(
 class _Linker:
     """One link: the segments as they fill, the symbols that have a place, and which sections had no room for which symbol."""
 
-    def __init__(self, script: LinkerScript) -> None:
+    def __init__(self, script: LinkerScript, symbols: Sequence[Symbol]) -> None:
         self._script = script
+        self._symbols = symbols
+        self._by_section: dict[str, list[int]] = {}  # numbers of symbols
+        for number, symbol in enumerate(symbols):
+            self._by_section.setdefault(symbol.section, []).append(number)
         self.fillings = _fillings(script)
         self.placed: dict[Symbol, Placement] = {}
         self.values = Values(script)
@@ -85,8 +89,9 @@ class _Linker:
         self._extents: dict[Key, tuple[int, int]] = {}
         self._refusals: dict[Symbol, list[Refusal]] = {}
 
-    def fill(self, processor: str | None, output: OutputSection, symbols: Sequence[Symbol]) -> None:
-        """Place those of `symbols` that `output` takes and has room for, and obey its other statements."""
+    def fill(self, block: Block, output: OutputSection) -> None:
+        """Place the symbols that `output` takes and has room for, and obey its other statements."""
+        processor = block.processor
         filling = self.fillings[output.segment]
         start = filling.location
         for statement in output.statements:
@@ -102,11 +107,20 @@ class _Linker:
                 case Move():
                     self._move(output, statement, align_up(filling.location, statement.align))
                 case InputSections():
-                    for symbol in symbols:
-                        if symbol not in self.placed and self._takes(output, statement, symbol):
+                    for symbol in self._in_sections(statement):
+                        is_waiting = symbol not in self.placed and block.serves(symbol)
+                        if is_waiting and self._takes(output, statement, symbol):
                             self._place(symbol, output, statement)
         self._filled.append(output)
         self._extents.setdefault((processor, output.name), (start, filling.location - start))
+
+    def _in_sections(self, statement: InputSections) -> Sequence[Symbol]:
+        """Return the symbols of the sections that a statement names, in the order of the call."""
+        sections = frozenset[str]().union(*(each.sections for each in statement.inputs))
+        if any(character in name for name in sections for character in "*?"):
+            return self._symbols
+        found = sorted(number for name in sections for number in self._by_section.get(name, ()))
+        return [self._symbols[number] for number in found]
 
     def link_map(self) -> LinkMap:
         """Return what was placed, after the reserves that expand have got what is free."""
@@ -218,7 +232,12 @@ def _pins(script: LinkerScript) -> list[tuple[Block, OutputSection, InputSection
 
 def _fillings(script: LinkerScript) -> dict[str, Filling]:
     """Return a filling for each segment; those of several processors for the same memory have one in common."""
+    reserves: dict[tuple[int, int], list[FixedReserve]] = {}
+    for reserved in script.reserves:
+        if segment := script.segment_of(reserved):
+            reserves.setdefault((segment.start, segment.nbytes), []).append(reserved)
     by_range = {
-        (each.start, each.nbytes): Filling(each, script.reserves) for each in reversed(script.segments)
+        (each.start, each.nbytes): Filling(each, reserves.get((each.start, each.nbytes), ()))
+        for each in reversed(script.segments)
     }
     return {each.name: by_range[each.start, each.nbytes] for each in script.segments}

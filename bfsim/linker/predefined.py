@@ -19,17 +19,25 @@ SILICON_REVISION = {
 }
 ANY_REVISION = "0xffff"  # the default LDF of the BF533 takes it for all revisions
 
-_ARCHITECTURE = re.compile(r"^[ \t]*ARCHITECTURE\s*\(\s*([\w-]+)", re.MULTILINE)
-_BLACKFIN = re.compile(r"ADSP-(BF[5-7]\d\d\w*)", re.IGNORECASE)
+ARCHITECTURE = re.compile(r"\bARCHITECTURE\s*\(\s*([\w-]+)\s*\)")
+# ADSP-BF592-A is a chip of its own; behind other names stand package and temperature, as in ADSP-BF561-SKBCZ.
+_BLACKFIN = re.compile(r"ADSP-(BF[5-7]\d\d\w*)((?:-\w+)*)", re.IGNORECASE)
 
 
-def is_blackfin(chip: str) -> bool:
-    """Say whether `chip` is the name of one of the family."""
-    return _BLACKFIN.fullmatch(chip) is not None
+def chip_named(name: str) -> str:
+    """Return the chip that ARCHITECTURE names, without its package; nothing if it is no Blackfin."""
+    blackfin = _BLACKFIN.fullmatch(name)
+    return f"ADSP-{blackfin[1].upper()}" if blackfin else ""
 
 
-def macros_for(written: str) -> dict[str, str]:
-    """Return the macros that are defined before the LDF with the text `written` is read."""
+def chip_in(text: str) -> str:
+    """Return the chip for which the text of an LDF is; nothing if it says none, or one that is no Blackfin."""
+    found = ARCHITECTURE.search(text)
+    return chip_named(found[1]) if found else ""
+
+
+def macros_for(chip: str) -> dict[str, str]:
+    """Return the macros that are defined before an LDF is read; without a chip those that all have."""
     macros = {
         "__VISUALDSPVERSION__": VERSION,
         "__VERSIONNUM__": VERSION,
@@ -39,11 +47,9 @@ def macros_for(written: str) -> dict[str, str]:
         "__WORKAROUNDS_ENABLED": "1",
         "__WORKAROUND_AVOID_LDF_BLOCK_BOUNDARIES": "1",
     }
-    architecture = _ARCHITECTURE.search(written)
-    chip = _BLACKFIN.fullmatch(architecture[1]) if architecture else None
-    if chip is None:
+    if not chip:
         return macros
-    name = chip[1].upper()
+    name = chip.removeprefix("ADSP-")
     families = ("__ADSPBLACKFIN__", "__ADSPLPBLACKFIN__", f"__ADSP{name}__", f"__ADSP{name[:4]}x__")
     macros |= dict.fromkeys((*families, f"__ADSP{name[:3]}xx__"), "1")
     macros["__SILICON_REVISION__"] = SILICON_REVISION.get(name, ANY_REVISION)

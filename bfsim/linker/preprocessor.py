@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from bfsim.errors import LinkError
+from bfsim.errors import LinkError, cut, shown
 from bfsim.linker.conditions import holds
 from bfsim.linker.macros import TOKEN, Macro, MacroError, Macros, expand_use
-from bfsim.linker.predefined import macros_for
+from bfsim.linker.predefined import chip_in, macros_for
 from bfsim.linker.source import File, Fragment, Source
 
 _DIRECTIVE = re.compile(r"\s*#\s*(?P<name>\w*)(?P<rest>.*)", re.DOTALL)
@@ -110,14 +110,14 @@ class _Preprocessor:
         elif name == "undef" and (undef := _NAME.fullmatch(rest)):
             self.macros.pop(undef["name"], None)
         elif name == "error":
-            raise file.error_at(offset, f"#error {rest}".rstrip())
+            raise file.error_at(offset, f"#error {cut(rest)}".rstrip())
         elif name == "warning":
             self.warnings.append(f"{file.place_of(offset)}: {rest}")
         elif name in _NEEDED:
-            raise file.error_at(offset, f"#{name} must be followed by {_NEEDED[name]}, not '{rest[:60]}'")
+            raise file.error_at(offset, f"#{name} must be followed by {_NEEDED[name]}, not '{cut(rest)}'")
         elif name not in _IGNORED:
             known = ", ".join(f"#{each}" for each in (*_CONDITIONS, *_NEEDED, "error", "warning", "pragma"))
-            raise file.error_at(offset, f"preprocessor line must be one of {known}, not '#{name}'")
+            raise file.error_at(offset, f"preprocessor line must be one of {known}, not '#{cut(name)}'")
 
     def _branch(self, file: File, offset: int, name: str, rest: str, conditions: list[_Condition]) -> None:
         """Enter, change or leave a condition."""
@@ -147,7 +147,7 @@ class _Preprocessor:
                 raise file.error_at(offset, str(error)) from None
         named = _NAME.match(rest)
         if named is None:
-            raise file.error_at(offset, f"#{name} must name a macro, not {rest[:30]!r}")
+            raise file.error_at(offset, f"#{name} must name a macro, not {shown(rest)}")
         return (named["name"] in self.macros) == (name == "ifdef")
 
     def _include(
@@ -161,37 +161,53 @@ class _Preprocessor:
         folders = [*([file.path.parent] if is_beside else []), *self.include_dirs]
         for folder in folders:
             path = folder / wanted.replace("\\", "/")
-            if path.resolve() in active:
-                raise file.error_at(offset, f"file must not include itself, not {wanted!r}")
             try:
-                written = _read(path)
-            except (OSError, ValueError):
+                written, resolved = _read(path), path.resolve()
+            except (OSError, ValueError, RuntimeError):  # the last two: no name at all, a circle of links
                 continue
-            place = file.place_of(offset)
-            yield from self.pieces(File(path, written, place), (*active, path.resolve()))
+            if resolved in active:
+                raise file.error_at(offset, f"file must not include itself, not {shown(wanted)}")
+            yield from self.pieces(File(path, written, file.place_of(offset)), (*active, resolved))
             return
-        searched = ", ".join(map(str, folders)) or "no folder"
+        searched = cut(", ".join(map(str, folders))) or "no folder"
         raise file.error_at(
-            offset, f"included file must be a readable one, not '{wanted}' (sought in {searched})"
+            offset, f"included file must be a readable one, not '{cut(wanted)}' (sought in {searched})"
         )
 
 
-def preprocess(path: Path, macros: Mapping[str, str], include_dirs: Sequence[Path]) -> Source:
-    """Read an LDF with `macros` beside the predefined ones, expand macros, blank comments; LinkError if it cannot."""
+def preprocess(path: Path, macros: Mapping[str, str], include_dirs: Sequence[Path], chip: str) -> Source:
+    """Read an LDF with `macros` beside the predefined ones, expand macros, blank comments; LinkError if it cannot.
+
+    The macros of a chip are those of its ARCHITECTURE, in whichever file that stands; without one, those of `chip`.
+    """
     try:
         file = File(path, _read(path))
-    except OSError as error:
-        raise LinkError(f"LDF must be a readable file, not {path} ({error.strerror})") from None
-    defined = macros_for(file.written) | dict(macros)
+    except (OSError, ValueError) as error:
+        raise LinkError(
+            f"LDF must be a readable file, not {path} ({getattr(error, 'strerror', error)})"
+        ) from None
+    try:
+        source = _expanded(file, macros_for(chip) | dict(macros), include_dirs)
+        named = chip_in(source.expanded)
+        if named in ("", chip):
+            return source
+    except LinkError:  # it may be for one chip only, and say so with #error or in what it includes
+        named = chip_in(file.written)
+        if named in ("", chip):
+            raise
+    return _expanded(file, macros_for(named) | dict(macros), include_dirs)
+
+
+def _expanded(file: File, defined: Mapping[str, str], include_dirs: Sequence[Path]) -> Source:
     run = _Preprocessor({name: Macro(None, body) for name, body in defined.items()}, include_dirs)
     expanded: list[str] = []
     pieces: list[Fragment] = []
     length = 0
-    for text, written_in, written_at, is_copy in run.pieces(file, (path.resolve(),)):
+    for text, written_in, written_at, is_copy in run.pieces(file, (file.path.resolve(),)):
         pieces.append(Fragment(length, written_in, written_at, is_copy))
         expanded.append(text)
         length += len(text)
-    return Source(path, "".join(expanded), tuple(pieces), tuple(run.warnings))
+    return Source(file.path, "".join(expanded), tuple(pieces), tuple(run.warnings))
 
 
 def _read(path: Path) -> str:

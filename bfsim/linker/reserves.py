@@ -80,11 +80,12 @@ def _fixed(script: LinkerScript) -> list[PlacedReserve]:
             processor=each.processor,
             name=each.name,
             length_name=each.length_name,
-            segment=next(s.name for s in script.segments if s.start <= each.start <= s.end),
+            segment=segment.name,
             output_section="",
             start=each.start,
             nbytes=each.nbytes,
             line=each.line,
         )
         for each in script.reserves
+        if (segment := script.segment_of(each))
     ]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import Path
@@ -222,8 +223,34 @@ class LinkerScript:
         return {segment.name: segment for segment in self.segments}
 
     @cached_property
+    def _by_address(self) -> list[Segment]:
+        return sorted(self.segments, key=lambda each: each.start)
+
+    def segment_of(self, reserved: FixedReserve) -> Segment | None:
+        """Return the segment that a reserve starts in; where several processors have that memory, one of theirs."""
+        before = bisect(self._by_address, reserved.start, key=lambda each: each.start)
+        segment = self._by_address[before - 1] if before else None
+        return segment if segment and reserved.start <= segment.end else None
+
+    @property
+    def is_dual_core(self) -> bool:
+        """Say whether the LDF is for a chip with two cores; without an ARCHITECTURE it may be."""
+        return not self.chip or self.chip in DUAL_CORE_CHIPS
+
+    @cached_property
     def core_of_processor(self) -> Mapping[str, str]:
         """The core, "A" or "B", that each processor of the LDF is: by name, or the only one of a single core."""
-        if not self.chip or self.chip in DUAL_CORE_CHIPS:
+        if self.is_dual_core:
             return CORE_OF_PROCESSOR
         return {name: "A" for block in self.blocks for name in block.processors}
+
+    def with_cores_named(self) -> LinkerScript:
+        """Return the LDF with the name "p0" for the one processor of a single core, which may have any."""
+        names = {name for block in self.blocks for name in block.processors}
+        if self.is_dual_core or len(names) != 1:
+            return self
+        (core_a,) = (name for name, core in CORE_OF_PROCESSOR.items() if core == "A")
+        segments = (replace(each, processor=core_a) if each.processor else each for each in self.segments)
+        reserves = (replace(each, processor=core_a) if each.processor else each for each in self.reserves)
+        blocks = (replace(each, processors=(core_a,)) for each in self.blocks)
+        return replace(self, segments=tuple(segments), reserves=tuple(reserves), blocks=tuple(blocks))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
+import re
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from bfsim.errors import LinkError
@@ -27,7 +29,7 @@ class Place:
         return f"line {self.line}" if self.path == other.path else str(self)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class File:
     """A file as written, and which line of which file includes it (None: the LDF itself)."""
 
@@ -37,7 +39,11 @@ class File:
 
     def place_of(self, offset: int) -> Place:
         """Return the line of the character `offset`."""
-        return Place(self.path, self.written.count("\n", 0, offset) + 1)
+        return Place(self.path, bisect_left(self._line_ends, offset) + 1)
+
+    @cached_property
+    def _line_ends(self) -> list[int]:
+        return [match.start() for match in re.finditer("\n", self.written)]
 
     def error_at(self, offset: int, problem: str) -> LinkError:
         """Return a LinkError about the character `offset`: place, source line, caret."""

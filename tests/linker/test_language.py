@@ -207,7 +207,10 @@ def test_a_mistake_inside_a_macro_is_shown_where_the_macro_is_used(parse: Parse)
             "MEMORY { M { START(MEMORY_END(N)) } }",
             r"test\.ldf:1:31: segment must be one .* \(none\), not 'N'",
         ),
-        ("$A = $B;", r"object list must be one that is defined above \(\$COMMAND_LINE_OBJECTS\), not \$B"),
+        (
+            "$A = $B;",
+            r"object list must be one that the LDF defines \(\$COMMAND_LINE_OBJECTS, \$A\), not \$B",
+        ),
         (
             "PROCESSOR p0 { } PROCESSOR p0 { }",
             r"test\.ldf:1:28: PROCESSOR p0 must have one block, not a second",

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
+from operator import attrgetter
 
-from bfsim.chip.memory_map import KIB, Region
-from bfsim.linker import LinkerScript, LinkMap, Placement
-from bfsim.linker.script import InputSections, Segment
+from bfsim.chip.memory_map import KIB, Region, regions_under
+from bfsim.errors import ConfigError
+from bfsim.linker import LinkerScript, LinkMap, PlacedReserve, Placement
+from bfsim.linker.script import Block, FixedReserve, InputSections, OutputSection, Segment
 from bfsim.report.ldf.map import (
     SHARED,
     CacheRange,
@@ -33,7 +36,7 @@ CACHE_BYTES = 16 * KIB
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoardMemories:
-    """What the map must know of a board: its memories, and how its SDRAM is divided."""
+    """What the map must know of a board: its memories, none if they are unknown, and how its SDRAM is divided."""
 
     board: str
     regions: Sequence[Region]
@@ -66,28 +69,40 @@ def memory_map(
     )
 
 
-@dataclass(frozen=True, slots=True)
 class _Builder:
     """Makes the parts of one map."""
 
-    script: LinkerScript
-    link_map: LinkMap | None
-    memories: BoardMemories
-    kinds: Mapping[tuple[str | None, str], Kind]
+    def __init__(
+        self,
+        script: LinkerScript,
+        link_map: LinkMap | None,
+        memories: BoardMemories,
+        kinds: Mapping[tuple[str | None, str], Kind],
+    ) -> None:
+        self.script = script
+        self.memories = memories
+        self.kinds = kinds
+        placements = link_map.placements if link_map else ()
+        reserves: Sequence[PlacedReserve | FixedReserve] = link_map.reserves if link_map else script.reserves
+        self._used = {each.name: each.used_bytes for each in link_map.segments} if link_map else {}
+        self._placed = sorted(placements, key=lambda each: each.address)
+        self._reserved = sorted(reserves, key=lambda each: each.start)
+        self._outputs: dict[str, list[tuple[Block, OutputSection]]] = {}
+        for block in script.blocks:
+            for output in block.output_sections:
+                self._outputs.setdefault(output.segment, []).append((block, output))
 
     def segment(self, segment: Segment) -> MapSegment:
         """Return one segment with what was placed in it, under whatever name of the same memory."""
-        region = next((r for r in self.memories.regions if r.holds(segment.start, segment.nbytes)), None)
-        memory, owner = (region.name, str(region.owner)) if region else ("no memory of the board", SHARED)
-        placed = [
-            each
-            for each in (self.link_map.placements if self.link_map else ())
-            if segment.start <= each.address <= segment.end
+        memory, owner = self.memory(segment)
+        start, end = segment.start, segment.end + 1
+        address = attrgetter("address")
+        placed = self._placed[
+            bisect_left(self._placed, start, key=address) : bisect_left(self._placed, end, key=address)
         ]
         reserves = list(self.reserves(segment))
-        symbols = tuple(self.symbol(each, memory) for each in sorted(placed, key=lambda p: p.address))
-        usages = {each.name: each.used_bytes for each in self.link_map.segments} if self.link_map else {}
-        used = usages.get(segment.name, sum(each.nbytes for each in reserves))
+        symbols = tuple(self.symbol(each, memory) for each in placed)
+        used = self._used.get(segment.name, sum(each.nbytes for each in reserves))
         return MapSegment(
             name=segment.name,
             memory=memory,
@@ -99,6 +114,17 @@ class _Builder:
             symbols=symbols,
             pieces=tuple(_pieces(segment, used, symbols, reserves)),
         )
+
+    def memory(self, segment: Segment) -> tuple[str, str]:
+        """Return the name of the memory under a segment, or of neighbours under it, and its owner."""
+        if not self.memories.regions:
+            return "unknown", SHARED
+        try:
+            first, *others = regions_under(segment.start, segment.nbytes, self.memories.regions)
+        except ConfigError:
+            return "no memory of the board", SHARED
+        more = (each.memory.removeprefix(f"{first.memory}_") for each in others)  # L1_CODE+CACHE
+        return "+".join((first.name, *more)), str(first.owner)
 
     def symbol(self, placed: Placement, memory: str) -> MapSymbol:
         """Return one symbol in its place."""
@@ -119,26 +145,25 @@ class _Builder:
 
     def sections(self, segment: Segment, placements: Sequence[Placement]) -> Iterator[MapSection]:
         """Yield the output sections that fill a segment, in the order in which they do."""
-        for block in self.script.blocks:
-            for output in block.output_sections:
-                if output.segment != segment.name:
-                    continue
-                statements = [each for each in output.statements if isinstance(each, InputSections)]
-                lines = {each.line for each in statements}
-                inside = [p for p in placements if p.output_section == output.name and p.line in lines]
-                yield MapSection(
-                    name=output.name,
-                    block=block.title,
-                    line=output.line,
-                    takes=tuple(_takes(statements)),
-                    symbols=len(inside),
-                    nbytes=sum(each.symbol.nbytes for each in inside),
-                )
+        for block, output in self._outputs.get(segment.name, ()):
+            statements = [each for each in output.statements if isinstance(each, InputSections)]
+            lines = {each.line for each in statements}
+            inside = [p for p in placements if p.output_section == output.name and p.line in lines]
+            yield MapSection(
+                name=output.name,
+                block=block.title,
+                line=output.line,
+                takes=tuple(_takes(statements)),
+                symbols=len(inside),
+                nbytes=sum(each.symbol.nbytes for each in inside),
+            )
 
     def reserves(self, segment: Segment) -> Iterator[MapPiece]:
         """Yield the reserves in a segment; without a link only those that have an address."""
-        found = self.link_map.reserves if self.link_map else self.script.reserves
-        inside = {each.start: each for each in found if segment.start <= each.start <= segment.end}
+        start = attrgetter("start")
+        first = bisect_left(self._reserved, segment.start, key=start)
+        last = bisect_left(self._reserved, segment.end + 1, key=start)
+        inside = {each.start: each for each in self._reserved[first:last]}
         for each in inside.values():
             yield MapPiece(
                 name=each.name, kind=Kind.RESERVED, owner=SHARED, start=each.start, nbytes=each.nbytes
