@@ -7,6 +7,7 @@ from collections import Counter as Tally
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -67,6 +68,7 @@ class Measured:
     operations: dict[str, dict[str, int]]
 
 
+@cache
 def measured() -> dict[str, Measured]:
     """Read all measurements, by kernel."""
     rows = json.loads(MEASURED.read_text())

@@ -35,9 +35,10 @@ class Loop:
 
 @dataclass
 class ControlFlow:
-    """Control flow of one routine."""
+    """Control flow of one routine. `joins_split`: whether loops that LLVM has split are known again."""
 
     routine: Routine
+    joins_split: bool = True
 
     @cached_property
     def blocks(self) -> dict[str, BasicBlock]:
@@ -163,7 +164,7 @@ class ControlFlow:
 
     def is_split(self, loop: Loop) -> bool:
         """Whether LLVM has made two loops of one with a `continue`: this is the inner one, its test is at the top."""
-        return f"{loop.header}{OUTER}" in self.blocks
+        return self.joins_split and f"{loop.header}{OUTER}" in self.blocks
 
     def ending(self, loop: Loop) -> str:
         """The block whose test ends `loop`."""

@@ -74,6 +74,22 @@ def test_every_fitted_rule_names_kernels_that_were_measured() -> None:
         assert set(kernels) <= set(MEASURED)
 
 
+@pytest.mark.parametrize("rule", [rule for rule, kernels in LEARNT_FROM.items() if len(kernels) == 1])
+def test_a_rule_that_one_kernel_needs_can_be_left_out(rule: Learnt) -> None:
+    """Without it, this kernel is costed in another way."""
+    case = next(each for each in CASES if each.name == LEARNT_FROM[rule][0])
+    assert case.kernel.counters(GCC_O2) != case.kernel.counters(dataclasses.replace(GCC_O2, without=(rule,)))
+
+
+def test_left_out_leaves_out_what_a_held_out_kernel_alone_needs() -> None:
+    """`contrast_lut` was off by 25.9 % at first sight; 17.4 points of that are a rule that no other kernel needs."""
+    without = dataclasses.replace(GCC_O2, without=(Learnt.NEIGHBOURS,))
+    case = next(each for each in CASES if each.name == "contrast_lut")
+    truth = MEASURED[case.name].cycles["O2"]
+    assert predict(case, GCC_O2).cycles == pytest.approx(truth, rel=0.05)
+    assert predict(case, without).cycles > 1.15 * truth
+
+
 def test_the_accuracy_is_readable_in_80_columns() -> None:
     """The longest names and numbers that there are; nothing of them is cut."""
     longest = max((each.name for each in CASES), key=len)

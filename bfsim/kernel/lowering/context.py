@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction, Routine
+from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.demanded_values import DemandedValues
 from bfsim.kernel.lowering.idioms import bit_counting_loops, filling_loops
@@ -24,19 +25,22 @@ class Context:
 
     def __init__(self, routine: Routine, profile: CompilerProfile) -> None:
         self.routine, self.profile = routine, profile
-        self.flow = ControlFlow(routine)
+        self.flow = ControlFlow(routine, joins_split=profile.applies(Learnt.SPLIT_LOOPS))
         self.jump_threading = JumpThreading(self.flow)
-        for loop in self.flow.loops:
+        for loop in self.flow.loops if profile.applies(Learnt.THREADED_EXITS) else ():
             loop.blocks -= self.jump_threading.leaving(loop)
         self.code_motion = InvariantCodeMotion(self.flow)
-        self.evolution = ScalarEvolution(self.flow, self.code_motion)
+        evaluates = profile.applies(Learnt.EVALUATED_LOOPS)
+        self.evolution = ScalarEvolution(self.flow, self.code_motion, evaluates=evaluates)
         self.if_conversion = IfConversion(self.flow, profile)
-        self.ranges = ranges(self.flow, frozenset({*self.if_conversion.by_label, *self.if_conversion.gone}))
+        converted = frozenset({*self.if_conversion.by_label, *self.if_conversion.gone})
+        self.ranges = ranges(self.flow, converted, neighbours=profile.applies(Learnt.NEIGHBOURS))
         self.second_parts = {each.second: each.inside for each in self.ranges.values()}
         """Blocks whose test is part of the one before, and where they lead if both hold."""
         self.likelihood = Likelihood(self.flow, self.second_parts)
         self.induction_variables = InductionVariables(self.flow, self.evolution, profile)
-        self.bit_counts = bit_counting_loops(self.flow, self.evolution)
+        counts_bits = profile.applies(Learnt.BIT_COUNTS)
+        self.bit_counts = bit_counting_loops(self.flow, self.evolution) if counts_bits else {}
         self.fills = filling_loops(self.flow, self.evolution) if profile.library.fill else {}
         self.demanded = DemandedValues(
             self.flow,
@@ -88,7 +92,8 @@ class Context:
         if each.opcode == "and":
             return any(self._is_clean(operand, depth - 1) for operand in each.operands)
         if each.opcode == "trunc":
-            return widest(self.flow, each.operands[0]) <= int(each.text.rsplit("i", 1)[1])
+            keeps = widest(self.flow, each.operands[0]) <= int(each.text.rsplit("i", 1)[1])
+            return keeps and self.profile.applies(Learnt.KEPT_BITS)
         if each.opcode == "call":
             return False
         return all(self._is_clean(operand, depth - 1) for operand in each.operands)

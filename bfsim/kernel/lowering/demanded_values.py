@@ -59,7 +59,10 @@ class DemandedValues(Folding):
         )
         self.calling = calling
         self.counted = {loop.header for loop in flow.loops if self._iterations_by_counter(loop)}
-        self.eliminated = eliminated_counters(flow, evolution, induction_variables, self.counted)
+        eliminates = profile.applies(Learnt.ELIMINATED_COUNTERS)
+        self.eliminated = (
+            eliminated_counters(flow, evolution, induction_variables, self.counted) if eliminates else {}
+        )
 
     def _iterations_by_counter(self, loop: Loop) -> bool:
         """Counted, and without calls: a register counts the iterations, not the program's variable."""
@@ -75,6 +78,8 @@ class DemandedValues(Folding):
 
     def _steps_by_power(self, loop: Loop) -> bool:
         """Whether the number of iterations takes a shift to find, not a division ["Costs of niter computation too high" there]."""
+        if not self.profile.applies(Learnt.DIVIDED_COUNTS):
+            return True
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")
         gains = (
             [self.evolution.increment(operand, loop) for operand in test.operands[:2]]
@@ -99,13 +104,15 @@ class DemandedValues(Folding):
             variable.loop is loop and abs(variable.increment.constant) > 1
             for variable in self.induction_variables.all
         )
-        return wide and not self.evolution.starts_fixed(loop)
+        fixed = self.profile.applies(Learnt.FIXED_STARTS) and self.evolution.starts_fixed(loop)
+        return wide and not fixed
 
     def _is_inclusive(self, loop: Loop) -> bool:
         """Whether a loop runs up to `stop + 1`, which C writes as `<= stop`."""
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")
         bound = self.flow.instruction(test.operands[1]) if test is not None else None
-        return bound is not None and bound.opcode == "add" and bound.operands[1] == "1"
+        is_next = bound is not None and bound.opcode == "add" and bound.operands[1] == "1"
+        return is_next and self.profile.applies(Learnt.INCLUSIVE_LOOPS)
 
     def _steps_by_one(self, loop: Loop) -> bool:
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")

@@ -161,7 +161,7 @@ class Folding:
     def remainder(self, each: Instruction) -> Instruction | None:
         """The division whose remainder x - x / y * y is [match.pd of GCC 12]: where that is a call, it is another one."""
         product = self.flow.instruction(each.operands[1]) if each.opcode == "sub" else None
-        if product is None or product.opcode != "mul":
+        if product is None or product.opcode != "mul" or not self.profile.applies(Learnt.REMAINDERS):
             return None
         rounded = self.flow.instruction(product.operands[0])
         parts = rounded.operands if rounded is not None and rounded.opcode == "add" else product.operands[:1]
@@ -181,7 +181,7 @@ class Folding:
 
         [partial redundancy elimination, tree-ssa-pre.cc of GCC 12]
         """
-        if each.opcode != "add":
+        if each.opcode != "add" or not self.profile.applies(Learnt.ADDED_FLAGS):
             return None
         for operand, other in (each.operands[:2], each.operands[1::-1]):
             flag = self.flow.instruction(operand)

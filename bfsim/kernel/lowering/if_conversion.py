@@ -96,7 +96,8 @@ class IfConversion:
         rows = self.flow.blocks[way].instructions
         alone = len(set(self.flow.blocks[way].successors)) == 1 and len(self.flow.predecessors[way]) > 1
         is_header = any(loop.header == way for loop in self.flow.loops)
-        return alone and not is_header and all(each.opcode in ("phi", *RENAMING) for each in rows[:-1])
+        hands_on = alone and not is_header and all(each.opcode in ("phi", *RENAMING) for each in rows[:-1])
+        return hands_on and self.profile.applies(Learnt.HANDED_ON)
 
     def _clamp(self, label: str) -> ConvertedIf | None:
         """A minimum of a constant and of a maximum, or the other way round [minmax_replacement in tree-ssa-phiopt.cc]."""

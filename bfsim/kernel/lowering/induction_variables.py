@@ -91,7 +91,7 @@ class InductionVariables:
     def _pointers(self, label: str, each: Instruction) -> list[tuple[str, str]]:
         """(block, pointer) of an access; LLVM merges the loads of several arms, a compiler for the Blackfin does not."""
         source = self.flow.instruction(each.operands[-1])
-        if source is not None and is_merged_pointer(source):
+        if source is not None and is_merged_pointer(source) and self.profile.applies(Learnt.MERGED_LOADS):
             return [(arm_label[1:], value) for value, arm_label in PHI_ARM.findall(source.text)]
         return [(label, each.operands[-1])]
 

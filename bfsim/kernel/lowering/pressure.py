@@ -9,6 +9,7 @@ from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import Loop
+from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.webs import Webs
 
@@ -128,22 +129,26 @@ class Pressure:
                     any(self.find(name) == web for name, _ in instruction.uses)
                     and instruction.op is not Op.IMM
                 ):
-                    constant = web.startswith("#")
                     if (
                         block
                         and _is_copy_for(block[-1], instruction)
                         and web in map(self.find, instruction.overwrites)
                     ):
                         block.pop()  # what was reloaded may be overwritten
-                    block.append(
-                        MachineInstruction(
-                            Op.MOVE if constant else Op.LOAD32, instruction.line, None, RegisterBank.ANY
-                        )
-                    )
+                    block.append(self._reloading(web, instruction))
                 block.append(instruction)
                 if instruction.result and self.find(instruction.result) == web:
                     block.append(MachineInstruction(Op.STORE32, instruction.line, None, RegisterBank.ANY))
             self.code.of[label] = block
+
+    def _reloading(self, web: str, instruction: MachineInstruction) -> MachineInstruction:
+        """What brings a value, or a constant, to where an instruction uses it."""
+        constant = web.startswith("#")
+        if constant and not self.webs.context.profile.applies(Learnt.CONSTANT_MOVES):
+            return load_constant(web, instruction.line)
+        return MachineInstruction(
+            Op.MOVE if constant else Op.LOAD32, instruction.line, None, RegisterBank.ANY
+        )
 
     def _move_in(self, web: str, loop: Loop) -> None:
         """What is added to a value in another bank has to be moved there."""

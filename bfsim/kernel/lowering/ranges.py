@@ -29,17 +29,21 @@ class Range:
     high: int
 
 
-def ranges(flow: ControlFlow, taken: frozenset[str]) -> dict[str, Range]:
-    """Return the ranges that a routine tests for, by both of their blocks, none of which is in `taken`."""
+def ranges(flow: ControlFlow, taken: frozenset[str], *, neighbours: bool) -> dict[str, Range]:
+    """Return the ranges that a routine tests for, by both of their blocks, none of which is in `taken`.
+
+    `neighbours`: whether a test for one of two neighbouring numbers is one, too.
+    """
     found: dict[str, Range] = {}
     for label in flow.order:
         for way in flow.blocks[label].successors:
-            if not {label, way} & (taken | found.keys()) and (each := _range(flow, label, way)) is not None:
+            each = None if {label, way} & (taken | found.keys()) else _range(flow, label, way, neighbours)
+            if each is not None:
                 found[label] = found[way] = each
     return found
 
 
-def _range(flow: ControlFlow, first: str, second: str) -> Range | None:
+def _range(flow: ControlFlow, first: str, second: str, neighbours: bool) -> Range | None:
     rows = flow.blocks[second].instructions
     alone = flow.predecessors[second] == [first] and second.startswith(JOINED)
     if not alone or any(each.opcode not in (*RENAMING, "icmp", "br") for each in rows):
@@ -52,7 +56,7 @@ def _range(flow: ControlFlow, first: str, second: str) -> Range | None:
         bounds = {kind: bound for _, kind, bound in (outer, inner)}
         if bounds["low"] < bounds["high"]:
             return Range(first, second, inside, outer[0], bounds["low"], bounds["high"])
-    return _neither(flow, first, second)
+    return _neither(flow, first, second) if neighbours else None
 
 
 def _neither(flow: ControlFlow, first: str, second: str) -> Range | None:

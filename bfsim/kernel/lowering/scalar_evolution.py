@@ -46,10 +46,12 @@ class Increment:
 
 
 class ScalarEvolution:
-    """Forms and advances of the values of one routine."""
+    """Forms and advances of the values of one routine. `evaluates`: whether loops may be played through."""
 
-    def __init__(self, flow: ControlFlow, code_motion: InvariantCodeMotion) -> None:
-        self.flow, self.code_motion = flow, code_motion
+    def __init__(
+        self, flow: ControlFlow, code_motion: InvariantCodeMotion, *, evaluates: bool = True
+    ) -> None:
+        self.flow, self.code_motion, self.evaluates = flow, code_motion, evaluates
 
     def affine(self, value: str, depth: int = DEEPEST) -> Affine:
         """Return `value` as a sum; an address in bytes."""
@@ -125,9 +127,7 @@ class ScalarEvolution:
     def is_counted(self, loop: Loop) -> bool:
         """Whether the number of iterations is known when the loop starts: its last test compares a stepping value."""
         test = self.exit_test(loop)
-        return test is not None and (
-            self._counts(test, loop) or evaluated_iterations(self.flow, loop, test) is not None
-        )
+        return test is not None and (self._counts(test, loop) or self._evaluated(test, loop) is not None)
 
     def _counts(self, test: str, loop: Loop) -> bool:
         each = self.flow.instruction(test)
@@ -147,8 +147,11 @@ class ScalarEvolution:
         gain = self.increment(test.operands[0], loop)
         start = self._start(test.operands[0], loop)
         if gain is None or start is None or not gain.constant or gain.symbolic:
-            return evaluated_iterations(self.flow, loop, test.result or "")
+            return self._evaluated(test.result or "", loop)
         return max(0, (int(test.operands[1]) - start) // gain.constant) + 1
+
+    def _evaluated(self, test: str, loop: Loop) -> int | None:
+        return evaluated_iterations(self.flow, loop, test) if self.evaluates else None
 
     def _start(self, value: str, loop: Loop) -> int | None:
         """What an affine value of one counter is in its first iteration."""
