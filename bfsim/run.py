@@ -54,13 +54,15 @@ def simulate(
     """Run `firmware` on a recording and return the records: a built-in one, "FILE.py:NAME" or "PACKAGE:NAME".
 
     Without `recording` and `ldf` the built-in ones are taken; `ldf` may also be the name of a shipped one, `defines`
-    are macros for it, and `include_dirs` folders that it may include files from; `frames` stops
-    early. `before` is called with what will run and how many frames of it, before the first one does, and may raise; the
-    digest of the recording is not known then. `progress` is called with
+    are macros for it, and `include_dirs` folders that it may include files from; `frames` stops early. What the code of
+    kernels does is always checked; `sanitize` runs each kernel as it is written first, to find what is wrong even where the
+    compiler would leave it out. `before` is called with what will run and how many frames of it, before the first one does,
+    and may raise; the digest of the recording is not known then. `progress` is called with
     (frames done, frames in all); `profile` names the compiler whose code is costed; `script` is a JSON or TOML file
     that tells the firmware's device on the SPI what to do; `on_seen` is called with what was seen in each frame, if
     the firmware has a view, which changes nothing in the records. Ctrl-C ends the run with the frames done. Raises a
-    BfsimError for anything that is wrong with what was given.
+    BfsimError for anything that is wrong with what was given. A crash in native code ends the process, a notebook's, too;
+    standard error then has the name of the kernel.
     """
     if frames is not None and frames < 1:
         raise ConfigError(f"frames must be at least 1, not {frames}")

@@ -17,7 +17,7 @@ def failure(function: tree.Function, guarded: Guarded, note: Sequence[int]) -> K
     guard = guarded.guards[note[NUMBER] - 1]
     here, *callers = _way(guarded, guard, note)
     routine, sites = routines[here.routine], _sites(guard, sites_of(function)[here.routine])
-    first, *others = sorted({each.line for each in sites})
+    first, *others = sorted({each.line for each in sites}) or [max(1, here.line)]
     same = f"; or line {' or '.join(str(routine.first_line + each - 1) for each in others)}" if others else ""
     calls = "".join(f"; called at {_place(routines[each.routine], each.line)}" for each in callers)
     told = _of_divisor if guard.node is tree.Binary else _of_index
@@ -37,19 +37,27 @@ def _way(guarded: Guarded, guard: Guard, note: Sequence[int]) -> Iterator[Place]
 
 
 def _sites(guard: Guard, known: Sites) -> Sites:
-    """Return what `guard` stands before: one access or division, or several of which the compiler has made one."""
+    """Return what `guard` stands before: one access or division, several of which the compiler has made one, or none.
+
+    There is none where it has made one of accesses in several kernels, which it inlined.
+    """
     here, is_inlined = guard.places[0], len(guard.places) > 1
     if here.site:
         return (known[here.site - 1],)
     alike = [each for each in known if type(each) is guard.node]
     by_array = [each for each in alike if not is_inlined and getattr(each, "array", None) == guard.array]
     by_line = [each for each in by_array or alike if each.line == here.line]
-    return tuple(by_line or by_array or alike or known)
+    return tuple(by_line or by_array or alike)
 
 
 def _of_index(sites: Sites, index: int, length: int) -> tuple[str, str]:
     """Return what is wrong with an index, and what it must be."""
     accesses = [each for each in sites if not isinstance(each, tree.Binary)]
+    if not accesses:
+        return (
+            f"index {i32(index)} is outside of an array",
+            f"an index must be 0 or more and less than {length}",
+        )
     shown = index if accesses[0].index.type is u32 else i32(index)
     arrays = list(dict.fromkeys(each.array for each in accesses))
     lengths = " or ".join(f"len({each})" for each in arrays)
@@ -61,7 +69,7 @@ def _of_index(sites: Sites, index: int, length: int) -> tuple[str, str]:
 
 def _of_divisor(sites: Sites, dividend: int, divisor: int) -> tuple[str, str]:
     """Return what is wrong with a division, and what the divisor must be."""
-    operator = sites[0].op if isinstance(sites[0], tree.Binary) else "//"
+    operator = sites[0].op if sites and isinstance(sites[0], tree.Binary) else "//"
     condition = f" where the dividend is {dividend}" if divisor else ""
     is_function = operator.isidentifier()
     shown = f"{operator}({dividend}, {divisor})" if is_function else f"{dividend} {operator} {divisor}"

@@ -53,6 +53,25 @@ def store_one_of_two(row: i32[:], i: i32):
 
 
 @kernel
+def put_one(row: i32[:], i: i32):
+    row[i] = 1
+
+
+@kernel
+def put(row: i32[:], i: i32, n: i32):
+    row[i] = n
+
+
+@kernel
+def put_one_of_two(row: i32[:], i: i32):
+    n = row[i - 1]
+    if n > 4:
+        put_one(row, i)
+    else:
+        put(row, i, n)
+
+
+@kernel
 def either(row: u8[:], other: u8[:], i: i32, first: i32) -> i32:
     return row[i] if first == 1 else other[i]
 
@@ -200,6 +219,18 @@ def test_accesses_that_the_compiler_merges_are_told_apart_as_far_as_can_be(how: 
     assert f"index 9 is outside of {arrays} in kernel either" in fails(
         how, either, row_of(np.uint8, 20), row, 9, 0
     )
+
+
+def test_accesses_of_several_kernels_that_the_compiler_merges_name_the_one_they_are_in() -> None:
+    """Nothing is left of the kernels that were inlined, but the file, the caller, the index and the length are right."""
+    message = fails("checked", put_one_of_two, row_of(np.int32), 8)
+    assert __file__ in message
+    assert (
+        "index 8 is outside of an array in kernel put_one_of_two; an index must be 0 or more and less than 8"
+        in message
+    )
+    message = fails("sanitized", put_one_of_two, row_of(np.int32), 8)
+    assert f"{place(put_one, 'row[i] = 1')}: index 8 is outside of row in kernel put_one" in message
 
 
 @both_ways

@@ -1,0 +1,26 @@
+"""Checks of indexes and divisors cost the robot nothing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from bfsim.kernel import Kernel
+from bfsim.run import simulate
+
+FRAMES = 2
+
+
+def test_checks_change_no_cycle_of_the_firmware(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two frames of the built-in recording have the same records with and without checks: cycles, results and messages."""
+    checked = simulate(frames=FRAMES)
+    compiled, asked = Kernel.compile, []
+
+    def unchecked(self: Kernel, *given: Any, **how: Any) -> Any:
+        asked.append(self.name)
+        return compiled(self, *given, **how, checked=False)
+
+    monkeypatch.setattr(Kernel, "compile", unchecked)
+    assert simulate(frames=FRAMES) == checked
+    assert "sobel_row" in asked
