@@ -107,7 +107,7 @@ class ExternalSpec:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DmaSpec:
-    """The DMA controllers. A work unit starts in `startup_sclk`; a descriptor costs `descriptor_sclk` an element.
+    """The DMA controllers. A work unit starts in `startup_sclk`; a descriptor costs `descriptor_sclk` an element, beside its memory.
 
     `word_bytes`: width of their buses, and the longest word; `mdma_streams`: memory DMA, of all controllers together.
     `read_word_sclk`: memory DMA, cycles per word from SDRAM on an open page (to SDRAM it is one);

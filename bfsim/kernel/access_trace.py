@@ -21,7 +21,7 @@ WRITE = 256  # `counters` adds it to an access's byte count when it writes
 # An entry of the log: `stamp << STAMP_BIT | kind << KIND_BIT | offset in the arena`
 KIND_BIT, STAMP_BIT = 28, 31
 OFFSET_MASK, KIND_MASK = (1 << KIND_BIT) - 1, 7
-LOAD, STORE, FILL, WRITE_BACK, FETCH, FETCH_LINE = range(6)
+LOAD, STORE, FILL, WRITE_BACK, FETCH, FETCH_LINE, TEST_AND_SET = range(7)
 
 # Words of the state; the log stands behind them.
 (

@@ -16,6 +16,7 @@ from bfsim.linker import Placement
 from bfsim.machine.program import Buffer
 
 ARENA_ALIGN = 4096
+REGISTERS_NBYTES = 64  # room for the longest descriptor
 
 
 class Row:
@@ -42,7 +43,8 @@ class Row:
 class Memories:
     """All memories of one board, zeroed. What is never touched costs the host nothing.
 
-    In the arena SDRAM comes first, then L2, then what cameras and links keep of the world outside, then the cores' own.
+    In the arena SDRAM comes first, then L2, then what cameras and links keep of the world outside and the registers that
+    descriptors are fetched into, then the cores' own.
     """
 
     def __init__(self, board: BoardSpec, outside_nbytes: int = 0) -> None:
@@ -54,8 +56,8 @@ class Memories:
         end = 0
         for memory in ("SDRAM", "L2", "L1"):
             if memory == "L1":
-                self.outside, end = end, _round_up(end + outside_nbytes)
-                self.l1 = end
+                self.outside, self.registers = end, _round_up(end + outside_nbytes)
+                self.l1 = end = _round_up(self.registers + REGISTERS_NBYTES)
             for region in self._regions:
                 if _kind(region) == memory:
                     self.first[region.name] = end

@@ -24,7 +24,8 @@ def test_rows_in_l2_stall_for_every_read() -> None:
         reads = sum(each.accesses.get("L2", (0, 0))[0] for each in kernels)
         stalls = sum(each.stall_cclk.get(StallReason.L2_LATENCY, 0) for each in stages)
         assert reads > 1_000_000
-        assert stalls == reads * (BF561.l2.read_cclk - 1) + SEMAPHORES_PER_FRAME * BF561.l2.read_cclk
+        testset_cclk = BF561.l2.read_cclk + BF561.l2.next_cclk
+        assert stalls == reads * (BF561.l2.read_cclk - 1) + SEMAPHORES_PER_FRAME * testset_cclk
         assert [each.issue_cclk for each in core.stages] == [each.issue_cclk for each in home.stages]
 
 

@@ -43,10 +43,14 @@ def linear(address: int, words: int, word_bytes: int = 4) -> Registers:
 
 
 def on_chip_cclk(units: int, words: int, elements: int, before: int) -> int:
-    """Cycles from the start of `units` between L1 and L2, each of so many words and descriptor elements, at a core's cycle."""
+    """Cycles from the start of `units` between L1 and L2, each of so many words and descriptor elements, at a core's cycle.
+
+    The descriptors lie there as well: an element takes a word's time beside its own.
+    """
     begin = before
+    element_sclk = DMA.descriptor_sclk + int(DMA.on_chip_word_sclk)
     for _ in range(units):
-        ready = begin + (DMA.startup_sclk + elements * DMA.descriptor_sclk) * CCLK_PER_SCLK
+        ready = begin + (DMA.startup_sclk + elements * element_sclk) * CCLK_PER_SCLK
         begin = (
             -(-ready // CCLK_PER_SCLK) * CCLK_PER_SCLK + int(words * DMA.on_chip_word_sclk) * CCLK_PER_SCLK
         )

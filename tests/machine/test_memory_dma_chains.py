@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from bfsim.api import Core, Frame
-from bfsim.chip.dma_registers import Flow
+from bfsim.chip.dma_registers import ELEMENT_BYTES, Flow
 from bfsim.errors import DeadlockError
 from bfsim.machine.board import Outcome
 from bfsim.machine.dma.config import DmaConfig
@@ -71,14 +71,22 @@ def run_chain(
 def test_a_chain_of_descriptors_gathers_pieces(flow: Flow, elements: int, memory: str) -> None:
     """Arrays and lists, wherever they lie: the pieces arrive in the order of the descriptors, an interrupt each.
 
-    Every work unit is started anew, and costs its two descriptors, element by element.
+    Every work unit is started anew, and costs its two descriptors, element by element: words of the memory that has them.
     """
     units, words = 4, 16
     arrived, posted, done, outcome = run_chain(flow, memory, units, words)
     pieces = noise()[: 4 * units * words].reshape(units, -1)[::-1].ravel()
     np.testing.assert_array_equal(arrived[0][: len(pieces)], pieces)
     assert outcome.interrupts == {"A MDMA1_1": units}
-    assert done - posted == on_chip_cclk(units, words, 2 * elements, posted)
+    fetched_nbytes = units * 2 * elements * ELEMENT_BYTES
+    if memory != "SDRAM":
+        assert done - posted == on_chip_cclk(units, words, 2 * elements, posted)
+    else:
+        assert done - posted > on_chip_cclk(units, words, 2 * elements, posted)
+    read_nbytes = {
+        each.memory: each.read_bytes for each in outcome.traffic if each.master == "MDMA1 stream 1"
+    }
+    assert read_nbytes == ({} if memory == "L1" else {memory: fetched_nbytes})
 
 
 # ---- autobuffer and interrupts

@@ -14,10 +14,9 @@ from bfsim.errors import DeadlockError, FirmwareError
 from bfsim.trace import StallReason
 from tests.machine.kernels import spin
 from tests.machine.made_boards import CHIP, assert_accounted, cclk_now, in_work
+from tests.machine.naive_port import LOCKED_CCLK, TESTSET_CCLK, store_against_spin
 from tests.machine.rig import Play, cycles_of, every_frame, run, stage_of
 
-TESTSET_CCLK = CHIP.events.testset_cclk + CHIP.l2.read_cclk
-TURN_CCLK = TESTSET_CCLK + CHIP.events.spin_cclk
 UNLOCK_CCLK = 1
 
 
@@ -32,7 +31,7 @@ def store(words: i32[:], value: i32):
 
 
 def test_a_free_lock_costs_one_testset() -> None:
-    """Two issue cycles and the way to L2; giving it back is a store."""
+    """Two issue cycles, a read and a write of L2; giving it back is a store."""
 
     def work(core: Core, frame: Frame) -> Play:
         yield from core.lock("word")
@@ -41,13 +40,13 @@ def test_a_free_lock_costs_one_testset() -> None:
     outcome = run(in_work(work))
     cost = stage_of(outcome.frames[0], "Work")
     assert cost.issue_cclk == CHIP.events.testset_cclk + UNLOCK_CCLK
-    assert cost.stall_cclk == {StallReason.L2_LATENCY: CHIP.l2.read_cclk}
+    assert cost.stall_cclk == {StallReason.L2_LATENCY: LOCKED_CCLK}
     assert_accounted(outcome)
 
 
-@pytest.mark.parametrize("turns", [0, 1, 5, 100, 1000])
-def test_whole_turns_of_the_spin_loop_are_waited(turns: int) -> None:
-    """B comes while A has the lock: it tries again every turn, and has it at the first try after A's store."""
+@pytest.mark.parametrize("turns", [0, 1, 2, 3, 5, 100, 101, 102, 1000])
+def test_a_core_that_spins_has_the_lock_at_its_first_try_after_the_other_gave_it_back(turns: int) -> None:
+    """B comes while A has the lock, and tries again every turn; its tries and A's store meet at the port of L2."""
 
     def hold(core: Core, frame: Frame) -> Play:
         yield from core.lock("word")
@@ -61,12 +60,16 @@ def test_whole_turns_of_the_spin_loop_are_waited(turns: int) -> None:
         yield from core.unlock("word")
 
     outcome = run(in_work(hold), every_frame(wait))
-    first_try_cclk = cycles_of(spin, 0) + TESTSET_CCLK
-    free_cclk = TESTSET_CCLK + cycles_of(spin, turns) + UNLOCK_CCLK
-    tries = max(0, -(-(free_cclk - first_try_cclk) // TURN_CCLK))
+    asked_cclk = cycles_of(spin, 0)
+    granted_cclk = max(asked_cclk + CHIP.events.testset_cclk, TESTSET_CCLK)  # A's first TESTSET had the port
+    first_try_cclk = granted_cclk + LOCKED_CCLK
+    store_cclk = TESTSET_CCLK + cycles_of(spin, turns)
+    won_cclk = first_try_cclk
+    if first_try_cclk <= store_cclk:
+        won_cclk = store_against_spin(first_try_cclk, store_cclk)
     cost = stage_of(outcome.frames[0], "Work", "B")
-    assert cost.stall_cclk.get(StallReason.SEMAPHORE, 0) == tries * TURN_CCLK
-    assert cost.elapsed_cclk == TESTSET_CCLK + tries * TURN_CCLK
+    assert cost.stall_cclk.get(StallReason.SEMAPHORE, 0) == won_cclk - first_try_cclk
+    assert cost.elapsed_cclk == won_cclk - asked_cclk
     assert_accounted(outcome)
 
 
@@ -177,7 +180,11 @@ def test_two_locks_in_opposite_order_are_told_with_their_holders() -> None:
     line = taking.__code__.co_firstlineno + 4
     taken, waited = f"({__file__}:{line})", f"({__file__}:{line + 2})"
     core_a, core_b = str(caught.value).removeprefix("nothing can happen any more: ").split("; ")
-    for told, core, other, name in ((core_a, "A", "B", "right"), (core_b, "B", "A", "left")):
+    # of the two first TESTSETs, B's waits until A's gives the port back
+    for told, core, other, name, later_cclk in (
+        (core_a, "A", "B", "right", -LOCKED_CCLK),
+        (core_b, "B", "A", "left", LOCKED_CCLK),
+    ):
         begin, _, rest = told.partition(
             f"core {core} waits for lock {name!r}, held by core {other} since cycle "
         )
@@ -186,7 +193,7 @@ def test_two_locks_in_opposite_order_are_told_with_their_holders() -> None:
         since, _, rest = rest.partition(f" {waited}")
         assert rest == ""
         held_cclk, since_cclk = (int(each.replace(",", "")) for each in (held, since))
-        assert since_cclk - held_cclk == cycles_of(spin, 1000) + TESTSET_CCLK
+        assert since_cclk - held_cclk == cycles_of(spin, 1000) + TESTSET_CCLK + later_cclk
 
 
 def test_the_same_order_is_no_deadlock() -> None:

@@ -17,8 +17,10 @@ import numpy as np
 import simpy
 from numpy.typing import NDArray
 
+from bfsim.chip.dma_registers import ELEMENT_BYTES
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
+from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.sdram import new_sdram
 from bfsim.machine.bus.weave import Weave, compiled_weave
@@ -31,6 +33,8 @@ TRANSFER_LAYOUT = struct.Struct(f"@{w.TRANSFER_WORDS}q")
 RANKS = {
     w.PPI0: 0, w.PPI1: 1, w.MDMA1_0: 20, w.MDMA1_1: 21, w.SPI: 40, w.MDMA2_0: 44, w.MDMA2_1: 45, w.IMDMA_0: 48, w.IMDMA_1: 49,
 }  # fmt: skip
+INTERNAL = (w.IMDMA_0, w.IMDMA_1)
+"""The streams of the internal DMA."""
 PARTNERS = ((w.MDMA1_0, w.MDMA1_1), (w.MDMA2_0, w.MDMA2_1))
 CORE_FIRST, CORE_LAST = -100, 200  # ranks of core A; core B has its own turn after A had the bus
 STORES_AFTER = 10  # loads overtake stores (Programming Reference p.294)
@@ -90,6 +94,7 @@ class Bus:
         self._env = env
         self._chip = board.chip
         self._clocks = board.clocks
+        self._registers = memories.registers
         self._state: Any = np.zeros(w.STATE_WORDS, np.int64)
         self._memory: Any = memories.arena.view(np.uint32)
         self.words: Any = self._state.data
@@ -124,6 +129,7 @@ class Bus:
             w.LINE_BYTES: chip.cache.line_bytes,
             w.BURST_WORDS: chip.dma.fifo_words,
             w.LAST_CORE: w.NONE,
+            w.LAST_CORE_AT_L2: w.NONE,
             w.FREE_TRANSFERS: w.MAX_TRANSFERS,
         }
         for word, value in bus.items():
@@ -174,17 +180,31 @@ class Bus:
         self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, setup: int
     ) -> TransferPlan:
         """Plan to move `count` elements by a memory DMA that takes `setup` ticks to start."""
-        end = self.words[w.SDRAM_END]
-        reads, writes = source.offset < end, destination.offset < end
-        mode = w.BOTH if reads and writes else w.READ if reads else w.WRITE if writes else w.ON_CHIP
-        word = self._on_chip_ticks(master) if mode == w.ON_CHIP else Fraction(1)
+        mode = self._mode_of_copy(master, source.offset, destination.offset)
+        word = self._on_chip_ticks(master) if mode in (w.ON_CHIP, w.THROUGH_L2_PORT) else Fraction(1)
         return self._plan(
             master, mode, source, destination, count, element_bytes, setup, Pace(0, 1, word, Fraction(1))
         )
 
+    def plan_fetch(self, master: int, offset: int, elements: int, setup: int) -> TransferPlan:
+        """Plan to fetch a descriptor of 16-bit `elements` into the registers of a channel, which takes `setup` ticks besides."""
+        memory, registers = (
+            Walk(first, elements, ELEMENT_BYTES, ELEMENT_BYTES) for first in (offset, self._registers)
+        )
+        return self.plan_copy(master, memory, registers, elements, element_bytes=ELEMENT_BYTES, setup=setup)
+
+    def _mode_of_copy(self, master: int, source: int, destination: int) -> int:
+        sdram_end, l2_end = self.words[w.SDRAM_END], self.words[w.L2_END]
+        if source < sdram_end:
+            return w.BOTH if destination < sdram_end else w.READ
+        if destination < sdram_end:
+            return w.WRITE
+        is_in_l2 = source < l2_end or destination < l2_end
+        return w.THROUGH_L2_PORT if master in INTERNAL and is_in_l2 else w.ON_CHIP
+
     def _on_chip_ticks(self, master: int) -> Fraction:
         dma = self._chip.dma
-        if master in (w.IMDMA_0, w.IMDMA_1):
+        if master in INTERNAL:
             return Fraction(dma.imdma_word_cclk * self._clocks.cclk_ticks)
         return dma.on_chip_word_sclk * self._clocks.sclk_ticks
 
@@ -271,10 +291,43 @@ class Bus:
 
     def access(self, core: int, begin: int, cclk: int, entries: int) -> simpy.Event:
         """Play the first `entries` accesses of a core's log, of a call of `cclk` cycles from tick `begin`; return its end."""
+        self._start_job(core, begin, cclk, entries)
+        return self._await(w.NONE - 1 - core)
+
+    def _start_job(self, core: int, begin: int, cclk: int, entries: int, spin: int = 0) -> None:
         self.settle()
         job = w.JOBS_AT + core * w.JOB_WORDS
-        for word, value in ((w.STATE, w.STARTING), (w.BEGIN, begin), (w.TOTAL, cclk), (w.END, entries)):
+        for word, value in (
+            (w.STATE, w.STARTING), (w.BEGIN, begin), (w.TOTAL, cclk), (w.END, entries), (w.SPIN, spin),
+        ):  # fmt: skip
             self.words[job + word] = value
+
+    def log_in_l2(self, core: int, stamp_cclk: int, kind: int) -> int:
+        """Make the log of a core that of one access to a shared variable in L2; return the number of its entries."""
+        entry = stamp_cclk << log.STAMP_BIT | kind << log.KIND_BIT | self.words[w.L2_FIRST]
+        self.room_of(core)[log.LOG] = entry
+        return 1
+
+    def spin(self, core: int, since: int) -> None:
+        """Let a core that found a lock taken at tick `since` try TESTSET again and again, until `stop_spinning`."""
+        turn = self._spin_ticks()
+        self._start_job(core, since + turn, 0, self.log_in_l2(core, 0, log.TEST_AND_SET), turn)
+
+    def _spin_ticks(self) -> int:
+        """Return what lies between the end of a TESTSET and the moment at which the next one asks for its memory."""
+        events = self._chip.events
+        return (events.spin_cclk + events.testset_cclk) * self._clocks.cclk_ticks
+
+    def pause_spinning(self, core: int) -> None:
+        """Let a core that spins do something else."""
+        self.settle()
+        self.words[w.JOBS_AT + core * w.JOB_WORDS + w.STATE] = w.IDLE
+        self.words[w.MASTERS_AT + w.CORE_A + core + w.READY] = w.NEVER
+
+    def stop_spinning(self, core: int) -> simpy.Event:
+        """Let the next TESTSET of a core that spins be the last one, from now on; return its end."""
+        self.settle()
+        self.words[w.JOBS_AT + core * w.JOB_WORDS + w.SPIN] = 0
         return self._await(w.NONE - 1 - core)
 
     def stalls_of(self, core: int) -> Sequence[int]:

@@ -10,6 +10,7 @@ from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.pacing import aligned
+from bfsim.machine.bus.runs import l2_alone_until
 from bfsim.machine.bus.sdram import access, stream
 from bfsim.machine.bus.state import State
 from bfsim.machine.bus.traffic import count_access, count_traffic
@@ -18,8 +19,8 @@ from bfsim.machine.bus.traffic import count_access, count_traffic
 @native
 def bytes_of(state: State, kind: int) -> int:
     """Return what an access of this kind moves: a 32-bit word whatever its width, a cache line, or 64 bits of code."""
-    if kind in (log.LOAD, log.STORE):
-        return 4
+    if kind in (log.LOAD, log.STORE, log.TEST_AND_SET):
+        return w.CORE_WORD_BYTES
     return w.FETCH_BYTES if kind == log.FETCH else state[w.LINE_BYTES]
 
 
@@ -44,9 +45,19 @@ def next_entry(state: State, core: int, not_before: int) -> int:
         state[job + w.STALLED] += cycles * cclk
         issued += cycles * cclk
     state[job + w.ISSUED_AT] = issued
-    state[master + w.USES_BUS] = waits and entry & log.OFFSET_MASK < state[w.SDRAM_END]
-    state[master + w.READY] = aligned(issued, state[w.SCLK]) if state[master + w.USES_BUS] else issued
+    if waits:
+        ask(state, master, entry & log.OFFSET_MASK, issued)
+    else:  # the store buffer asks, when it has it
+        state[master + w.USES], state[master + w.READY] = w.NOTHING, issued
     return w.NONE
+
+
+@native
+def ask(state: State, master: int, offset: int, at: int) -> None:
+    """Let a core ask from tick `at` on for the SDRAM bus or for the port of L2, whichever `offset` needs."""
+    in_sdram = offset < state[w.SDRAM_END]
+    state[master + w.USES] = w.SDRAM if in_sdram else w.L2
+    state[master + w.READY] = aligned(at, state[w.SCLK]) if in_sdram else at
 
 
 @native
@@ -102,9 +113,7 @@ def prepare_drain(state: State, core: int, at: int) -> None:
     if state[job + w.STORES] == 0:
         state[master + w.READY] = w.NEVER
         return
-    uses_bus = state[job + w.STORE_QUEUE + state[job + w.STORE_HEAD]] & log.OFFSET_MASK < state[w.SDRAM_END]
-    state[master + w.USES_BUS] = uses_bus
-    state[master + w.READY] = aligned(at, state[w.SCLK]) if uses_bus else at
+    ask(state, master, state[job + w.STORE_QUEUE + state[job + w.STORE_HEAD]] & log.OFFSET_MASK, at)
 
 
 @native
@@ -122,12 +131,8 @@ def serve_stores(state: State, core: int, at: int) -> int:
         count_access(state, w.STORES_A + core, 1 + max(0, more))
         count_traffic(state, w.STORES_A + core, w.IN_SDRAM, True, nbytes)
         free = state[w.COMMAND_FREE]
-    elif at < state[w.L2_FREE]:
-        state[w.MASTERS_AT + w.STORES_A + core + w.READY] = state[w.L2_FREE]
-        return w.NONE
     else:
-        free = at + ((nbytes - 1 >> state[w.L2_PORT_BITS]) + 1) * state[w.L2_NEXT]
-        state[w.L2_FREE] = free
+        free = hold_l2(state, core, at, nbytes)
         count_traffic(state, w.STORES_A + core, w.IN_L2, True, nbytes)
     state[job + w.STORE_HEAD] = (state[job + w.STORE_HEAD] + 1) % w.MAX_STORES
     state[job + w.STORES] -= 1
@@ -153,7 +158,7 @@ def is_in_buffer(state: State, job: int, offset: int, nbytes: int) -> bool:
 
 
 @native
-def serve_core(state: State, core: int, at: int) -> int:
+def serve_core(state: State, core: int, at: int, until: int) -> int:
     """Make the core's present access at tick `at`; return the number of its job when that is done, else NONE."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     entry = (
@@ -166,7 +171,12 @@ def serve_core(state: State, core: int, at: int) -> int:
         return store(state, core, at, entry & ((1 << log.STAMP_BIT) - 1))
     if is_in_buffer(state, job, offset, bytes_of(state, kind)):
         return wait_for_buffer(state, core, w.BUFFER_NOT_EMPTY)
-    if offset < state[w.SDRAM_END]:
+    if kind == log.TEST_AND_SET:
+        done = test_and_set(state, core, at, until)
+        if state[job + w.SPIN]:
+            state[w.MASTERS_AT + w.CORE_A + core + w.READY] = done + state[job + w.SPIN]
+            return w.NONE
+    elif offset < state[w.SDRAM_END]:
         done = read_sdram(state, core, at, kind, offset)
     else:
         done = read_l2(state, core, at, kind)
@@ -175,17 +185,51 @@ def serve_core(state: State, core: int, at: int) -> int:
 
 
 @native
+def hold_l2(state: State, core: int, at: int, nbytes: int) -> int:
+    """Let a core have the port of L2 from tick `at` on for `nbytes`; return when it is free again."""
+    state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2] = core, 0
+    state[w.L2_FREE] = at + ((nbytes - 1 >> state[w.L2_PORT_BITS]) + 1) * state[w.L2_NEXT]
+    return state[w.L2_FREE]
+
+
+@native
+def wait_for_l2(state: State, job: int, at: int) -> None:
+    """Stall a core from its present access until it has the port of L2, at tick `at`."""
+    stall(state, job, state[w.CCLK], at + state[w.CCLK], w.L2_PORT)
+    state[job + w.ISSUED_AT] = at
+
+
+@native
+def test_and_set(state: State, core: int, at: int, until: int) -> int:
+    """Read and write a byte of L2 with the port locked; return when that is done.
+
+    A core that spins on a lock does it again and again: at once as often as nobody else can want the port.
+    """
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    locked, more = state[w.L2_READ] + state[w.L2_NEXT], 0
+    if state[job + w.SPIN]:
+        turn = locked + state[job + w.SPIN]
+        more = max(0, (l2_alone_until(state, w.CORE_A + core, until) - at - 1) // turn)
+        at += more * turn
+    else:
+        wait_for_l2(state, job, at)
+        stall(state, job, state[w.CCLK], at + locked + state[w.CCLK], w.L2_LATENCY)
+    state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2] = core, 0
+    state[w.L2_FREE] = at + locked
+    for write in (False, True):
+        count_traffic(state, w.CORE_A + core, w.IN_L2, write, (1 + more) * w.CORE_WORD_BYTES)
+    return at + locked
+
+
+@native
 def read_l2(state: State, core: int, at: int, kind: int) -> int:
     """Read from L2 through the port that both cores share; return when the first data are there."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     nbytes = bytes_of(state, kind)
-    start = max(at, state[w.L2_FREE])
-    state[w.L2_FREE] = start + ((nbytes - 1 >> state[w.L2_PORT_BITS]) + 1) * state[w.L2_NEXT]
+    hold_l2(state, core, at, nbytes)
     count_traffic(state, w.CORE_A + core, w.IN_L2, False, nbytes)
-    if start > at:
-        stall(state, job, state[w.CCLK], start + state[w.CCLK], w.L2_PORT)
-        state[job + w.ISSUED_AT] = start
-    done = start + state[w.L2_READ]
+    wait_for_l2(state, job, at)
+    done = at + state[w.L2_READ]
     state[job + w.LINE_DONE] = done + (nbytes - 1 >> state[w.L2_PORT_BITS]) * state[w.L2_NEXT]
     stall(
         state,
@@ -218,13 +262,19 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
     count_access(state, w.CORE_A + core, 1 + more)
     count_traffic(state, w.CORE_A + core, w.IN_SDRAM, False, nbytes)
     state[w.LAST_CORE] = core
-    page, refresh_wait = state[w.PAGE_CLASS], state[w.REFRESH_WAIT]
     edge = aligned(state[job + w.ISSUED_AT], state[w.SCLK])
     done = through + state[w.CORE_SYNC] - state[w.SCLK] - (edge - state[job + w.ISSUED_AT])
     cycles = stall(state, job, cclk, done, w.ARBITRATION)
     waited = min(cycles, max(0, state[w.BEGAN] - edge) // cclk)
-    refreshed = min(cycles - waited, refresh_wait // cclk)
-    reason = w.PAGE_HIT + page if kind == log.LOAD else w.CACHE_FILL if kind == log.FILL else w.CODE_FETCH
+    granted = state[w.BEGAN] + state[w.REFRESH_WAIT]
+    refreshed = min(cycles - waited, (granted - max(edge, state[w.BEGAN])) // cclk)
+    reason = (
+        w.PAGE_HIT + state[w.PAGE_CLASS]
+        if kind == log.LOAD
+        else w.CACHE_FILL
+        if kind == log.FILL
+        else w.CODE_FETCH
+    )
     state[job + w.STALL + reason] += cycles - waited - refreshed
     state[job + w.STALL + w.REFRESHING] += refreshed
     state[job + w.STALL + w.ARBITRATION] -= cycles - waited

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.pacing import aligned, arrival, burst_of, lose, next_paced, step_device
-from bfsim.machine.bus.runs import move_run, take_turn
+from bfsim.machine.bus.runs import l2_alone_until, move_run, take_turn
 from bfsim.machine.bus.sdram import access, stream
 from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.traffic import count_access, count_traffic
@@ -75,6 +75,32 @@ def copy_on_chip(state: State, memory: Memory, number: int, at: int) -> int:
 
 
 @native
+def copy_through_l2_port(state: State, memory: Memory, number: int, at: int, until: int) -> int:
+    """Move the next word of the internal DMA, and those behind it before which nobody else can want the port of L2.
+
+    A word that had to wait for the port makes all that follow later. Within L2 it holds the port twice: read and written.
+    """
+    master = w.MASTERS_AT + number
+    transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
+    first, end, word = state[w.L2_FIRST], state[w.L2_END], state[transfer + w.ELEMENT]
+    reads, writes = first <= state[transfer + w.FROM] < end, first <= state[transfer + w.TO] < end
+    holds = (reads + writes) * state[w.L2_NEXT]
+    step = max(word, holds)
+    alone = (l2_alone_until(state, number, until) - at - 1) // step
+    more = max(0, min(alone, state[transfer + w.FROM_X_LEFT] - 1, state[transfer + w.TO_X_LEFT] - 1))
+    nbytes = (1 + more) << state[transfer + w.ELEMENT_BITS]
+    if reads:
+        count_traffic(state, number, w.IN_L2, False, nbytes)
+    if writes:
+        count_traffic(state, number, w.IN_L2, True, nbytes)
+    at += more * step
+    state[w.L2_FREE], state[w.IMDMA_HAD_L2] = at + holds, 1
+    state[master + w.READY] = at + word
+    moved(state, memory, transfer, 1 + more)
+    return after_move(state, master, transfer, at + word)
+
+
+@native
 def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> int:
     """Move the next burst to or from a device that sets the pace, and lose what came too late."""
     master = w.MASTERS_AT + number
@@ -85,7 +111,7 @@ def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> 
     count = burst_of(state, transfer)
     offset = state[transfer + w.TO] if write else state[transfer + w.FROM]
     through, nbytes = at, count << state[transfer + w.ELEMENT_BITS]
-    if state[master + w.USES_BUS]:
+    if state[master + w.USES] == w.SDRAM:
         through = access_burst(
             state,
             number,
@@ -118,6 +144,8 @@ def serve_dma(state: State, memory: Memory, number: int, at: int, until: int) ->
         return exchange(state, memory, number, at)
     if mode == w.ON_CHIP:
         return copy_on_chip(state, memory, number, at)
+    if mode == w.THROUGH_L2_PORT:
+        return copy_through_l2_port(state, memory, number, at, until)
     if mode in (w.PACED_IN, w.PACED_OUT):
         return exchange_with_device(state, memory, number, at)
     return move_run(state, memory, number, at, until)

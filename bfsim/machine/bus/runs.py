@@ -21,6 +21,16 @@ def alone_until(state: State, number: int, until: int) -> int:
 
 
 @native
+def l2_alone_until(state: State, number: int, until: int) -> int:
+    """Until when a master has the port of L2 to itself: nobody asks for anything before, nor is woken, to ask for it then."""
+    limit = until
+    for other in range(w.MASTERS):
+        if other != number:
+            limit = min(limit, state[w.MASTERS_AT + other + w.READY])
+    return limit
+
+
+@native
 def preferred_until(state: State, number: int, until: int) -> int:
     """Until when a master that just had the bus has it again whenever it asks, if it leaves no gap."""
     limit = min(until, state[w.NEXT_REFRESH])
@@ -29,7 +39,7 @@ def preferred_until(state: State, number: int, until: int) -> int:
         at = w.MASTERS_AT + other
         ready = state[at + w.READY]
         if other != number and ready < limit:
-            waits = ready <= state[w.BEGAN] and state[at + w.USES_BUS] and state[at + w.RANK] > rank
+            waits = ready <= state[w.BEGAN] and state[at + w.USES] == w.SDRAM and state[at + w.RANK] > rank
             waits = waits and other > w.SPI  # a device that waits gets urgent
             if not waits:
                 limit = ready

@@ -58,15 +58,24 @@ def refresh(state: State, now: int) -> int:
 
 
 @native
+def hold_up(state: State, now: int) -> bool:
+    """Refresh if that is due by `now`, when somebody asks for the bus; return whether that keeps the bus longer than `now`."""
+    if now < state[w.NEXT_REFRESH]:
+        return False
+    state[w.REFRESH_BEGAN] = now
+    state[w.REFRESH_ENDS] = state[w.COMMAND_FREE] = refresh(state, now)
+    return bool(state[w.REFRESH_ENDS] > now)
+
+
+@native
 def access(state: State, now: int, offset: int, write: bool) -> int:
     """Read or write the word at `offset`, not before `now` (on an SCLK edge); return when its data are through."""
+    hold_up(state, max(now, state[w.COMMAND_FREE]))
     command = max(now, state[w.COMMAND_FREE])
-    state[w.BEGAN] = command
-    state[w.REFRESH_WAIT] = 0
-    if command >= state[w.NEXT_REFRESH]:
-        free = refresh(state, command)
-        state[w.REFRESH_WAIT] = free - command
-        command = free
+    state[w.REFRESH_WAIT] = (
+        state[w.REFRESH_ENDS] - state[w.REFRESH_BEGAN] if command == state[w.REFRESH_ENDS] else 0
+    )
+    state[w.BEGAN] = command - state[w.REFRESH_WAIT]
     bank, page = offset >> state[w.BANK_BITS], offset >> state[w.PAGE_BITS]
     before = state[w.OPEN_PAGE + bank]
     state[w.PAGE_CLASS] = 0

@@ -26,11 +26,12 @@ NONE = -1
     NEXT_REFRESH,
     REFRESHES,
     PAGE_CLASS,     # of the last access: 0 hit, 1 miss, 2 conflict
-    BEGAN,          # when the last access began
-    REFRESH_WAIT,   # what it waited for a refresh
-) = range(20)  # fmt: skip
+    BEGAN,          # when the bus was free for the last access, or for the refresh before it
+    REFRESH_WAIT,   # how much of the time before it was a refresh
+    REFRESH_BEGAN, REFRESH_ENDS,  # the last refresh, from the request that it held up
+) = range(22)  # fmt: skip
 MAX_BANKS = 8
-OPEN_PAGE = 20
+OPEN_PAGE = 22
 ACTIVATED = OPEN_PAGE + MAX_BANKS
 WRITTEN = ACTIVATED + MAX_BANKS
 SDRAM_WORDS = WRITTEN + MAX_BANKS
@@ -42,13 +43,15 @@ BUS_AT = SDRAM_WORDS
     DEB_PERIOD, MDMA_PERIOD, LINE_BYTES,
     BURST_WORDS,    # words that a DMA moves at once, from or to its FIFO
     L2_FREE,        # when the port of L2 is free
+    LAST_CORE_AT_L2,  # the core that had that port last
+    IMDMA_HAD_L2,   # whether the internal DMA had it last
     DEB_LEFT,       # transfers in the present direction that still have preference
-    LAST_CORE,      # the core that had the bus last: the other one comes first
+    LAST_CORE,      # the core that had the SDRAM bus last: the other one comes first
     FREE_TRANSFERS, # how many transfers can still be posted
     DONE_AT,        # tick of the completion that `advance` returned with
     POSTED,         # transfers that were posted since
-) = range(BUS_AT, BUS_AT + 21)  # fmt: skip
-BUS_WORDS = 21
+) = range(BUS_AT, BUS_AT + 23)  # fmt: skip
+BUS_WORDS = 23
 
 # The masters in the order of their rows. Cores have one for what they wait for and one for their store buffer.
 PPI0, PPI1, SPI, MDMA1_0, MDMA1_1, MDMA2_0, MDMA2_1, IMDMA_0, IMDMA_1, STORES_A, STORES_B, CORE_A, CORE_B = (
@@ -60,7 +63,7 @@ MASTERS = 13
 (
     RANK,           # lower is served first
     READY,          # when its next request can be granted, NEVER if it has none
-    USES_BUS,       # whether that request needs the SDRAM bus
+    USES,           # what that request needs: NOTHING, the SDRAM bus, or the port of L2
     WRITES,         # whether it writes
     TRANSFER,       # place of the transfer it works on, or NONE
     LAST_TRANSFER,  # place of the last one in its queue
@@ -74,6 +77,8 @@ MASTERS = 13
     ALL_LOST,       # elements of all transfers that found the FIFO full
 ) = range(0, 15 * MASTERS, MASTERS)  # fmt: skip
 MASTER_WORDS = 15
+
+NOTHING, SDRAM, L2 = range(3)  # what a request can need
 
 # ---- A transfer of a DMA, at one of MAX_TRANSFERS places.
 (
@@ -101,8 +106,9 @@ ENDS = 1 << 16
 # A side of a transfer, from FROM or from TO on.
 POSITION, X_COUNT, X_MODIFY, Y_MODIFY, X_LEFT = range(5)
 
-# Modes of a transfer: which of its sides is in SDRAM; or that a device sets its pace.
-READ, WRITE, BOTH, ON_CHIP, PACED_IN, PACED_OUT = range(6)
+# Modes of a transfer: which of its sides is in SDRAM; that none is, or that the internal DMA has one in L2; or that a device
+# sets its pace.
+READ, WRITE, BOTH, ON_CHIP, THROUGH_L2_PORT, PACED_IN, PACED_OUT = range(7)
 
 AT_END, AT_ROWS = 1, 2  # what wakes somebody
 
@@ -116,9 +122,10 @@ AT_END, AT_ROWS = 1, 2  # what wakes somebody
     ISSUED_AT,      # tick of the present access
     STORE_HEAD, STORES,  # store buffer: the oldest, and how many
     LINE_DONE,      # when the last line that was fetched is whole
-) = range(10)  # fmt: skip
+    SPIN,           # ticks from the end of a TESTSET to the next one while the core spins on a lock, else 0
+) = range(11)  # fmt: skip
 IDLE, STARTING, RUNNING, BUFFER_FULL, BUFFER_NOT_EMPTY = range(5)
-STALL = 10
+STALL = 11
 (
     L2_LATENCY, L2_PORT, PAGE_HIT, PAGE_MISS, PAGE_CONFLICT, REFRESHING, ARBITRATION, STORE_BUFFER, CACHE_FILL, CODE_FETCH,
 ) = range(10)  # fmt: skip
@@ -128,6 +135,7 @@ MAX_STORES = 16
 JOB_WORDS = STORE_QUEUE + MAX_STORES
 CORES = 2
 
+CORE_WORD_BYTES = 4  # what a load or a store moves, whatever its width
 FETCH_BYTES = 8  # of an instruction fetch that no cache serves: one 64-bit word
 
 # ---- Traffic: by master, memory, and what.

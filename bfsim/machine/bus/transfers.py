@@ -29,20 +29,23 @@ def begin(state: State, master: int, transfer: int, at: int) -> None:
     """Start a transfer at tick `at`, or at its own time if that is later."""
     mode, end = state[transfer + w.MODE], state[w.SDRAM_END]
     start = aligned(max(at, state[transfer + w.AT]) + state[transfer + w.SETUP], state[w.SCLK])
-    state[master + w.USES_BUS] = 1
+    state[master + w.USES] = w.SDRAM
     state[master + w.WRITES] = mode == w.WRITE
     state[master + w.IN_FIFO] = 0
     if mode == w.PACED_IN:
-        state[master + w.USES_BUS] = state[transfer + w.TO] < end
+        state[master + w.USES] = w.SDRAM if state[transfer + w.TO] < end else w.NOTHING
         state[master + w.WRITES] = 1
         next_paced(state, master, transfer)
     elif mode == w.PACED_OUT:
-        state[master + w.USES_BUS] = state[transfer + w.FROM] < end
+        state[master + w.USES] = w.SDRAM if state[transfer + w.FROM] < end else w.NOTHING
         next_paced(state, master, transfer)
     elif mode == w.ON_CHIP:
-        state[master + w.USES_BUS] = 0
+        state[master + w.USES] = w.NOTHING
         state[transfer + w.START] = start
         next_on_chip(state, master, transfer)
+    elif mode == w.THROUGH_L2_PORT:
+        state[master + w.USES] = w.L2
+        state[master + w.READY] = start
     else:
         state[master + w.READY] = start
 

@@ -18,12 +18,14 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_requests import serve_core, serve_stores, start_jobs
 from bfsim.machine.bus.dma_requests import serve_dma
 from bfsim.machine.bus.pacing import arrival
+from bfsim.machine.bus.sdram import hold_up
 from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.transfers import accept
 
 # What changes a rank (HRM of the BF537, 5-50 to 5-54): an urgent request comes before everything else, one against the
-# direction of the traffic behind all of its kind. A request that needs no bus cannot keep anybody waiting.
-NO_BUS, URGENT, AGAINST, HAD_ITS_TURN, HAD_THE_BUS = -10_000, -1_000, 100, 2, 2
+# direction of the traffic behind all of its kind. A request that needs nothing cannot keep anybody waiting. At the port of
+# L2 the internal DMA and the cores take turns [assumed].
+NEEDS_NOTHING, URGENT, AGAINST, HAD_ITS_TURN, HAD_THE_BUS, IMDMA_FIRST = -10_000, -1_000, 100, 2, 2, -1_000
 
 
 @native
@@ -31,10 +33,14 @@ def rank_of(state: State, number: int, at: int) -> int:
     """Return the rank of a master's request at tick `at`."""
     master = w.MASTERS_AT + number
     rank = state[master + w.RANK]
-    if not state[master + w.USES_BUS]:
-        return rank + NO_BUS
+    uses = state[master + w.USES]
+    if uses == w.NOTHING:
+        return rank + NEEDS_NOTHING
     if number >= w.STORES_A:  # the cores take turns, with their loads and with their stores
-        return rank + (HAD_THE_BUS if state[w.LAST_CORE] == (number - w.STORES_A) % w.CORES else 0)
+        last = state[w.LAST_CORE] if uses == w.SDRAM else state[w.LAST_CORE_AT_L2]
+        return rank + (HAD_THE_BUS if last == (number - w.STORES_A) % w.CORES else 0)
+    if uses == w.L2:
+        return rank + (-IMDMA_FIRST if state[w.IMDMA_HAD_L2] else IMDMA_FIRST)
     if state[w.DEB_LEFT] > 0 and state[master + w.WRITES] != state[w.LAST_WRITE]:
         rank += AGAINST
     if state[master + w.PARTNER] != w.NONE and 0 < state[w.MDMA_PERIOD] <= state[master + w.SERVED]:
@@ -60,15 +66,17 @@ def count_direction(state: State, before: int) -> None:
 @native
 def first_request(state: State, until: int) -> tuple[int, int]:
     """Return who can be served first, and when; NONE if nobody before tick `until`."""
-    free = state[w.COMMAND_FREE]
+    sdram_free, l2_free = state[w.COMMAND_FREE], state[w.L2_FREE]
     first, first_at, first_rank = w.NONE, until, w.NEVER
     for number in range(w.MASTERS):
         master = w.MASTERS_AT + number
         at = state[master + w.READY]
         if at >= until:
             continue
-        if at < free and state[master + w.USES_BUS]:
-            at = free
+        if at < sdram_free and state[master + w.USES] == w.SDRAM:
+            at = sdram_free
+        elif at < l2_free and state[master + w.USES] == w.L2:
+            at = l2_free
         if at < first_at:
             first, first_at, first_rank = number, at, w.NEVER
         elif at == first_at and first != w.NONE:
@@ -87,13 +95,17 @@ def serve_cameras(state: State, memory: Memory, number: int, at: int, until: int
     Most requests are theirs; this saves looking at everybody each time.
     """
     woken = serve_dma(state, memory, number, at, until)
-    limit = until
+    limit = min(until, state[w.NEXT_REFRESH])
     for other in range(w.SPI, w.MASTERS):
         limit = min(limit, state[w.MASTERS_AT + other + w.READY])
     while woken == w.NONE:
         left, right = state[w.MASTERS_AT + w.PPI0 + w.READY], state[w.MASTERS_AT + w.PPI1 + w.READY]
         ready, master = min(left, right), w.PPI0 if left <= right else w.PPI1
-        if ready >= limit or ready < state[w.COMMAND_FREE] or not state[w.MASTERS_AT + master + w.USES_BUS]:
+        if (
+            ready >= limit
+            or ready < state[w.COMMAND_FREE]
+            or state[w.MASTERS_AT + master + w.USES] != w.SDRAM
+        ):
             break
         woken = serve_dma(state, memory, master, ready, until)
     return woken
@@ -105,7 +117,7 @@ def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int
     if number <= w.PPI1 and not state[w.DEB_PERIOD]:
         return serve_cameras(state, memory, number, at, until)
     if number >= w.CORE_A:
-        return serve_core(state, number - w.CORE_A, at)
+        return serve_core(state, number - w.CORE_A, at, until)
     if number >= w.STORES_A:
         return serve_stores(state, number - w.STORES_A, at)
     return serve_dma(state, memory, number, at, until)
@@ -124,9 +136,11 @@ def advance(state_at: State, memory_at: Memory, until: int) -> int:
         first, at = first_request(state, until)
         if first == w.NONE:
             return w.NONE
+        if state[w.MASTERS_AT + first + w.USES] == w.SDRAM and hold_up(state, at):
+            continue  # meanwhile others may ask who come first
         before, counts = (
             state[w.LAST_WRITE],
-            first < w.STORES_A and state[w.DEB_PERIOD] and state[w.MASTERS_AT + first + w.USES_BUS],
+            first < w.STORES_A and state[w.DEB_PERIOD] and state[w.MASTERS_AT + first + w.USES] == w.SDRAM,
         )
         woken = serve(state, memory, first, at, until)
         if counts:

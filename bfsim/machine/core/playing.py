@@ -51,6 +51,7 @@ class PlayingCore(CoreClock):
         self._in_handler = False
         self._frame_index: int | None = None
         """Index of the picture that is worked on, None between two."""
+        self._is_spinning = False  # on a lock, when no handler comes between
         self.is_done = False
         """Whether the main loop has ended."""
 
@@ -197,7 +198,11 @@ class PlayingCore(CoreClock):
                     passed_cclk = self._until(self._env.tick)
                     self._cclk += passed_cclk
                     owed_cclk += passed_cclk
+                    if self._is_spinning:
+                        self._bus.pause_spinning(self._number)
                     yield from self._take_interrupts()
+                    if self._is_spinning:
+                        self._bus.spin(self._number, self.now_ticks)
                     self.waiting_for = what
         self._in_handler = False
         self._owed_cclk = owed_cclk

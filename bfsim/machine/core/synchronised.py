@@ -8,9 +8,12 @@ from typing import Any
 import simpy
 
 from bfsim.errors import FirmwareError
+from bfsim.kernel import access_trace as log
+from bfsim.machine.calls.call_cache import DeferredWork
 from bfsim.machine.core.interrupts import Interrupts
 from bfsim.machine.core.playing import PlayingCore
 from bfsim.machine.core.semaphore import Semaphore
+from bfsim.machine.core.shared_access import SharedAccess
 from bfsim.machine.core.spin_lock import SpinLock
 from bfsim.machine.firmware_lines import running_line
 from bfsim.trace import StallReason
@@ -40,15 +43,14 @@ class SynchronisedCore(PlayingCore):
         self._semaphore(name).post()
 
     def wait(self, name: str) -> Generator[Any, Any, None]:
-        """Take one from the semaphore `name`, waiting until another core has posted it."""
+        """Take one from the semaphore `name`, trying until another core has posted it."""
         yield from self._test_and_set()
         turn = self._semaphore(name).take()
         if turn is not None:
             yield from self._take_turn(turn, f"semaphore {name!r}")
-            self._wake(StallReason.SEMAPHORE)
 
     def lock(self, name: str) -> Generator[Any, Any, None]:
-        """Take the spin lock `name`, trying until the other core gives it back. Whole turns of the spin loop are waited."""
+        """Take the spin lock `name`, trying until the other core gives it back."""
         yield from self._test_and_set()
         lock = self._lock(name)
         if lock.core == self.name:
@@ -56,13 +58,11 @@ class SynchronisedCore(PlayingCore):
         turn = lock.take(self.name, self._described())
         if turn is not None:
             yield from self._take_turn(turn, f"lock {name!r}, held by {lock.holder}")
-            self._wake(StallReason.SEMAPHORE, self._test_and_set_cclk() + self._board.chip.events.spin_cclk)
             lock.holder = self._described()
 
     def unlock(self, name: str) -> Generator[Any, Any, None]:
         """Give the spin lock `name` back."""
-        self.issue(1)  # a store of zero, posted
-        yield from self._sync()
+        yield from self._access(log.STORE, 1)  # of zero
         lock = self._lock(name)
         if lock.core != self.name:
             raise FirmwareError(
@@ -71,23 +71,35 @@ class SynchronisedCore(PlayingCore):
         lock.release()
 
     def _take_turn(self, turn: simpy.Event, what: str) -> Generator[Any, Any, None]:
+        """Wait for `turn`, when another core gives way, in a loop around TESTSET; the first try from then on succeeds."""
         if not self.can_be_interrupted:
             self._shared.turns[self.name] = turn
+        if self._board.chip.l2:
+            self._is_spinning = True
+            self._bus.spin(self._number, self.now_ticks)
         yield from self._blocked(iter([turn]), what)
         self._shared.turns.pop(self.name, None)
+        if self._is_spinning:
+            self._is_spinning = False
+            before, self._in_handler = self._in_handler, True  # the clock still stands where the wait began
+            yield self._bus.stop_spinning(self._number)
+            self._in_handler = before
+        self._wake(StallReason.SEMAPHORE)
 
     def _described(self) -> str:
         return f"core {self.name} since cycle {self._cclk:,} ({running_line()})"
 
-    def _test_and_set_cclk(self) -> int:
-        chip = self._board.chip
-        return chip.events.testset_cclk + (chip.l2.read_cclk if chip.l2 else 0)
-
     def _test_and_set(self) -> Generator[Any, Any, None]:
-        testset_cclk = self._board.chip.events.testset_cclk
-        self.issue(testset_cclk)
-        if self._board.chip.l2:
-            self.stall(StallReason.L2_LATENCY, self._test_and_set_cclk() - testset_cclk)
+        yield from self._access(log.TEST_AND_SET, self._board.chip.events.testset_cclk)
+
+    def _access(self, kind: int, issue_cclk: int) -> Generator[Any, Any, None]:
+        """Access a shared variable in L2, and let the simulated time come up to that. Without L2 it costs its issue only."""
+        if not self._board.chip.l2:
+            self.issue(issue_cclk)
+        else:
+            self._check_claimed()
+            self._unclaimed = DeferredWork(SharedAccess(self._bus, self._number, kind, issue_cclk), ())
+            yield self._unclaimed
         yield from self._sync()
 
     def _semaphore(self, name: str) -> Semaphore:

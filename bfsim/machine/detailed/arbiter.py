@@ -2,7 +2,7 @@
 
 Who goes first (HRM of the BF537, 5-50 to 5-54): an urgent DMA before everything; DMA or cores, as CDPRIO says; of the DMAs
 those in the direction of the traffic, while its period lasts; then the lower channel, memory DMA last.
-The cores take turns, and their loads go before their stores [assumed].
+The cores take turns, and their loads go before their stores; at the port of L2 they take turns with the internal DMA [assumed].
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from typing import Any
 import simpy
 from simpy.events import EventPriority
 
-from bfsim.chip.spec import BoardSpec
+from bfsim.chip.spec import BoardSpec, L2Spec
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import PARTNERS, RANKS
+from bfsim.machine.bus.bus import INTERNAL, PARTNERS, RANKS
 from bfsim.machine.detailed.sdram import Page, SdramBanks
 from bfsim.machine.simulation import Simulation
 
@@ -39,21 +39,23 @@ class Grant:
     refresh_wait: int
 
 
+def never() -> bool:
+    """Whether a master is urgent that cannot be."""
+    return False
+
+
 @dataclass(eq=False, slots=True, kw_only=True)
 class Request:
     """A transaction that a master asks for. `granted` happens with a Grant when it has the bus."""
 
     master: int
-    offset: int
+    offset: int = 0
     nbytes: int
-    write: bool
-    is_urgent: Callable[[], bool]
+    write: bool = False
+    is_urgent: Callable[[], bool] = never
+    hold_cclk: int = 0
+    """How long it holds the port of L2."""
     granted: simpy.Event
-
-
-def never() -> bool:
-    """Whether a master is urgent that cannot be."""
-    return False
 
 
 def wait_until(env: Simulation, tick: int) -> Generator[simpy.Event, Any, None]:
@@ -79,18 +81,8 @@ class Arbiter:
         """The core that was served last: the other one comes first."""
         env.process(self._play())
 
-    def ask(
-        self, master: int, offset: int, nbytes: int, *, write: bool, is_urgent: Callable[[], bool] = never
-    ) -> simpy.Event:
-        """Ask for a transaction of `nbytes`; return the event of its grant."""
-        request = Request(
-            master=master,
-            offset=offset,
-            nbytes=nbytes,
-            write=write,
-            is_urgent=is_urgent,
-            granted=self._env.event(),
-        )
+    def _ask(self, request: Request) -> simpy.Event:
+        """Ask for a transaction; return the event of its grant."""
         self._requests.append(request)
         if not self._asked.triggered:
             self._asked.succeed()
@@ -145,6 +137,21 @@ class SdramArbiter(Arbiter):
         self._refresh_wait = 0
         self._direction, self._direction_left = False, 0
         self._streams = MdmaTurns(board.mdma_period_transfers)
+
+    def ask(
+        self, master: int, offset: int, nbytes: int, *, write: bool, is_urgent: Callable[[], bool] = never
+    ) -> simpy.Event:
+        """Ask for the bus, to move `nbytes`; return the event of its grant."""
+        return self._ask(
+            Request(
+                master=master,
+                offset=offset,
+                nbytes=nbytes,
+                write=write,
+                is_urgent=is_urgent,
+                granted=self._env.event(),
+            )
+        )
 
     def _free_at(self) -> int:
         return self._banks.command_from
@@ -222,23 +229,50 @@ class MdmaTurns:
 
 
 class L2Port(Arbiter):
-    """The port of L2 that both cores share."""
+    """The port of L2 that both cores and the internal DMA share."""
 
-    def __init__(self, env: Simulation, board: BoardSpec, words: Any) -> None:
+    def __init__(self, env: Simulation, l2: L2Spec, cclk_ticks: int, words: Any) -> None:
         super().__init__(env)
         self._words = words
-        self._l2 = board.chip.l2
-        self._cclk_ticks = board.clocks.cclk_ticks
+        self._l2 = l2
+        self._cclk_ticks = cclk_ticks
         self._free = 0
+        self._imdma_was_last = False
+
+    def ask(self, master: int, nbytes: int, *, write: bool) -> simpy.Event:
+        """Ask for `nbytes`, to be read or written by a core; return the event of its grant."""
+        return self._ask_for(
+            master, nbytes, -(-nbytes // self._l2.port_bytes) * self._l2.next_cclk, write=write
+        )
+
+    def ask_locked(self, master: int, nbytes: int) -> simpy.Event:
+        """Ask for a TESTSET: nobody else has the port between its read and its write."""
+        count_bytes(self._words, master, w.IN_L2, nbytes, write=True)
+        return self._ask_for(master, nbytes, self._l2.read_cclk + self._l2.next_cclk, write=False)
+
+    def ask_for_word(self, master: int, times: int) -> simpy.Event:
+        """Ask for a word of the internal DMA, `times` 2 if it is both read and written here."""
+        return self._ask_for(master, 0, times * self._l2.next_cclk, write=False)
+
+    def _ask_for(self, master: int, nbytes: int, hold_cclk: int, *, write: bool) -> simpy.Event:
+        request = Request(
+            master=master, nbytes=nbytes, write=write, hold_cclk=hold_cclk, granted=self._env.event()
+        )
+        return self._ask(request)
 
     def _free_at(self) -> int:
         return self._free
 
+    def _rank(self, request: Request) -> tuple[int, ...]:
+        if request.master in INTERNAL:
+            return (1 if self._imdma_was_last else -1, request.master)
+        return (0, *super()._rank(request))
+
     def _serve(self, request: Request) -> Grant:
-        assert self._l2 is not None, "no row lies in an L2 that is not there"
-        now, ticks = self._env.tick, self._cclk_ticks
-        pieces = -(-request.nbytes // self._l2.port_bytes)
-        self._free = now + pieces * self._l2.next_cclk * ticks
-        count_bytes(self._words, request.master, w.IN_L2, request.nbytes, write=request.write)
-        first = now + self._l2.read_cclk * ticks
-        return Grant(now, self._free, first, first, Page.HIT, 0)
+        now = self._env.tick
+        self._free = now + request.hold_cclk * self._cclk_ticks
+        self._imdma_was_last = request.master in INTERNAL
+        if request.nbytes:
+            count_bytes(self._words, request.master, w.IN_L2, request.nbytes, write=request.write)
+        through = now + self._l2.read_cclk * self._cclk_ticks
+        return Grant(now, self._free, through, through, Page.HIT, 0)

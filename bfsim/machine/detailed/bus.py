@@ -9,16 +9,19 @@ from collections.abc import Sequence
 
 import simpy
 
-from bfsim.chip.spec import BoardSpec
+from bfsim.chip.spec import BoardSpec, L2Spec
 from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import RANKS, Bus, Pace, Transfer, TransferPlan, Walk
 from bfsim.machine.bus.weave import plain_weave
 from bfsim.machine.detailed.arbiter import L2Port, SdramArbiter
-from bfsim.machine.detailed.core import CorePort
+from bfsim.machine.detailed.core import CorePort, Spin
 from bfsim.machine.detailed.dma import DetailedPlan, DetailedTransfer, DmaMaster
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
+
+NO_L2 = L2Spec(read_cclk=0, next_cclk=0, port_bytes=1)
+"""Of a chip without: nothing lies in it, and nobody asks for it."""
 
 
 class DetailedBus(Bus):
@@ -26,14 +29,16 @@ class DetailedBus(Bus):
 
     def __init__(self, env: Simulation, board: BoardSpec, memories: Memories) -> None:
         super().__init__(env, board, memories, plain_weave)
-        sdram, l2 = SdramArbiter(env, board, self.words), L2Port(env, board, self.words)
+        sdram = SdramArbiter(env, board, self.words)
+        l2 = L2Port(env, board.chip.l2 or NO_L2, board.clocks.cclk_ticks, self.words)
         self._channels = {
-            master: DmaMaster(env, board, memories, sdram, self.words, master) for master in RANKS
+            master: DmaMaster(env, board, memories, sdram, l2, self.words, master) for master in RANKS
         }
         self._ports = [
             CorePort(env, board, sdram, l2, memories.sdram_end, number) for number in range(w.CORES)
         ]
         self._on_their_way: dict[int, DetailedTransfer] = {}
+        self._spins: dict[int, Spin] = {}
 
     # ---- time: nothing here is ever behind the simulation
 
@@ -98,6 +103,20 @@ class DetailedBus(Bus):
         made = self.room_of(core)[log.LOG :][:entries]
         self._env.process(self._ports[core].call(begin, cclk, made, done))
         return done
+
+    def spin(self, core: int, since: int) -> None:
+        """Let a core that found a lock taken at tick `since` try TESTSET again and again, until `stop_spinning`."""
+        turn = self._spin_ticks()
+        self._spins[core] = self._ports[core].spin(since + turn, turn)
+
+    def pause_spinning(self, core: int) -> None:
+        """Let a core that spins do something else."""
+        self._spins[core].is_paused = True
+
+    def stop_spinning(self, core: int) -> simpy.Event:
+        """Let the next TESTSET of a core that spins be the last one, from now on; return its end."""
+        self._spins[core].won_at = self._env.tick
+        return self._spins[core].done
 
     def stalls_of(self, core: int) -> Sequence[int]:
         """Return what the accesses of the core's last call stalled, in cycles, in the order of `bus.state`."""

@@ -17,11 +17,8 @@ from numpy.typing import NDArray
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
-from bfsim.machine.detailed.arbiter import Arbiter, Grant, wait_until
-from bfsim.machine.detailed.sdram import Page
+from bfsim.machine.detailed.arbiter import Grant, L2Port, SdramArbiter, wait_until
 from bfsim.machine.simulation import Simulation
-
-WORD_BYTES = 4  # what a load or a store moves, whatever its width
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,11 +35,20 @@ class CoreAccess:
         return self.offset < other.offset + other.nbytes and other.offset < self.offset + self.nbytes
 
 
+@dataclass(slots=True)
+class Spin:
+    """A core that tries TESTSET again and again: the first try granted from tick `won_at` on is the last, its end `done`."""
+
+    done: simpy.Event
+    won_at: int | None = None
+    is_paused: bool = False
+
+
 class CorePort:
     """One core with its store buffer. `stalls`: cycles that the last call stalled, by reason, in the order of `bus.state`."""
 
     def __init__(
-        self, env: Simulation, board: BoardSpec, sdram: Arbiter, l2: Arbiter, sdram_end: int, number: int
+        self, env: Simulation, board: BoardSpec, sdram: SdramArbiter, l2: L2Port, sdram_end: int, number: int
     ) -> None:
         self._env = env
         self._board = board
@@ -71,7 +77,10 @@ class CorePort:
             yield from self._wait_for_line(begin, access)
             if any(access.overlaps(store) for store in self._buffer):
                 yield from self._wait_for_buffer(begin, access, self._has_stores)
-            yield from (self._read_sdram if access.offset < self._sdram_end else self._read_l2)(access)
+            if access.kind == log.TEST_AND_SET:
+                yield from self._test_and_set(access)
+            else:
+                yield from (self._read_sdram if access.offset < self._sdram_end else self._read_l2)(access)
         yield from wait_until(self._env, begin + (cclk + sum(self.stalls)) * self._cclk)
         done.succeed()
 
@@ -87,12 +96,14 @@ class CorePort:
     def _access(self, entry: int) -> CoreAccess:
         kind = entry >> log.KIND_BIT & log.KIND_MASK
         nbytes = self._board.chip.cache.line_bytes
-        if kind in (log.LOAD, log.STORE):
-            nbytes = WORD_BYTES
+        if kind in (log.LOAD, log.STORE, log.TEST_AND_SET):
+            nbytes = w.CORE_WORD_BYTES
         elif kind == log.FETCH:
             nbytes = w.FETCH_BYTES
         offset = entry & log.OFFSET_MASK
-        return CoreAccess(entry >> log.STAMP_BIT, kind, offset // WORD_BYTES * WORD_BYTES, nbytes)
+        return CoreAccess(
+            entry >> log.STAMP_BIT, kind, offset // w.CORE_WORD_BYTES * w.CORE_WORD_BYTES, nbytes
+        )
 
     def _issue(self, begin: int, access: CoreAccess) -> Generator[simpy.Event, Any, None]:
         """Wait for the cycle of the call at which an access is made, behind everything that stalled so far."""
@@ -118,25 +129,25 @@ class CorePort:
         done = through + sync - (edge - issued)
         if access.kind in (log.FILL, log.FETCH_LINE):
             self._line_done = grant.through + sync
-        self._charge_read(access, grant, self._cycles_since(issued, done))
+        self._charge_read(access, grant, edge, self._cycles_since(issued, done))
         yield from wait_until(self._env, done)
 
-    def _charge_read(self, access: CoreAccess, grant: Grant, cycles: int) -> None:
-        """Charge the latency of an idle bus to what was read, and what is beyond to a refresh or to the others on the bus."""
-        sdram = self._board.sdram
-        sclk = self._board.chip.external.core_sync_sclk + sdram.nCL
-        sclk += {Page.HIT: 0, Page.MISS: sdram.miss_sclk, Page.CONFLICT: sdram.conflict_sclk}[grant.page]
-        ticks = sclk * self._sclk + (grant.through - grant.first_through if access.kind == log.LOAD else 0)
-        unloaded = min(cycles, self._cycles_since(0, ticks))
-        refreshed = min(cycles - unloaded, grant.refresh_wait // self._cclk)
-        self._charge(access, w.PAGE_HIT + grant.page, unloaded)
+    def _charge_read(self, access: CoreAccess, grant: Grant, edge: int, cycles: int) -> None:
+        """Charge what a read stalls: up to its grant to the others on the bus, then to a refresh, and the rest to its page.
+
+        That rest is the SDRAM's own: its latency, opening and closing a page, and turning the data bus round.
+        """
+        began = grant.at - grant.refresh_wait
+        waited = min(cycles, max(0, began - edge) // self._cclk)
+        refreshed = min(cycles - waited, (grant.at - max(edge, began)) // self._cclk)
+        self._charge(access, w.PAGE_HIT + grant.page, cycles - waited - refreshed)
         self.stalls[w.REFRESHING] += refreshed
-        self.stalls[w.ARBITRATION] += cycles - unloaded - refreshed
+        self.stalls[w.ARBITRATION] += waited
 
     def _read_l2(self, access: CoreAccess) -> Generator[simpy.Event, Any, None]:
         """Read from L2."""
         issued = self._env.tick
-        grant: Grant = yield self._l2.ask(w.CORE_A + self._number, access.offset, access.nbytes, write=False)
+        grant: Grant = yield self._l2.ask(w.CORE_A + self._number, access.nbytes, write=False)
         self.stalls[w.L2_PORT] += -(-(grant.at - issued) // self._cclk)
         self._charge(access, w.L2_LATENCY, self._cycles_since(grant.at, grant.through))
         l2 = self._board.chip.l2
@@ -144,6 +155,30 @@ class CorePort:
         if access.kind in (log.FILL, log.FETCH_LINE):
             self._line_done = grant.through + (access.nbytes // l2.port_bytes - 1) * l2.next_cclk * self._cclk
         yield from wait_until(self._env, grant.through)
+
+    def _test_and_set(self, access: CoreAccess) -> Generator[simpy.Event, Any, None]:
+        """Read and write a byte of L2 with the port locked."""
+        issued = self._env.tick
+        grant: Grant = yield self._l2.ask_locked(w.CORE_A + self._number, access.nbytes)
+        self.stalls[w.L2_PORT] += -(-(grant.at - issued) // self._cclk)
+        self.stalls[w.L2_LATENCY] += (grant.free - grant.at) // self._cclk
+        yield from wait_until(self._env, grant.free)
+
+    def spin(self, begin: int, turn: int) -> Spin:
+        """Try TESTSET again and again from tick `begin` on, `turn` ticks behind the last one."""
+        spin = Spin(self._env.event())
+        self._env.process(self._spin(begin, turn, spin))
+        return spin
+
+    def _spin(self, begin: int, turn: int, spin: Spin) -> Generator[simpy.Event, Any, None]:
+        yield from wait_until(self._env, begin)
+        while not spin.is_paused:
+            grant: Grant = yield self._l2.ask_locked(w.CORE_A + self._number, w.CORE_WORD_BYTES)
+            yield from wait_until(self._env, grant.free)
+            if spin.won_at is not None and grant.at >= spin.won_at:
+                spin.done.succeed()
+                return
+            yield from wait_until(self._env, grant.free + turn)
 
     def _charge(self, access: CoreAccess, of_load: int, cycles: int) -> None:
         reason = (
@@ -181,11 +216,13 @@ class CorePort:
         while True:
             while not self._buffer:
                 yield self._buffer_changed
-            store, memory = self._buffer[0], self._l2
+            store, master = self._buffer[0], w.STORES_A + self._number
             if store.offset < self._sdram_end:
-                memory = self._sdram
                 yield from wait_until(self._env, self._edge(self._env.tick))
-            grant: Grant = yield memory.ask(w.STORES_A + self._number, store.offset, store.nbytes, write=True)
+                asked = self._sdram.ask(master, store.offset, store.nbytes, write=True)
+            else:
+                asked = self._l2.ask(master, store.nbytes, write=True)
+            grant: Grant = yield asked
             yield from wait_until(self._env, grant.free)
             self._buffer.popleft()
             self._change_buffer()

@@ -17,7 +17,7 @@ import simpy
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Pace, TransferPlan, Walk
-from bfsim.machine.detailed.arbiter import Grant, SdramArbiter, count_bytes, wait_until
+from bfsim.machine.detailed.arbiter import Grant, L2Port, SdramArbiter, count_bytes, wait_until
 from bfsim.machine.detailed.fifo import Element, Fifo
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
@@ -88,6 +88,7 @@ class DmaMaster:
         board: BoardSpec,
         memories: Memories,
         sdram: SdramArbiter,
+        l2: L2Port,
         words: Any,
         master: int,
     ) -> None:
@@ -95,6 +96,7 @@ class DmaMaster:
         self._board = board
         self._memories = memories
         self._sdram = sdram
+        self._l2 = l2
         self._words = words
         self._master = master
         self._sclk = board.clocks.sclk_ticks
@@ -132,6 +134,8 @@ class DmaMaster:
             yield from self._receive(plan, fifo)
         elif plan.source.offset < self._memories.sdram_end:
             yield from self._read_sdram(plan, fifo)
+        elif plan.mode == w.THROUGH_L2_PORT:
+            yield from self._read_through_l2_port(plan, fifo)
         else:
             yield from self._read_on_chip(plan, fifo)
         fifo.close()
@@ -203,6 +207,17 @@ class DmaMaster:
         return True
 
     # ---- sides on the chip
+
+    def _read_through_l2_port(self, plan: DetailedPlan, fifo: Fifo) -> Play:
+        """Take a word in its time from the moment that the internal DMA has the port of L2."""
+        memories, word = self._memories, int(plan.pace.element_ticks)
+        times = sum(
+            memories.sdram_end <= each.offset < memories.l2_end for each in (plan.source, plan.destination)
+        )
+        for offset in offsets(plan.source, plan.count):
+            grant: Grant = yield self._l2.ask_for_word(self._master, times)
+            yield from wait_until(self._env, grant.at + word)
+            fifo.put(Element(self._load(plan, offset), self._env.tick))
 
     def _read_on_chip(self, plan: DetailedPlan, fifo: Fifo) -> Play:
         start = self._env.tick

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import simpy
 
 from bfsim.chip.dma_channels import BF561_CHANNELS
+from bfsim.chip.dma_registers import ELEMENT_BYTES
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
@@ -144,17 +145,23 @@ class MemoryDma:
         self.destination.stop()
 
     def _post(self, source: ChannelStep, destination: ChannelStep) -> Any:
+        """Have the descriptors fetched and then the words moved, one transfer behind the other; return the last one."""
         assert source.unit is not None
         assert destination.unit is not None
-        elements = sum(step.fetch.elements for step in (source, destination) if step.fetch)
-        setup_sclk = self._dma.startup_sclk + elements * self._dma.descriptor_sclk
+        master = STREAMS[self.name]
+        for step in (source, destination):
+            if step.fetch:
+                elements = step.fetch.elements
+                offset = self._memories.offset_of(step.fetch.address, elements * ELEMENT_BYTES)
+                setup_sclk = elements * self._dma.descriptor_sclk
+                self._bus.post(self._bus.plan_fetch(master, offset, elements, setup_sclk * self._sclk_ticks))
         plan = self._bus.plan_copy(
-            STREAMS[self.name],
+            master,
             self._walk(source.unit),
             self._walk(destination.unit),
             destination.unit.words,
             element_bytes=destination.unit.word_bytes,
-            setup=setup_sclk * self._sclk_ticks,
+            setup=self._dma.startup_sclk * self._sclk_ticks,
         )
         return self._bus.post(plan)
 
