@@ -1,7 +1,7 @@
 """How fast the simulator is. Run with `pytest benchmarks/test_speed.py --benchmark-columns=median,min,max`.
 
-Compare within one run only: `simulated` against `floor` (the same kernels on the same pixels, without counters and
-SimPy), and cold against warm start. Timings are not asserted; the number of events is.
+Compare within one run only: `simulated` against `floor` (the same kernels on the same pixels, without counters, checks
+and SimPy), and cold against warm start. Timings are not asserted; the number of events is.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from functools import partialmethod
 from itertools import cycle, islice
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from benchmarks.bare import run_bare
 from bfsim.api import FrameSize
 from bfsim.chip.boards import CM_BF561
+from bfsim.kernel import Kernel
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
@@ -52,8 +54,17 @@ def test_simulated(benchmark: BenchmarkFixture, frames: list[StereoFrame]) -> No
 
 
 @pytest.mark.benchmark(group=f"{STEREO_FRAMES} stereo frames")
+def test_unchecked(
+    benchmark: BenchmarkFixture, frames: list[StereoFrame], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same without checks of indexes and divisors: what these cost."""
+    monkeypatch.setattr(Kernel, "compile", partialmethod(Kernel.compile, checked=False))
+    benchmark.pedantic(run_simulated, (frames,), warmup_rounds=1, rounds=7)
+
+
+@pytest.mark.benchmark(group=f"{STEREO_FRAMES} stereo frames")
 def test_floor(benchmark: BenchmarkFixture, frames: list[StereoFrame]) -> None:
-    """The same kernels on the same pixels without counters and SimPy."""
+    """The same kernels on the same pixels without counters, checks and SimPy."""
     benchmark.pedantic(run_bare, (tinyphoon, frames), warmup_rounds=1, rounds=7)
 
 

@@ -4,6 +4,7 @@ An entry takes nothing and returns the issue and interlock cycles of one call in
 cheapest that Python has. It finds its argument block through the cell `cell_name(entry)`, a pointer: an array of
 64-bit words with the address of the totals (one word per counter), then pointer and length of each array,
 each integer (or the bits of a float), the access_trace's state (traced kernels only), and last a word for the kernel's result.
+A guard that fails comes back to it from wherever it is (`setjmp` and `longjmp` of the C library), and it returns FAILED.
 """
 
 from __future__ import annotations
