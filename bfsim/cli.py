@@ -39,6 +39,11 @@ class _Bfsim(click.Group):
             raise SystemExit(exit_code_of(call))
         return call()
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        if any("\0" in each for each in args):  # no system gives them, but callers in Python may
+            raise click.UsageError("arguments must be without NUL characters")
+        return super().parse_args(ctx, args)
+
     def invoke(self, ctx: click.Context) -> Any:
         try:
             return super().invoke(ctx)
@@ -158,9 +163,9 @@ def run(
       bfsim run drive.mcap --feed recorded --json drive.json
       bfsim run drive.mcap --overlay drive-seen --mcap drive-seen.mcap
     """
-    from bfsim.report.as_json import json_text
+    from bfsim.report.as_json import json_chunks
     from bfsim.report.save import require_apart, require_place, write_text
-    from bfsim.report.seen_json import seen_json
+    from bfsim.report.seen_json import SeenStore
     from bfsim.report.tables import run_report
 
     if json_path and json_path != STDOUT:
@@ -168,24 +173,21 @@ def run(
         require_apart(json_path, (what["recording"], what["ldf"], what["script"], mcap, overlay))
     if features and not json_path:
         raise ConfigError("--features must come with --json FILE, which it adds to")
-    seen: dict[int, dict[str, Any]] = {}
-
-    def keep(frame: SeenFrame) -> None:
-        seen[frame.index] = seen_json(frame, with_features=features)
-
     if features or show or overlay or mcap:
         require_view(what["firmware"])
-    with watching(show=show, overlay=overlay, mcap=mcap) as watchers:
-        if json_path:
-            watchers.append(keep)
-        done = _simulate(watchers=watchers, **what)
-    if json_path == STDOUT:
-        click.echo(json_text(done, seen), nl=False)
-        _warn(done)
-    else:
-        print_report(run_report(done))
-        if json_path:
-            write_text(json_path, json_text(done, seen))
+    with SeenStore(with_features=features) as seen:
+        with watching(show=show, overlay=overlay, mcap=mcap) as watchers:
+            if json_path:
+                watchers.append(seen.add)
+            done = _simulate(watchers=watchers, **what)
+        if json_path == STDOUT:
+            for chunk in json_chunks(done, seen):
+                click.echo(chunk, nl=False)
+            _warn(done)
+        else:
+            print_report(run_report(done))
+            if json_path:
+                write_text(json_path, json_chunks(done, seen))
     _exit_if_interrupted(done)
 
 

@@ -25,7 +25,7 @@ class _Size(click.ParamType[tuple[int, int]]):
             return value
         found = re.fullmatch(r"([1-9]\d{0,3})x([1-9]\d{0,3})", value)
         if found is None:
-            self.fail(f"must be width x height in pixels, such as 320x240, not {value!r}", param, ctx)
+            self.fail(f"must be width x height in pixels, such as 320x240, not {shown(value)}", param, ctx)
         return int(found[1]), int(found[2])
 
 
@@ -152,4 +152,4 @@ def ldf(
     else:
         print_report(ldf_report(found, findings, symbols=symbols))
     if picture:
-        write_bytes(picture, picture_bytes(found, picture))
+        write_bytes(picture, [picture_bytes(found, picture)])

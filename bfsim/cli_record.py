@@ -12,6 +12,7 @@ import click
 from rich.table import Table
 
 from bfsim import shipped
+from bfsim.errors import shown
 from bfsim.terminal import print_report, progress_bar
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ class _Size(click.ParamType[tuple[int, int]]):
     ) -> tuple[int, int]:
         width, _, height = value.partition("x")
         if not (width.isdecimal() and height.isdecimal() and int(width) and int(height)):
-            self.fail(f"size must be like 320x240, not {value!r}", param, ctx)
+            self.fail(f"size must be like 320x240, not {shown(value)}", param, ctx)
         return int(width), int(height)
 
 
@@ -42,7 +43,7 @@ class _Distances(click.ParamType[tuple[float, ...]]):
         try:
             return tuple(float(part) for part in value.split(","))
         except ValueError:
-            self.fail(f"distances must be like 250,300,350, not {value!r}", param, ctx)
+            self.fail(f"distances must be like 250,300,350, not {shown(value)}", param, ctx)
 
 
 @click.group(name="record")

@@ -8,7 +8,7 @@ import traceback
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from io import TextIOWrapper
+from io import StringIO, TextIOWrapper
 from typing import Any
 
 import click
@@ -17,6 +17,8 @@ from bfsim.errors import BfsimError, BfsimWarning
 from bfsim.signals import BY_SIGNAL, interrupted_code
 
 LIMIT_BROKEN, MISTAKE = 1, 2
+LONGEST_MESSAGE = 1000
+"""As many characters of a mistake are printed; a message names its place at the beginning."""
 FAULT = 70
 """Exit code of a fault of bfsim's own: EX_SOFTWARE of sysexits.h."""
 CLOSED_PIPE = BY_SIGNAL + 13
@@ -57,7 +59,9 @@ def _exit_code_of(command: Callable[[], Any]) -> int:
     except SystemExit as error:
         code = error.code
     except click.ClickException as error:
-        error.show()
+        text = StringIO()
+        error.show(text)
+        click.echo(_shortened(text.getvalue()), nl=False, err=True)
         return error.exit_code
     except BfsimError as error:
         return _mistake(str(error))
@@ -81,8 +85,15 @@ def _warn(message: Warning | str, category: type[Warning], *_place: Any) -> None
 
 
 def _mistake(message: str) -> int:
-    click.echo(f"bfsim: error: {message}", err=True)
+    click.echo(f"bfsim: error: {_shortened(message)}", err=True)
     return MISTAKE
+
+
+def _shortened(message: str) -> str:
+    """Return a message without its middle if it is long, as where it lists what there is."""
+    hidden = len(message) - LONGEST_MESSAGE
+    half = LONGEST_MESSAGE // 2
+    return f"{message[:half]}[{hidden} more characters]{message[-half:]}" if hidden > 0 else message
 
 
 class _OutputError(Exception):

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import ModuleType
 
 from bfsim import shipped
-from bfsim.errors import BfsimError, FirmwareError
+from bfsim.errors import BfsimError, FirmwareError, shown
 from bfsim.importing import OwnModules, Root
 from bfsim.kernel import Kernel
 from bfsim.locating import located, parted
@@ -148,7 +148,7 @@ def import_own(module: str, root: Root) -> tuple[ModuleType, OwnModules]:
     except (Exception, SystemExit) as error:
         if isinstance(error, ModuleNotFoundError) and f"{module}.".startswith(f"{error.name}."):
             raise FirmwareError(
-                f"the module {module!r} must be in {root.folder}, but there is none"
+                f"the module {shown(module)} must be in {root.folder}, but there is none"
             ) from None
         raise _failed(module, error) from error
     _imported[module, root] = imported, own

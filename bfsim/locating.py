@@ -10,7 +10,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 
 from bfsim import shipped
-from bfsim.errors import FirmwareError
+from bfsim.errors import FirmwareError, shown
 from bfsim.importing import NEVER_OWN, Root
 
 
@@ -22,7 +22,7 @@ def parted(name: str) -> tuple[str, str]:
     is_package = all(each.isidentifier() for each in place.split("."))
     if not (is_package or place.endswith(".py")) or not (attribute.isidentifier() or not colon):
         names = " or ".join(shipped.FIRMWARE)
-        raise FirmwareError(f"--firmware must be FILE.py:NAME, PACKAGE:NAME, {names}, not {name!r}")
+        raise FirmwareError(f"--firmware must be FILE.py:NAME, PACKAGE:NAME, {names}, not {shown(name)}")
     return place, attribute
 
 
@@ -37,7 +37,7 @@ def located(place: str, advice: str = "") -> tuple[str, Root]:
         raise FirmwareError(f"{place} must have another name: {top} is a module of Python or bfsim")
     if root is None:
         raise FirmwareError(
-            f"the package {place!r} must be installed or in the folder {Path.cwd()}, but there is none{advice}"
+            f"the package {shown(place)} must be installed or in the folder {Path.cwd()}, but there is none{advice}"
         )
     return module, root
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TypeGuard
 
 from bfsim import shipped
-from bfsim.errors import RecordingError
+from bfsim.errors import RecordingError, shown
 from bfsim.loading import SHIPPED, import_own
 from bfsim.locating import located
 from bfsim.recording.scenes import Scene, SceneAtDistances, Scenes
@@ -30,7 +30,9 @@ def load_scenes(name: str) -> Scenes:
 def _built_in(name: str) -> Scenes:
     if name not in shipped.SCENES:
         known = ", ".join(shipped.SCENES)
-        raise RecordingError(f"SCENE must be FILE.py:NAME, PACKAGE:NAME, or one of {known}, not {name!r}")
+        raise RecordingError(
+            f"SCENE must be FILE.py:NAME, PACKAGE:NAME, or one of {known}, not {shown(name)}"
+        )
     module, _ = import_own(shipped.SCENES_MODULE, SHIPPED)
     return module.SCENES[name]  # type: ignore[no-any-return]  # a test knows them
 

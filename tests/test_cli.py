@@ -208,3 +208,25 @@ def test_the_json_takes_the_place_of_nothing_else(tmp_path: Path, other: str) ->
     result = call("run", *option, str(file), "--json", str(tmp_path / "." / "drive.mcap"))
     assert result.exit_code == 2
     assert "drive.mcap must be a file of its own to be written" in result.output
+
+
+@pytest.mark.parametrize("option", ["--json", "--mcap", "--baseline"])
+def test_links_in_a_circle(tmp_path: Path, option: str) -> None:
+    """They are told before anything runs."""
+    loop = tmp_path / "loop"
+    loop.symlink_to(loop)
+    command = ("check", "--update") if option == "--baseline" else ("run",)
+    result = call(*command, option, str(loop))
+    assert result.exit_code == 2
+    assert f"{loop} must lead to a place, not in a circle of links" in result.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["boards", "x" * 35_000], ["fly" * 10_000], ["run", "--frames", "9" * 35_000], ["boards", "a\0b"]],
+)
+def test_messages_are_short(arguments: list[str]) -> None:
+    """Whatever was given."""
+    result = call(*arguments)
+    assert result.exit_code == 2
+    assert 0 < len(result.stderr) < 1300

@@ -60,7 +60,7 @@ MAY_IMPORT = {
     "terminal": set(),
     "cli_boards": {"chip", "report", "terminal"},
     "cli_ldf": {"errors", "mapping", "report", "shipped", "terminal"},
-    "cli_record": {"recording", "scenery", "shipped", "terminal"},
+    "cli_record": {"errors", "recording", "scenery", "shipped", "terminal"},
     "cli_seen": {"errors", "recording", "report", "run", "seen"},
     "cli": {
         "endings",

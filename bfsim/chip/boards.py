@@ -12,7 +12,7 @@ from bfsim.chip.sdram_parts import BF561_EZKIT_64_MB, CM_BF533_32_MB, CM_BF561_3
 from bfsim.chip.sensors import LEFT_CAMERA, MHZ, OV9650, RIGHT_CAMERA
 from bfsim.chip.spec import BoardSpec, ChipSpec, Pll, SdramSpec
 from bfsim.clocks import Clocks
-from bfsim.errors import ConfigError
+from bfsim.errors import ConfigError, shown
 
 CM_CLKIN_HZ = Fraction(25 * MHZ)  # CONFIG_CLKIN_HZ of u-boot's cm-bf561.h and cm-bf533.h
 EZKIT_CLKIN_HZ = Fraction(30 * MHZ)  # CONFIG_CLKIN_HZ of u-boot's bf561-ezkit.h
@@ -141,4 +141,4 @@ def board_named(name: str) -> BoardSpec:
     try:
         return BOARDS[name]
     except KeyError:
-        raise ConfigError(f"--board must be one of {', '.join(BOARDS)}, not {name!r}") from None
+        raise ConfigError(f"--board must be one of {', '.join(BOARDS)}, not {shown(name)}") from None

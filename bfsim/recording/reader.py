@@ -233,7 +233,9 @@ class RecordingReader:
         try:
             return layout.unseal(record, self.library)
         except ValueError as error:
-            raise RecordingError(f"{self.path}: metadata {name!r} must be readable, but {error}") from None
+            raise RecordingError(
+                f"{self.path}: metadata {shown(name)} must be readable, but {error}"
+            ) from None
 
     def _read_geometry(self) -> StereoGeometry | None:
         record = self._metadata(layout.GEOMETRY_RECORD)

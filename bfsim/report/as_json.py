@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pydantic_core import to_jsonable_python
@@ -24,17 +24,18 @@ Seen = Mapping[int, Mapping[str, Any]]
 _NUMBERS = re.compile(r"\[\n\s+(-?[\d.e+-]+(?:,\n\s+-?[\d.e+-]+)*)\n\s+\]")
 
 
-def as_json(run: RunRecord, seen: Seen | None = None) -> dict[str, Any]:
+_FRAMES = "\0frames"
+"""Stands for the frames where the text around them is made."""
+
+
+def as_json(run: RunRecord) -> dict[str, Any]:
     """Return the records of a run of at least one frame as they are, and beside them warnings, budget and digests.
 
-    Each frame of `seen` has it beside its records. Keys are the field names of `bfsim.trace` and `bfsim.report.budget`, so each carries its unit.
+    Keys are the field names of `bfsim.trace` and `bfsim.report.budget`, so each carries its unit.
     """
     plain: dict[str, Any] = to_jsonable_python(run, fallback=dict)
     budget = to_jsonable_python(budget_of(run), fallback=dict)
     digests = {"identity": identity_digest(run.identity), "cycles": cycle_digest(run.frames)}
-    for frame in plain["frames"]:
-        if seen and frame["index"] in seen:
-            frame["seen"] = seen[frame["index"]]
     warnings = [_flat(each) for each in warnings_of(run)]
     del plain["assumptions"]  # they are among the warnings
     return {"schema": SCHEMA, "digests": digests, "warnings": warnings, "budget": budget, **plain}
@@ -46,7 +47,26 @@ def _flat(warning: RunWarning) -> dict[str, Any]:
     return {"kind": warning.kind.value, "text": warning.text, **result, **warning.numbers}
 
 
+def json_chunks(run: RunRecord, seen: Seen | None = None) -> Iterator[str]:
+    """Yield `as_json` as indented text that ends in a line feed, with lists of numbers in one line.
+
+    A chunk holds a frame: what was seen of all of them need not be in memory at once.
+    """
+    plain = as_json(run)
+    frames, plain["frames"] = plain["frames"], [_FRAMES]
+    before, _, after = _text(plain).partition(json.dumps(_FRAMES))
+    yield before
+    for number, frame in enumerate(frames):
+        found = {"seen": seen[frame["index"]]} if seen and frame["index"] in seen else {}
+        yield ",\n    " * (number > 0) + _text(frame | found).replace("\n", "\n    ")
+    yield f"{after}\n"
+
+
 def json_text(run: RunRecord, seen: Seen | None = None) -> str:
-    """Return `as_json` as indented text that ends in a line feed, with lists of numbers in one line."""
-    text = json.dumps(as_json(run, seen), indent=2, ensure_ascii=False)
-    return _NUMBERS.sub(lambda found: f"[{', '.join(found[1].split())}]".replace(",,", ","), text) + "\n"
+    """Return `json_chunks` as one text."""
+    return "".join(json_chunks(run, seen))
+
+
+def _text(plain: Mapping[str, Any]) -> str:
+    text = json.dumps(plain, indent=2, ensure_ascii=False)
+    return _NUMBERS.sub(lambda found: f"[{', '.join(found[1].split())}]".replace(",,", ","), text)

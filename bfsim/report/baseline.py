@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from tomlkit import TOMLDocument
 from tomlkit.exceptions import TOMLKitError
 
-from bfsim.errors import ConfigError
+from bfsim.errors import ConfigError, cut, shown
 from bfsim.report.budget import Budget
 from bfsim.report.save import write_text
 from bfsim.trace import Identity, RunRecord
@@ -119,7 +119,7 @@ def _parsed(path: Path) -> TOMLDocument:
     try:
         return tomlkit.parse(path.read_text(encoding="utf-8"))
     except (TOMLKitError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{path} must be TOML: {error}") from error
+        raise ConfigError(f"{path} must be TOML: {cut(str(error))}") from error
     except OSError as error:
         raise ConfigError(f"{path} must be a readable file: {error.strerror}") from error
 
@@ -129,14 +129,14 @@ def _validated(document: TOMLDocument, path: Path) -> Baseline:
         return Baseline.model_validate(document.unwrap())
     except ValidationError as error:
         first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
+        key = cut(".".join(str(part) for part in first["loc"]))
         match first["type"]:
             case "missing":
                 raise ConfigError(f"{path}: the key {key} must be there; --update writes it") from error
             case "extra_forbidden":
                 raise ConfigError(f"{path}: {key} must not be there: a baseline has no such key") from error
         must_be = first["msg"].replace("Input should", "must").removesuffix(" instance")
-        raise ConfigError(f"{path}: {key} {must_be}, not {first['input']!r}") from error
+        raise ConfigError(f"{path}: {key} {must_be}, not {shown(first['input'])}") from error
 
 
 def _measured(run: RunRecord, budget: Budget) -> dict[str, Any]:

@@ -17,36 +17,45 @@ def require_place(path: Path) -> None:
         raise ConfigError(f"{path}: the folder {path.parent} must exist to write a file there")
     if path.exists() and not path.is_file():
         raise ConfigError(f"{path} must be an ordinary file to be written, not a folder or a device")
-    if not os.access(path.resolve().parent, os.W_OK):
+    if not os.access(_resolved(path).parent, os.W_OK):
         raise ConfigError(f"{path}: the folder {path.parent} must be writable to write a file there")
 
 
 def require_apart(path: Path, others: Iterable[Path | None]) -> None:
     """Raise ConfigError if one of the `others`, which a command reads or writes too, is the file at `path`."""
-    if path.resolve() in {each.resolve() for each in others if each}:
+    if _resolved(path) in {_resolved(each) for each in others if each}:
         raise ConfigError(
             f"{path} must be a file of its own to be written, not one that is read or written, too"
         )
 
 
-def write_text(path: Path, text: str) -> None:
-    """Write `text` to `path` as `write_bytes` does."""
-    write_bytes(path, text.encode())
+def write_text(path: Path, text: str | Iterable[str]) -> None:
+    """Write `text`, or its parts one after the other, to `path` as `write_bytes` does."""
+    write_bytes(path, [text.encode()] if isinstance(text, str) else (each.encode() for each in text))
 
 
-def write_bytes(path: Path, content: bytes) -> None:
+def write_bytes(path: Path, content: Iterable[bytes]) -> None:
     """Write `content` beside `path` first and then put it in its place; a link is followed, permissions are kept.
 
     Raises ConfigError where the system refuses.
     """
     require_place(path)
-    target = path.resolve()
+    target = _resolved(path)
     try:
         with draft_folder(target.parent) as folder:
             draft = folder / target.name
-            draft.write_bytes(content)
+            with draft.open("wb") as stream:
+                stream.writelines(content)
             if target.exists():
                 shutil.copymode(target, draft)
             draft.replace(target)
     except OSError as error:
         raise ConfigError(f"{path} must be writable: {error.strerror}") from error
+
+
+def _resolved(path: Path) -> Path:
+    """Return where a path leads; raise ConfigError for links in a circle and for what is no name."""
+    try:
+        return path.resolve()
+    except (OSError, RuntimeError, ValueError):
+        raise ConfigError(f"{path} must lead to a place, not in a circle of links") from None

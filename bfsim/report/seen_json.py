@@ -2,15 +2,62 @@
 
 from __future__ import annotations
 
+import json
+import os
+import tempfile
+import zlib
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
-from typing import Any
+from typing import Any, Self
 
 from pydantic_core import to_jsonable_python
 
+from bfsim.errors import ConfigError
 from bfsim.seen import Seen, SeenFrame
 
 RECORDS = ("blobs", "lines", "circles", "rectangles")
 """Fields of `Seen` that hold records of one picture."""
+
+
+class SeenStore(Mapping[int, dict[str, Any]]):
+    """What was seen in each frame (`seen_json`) by the frame's index, in a file that has no name and ends with the process.
+
+    In memory there is one frame at a time. A context manager; raises ConfigError where there is no room for the file.
+    """
+
+    def __init__(self, *, with_features: bool) -> None:
+        self._with_features = with_features
+        self._file = tempfile.TemporaryFile()  # noqa: SIM115 - closed at the end of the `with` block
+        self._places: dict[int, tuple[int, int]] = {}  # offset and bytes
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self._file.close()
+
+    def add(self, frame: SeenFrame) -> None:
+        """Keep what was seen in a frame."""
+        text = json.dumps(seen_json(frame, with_features=self._with_features), separators=(",", ":"))
+        packed = zlib.compress(text.encode(), level=1)
+        try:
+            self._places[frame.index] = self._file.seek(0, os.SEEK_END), self._file.write(packed)
+            self._file.flush()
+        except OSError as error:
+            where = tempfile.gettempdir()
+            raise ConfigError(f"{where} must have room for what was seen: {error.strerror}") from error
+
+    def __getitem__(self, index: int) -> dict[str, Any]:
+        offset, nbytes = self._places[index]
+        self._file.seek(offset)
+        found: dict[str, Any] = json.loads(zlib.decompress(self._file.read(nbytes)))
+        return found
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(self._places)
+
+    def __len__(self) -> int:
+        return len(self._places)
 
 
 def seen_json(frame: SeenFrame, *, with_features: bool) -> dict[str, Any]:

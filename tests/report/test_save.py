@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from bfsim.errors import ConfigError
-from bfsim.report.save import require_place, write_text
+from bfsim.report.save import require_apart, require_place, write_text
 
 
 def test_file_is_replaced_and_nothing_is_left_beside_it(tmp_path: Path) -> None:
@@ -51,3 +51,13 @@ def test_folder_and_device_are_refused(tmp_path: Path) -> None:
     for path in (tmp_path, Path("/dev/null")):
         with pytest.raises(ConfigError, match="must be an ordinary file"):
             write_text(path, "new")
+
+
+def test_links_in_a_circle(tmp_path: Path) -> None:
+    """They lead nowhere."""
+    loop = tmp_path / "loop"
+    loop.symlink_to(loop)
+    with pytest.raises(ConfigError, match="loop must lead to a place, not in a circle of links"):
+        require_place(loop)
+    with pytest.raises(ConfigError, match="in a circle"):
+        require_apart(tmp_path / "other", [loop])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from bfsim.report.as_json import json_text
-from bfsim.report.seen_json import seen_json
+from bfsim.report.seen_json import SeenStore, seen_json
 from tests import seen_frames as made
 from tests.report.records import edge_run
 
@@ -51,3 +51,10 @@ def test_each_frame_has_its_own() -> None:
     assert frames[1]["seen"]["edges_3d_mm"][1] == [-10, 5, 1500]
     assert "[-10, 5, 1500]" in text  # a line each, not a line a number
     assert json.loads(json_text(run)) == json.loads(json_text(run, {}))
+
+
+def test_a_store_keeps_each_frame_outside_of_memory() -> None:
+    """What comes out is what `seen_json` made."""
+    with SeenStore(with_features=True) as store:
+        store.add(made.frame(1))
+        assert dict(store) == {1: seen_json(made.frame(1), with_features=True)}
