@@ -42,6 +42,8 @@ class Op(StrEnum):
     BRANCH_NOT_TAKEN_BP = "branch_not_taken_bp"
     JUMP = "jump"
     CALL = "call"
+    TAIL_CALL = "tail_call"
+    NOP = "nop"
     LIBRARY = "library"
     RETURN = "ret"
     LINK = "link"
@@ -72,8 +74,9 @@ COSTS: dict[Op, Cost] = {
     Op.MUL32: Cost(3, 2),                                       # [SIM] R *= R
     Op.BRANCH_NOT_TAKEN: Cost(1, 2), Op.BRANCH_TAKEN: Cost(9, 2),        # [SIM] decode_BRCC_0
     Op.BRANCH_NOT_TAKEN_BP: Cost(9, 2), Op.BRANCH_TAKEN_BP: Cost(5, 2),  # with (bp), predicted taken
-    Op.JUMP: Cost(5, 2), Op.CALL: Cost(5, 4), Op.RETURN: Cost(5, 2),     # [SIM] change of flow
+    Op.JUMP: Cost(5, 2), Op.CALL: Cost(5, 4), Op.TAIL_CALL: Cost(5, 4), Op.RETURN: Cost(5, 2),     # [SIM] change of flow
     Op.LIBRARY: Cost(0, 0),                                     # inside a library routine: the profile says
+    Op.NOP: Cost(1, 2),                                         # [SIM]
     Op.LINK: Cost(3, 4), Op.UNLINK: Cost(2, 4),                 # [SIM]
     Op.PUSH_MULTIPLE: Cost(0, 2), Op.POP_MULTIPLE: Cost(0, 2),  # the profile says: [SIM] or [EE-171]
 }  # fmt: skip
@@ -88,7 +91,7 @@ MNEMONICS: dict[Op, str] = {
     Op.BIT_TEST: "CC = BITTST(R, n)", Op.COND_MOVE: "IF CC R = R", Op.CC_MOVE: "R = CC",
     Op.LOOP_SETUP: "LSETUP", Op.BRANCH_TAKEN: "IF CC JUMP, taken", Op.BRANCH_NOT_TAKEN: "IF CC JUMP, not taken",
     Op.BRANCH_TAKEN_BP: "IF CC JUMP (bp), taken", Op.BRANCH_NOT_TAKEN_BP: "IF CC JUMP (bp), not taken",
-    Op.JUMP: "JUMP", Op.CALL: "CALL", Op.LIBRARY: "run-time library", Op.RETURN: "RTS", Op.LINK: "LINK",
+    Op.JUMP: "JUMP", Op.CALL: "CALL", Op.TAIL_CALL: "JUMP.L", Op.NOP: "NOP", Op.LIBRARY: "run-time library", Op.RETURN: "RTS", Op.LINK: "LINK",
     Op.UNLINK: "UNLINK", Op.PUSH: "[--SP] = R", Op.POP: "R = [SP++]",
     Op.PUSH_MULTIPLE: "[--SP] = (R7:n, P5:n)", Op.POP_MULTIPLE: "(R7:n, P5:n) = [SP++]",
 }  # fmt: skip
@@ -115,3 +118,7 @@ HARDWARE_LOOPS = 2  # [PRM] LC0/LT0/LB0 and LC1/LT1/LB1
 # operation, as an address or in the address unit's adder; each operation in between hides one.
 LOAD_TO_POINTER_STALL = 3  # [GCC] bfin_adjust_cost, [VANN]
 MOVE_TO_POINTER_STALL = 4  # [GCC] bfin_adjust_cost, [VANN]
+
+# An RTS too early in a function may return to a wrong place: compilers put NOPs before what is shorter
+CYCLES_BEFORE_RETURN = 4  # [GCC] workaround_rts_anomaly: anomaly 05000371, which all silicon revisions have
+PRODUCT_BEFORE_RETURN = 5  # [GCC] of which a 32-bit product counts as so many

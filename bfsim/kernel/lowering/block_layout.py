@@ -33,8 +33,8 @@ class BlockLayout:
         self.flow, self.likelihood, self.skipped, self.copies = flow, likelihood, skipped, copies
         self.leaving_side_last = leaving_side_last
         self.names = [*self._named(copies)]
-        order = self._order()
-        self.next_of = dict(pairwise(order))
+        self.order = self._order()
+        self.next_of = dict(pairwise(self.order))
 
     def _named(self, copies: dict[tuple[str, str], list[Charge]]) -> list[str]:
         """Blocks with code, in the order of the source; an edge's copies right before where it leads."""
@@ -188,3 +188,9 @@ class BlockLayout:
 def edge_name(edge: tuple[str, str]) -> str:
     """Name of the copies on an edge, as if they were a block."""
     return f"{edge[0]}>{edge[1]}"
+
+
+def edge_of(name: str) -> tuple[str, str]:
+    """The edge whose copies have a name."""
+    label, way = name.split(">")
+    return label, way

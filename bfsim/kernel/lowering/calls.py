@@ -40,8 +40,8 @@ class Calls:
             return
         arguments = self.context.arguments(each)
         self._pass(each, arguments)
-        result = each.result or None
-        self.append(Op.CALL, each, result, DATA)
+        is_last = self.context.tail_calls.get(self.label) is each
+        self.append(Op.TAIL_CALL if is_last else Op.CALL, each, each.result, DATA)
 
     def _pass(self, each: Instruction, arguments: list[str]) -> None:
         for number, value in enumerate(arguments):

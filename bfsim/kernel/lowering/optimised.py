@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from bfsim.kernel import isa
 from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine
 from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import Loop
-from bfsim.kernel.lowering.block_layout import BlockLayout
+from bfsim.kernel.lowering.block_layout import BlockLayout, edge_of
 from bfsim.kernel.lowering.charges import BlockCost, Charge, Test, charge, instead
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineInstruction
@@ -110,6 +112,7 @@ class _OptimisedLowering:
     # Function
 
     def _enter(self, cost: BlockCost, line: SourceLine) -> None:
+        cost.charges += [charge(Op.NOP, line)] * self._padding()
         for op in _saving(self.allocation, Op.PUSH, Op.PUSH_MULTIPLE):
             cost.charges.append(self._stack(op, line))
         if self.allocation.calls:
@@ -118,6 +121,28 @@ class _OptimisedLowering:
         elif self.allocation.saves_frame_pointer:
             cost.charges.append(charge(Op.PUSH, line))
         cost.charges += [self._charge(instruction) for instruction in self.allocation.entry]
+
+    def _padding(self) -> int:
+        """NOPs before a function in whose code an RTS comes too early [workaround_rts_anomaly in bfin.cc of GCC 12]."""
+        if self.allocation.calls or self.allocation.saved_data or self.allocation.saved_pointers:
+            return 0
+        left = isa.CYCLES_BEFORE_RETURN - len(self.allocation.entry)
+        for label in self.layout.order:
+            left -= sum(_hides(each) for each in self._code_at(label))
+            block = self.flow.blocks.get(label)
+            if block is not None and len(set(block.successors)) == 2:
+                left -= label not in self.context.if_conversion.by_label
+            elif block is not None and block.terminator.opcode == "ret":
+                return max(left, 0)
+            elif not self.layout.falls(label, self.layout.ways(label)[0]):
+                return 0
+            if left <= 0 or label in self.context.tail_calls:
+                return 0
+        return 0
+
+    def _code_at(self, name: str) -> list[MachineInstruction]:
+        """Instructions of a block, or of the copies on an edge."""
+        return self.code.of[name] if name in self.flow.blocks else self.allocation.on_edges[edge_of(name)]
 
     def _return(self, cost: BlockCost, line: SourceLine) -> None:
         if self.allocation.calls:
@@ -163,10 +188,14 @@ class _OptimisedLowering:
             label in self.context.if_conversion.gone and len(set(block.successors)) > 1
         ):
             return
+        if label in self.context.tail_calls:
+            cost.charges.append(replace(charge(Op.RETURN, terminator.line), count=-1))
         if terminator.opcode == "ret":
             self._return(cost, terminator.line)
         elif terminator.opcode == "switch":
             self._switch(block, cost)
+        elif label in self.context.tail_calls:
+            pass  # the called function returns
         elif terminator.opcode == "br" and len(set(block.successors)) == 1:
             if label not in self.context.if_conversion.gone and not self._vanishes(label):
                 cost.charges += self.layout.on(label, block.successors[0], terminator.line)
@@ -255,3 +284,10 @@ class _OptimisedLowering:
 def _saving(allocation: Allocation, one: Op, several: Op) -> list[Op]:
     saved = allocation.saved_data + allocation.saved_pointers
     return [] if not saved else [several]
+
+
+def _hides(instruction: MachineInstruction) -> int:
+    """Cycles for which an instruction keeps an RTS behind it away; a branch in a block does so with what it skips."""
+    if instruction.op is Op.BRANCH_TAKEN_BP:
+        return 2
+    return isa.PRODUCT_BEFORE_RETURN if instruction.op is Op.MUL32 else 1

@@ -1,0 +1,45 @@
+"""Calls right before a return: the called function returns in the caller's place, so that the call is a jump.
+
+GCC does so at -O2 (-foptimize-sibling-calls), where the arguments on the stack need no more room than the caller's own
+[expand_call in calls.cc]. What the caller has saved it restores before the jump.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from bfsim.kernel.ir_text import PHI_ARM, Instruction
+from bfsim.kernel.isa import REGISTER_ARGUMENTS
+from bfsim.kernel.loops import ControlFlow
+
+
+def tail_calls(
+    flow: ControlFlow, arguments: Callable[[Instruction], list[str]], parameters: int
+) -> dict[str, Instruction]:
+    """Return the calls that become jumps, by the labels of their blocks. `parameters`: how many the caller has."""
+    found = {}
+    for label, block in flow.blocks.items():
+        call = block.instructions[-2] if len(block.instructions) > 1 else None
+        if call is None or not call.is_call or not _is_returned(flow, label, call.result):
+            continue
+        if len(arguments(call)) <= max(REGISTER_ARGUMENTS, parameters):
+            found[label] = call
+    return found
+
+
+def _is_returned(flow: ControlFlow, label: str, value: str | None) -> bool:
+    """Whether nothing is left to do at the end of a block but to return `value`, or nothing."""
+    seen = {label}
+    while flow.blocks[label].terminator.opcode == "br" and len(flow.blocks[label].successors) == 1:
+        (way,) = flow.blocks[label].successors
+        *before, _ = flow.blocks[way].instructions
+        if way in seen or any(each.opcode != "phi" for each in before):
+            return False
+        for phi in before:
+            arms: dict[str, str] = {source[1:]: arm for arm, source in PHI_ARM.findall(phi.text)}
+            if arms[label] == value:
+                value = phi.result
+        seen.add(way)
+        label = way
+    end = flow.blocks[label].terminator
+    return end.opcode == "ret" and end.operands in ((), (value,))
