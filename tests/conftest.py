@@ -1,11 +1,10 @@
-"""Settings for every test: kernels are compiled into a cache of this test run, not the user's.
+"""Settings for every test.
 
 `pytest --recording FILE tests/firmware` also compares what the firmware makes of the pictures of a recording.
 """
 
 from __future__ import annotations
 
-import os
 import signal
 from pathlib import Path
 
@@ -14,14 +13,6 @@ from hypothesis import settings
 
 settings.register_profile("bfsim", deadline=None)  # the first example compiles kernels, and machines are busy
 settings.load_profile("bfsim")
-
-
-@pytest.fixture(scope="session", autouse=True)
-def kernel_cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder of compiled kernels, shared by the tests and the processes they start."""
-    folder = tmp_path_factory.mktemp("kernels")
-    os.environ["BFSIM_CACHE_DIR"] = str(folder)
-    return folder
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

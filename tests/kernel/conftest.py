@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -11,15 +11,6 @@ import pytest
 from tests.kernel.modules import import_text
 
 ImportText = Callable[[str], ModuleType]
-
-
-@pytest.fixture(scope="session", autouse=True)
-def cache_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """Keep compiled kernels in a folder of this test run: every run starts cold."""
-    folder = tmp_path_factory.mktemp("kernels")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("BFSIM_CACHE_DIR", str(folder))
-        yield folder
 
 
 @pytest.fixture

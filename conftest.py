@@ -1,0 +1,24 @@
+"""How `pytest` runs: all of the tests on all cores, and whatever else is named in one process, as a debugger and a stopwatch want it."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+
+import pytest
+
+
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
+    """Return no workers (of `-n auto`, in pyproject.toml) for tests that are named; else leave it to xdist."""
+    return None if config.args_source is pytest.Config.ArgsSource.TESTPATHS else 0
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> Iterator[None]:
+    """Keep compiled kernels in a folder of this run, which its workers share: every run starts cold, and compiles once."""
+    if hasattr(config, "workerinput"):
+        return (yield)
+    with tempfile.TemporaryDirectory(prefix="bfsim-tests-") as folder:
+        os.environ["BFSIM_CACHE_DIR"] = folder
+        return (yield)
