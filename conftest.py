@@ -19,6 +19,6 @@ def pytest_cmdline_main(config: pytest.Config) -> Iterator[None]:
     """Keep compiled kernels in a folder of this run, which its workers share: every run starts cold, and compiles once."""
     if hasattr(config, "workerinput"):
         return (yield)
-    with tempfile.TemporaryDirectory(prefix="bfsim-tests-") as folder:
+    with tempfile.TemporaryDirectory(prefix="bfsim-tests-", ignore_cleanup_errors=True) as folder:
         os.environ["BFSIM_CACHE_DIR"] = folder
         return (yield)
