@@ -20,7 +20,7 @@ class SplitTable(Table):
         """Yield the table, or its pieces with an empty line between them."""
         pieces = list(self._pieces(console, options))
         has_text = any(not column.no_wrap and column.justify != "right" for column in self.columns[1:])
-        whole = sum(1 + _width(each, console, options) for each in self.columns) - 1
+        whole = sum(self._gap + _width(each, console, options) for each in self.columns) - self._gap
         if len(pieces) == 1 and (has_text or whole <= options.max_width):
             yield from super().__rich_console__(console, options)
             return
@@ -30,6 +30,12 @@ class SplitTable(Table):
             piece.caption = self.caption if number == len(pieces) - 1 else None
             yield from ("", piece) if number else (piece,)
 
+    @property
+    def _gap(self) -> int:
+        """Blanks between two columns."""
+        _, right, _, left = self.padding
+        return left + 1 + right
+
     def _pieces(self, console: Console, options: ConsoleOptions) -> Iterator[tuple[int, list[Column]]]:
         """Yield the columns of each piece, as many as have room beside the first one, and how wide that is."""
         name = min(_width(self.columns[0], console, options), LEAST_TEXT)
@@ -37,7 +43,7 @@ class SplitTable(Table):
         left = options.max_width
         for column in self.columns[1:]:
             may_fold = not column.no_wrap and column.justify != "right"
-            width = 1 + (LEAST_TEXT if may_fold else _width(column, console, options))
+            width = self._gap + (LEAST_TEXT if may_fold else _width(column, console, options))
             if taken and width > left - name:
                 yield left, taken
                 taken, left = [], options.max_width
