@@ -16,7 +16,7 @@ from rich.table import Table
 
 from bfsim.errors import BfsimError
 from bfsim.recording import StereoGeometry
-from bfsim.report.ldf.drawing import FAINT, INK, Box, Sheet, Words
+from bfsim.report.ldf.drawing import FAINT, INK, FilledBox, Sheet, Words
 from bfsim.report.ldf.picture import format_of
 from bfsim.report.tables import new_table
 from bfsim.terminal import print_report
@@ -98,7 +98,7 @@ def _y(share: float) -> float:
 def _draw_axes(sheet: Sheet) -> None:
     for tenth in range(0, 11, 2):
         y = _y(tenth / 10)
-        sheet.boxes.append(Box(x=MARGIN, y=y, width=WIDTH - 2 * MARGIN, height=1, fill="#dde2e9"))
+        sheet.boxes.append(FilledBox(x=MARGIN, y=y, width=WIDTH - 2 * MARGIN, height=1, fill="#dde2e9"))
         left, right = f"{MOST_MM * tenth / 10:g} mm", f"{MOST_PERCENT * tenth / 10:g} %"
         sheet.words.append(Words(x=MARGIN - 8, y=y, text=left, colour=FAINT, is_right=True))
         sheet.words.append(Words(x=WIDTH - MARGIN + 8, y=y, text=right, colour=FAINT))
@@ -107,7 +107,7 @@ def _draw_axes(sheet: Sheet) -> None:
     sheet.words.append(Words(x=WIDTH / 2 - 40, y=_y(0) + 2 * LINE, text="disparity, px", colour=INK))
 
 
-def _dots(curve: Curve) -> Iterator[Box]:
+def _dots(curve: Curve) -> Iterator[FilledBox]:
     """Boxes along a curve, so close that they are a line: straight from pixel to pixel."""
     disparities = range(LEAST_PX, MOST_PX + 1)
     corners = np.array([(_x(each), _y(curve.of(SUBPIXELS * each) / curve.top)) for each in disparities])
@@ -115,7 +115,7 @@ def _dots(curve: Curve) -> Iterator[Box]:
     places = np.arange(0, way[-1])
     for place, x, y in zip(places, *(np.interp(places, way, each) for each in corners.T), strict=True):
         if y >= MARGIN and not (curve.is_dashed and place // DASH % 2):
-            yield Box(x=x - DOT / 2, y=y - DOT / 2, width=DOT, height=DOT, fill=curve.colour)
+            yield FilledBox(x=x - DOT / 2, y=y - DOT / 2, width=DOT, height=DOT, fill=curve.colour)
 
 
 def numbers(geometry: StereoGeometry) -> Table:

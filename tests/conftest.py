@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 from pathlib import Path
 
@@ -13,6 +14,12 @@ from hypothesis import settings
 
 settings.register_profile("bfsim", deadline=None)  # the first example compiles kernels, and machines are busy
 settings.load_profile("bfsim")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_terminal() -> None:
+    """Reports are as wide as without a terminal; pytest-xdist gives its workers one."""
+    os.environ.pop("COLUMNS", None)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
