@@ -9,7 +9,7 @@ from pathlib import Path
 from types import ModuleType
 
 from bfsim import shipped
-from bfsim.errors import BfsimError, FirmwareError, shown
+from bfsim.errors import BfsimError, FirmwareError, cut, shown
 from bfsim.importing import OwnModules, Root
 from bfsim.kernel import Kernel
 from bfsim.locating import located, parted
@@ -91,7 +91,7 @@ def load_kernel(name: str, firmware: str) -> Kernel:
         found = [each for each in [getattr(module, attribute, None)] if isinstance(each, Kernel)]
     if len(found) != 1:
         advice = _apart(found) if found else _nearest(attribute, {each.name for each in _kernels_of(own)})
-        raise FirmwareError(f"{name} must name one kernel, but names {len(found) or 'none'}; {advice}")
+        raise FirmwareError(f"{cut(name)} must name one kernel, but names {len(found) or 'none'}; {advice}")
     return found[0]
 
 
@@ -128,7 +128,7 @@ def _only_firmware(module: ModuleType, name: str) -> str:
         return names[0]
     has = f"has {' and '.join(names)}" if names else "has none"
     raise FirmwareError(
-        f"--firmware {name} must be followed by :NAME unless the module has one Firmware, but it {has} ({_path_of(module)})"
+        f"--firmware {cut(name)} must be followed by :NAME unless the module has one Firmware, but it {has} ({_path_of(module)})"
     )
 
 
@@ -158,7 +158,9 @@ def import_own(module: str, root: Root) -> tuple[ModuleType, OwnModules]:
 def _failed(module: str, error: BaseException) -> FirmwareError:
     """Say what went wrong while `module` was imported, and on which of its lines."""
     place = f" ({error.filename}:{error.lineno})" if isinstance(error, SyntaxError) else line_of(error)
-    return FirmwareError(f"importing {module} failed with {type(error).__name__}: {error}{place}")
+    return FirmwareError(
+        f"importing {cut(module)} failed with {type(error).__name__}: {cut(str(error))}{place}"
+    )
 
 
 def _path_of(module: ModuleType) -> Path:

@@ -10,7 +10,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 
 from bfsim import shipped
-from bfsim.errors import FirmwareError, shown
+from bfsim.errors import FirmwareError, cut, shown
 from bfsim.importing import NEVER_OWN, Root
 
 
@@ -34,7 +34,7 @@ def located(place: str, advice: str = "") -> tuple[str, Root]:
     module, root = _in_file(place) if place.endswith(".py") else (place, _root_of(place.partition(".")[0]))
     top = module.partition(".")[0]
     if top in NEVER_OWN:
-        raise FirmwareError(f"{place} must have another name: {top} is a module of Python or bfsim")
+        raise FirmwareError(f"{cut(place)} must have another name: {top} is a module of Python or bfsim")
     if root is None:
         raise FirmwareError(
             f"the package {shown(place)} must be installed or in the folder {Path.cwd()}, but there is none{advice}"
@@ -45,15 +45,22 @@ def located(place: str, advice: str = "") -> tuple[str, Root]:
 def _in_file(name: str) -> tuple[str, Root]:
     """Return the name of the module in a file, and the folder from which Python would import it by that name."""
     path = Path(os.path.abspath(name))  # noqa: PTH100  # `resolve` would leave the folder of a link
-    if not path.is_file():
-        raise FirmwareError(f"{name} must be a file, but there is none")
+    if not _is_file(path):
+        raise FirmwareError(f"{cut(name)} must be a file, but there is none")
     if "." in path.stem:
-        raise FirmwareError(f"{name} must have a name without dots before .py, to be imported by it")
+        raise FirmwareError(f"{cut(name)} must have a name without dots before .py, to be imported by it")
     names, folder = [path.stem] if path.stem != "__init__" else [], path.parent
     while (folder / "__init__.py").is_file():
         names.insert(0, folder.name)
         folder = folder.parent
     return ".".join(names), Root(folder)
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # a name that is too long
+        return False
 
 
 def _root_of(top: str) -> Root | None:

@@ -152,9 +152,9 @@ def read_placement(
     `defines` are macros beside, or instead of, those that bfsim defines.
     """
     path = shipped.ldf_at(ldf) if ldf else shipped.DEFAULT_LDFS[spec.chip.name]
-    if len(path.parts) == 1 and not path.exists():
+    if path is None:
         known = ", ".join(shipped.LDFS)
-        raise LinkError(f"LDF must be a file or a shipped one ({known}), not {shown(str(path))}")
+        raise LinkError(f"LDF must be a file or a shipped one ({known}), not {shown(str(ldf))}")
     macros = {"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes), **defines}
     folders = (*include_dirs, shipped.LDF_FOLDER)
     return parse_ldf(path, macros, folders, chip=spec.chip.name).with_cores_named()

@@ -30,9 +30,19 @@ SCENES = (
 """Names in that module that `bfsim record render` takes alone. The first one is the scene of RECORDING."""
 
 
-def ldf_at(path: Path) -> Path:
-    """Return the LDF that is meant by `path`: that file, or else the shipped one of that name, with or without `.ldf`."""
-    if len(path.parts) != 1 or (path.exists() and not path.is_dir()):
+def ldf_at(path: Path) -> Path | None:
+    """Return the LDF that is meant by `path`: the shipped one of that name, with or without `.ldf`, unless there is such a file.
+
+    None where a name alone is neither.
+    """
+    if len(path.parts) > 1 or _is_file(path):
         return path
-    named = [LDF_FOLDER / path.name, LDF_FOLDER / f"{path.name}.ldf"]
-    return next((each for each in named if each.is_file()), path)
+    named = (LDF_FOLDER / path.name, LDF_FOLDER / f"{path.name}.ldf")
+    return next((each for each in named if _is_file(each)), None)
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.exists() and not path.is_dir()
+    except OSError:  # a name that is too long
+        return False

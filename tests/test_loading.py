@@ -305,6 +305,16 @@ def test_the_digest_is_of_the_sources_wherever_they_are(write: Write, tmp_path: 
     assert load_firmware("fw_home_2/fw_robot/__init__.py:fw").digest != first.digest
 
 
+@pytest.mark.parametrize(
+    "name", ["x" * 9_000, "x" * 9_000 + ":fw", "x" * 9_000 + ".py:fw", "x" * 300 + ".py", ":" * 9_000]
+)
+def test_long_names_are_cut(name: str) -> None:
+    """A message is one that can be read."""
+    with pytest.raises(FirmwareError) as caught:
+        load_firmware(name)
+    assert len(str(caught.value)) < 1_000
+
+
 def test_an_error_leaves_nothing_half_imported(write: Write) -> None:
     """What is mended is imported anew, with all that was whole."""
     write("fw_robot/__init__.py", "import fw_robot.whole, fw_robot.broken\n" + GOOD)
