@@ -8,25 +8,10 @@ from pathlib import Path
 
 import click
 
+from bfsim.cli_sizes import Size
 from bfsim.errors import shown
 from bfsim.shipped import FIRMWARE
 from bfsim.terminal import print_report
-
-
-class _Size(click.ParamType[tuple[int, int]]):
-    """Width and height in pixels, such as 320x240."""
-
-    name = "WxH"
-
-    def convert(
-        self, value: str | tuple[int, int], param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[int, int]:
-        if isinstance(value, tuple):
-            return value
-        found = re.fullmatch(r"([1-9]\d{0,3})x([1-9]\d{0,3})", value)
-        if found is None:
-            self.fail(f"must be width x height in pixels, such as 320x240, not {shown(value)}", param, ctx)
-        return int(found[1]), int(found[2])
 
 
 def _macros(_ctx: click.Context, _param: click.Parameter, given: tuple[str, ...]) -> dict[str, str]:
@@ -88,7 +73,7 @@ def _takes_macros(command: Callable[..., None]) -> Callable[..., None]:
 )
 @click.option(
     "--size",
-    type=_Size(),
+    type=Size(),
     metavar="WxH",
     default="320x240",
     show_default=True,

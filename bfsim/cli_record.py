@@ -12,6 +12,7 @@ import click
 from rich.table import Table
 
 from bfsim import shipped
+from bfsim.cli_sizes import Size
 from bfsim.errors import shown
 from bfsim.terminal import print_report, progress_bar
 
@@ -20,18 +21,6 @@ if TYPE_CHECKING:
 
 SOURCE_FORMATS = ("images", "uyvy", "i420", "y4m", "video")
 """Those of bfsim.recording, which takes its time to import."""
-
-
-class _Size(click.ParamType[tuple[int, int]]):
-    name = "WxH"
-
-    def convert(
-        self, value: str, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[int, int]:
-        width, _, height = value.partition("x")
-        if not (width.isdecimal() and height.isdecimal() and int(width) and int(height)):
-            self.fail(f"size must be like 320x240, not {shown(value)}", param, ctx)
-        return int(width), int(height)
 
 
 class _Distances(click.ParamType[tuple[float, ...]]):
@@ -63,10 +52,10 @@ def record() -> None:
     type=click.Choice(SOURCE_FORMATS),
     help="What the sources are, if names do not tell.",
 )
-@click.option("--size", type=_Size(), metavar="WxH", help="Size of the frames in raw UYVY and I420 files.")
+@click.option("--size", type=Size(), metavar="WxH", help="Size of the frames in raw UYVY and I420 files.")
 @click.option(
     "--resize",
-    type=_Size(),
+    type=Size(),
     metavar="WxH",
     help="Scale every picture; what sticks out of the aspect ratio is cut off.",
 )
@@ -163,7 +152,7 @@ def info_command(path: Path, as_json: bool) -> None:
 @click.argument("path", metavar="RECORDING", type=click.Path(path_type=Path))
 @click.option(
     "--corners",
-    type=_Size(),
+    type=Size(),
     metavar="WxH",
     default="9x6",
     show_default=True,

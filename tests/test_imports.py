@@ -59,8 +59,9 @@ MAY_IMPORT = {
     "endings": {"errors", "signals"},
     "terminal": set(),
     "cli_boards": {"chip", "report", "terminal"},
-    "cli_ldf": {"errors", "mapping", "report", "shipped", "terminal"},
-    "cli_record": {"errors", "recording", "scenery", "shipped", "terminal"},
+    "cli_sizes": {"errors"},
+    "cli_ldf": {"cli_sizes", "errors", "mapping", "report", "shipped", "terminal"},
+    "cli_record": {"cli_sizes", "errors", "recording", "scenery", "shipped", "terminal"},
     "cli_seen": {"errors", "recording", "report", "run", "seen"},
     "cli": {
         "endings",

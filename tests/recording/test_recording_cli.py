@@ -95,7 +95,7 @@ def test_size_that_is_none(folder: Path, size: str) -> None:
     """A size in another form is a usage error that shows the right one."""
     result = run("import", folder / "run.mcap", folder / "im", "--mono", "--resize", size)
     assert result.exit_code == 2
-    assert "size must be like 320x240" in result.output
+    assert "must be width x height, such as 320x240" in result.output
 
 
 def test_damaged_recording(tmp_path: Path) -> None:
