@@ -74,7 +74,7 @@ def optimised(function: tree.Function, profile: CompilerProfile) -> str:
         module = llvm.parse_assembly(unrolling)
         generic.run(("loop_unroll", *CLEANING), module)
         text = str(module)
-    return rewritten(text)
+    return rewritten(text, profile)
 
 
 def _inline(module: llvm.ModuleRef, function: tree.Function) -> None:

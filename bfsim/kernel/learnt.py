@@ -43,6 +43,8 @@ class Learnt(StrEnum):
     EVALUATED_LOOPS = "the number of iterations of a loop may be found by playing it through"
     THREADED_EXITS = "a block that sets the flag which ends its loop is outside of the loop"
     ELIMINATED_COUNTERS = "beside neighbours, a pointer stands for a counter that only some iterations want"
+    CARRIED_LOADS = "a load that the choice of an index in a loop makes redundant goes along in a register"
+    SINKING = "what only the rarer side of a test needs is computed there"
     HANDED_ON = "a minimum is one, too, where another way leads to what only hands its result on"
     MERGED_LOADS = "a load from an address that several ways choose is a load on each of them"
     NEIGHBOURS = "a test for one of two neighbouring numbers is one test"
@@ -79,6 +81,8 @@ LEARNT_FROM: dict[Learnt, tuple[str, ...]] = {
     Learnt.EVALUATED_LOOPS: ("gray_decode",),
     Learnt.THREADED_EXITS: ("grow_segments",),
     Learnt.ELIMINATED_COUNTERS: ("cocktail_sort",),
+    Learnt.CARRIED_LOADS: ("selection_sort",),
+    Learnt.SINKING: ("fill_xy",),
     Learnt.HANDED_ON: ("fir_decimate",),
     Learnt.MERGED_LOADS: ("nms_row",),
     Learnt.NEIGHBOURS: ("contrast_lut",),

@@ -8,10 +8,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from bfsim.kernel.ir_text import Routine, read_module, with_names, write_module
+from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
 from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.sinking import sink
+from bfsim.kernel.profile import CompilerProfile
 
 REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     with_preheaders,
@@ -20,15 +22,18 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     hoist_loads,
 )
 """In this order."""
+LEARNT = {without_redundant_loads: Learnt.CARRIED_LOADS, sink: Learnt.SINKING}
+"""Those that a single measured kernel needs, which can be left out."""
 
 
-def rewritten(text: str) -> str:
-    """Return the module `text` after all rewrites of each of its routines."""
+def rewritten(text: str, profile: CompilerProfile) -> str:
+    """Return the module `text` after all rewrites of each of its routines that `profile` applies."""
     text = with_names(text)
-    return write_module(text, [_rewritten(each) for each in read_module(text)])
+    return write_module(text, [_rewritten(each, profile) for each in read_module(text)])
 
 
-def _rewritten(routine: Routine) -> Routine:
+def _rewritten(routine: Routine, profile: CompilerProfile) -> Routine:
     for rewrite in REWRITES:
-        routine = rewrite(routine)
+        if rewrite not in LEARNT or profile.applies(LEARNT[rewrite]):
+            routine = rewrite(routine)
     return routine
