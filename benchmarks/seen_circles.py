@@ -17,6 +17,7 @@ from tinyphoon import ROWS, THESIS
 from tinyphoon.buffers import buffers
 from tinyphoon.features import features
 from tinyphoon.stores.circles import CIRCLE_WORDS
+from tinyphoon.stores.edges import EDGE_DATA
 from tinyphoon.strategy.modes import Mode
 
 SIDES = {"A": "left", "B": "right"}
@@ -61,5 +62,7 @@ def _in_ms(stages_cclk: Mapping[str, int]) -> dict[str, float]:
 
 
 def _own_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
-    """The firmware's buffers without what the cores share."""
-    return {core: each for core, each in buffers(size).items() if core != "shared"}
+    """The firmware's buffers without what the cores share, but with the edges of core B, which lie there."""
+    every = buffers(size)
+    shared = [each for each in every["shared"] if each.name == EDGE_DATA["B"]]
+    return {**{core: each for core, each in every.items() if core != "shared"}, "shared": shared}

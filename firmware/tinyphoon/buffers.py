@@ -1,7 +1,7 @@
 """The buffers of the firmware and where they go: line rings and the edge store in L1, pictures in SDRAM.
 
 Each core's camera and each core's working images have an SDRAM bank of their own. For pictures of w x h
-pixels L1 bank A holds 46 w bytes and bank B 11 w + 6 h + 17 KB: 640x480 fits, beside heap and stack.
+pixels L1 bank A holds 46 w bytes and bank B 19 w + 6 h + 6 KB: 640x480 fits, beside heap and stack.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from tinyphoon.exchange import exchange_buffers
 from tinyphoon.geometry import geometry_buffer, thesis_geometry_buffer
 from tinyphoon.stages.blob_detection import blob_buffers
 from tinyphoon.stages.circle_detection import circle_buffers
+from tinyphoon.stages.edge_thinning import thinning_buffers
 from tinyphoon.stages.hysteresis import hysteresis_buffers
 from tinyphoon.stages.line_detection import line_buffers
 from tinyphoon.stages.object_detection import (
@@ -62,6 +63,7 @@ def _left_buffers(size: FrameSize) -> Sequence[Buffer]:
     return (
         *_core_buffers(size, camera="sdram_bank0", images="sdram_bank2"),
         *left_object_buffers(),
+        Buffer("edge_data", u32, EDGE_CAPACITY, "bsz"),
         Buffer("results", u16, MESSAGE_WORDS, "data1"),
     )
 
@@ -88,7 +90,7 @@ def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buff
         Buffer("gy", i16, width, "L1_data_b"),
         thesis_geometry_buffer(size),
         Buffer("atan", u8, 257, "L1_data_b", values=arctangent_table()),
-        Buffer("edge_data", u32, EDGE_CAPACITY, "L1_data_b"),
+        *thinning_buffers(size, images),
         Buffer("edge_index", u32, height, "L1_data_b"),
         Buffer("edge_counts", u16, height, "L1_data_b"),
         *hysteresis_buffers(),

@@ -1,6 +1,6 @@
 """How the results of core B reach core A: core B copies them to the L2 memory that both share, and posts.
 
-What core B calls X is `right_X` there. Core A waits for the post before it reads, and core B for core A's before it
+What core B calls X is `right_X` there; its edges are stored there from the start. Core A waits for the post before it reads, and core B for core A's before it
 writes again. A store to L2 is posted and costs a core next to nothing; a load waits for its latency each time, so
 core A takes what it reads often into its L1 first.
 """
@@ -86,7 +86,7 @@ def share_lines(core: Core, lines: int) -> Generator[Any, Any, None]:
 
 
 def share_edges(core: Core, edges: int) -> Generator[Any, Any, None]:
-    """Share the edge store of core B's picture."""
-    yield from share(core, "edge_data", 4, "right_edges", edges)
+    """Share the edge store of core B's picture: where its rows begin, for the edges are there already."""
+    yield core.run(store_word, core.array("right_edges"), edges)
     index, counts = core.array("edge_index"), core.array("edge_counts")
     yield core.run(pack_edge_rows, index, counts, core.array("right_edge_rows"))

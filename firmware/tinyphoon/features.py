@@ -38,7 +38,7 @@ def features(
     with core.stage("Edge detection"):
         with core.stage("Rectification"):
             frame = yield from rectification(core, frame, area)
-        edges = yield from edge_detection(core, frame, mode.edges)
+        edges = yield from edge_detection(core, frame, mode.edges, area)
     with core.stage("Open & closing"):
         yield from open_closing(core, frame)
     with core.stage("Blob detection"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 LOSSES = {
-    "edges_lost": "edges that had no room in the edge store, so that the lower part of the picture has none",
+    "edges_lost": "edges that had no room in the edge store: the weakest of every part of the picture",
     "edge_groups_shared": "groups of edges that share a label, so that hysteresis keeps or drops them together",
     "labels_lost": "runs of colour without a label left, which are in no blob",
     "blobs_lost": "blobs without room in the blob store",

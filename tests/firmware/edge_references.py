@@ -35,25 +35,24 @@ def hysteresis(edges: Picture, strong: int, capacity: int, labels: int) -> Hyste
     return decided(stored, strong, labels, int((edges != 0).sum() - (stored != 0).sum()))
 
 
-def crowded_hysteresis(edges: Picture, strong: int, capacity: int, labels: int, worth: int) -> Hysteresis:
-    """Store row by row; when the next row might not fit, forget the weak groups that do not reach the latest row.
+def thinned(edges: Picture, capacity: int, bands: int) -> Picture:
+    """Leave out the weakest edges of each band of rows until at most `capacity` stay, each band its share.
 
-    That is done again when `worth` edges have come since.
+    From the top: a band may keep the part of the room that is left which its edges are of those that are still to come.
     """
-    stored, lost, crowded = np.zeros_like(edges), 0, capacity - edges.shape[1]
-    for y, row in enumerate(edges):
-        places = np.flatnonzero(row)
-        room = capacity - np.count_nonzero(stored)
-        stored[y, places[:room]] = row[places[:room]]
-        lost += max(0, len(places) - room)
-        if np.count_nonzero(stored) >= crowded:
-            group, _ = grouped(stored[: y + 1], labels)
-            for each in range(1, group.max() + 1):
-                here = group == each
-                if stored[: y + 1][here].max() < strong and not here[y].any():
-                    stored[: y + 1][here] = 0
-            crowded = max(crowded, np.count_nonzero(stored) + worth)
-    return decided(stored, strong, labels, lost)
+    kept = edges.copy()
+    height = len(edges)
+    band_of = np.arange(height) * bands // height
+    room, to_come = capacity, np.count_nonzero(edges)
+    for band in range(bands):
+        rows = edges[band_of == band]
+        there = np.count_nonzero(rows)
+        share = there if to_come <= room else room * there // to_come
+        least = next(level for level in range(257) if level == 256 or (rows >= max(level, 1)).sum() <= share)
+        kept[band_of == band] = np.where(rows >= least, rows, 0)
+        room -= np.count_nonzero(kept[band_of == band])
+        to_come -= there
+    return kept
 
 
 def decided(stored: Picture, strong: int, labels: int, lost: int) -> Hysteresis:

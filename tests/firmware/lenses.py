@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from itertools import groupby
+
 import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.api import SourcePixels
 from tests.firmware.references import Picture
@@ -45,6 +48,20 @@ def rectified(uyvy: Picture, sources: SourcePixels) -> Picture:
                 pair = column // 2
                 result[y, 2 * x] = uyvy[row, 4 * pair] if row >= 0 else 128
                 result[y, 2 * x + 2] = uyvy[row, 4 * pair + 2] if row >= 0 else 128
+    return result
+
+
+def sighted(sources: SourcePixels) -> NDArray[np.bool_]:
+    """Return which pixels can be edges: in each row the longest stretch without a sourceless pixel within four pixels."""
+    blind = sources.rows < 0
+    height, width = blind.shape
+    result = np.zeros((height, width), bool)
+    for y in range(height):
+        above, below = max(0, y - 4), min(height, y + 5)
+        clear = [not blind[above:below, max(0, x - 4) : x + 5].any() for x in range(width)]
+        stretches = [list(group) for _, group in groupby(range(width), key=lambda x: clear[x])]
+        best = max((each for each in stretches if clear[each[0]]), key=len, default=[])
+        result[y, best] = True
     return result
 
 

@@ -29,6 +29,7 @@ class BareCore:
 
     arrays: dict[str, list[np.ndarray]]
     published: dict[str, int] = field(default_factory=dict)
+    name: str = "A"
 
     def array(self, name: str) -> np.ndarray:
         """The only row of a buffer."""

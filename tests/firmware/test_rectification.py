@@ -13,7 +13,7 @@ from hypothesis.extra.numpy import arrays
 from bfsim.api import Calibration, FirmwareError, SourcePixels
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
-from tests.firmware.lenses import bilinear, nearest, rectified, source_points
+from tests.firmware.lenses import bilinear, nearest, rectified, sighted, source_points
 from tests.firmware.pictures import random_uyvy
 from tests.firmware.whole_pictures import buffer, check_core, random_frames, run
 from tinyphoon import tinyphoon
@@ -104,7 +104,7 @@ def test_stages_see_the_rectified_picture(width: int, height: int) -> None:
     for core, uyvy in (("A", frames[-1].left), ("B", frames[-1].right)):
         expected = rectified(uyvy, sources[core])
         np.testing.assert_array_equal(buffer(board, core, "rectified_image"), expected)
-        check_core(board, core, expected, results)
+        check_core(board, core, expected, results, sighted(sources[core]))
 
 
 @pytest.mark.parametrize(("width", "height"), [(320, 240), (640, 480)])

@@ -16,7 +16,7 @@ from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.scenes.chessboard import write_chessboards
 from bfsim.recording.scenes.lens import Lens, Misfit
 from bfsim.run import calibration_of, simulate
-from tests.firmware.lenses import rectified
+from tests.firmware.lenses import rectified, sighted
 from tests.firmware.whole_pictures import buffer, check_core, run
 from tinyphoon import tinyphoon
 
@@ -77,9 +77,9 @@ def test_all_stages_see_the_rectified_pictures(recording: Path) -> None:
         frames = list(reader.frames(1))
     board, outcome = run(frames, tinyphoon.calibrated(calibration))
     for core, picture in (("A", frames[0].left), ("B", frames[0].right)):
-        check_core(
-            board, core, rectified(picture, calibration.sources[core]), dict(outcome.frames[0].results)
-        )
+        sources = calibration.sources[core]
+        results = dict(outcome.frames[0].results)
+        check_core(board, core, rectified(picture, sources), results, sighted(sources))
 
 
 def test_run_rectifies_by_itself(recording: Path) -> None:

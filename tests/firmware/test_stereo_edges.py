@@ -18,6 +18,7 @@ from tinyphoon.exchange import copy_words, pack_edge_rows
 from tinyphoon.geometry import GEOMETRY_WORDS
 from tinyphoon.stages.stereo_edges import StereoEdgeThresholds, is_level, stereo_edges_row, take_right_row
 from tinyphoon.stages.stereo_lines import Correspondence
+from tinyphoon.stores.edges import EDGE_DATA
 from tinyphoon.stores.lines import LINE_WORDS
 from tinyphoon.stores.lines3d import EDGE3D_CAPACITY, EDGE3D_WORDS
 from tinyphoon.strategy.modes import INDOOR_FIELD
@@ -178,7 +179,7 @@ def test_disparities_that_contradict_each_other_are_refused(limits: tuple[int, i
 def rows_of(board, core: str) -> list[Row]:
     """The edge store that a core left."""
     data, index, counts = (
-        buffer(board, core, f"edge_{name}")[0].tolist() for name in ("data", "index", "counts")
+        buffer(board, core, name)[0].tolist() for name in (EDGE_DATA[core], "edge_index", "edge_counts")
     )
     return [
         [(word >> 16, word >> 8 & 255, word & 255) for word in data[first : first + count]]
@@ -191,9 +192,8 @@ def check_board(frames, width: int, height: int) -> dict[str, int]:
     board, outcome = run(frames)
     results = dict(outcome.frames[-1].results)
     lines, stored = results["lines_B"], results["edges_B"]
-    for name, words in (("lines", LINE_WORDS * lines), ("edge_data", stored)):
-        shared, own = buffer(board, "A", f"right_{name}"), buffer(board, "B", name)
-        np.testing.assert_array_equal(shared[0, :words], own[0, :words])
+    shared, own = buffer(board, "A", "right_lines"), buffer(board, "B", "lines")
+    np.testing.assert_array_equal(shared[0, : LINE_WORDS * lines], own[0, : LINE_WORDS * lines])
     assert (buffer(board, "A", "right_line_count")[0, 0], buffer(board, "A", "right_edges")[0, 0]) == (
         lines,
         stored,

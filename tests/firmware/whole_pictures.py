@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.api import Firmware
 from bfsim.chip.boards import CM_BF561
@@ -25,11 +26,12 @@ from tests.firmware.pictures import Bytes, random_uyvy
 from tinyphoon import tinyphoon
 from tinyphoon.stages.blob_detection import LABELS as BLOB_LABELS
 from tinyphoon.stages.blob_detection import RECYCLE_AT
-from tinyphoon.stages.edge_detection import ROOM_WORTH_A_PASS, EdgeThresholds
+from tinyphoon.stages.edge_detection import EdgeThresholds
+from tinyphoon.stages.edge_thinning import BANDS
 from tinyphoon.stages.hysteresis import LABELS
 from tinyphoon.stages.line_segments import SEGMENT_CAPACITY
 from tinyphoon.stores.blobs import BLOB_WORDS
-from tinyphoon.stores.edges import EDGE_CAPACITY
+from tinyphoon.stores.edges import EDGE_CAPACITY, EDGE_DATA
 from tinyphoon.stores.lines import LINE_WORDS
 from tinyphoon.strategy.modes import INDOOR_FIELD
 
@@ -68,30 +70,38 @@ def buffer(board: Board, core: str, name: str) -> np.ndarray:
 
 
 def check_edges(
-    board: Board, core: str, uyvy: Bytes, results: dict[str, int], thresholds: EdgeThresholds
+    board: Board,
+    core: str,
+    uyvy: Bytes,
+    results: dict[str, int],
+    thresholds: EdgeThresholds,
+    sighted: NDArray[np.bool_] | None = None,
 ) -> None:
-    """Compare the edge image, the edge store and the counts that core `core` left for the picture `uyvy`."""
+    """Compare the edge image, the edge store and the counts that core `core` left for the picture `uyvy`.
+
+    Where a rectified picture is not `sighted`, there are no edges.
+    """
     smooth = {3: references.gauss3, 5: edge_references.gauss5}[thresholds.gauss_px](references.luma(uyvy))
     gx, gy = references.sobel(smooth)
     direction = references.angle(gx, gy)
     edges = references.suppress(references.magnitude(gx, gy), direction, thresholds.edge_threshold)
-    expected = edge_references.crowded_hysteresis(
-        edges, thresholds.strong_threshold, EDGE_CAPACITY, LABELS, ROOM_WORTH_A_PASS
-    )
+    edges = edges if sighted is None else np.where(sighted, edges, 0)
+    thinned = edge_references.thinned(edges, EDGE_CAPACITY, BANDS)
+    expected = edge_references.hysteresis(thinned, thresholds.strong_threshold, EDGE_CAPACITY, LABELS)
     data, index, counts = edge_references.hysteresis_store(expected.edges, direction)
     np.testing.assert_array_equal(buffer(board, core, "edge_image"), expected.edges)
-    assert buffer(board, core, "edge_data")[0, : len(data)].tolist() == data
+    assert buffer(board, core, EDGE_DATA[core])[0, : len(data)].tolist() == data
     assert buffer(board, core, "edge_index")[0].tolist() == index
     assert buffer(board, core, "edge_counts")[0].tolist() == counts
     assert results[f"edges_{core}"] == len(data)
-    assert results[f"edges_lost_{core}"] == expected.lost
+    assert results[f"edges_lost_{core}"] == np.count_nonzero(edges) - np.count_nonzero(thinned)
     assert results[f"edge_groups_shared_{core}"] == expected.sharing
 
 
 def check_lines(board: Board, core: str, uyvy: Bytes, results: dict[str, int]) -> None:
     """Compare the lines that core `core` found with those of the edges that it left, refined by the picture `uyvy`."""
     data, index, counts = (
-        buffer(board, core, f"edge_{name}")[0].tolist() for name in ("data", "index", "counts")
+        buffer(board, core, name)[0].tolist() for name in (EDGE_DATA[core], "edge_index", "edge_counts")
     )
     rows = [
         [(word >> 16, word >> 8 & 255) for word in data[first : first + count]]
@@ -128,9 +138,15 @@ def check_blobs(board: Board, core: str, opened: references.Picture, results: di
     assert results[f"labels_lost_{core}"] == left.lost
 
 
-def check_core(board: Board, core: str, uyvy: Bytes, results: dict[str, int]) -> None:
+def check_core(
+    board: Board,
+    core: str,
+    uyvy: Bytes,
+    results: dict[str, int],
+    sighted: NDArray[np.bool_] | None = None,
+) -> None:
     """Compare all that core `core` left in memory and published for the picture `uyvy`."""
-    check_edges(board, core, uyvy, results, INDOOR_FIELD.edges)
+    check_edges(board, core, uyvy, results, INDOOR_FIELD.edges, sighted)
     colours = references.colours(uyvy, INDOOR_FIELD.edges.eps_black, INDOOR_FIELD.edges.eps_white)
     opened = references.dilate(references.erode(colours))
     np.testing.assert_array_equal(buffer(board, core, "colour_image"), colours)

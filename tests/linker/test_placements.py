@@ -19,7 +19,7 @@ CACHE_BYTES = 16 * KIB
 IMAGES = {"colour_image", "edge_image", "opened_image"}
 CLOSE = (
     "camera_ring", "colour_ring", "opened_ring", "edge_ring", "grey_ring", "smooth_ring", "eroded_ring",
-    "magnitude_ring", "direction_ring", "gx", "gy", "atan", "edge_data", "edge_index", "edge_counts",
+    "magnitude_ring", "direction_ring", "gx", "gy", "atan", "candidate_ring", "edge_index", "edge_counts",
 )  # fmt: skip
 """What every stage reads or writes all the time."""
 
@@ -137,7 +137,7 @@ def test_cache_gives_half_of_each_bank_away() -> None:
         ("COREB_L1_CODE_CACHE", "0xff610000", CACHE_BYTES),
     ]
     assert not any("cached half" in each.rule for each in lint(memory_map))
-    assert memories(memory_map, Kind.ROW)["edge_data"] == {"L2"}
+    assert memories(memory_map, Kind.ROW)["edge_data"] == {"SDRAM"}
 
 
 @pytest.mark.parametrize("name", ["thesis", "sdram", "l2"])

@@ -252,6 +252,7 @@ def seen_by_tinyphoon(ldf: str, size: FrameSize) -> tuple[dict[str, bytes], Outc
         "edge_image",
         "opened_image",
         "edge_data",
+        "right_edge_data",
         "edge_index",
         "edge_counts",
         "results",

@@ -44,7 +44,7 @@ from tinyphoon.stores.circles import (
     CIRCLE_Y,
     RADIUS_PASSED,
 )
-from tinyphoon.stores.edges import EDGE_CAPACITY
+from tinyphoon.stores.edges import EDGE_CAPACITY, edge_store
 from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.tables import tangent_table
 
@@ -244,7 +244,7 @@ def _select_edges(
     first = max(top - 1, 0)
     image = core.rows("opened_image")[first : min(bottom + 2, frame.height)]
     lines = core.input_ring(image, "colour_ring")
-    store = core.array("edge_data"), core.array("edge_index"), core.array("edge_counts")
+    store = edge_store(core)
     filters = area, thresholds.angle_range, int(thresholds.dark_balls), atan
     found = 0
     for ahead in range(first, bottom + 2):

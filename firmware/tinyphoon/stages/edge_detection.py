@@ -1,7 +1,7 @@
 """Edge detection: the scan-line Canny (T §2.1.4, §5.2.1), with the colour reduction.
 
 Every kernel makes one row. The task reads the picture once, top to bottom; each step lags behind the step that it
-reads from. The fifth step is in `hysteresis.py`.
+reads from. The fifth step is in `hysteresis.py`; `edge_thinning.py` says what becomes of more edges than there is room for.
 """
 
 from __future__ import annotations
@@ -10,16 +10,14 @@ from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from bfsim.api import Core, Frame, i16, i32, kernel, u8, u32
+from bfsim.api import Core, Frame, i16, i32, kernel, u8, u16, u32
+from tinyphoon.areas import WHOLE_PICTURE, Area
 from tinyphoon.arithmetic import angle8, isqrt32
 from tinyphoon.fields import allowed
 from tinyphoon.scan_lines import line_ring, window
 from tinyphoon.stages.colour_reduction import colour_row
+from tinyphoon.stages.edge_thinning import Candidates
 from tinyphoon.stages.hysteresis import LABELS, EdgeGroups, hysteresis
-from tinyphoon.stores.edges import EDGE_CAPACITY, store_edges_row
-
-# Making room takes a pass over the store. It is worth it again when so many edges have come since.
-ROOM_WORTH_A_PASS = EDGE_CAPACITY // 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -152,13 +150,42 @@ def suppress_row(
     edges[last] = 0
 
 
-def edge_detection(core: Core, frame: Frame, thresholds: EdgeThresholds) -> Generator[Any, Any, int]:
-    """Detect the edges of a picture and reduce its colours, in one pass of DMA lines (T Figure 5.3).
+@kernel
+def clear_rim(edges: u8[:], first: u16[:], last: u16[:], y: i32, x: i32) -> None:
+    """Remove the edges of a row that lie at the rim of a rectified picture; the row begins at column `x` of its row `y`."""
+    for column in range(min(first[y] - x, len(edges))):
+        edges[column] = 0
+    for column in range(max(last[y] + 1 - x, 0), len(edges)):
+        edges[column] = 0
 
-    Leaves `edge_image` (gradients) and `colour_image` in SDRAM and the edge store in L1; returns how many edges are
-    stored and publishes it as `edges`. Also publishes `edges_lost`, how many had no room in the store, and
+
+def edge_detection(
+    core: Core, frame: Frame, thresholds: EdgeThresholds, area: Area = WHOLE_PICTURE
+) -> Generator[Any, Any, int]:
+    """Detect the edges of a picture, an area of a larger one, and reduce its colours, in one pass of DMA lines (T Figure 5.3).
+
+    Leaves `edge_image` (gradients) and `colour_image` in SDRAM and the edge store; returns how many edges are stored and
+    publishes it as `edges`. Also publishes `edges_lost`, how many were left out because the store has no room for all, and
     `edge_groups_shared`, how many groups had to share a label.
     """
+    candidates = Candidates.of(core, frame.height)
+    yield from candidates.begin()
+    yield from scan(core, frame, thresholds, area, candidates)
+    rows, lost = yield from candidates.thin()
+    groups = EdgeGroups.of(core, frame.width)
+    found = given = 0
+    for y in range(frame.height):
+        found = yield from candidates.take(rows, y, found)
+        given = yield from groups.add(y, given)
+    kept = yield from hysteresis(groups, frame.height, thresholds.strong_threshold)
+    core.publish(edges=kept, edges_lost=lost, edge_groups_shared=max(0, given - LABELS + 1))
+    return kept
+
+
+def scan(
+    core: Core, frame: Frame, thresholds: EdgeThresholds, area: Area, candidates: Candidates
+) -> Generator[Any, Any, None]:
+    """Read the picture once: its colours go to `colour_image`, its edges, one pixel wide, to the candidates."""
     camera = core.input_ring(frame.rows, "camera_ring")
     colours = core.output_ring("colour_ring", core.rows("colour_image"))
     height, reach = frame.height, thresholds.gauss_px // 2
@@ -169,9 +196,7 @@ def edge_detection(core: Core, frame: Frame, thresholds: EdgeThresholds) -> Gene
     )
     edges = core.rows("edge_ring")[0]
     gx, gy, atan = core.array("gx"), core.array("gy"), core.array("atan")
-    groups = EdgeGroups.of(core, frame.width)
-    found = given = lost = 0
-    crowded = EDGE_CAPACITY - frame.width  # from here on a line may have more edges than there is room for
+    rim = [core.array(f"sighted_{end}") for end in ("first", "last") if core.has_buffer(f"sighted_{end}")]
     for y in range(height + reach + 2):
         if y < height:
             line = yield from camera.line()
@@ -191,13 +216,7 @@ def edge_detection(core: Core, frame: Frame, thresholds: EdgeThresholds) -> Gene
         if done >= 0:
             near = window(magnitude, done, height)
             yield core.run(suppress_row, *near, direction[done], edges, thresholds.edge_threshold)
-            found = yield core.run(store_edges_row, edges, direction[done], *groups.store, done, found)
-            lost, found = lost + max(0, found - EDGE_CAPACITY), min(found, EDGE_CAPACITY)
-            given = yield from groups.add(done, given)
-            if found >= crowded:
-                found, given = yield from groups.make_room(done + 1, thresholds.strong_threshold, edges)
-                crowded = max(crowded, found + ROOM_WORTH_A_PASS)
+            if rim:
+                yield core.run(clear_rim, edges, *rim, area.y + done, area.x)
+            yield from candidates.add(done, edges, direction[done])
     yield from colours.flush()
-    kept = yield from hysteresis(groups, height, thresholds.strong_threshold)
-    core.publish(edges=kept, edges_lost=lost, edge_groups_shared=max(0, given - LABELS + 1))
-    return kept

@@ -5,9 +5,6 @@ group. Afterwards a short pass over the edge store, not over the picture, remove
 no strong edge. The labels are not kept: they would take half as much memory as the edge store. A label depends only on
 the edges before it, so this pass labels every edge once more.
 
-Noise alone would fill the store of a picture that keeps half as many edges. So the same pass runs when the store is
-nearly full, too, on the groups that have ended by then [ours].
-
 `groups` is the equivalence table: the label that each label belongs to, never a greater one; a group goes by its
 least label. `strongest` is the greatest gradient of each group, under that label. Label 0 is no edge.
 """
@@ -19,11 +16,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from bfsim.api import Buffer, Core, Row, i32, kernel, u8, u16, u32
+from tinyphoon.stores.edges import edge_store
 
-# 3 KB for both tables, of the scratchpad's 4. Noise makes most of the groups: the rendered scenes of the thesis ask for
-# up to 724 labels, 28 real pictures of a large field for 514. Only where the edge store is full of specks of 4 edges
-# and less are these too few.
-LABELS = 1024
+# Noise makes most of the groups: the rendered scenes of the thesis ask for up to 724 labels. Only where the edge store is
+# full of specks of 5 edges and less are these too few.
+LABELS = 1536
 
 
 @kernel
@@ -114,14 +111,6 @@ def group_edges_row(
 
 
 @kernel
-def hold_groups(labels: u16[:], groups: u16[:], strongest: u8[:]) -> None:
-    """Count the groups of a row of labels as strong for now: strong edges may still join them."""
-    for x in range(len(labels)):
-        if labels[x] != 0:
-            strongest[group_of(groups, labels[x])] = 255
-
-
-@kernel
 def label_edges_row(
     edge_data: u32[:],
     edge_index: u32[:],
@@ -178,10 +167,10 @@ def keep_edges_row(
 
 
 def hysteresis_buffers() -> Sequence[Buffer]:
-    """Return the tables of the groups. Only kernels use them, so they may lie where no DMA reaches."""
+    """Return the tables of the groups. Only kernels use them, so one may lie where no DMA reaches."""
     return (
         Buffer("edge_groups", u16, LABELS, "L1_scratch"),
-        Buffer("edge_strongest", u8, LABELS, "L1_scratch"),
+        Buffer("edge_strongest", u8, LABELS, "L1_data_b"),
     )
 
 
@@ -198,8 +187,9 @@ class EdgeGroups:
     def of(cls, core: Core, width: int) -> EdgeGroups:
         """Return those of a core. The lines lie over a ring that only later stages use."""
         even, odd, *_ = core.overlay("eroded_ring", u16, width)
-        store = core.array("edge_data"), core.array("edge_index"), core.array("edge_counts")
-        return cls(core, store, (core.array("edge_groups"), core.array("edge_strongest")), (even, odd))
+        return cls(
+            core, edge_store(core), (core.array("edge_groups"), core.array("edge_strongest")), (even, odd)
+        )
 
     def labels(self, y: int) -> Generator[Any, Any, tuple[Row, Row]]:
         """Return the labels of the line before `y` and those of `y`, which are to be written."""
@@ -223,22 +213,6 @@ class EdgeGroups:
         decided = here, *self.tables, strong_threshold
         kept = yield self.core.run(keep_edges_row, *decided, edges, *self.store, y, kept)
         return given, kept
-
-    def make_room(
-        self, height: int, strong_threshold: int, spare: Row
-    ) -> Generator[Any, Any, tuple[int, int]]:
-        """Remove the groups that ended weak above line `height`; returns how many edges and labels are left.
-
-        Then nothing is different from a picture without them: the edges that stay get their labels anew.
-        """
-        yield self.core.run(hold_groups, self.lines[(height - 1) % 2], *self.tables)
-        given = kept = 0
-        for y in range(height):
-            given, kept = yield from self.keep(y, given, kept, strong_threshold, spare)
-        given = 0
-        for y in range(height):
-            given = yield from self.add(y, given)
-        return kept, given
 
 
 def hysteresis(groups: EdgeGroups, height: int, strong_threshold: int) -> Generator[Any, Any, int]:

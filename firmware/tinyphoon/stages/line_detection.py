@@ -22,6 +22,7 @@ from tinyphoon.stages.line_segments import (
     clear_segments,
     keep_segments,
 )
+from tinyphoon.stores.edges import edge_store
 from tinyphoon.stores.lines import LINE_WORDS
 
 
@@ -72,7 +73,7 @@ def line_detection(core: Core, frame: Frame, thresholds: LineThresholds) -> Gene
 
     Publishes `lines`, that number, and `line_edges_lost`, the edges that found the table of segments full.
     """
-    store = core.array("edge_data"), core.array("edge_index"), core.array("edge_counts")
+    store = edge_store(core)
     segments, lines, scan = core.array("segments"), core.array("lines"), core.array("line_scan")
     labels, atan = core.rows("line_labels"), core.array("atan")
     yield core.run(clear_segments, segments, scan, *labels)

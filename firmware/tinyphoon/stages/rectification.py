@@ -6,7 +6,8 @@ reaches up and down in the camera's, and the table comes line by line through a 
 the place of a pixel in the window, so the kernel computes no address.
 
 Of the two pixels of a pair each has its own luma, and both the colour of the left one. A pixel without a source is
-black: the window ends with a black pair, which stands for all of them.
+black: the window ends with a black pair, which stands for all of them. What borders on them is the rim of the camera's
+picture and nothing in the world: `sighted_first` and `sighted_last` say for each row between which columns it is not.
 
 The window is a plain variable (section data1): the LDF puts it into L1 if the line rings leave room, else into L2.
 """
@@ -24,6 +25,7 @@ from tinyphoon.areas import WHOLE_PICTURE, Area, area_in, cropped
 
 BLACK_PAIR = (128, 0, 128, 0)  # U Y V Y
 PLACES = 1 << 16  # an entry has 16 bits
+GRADIENT_REACH = 4  # pixels: the larger Gauss 2, Sobel 1, the neighbour that a maximum is compared with 1
 
 
 @kernel
@@ -61,6 +63,23 @@ def places_in_window(sources: SourcePixels, depth: int) -> NDArray[np.int64]:
     return np.where(sources.rows >= 0, sources.rows % depth * width + sources.columns, depth * width)
 
 
+def sighted_columns(rows: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the first and the last column of each row whose gradient depends on no pixel without a source.
+
+    Of a row with several stretches of such columns it is the longest; one with none begins behind its end.
+    """
+    height, width = rows.shape
+    blind = np.pad(rows < 0, GRADIENT_REACH, mode="edge")
+    near = np.lib.stride_tricks.sliding_window_view(blind, (2 * GRADIENT_REACH + 1,) * 2).any(axis=(2, 3))
+    first, last = np.full(height, width, np.int64), np.zeros(height, np.int64)
+    for y in range(height):
+        ends = np.flatnonzero(np.diff(np.concatenate(([True], near[y], [True])).astype(np.int8)))
+        if len(ends):
+            longest = np.argmax(ends[1::2] - ends[::2])
+            first[y], last[y] = ends[2 * longest], ends[2 * longest + 1] - 1
+    return first, last
+
+
 def rectification_buffers(sources: Mapping[str, SourcePixels]) -> Buffers:
     """Return what the tables of a recording take in the memory of each core."""
     return {core: _core_buffers(core, each) for core, each in sources.items()}
@@ -76,10 +95,13 @@ def _core_buffers(core: str, sources: SourcePixels) -> Sequence[Buffer]:
         )
     window = np.zeros(2 * depth * width + len(BLACK_PAIR), np.uint8)
     window[-len(BLACK_PAIR) :] = BLACK_PAIR
+    first, last = sighted_columns(sources.rows)
     return (
         Buffer("camera_window", u8, len(window), "data1", values=window),
         Buffer("places_ring", u16, width, "data1", rows=2),
         Buffer("lines_reached", u16, height, "data1", values=lines_reached(sources.rows)),
+        Buffer("sighted_first", u16, height, "data1", values=first),
+        Buffer("sighted_last", u16, height, "data1", values=last),
         Buffer("places", u16, width, "sdram0", rows=height, values=places_in_window(sources, depth)),
         Buffer("rectified_image", u8, 2 * width, "sdram0", rows=height),
     )

@@ -17,6 +17,7 @@ from tinyphoon.fields import allowed
 from tinyphoon.geometry import store_point
 from tinyphoon.stages.line_segments import NONE, turn_between
 from tinyphoon.stages.stereo_lines import Correspondence
+from tinyphoon.stores.edges import edge_store
 from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.stores.lines3d import EDGE3D_CAPACITY, EDGE3D_LEFT, EDGE3D_WORDS, EDGE3D_X
 
@@ -182,7 +183,7 @@ def stereo_edges(core: Core, frame: Frame, thresholds: StereoEdgeThresholds) -> 
     Core B must have posted that its edges are there. Publishes `edges_3d`, that number, and `edges_3d_lost`, how many
     found no room.
     """
-    store = core.array("edge_data"), core.array("edge_index"), core.array("edge_counts")
+    store = edge_store(core)
     right = core.array("right_edge_data"), core.array("right_edge_rows")
     left_row, right_row, *_ = core.overlay("segments", u32, frame.width)
     geometry, edges_3d = core.array("geometry"), core.array("edges_3d")

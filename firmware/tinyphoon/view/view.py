@@ -27,6 +27,7 @@ from tinyphoon.stores import circles as c
 from tinyphoon.stores import lines as n
 from tinyphoon.stores import lines3d as s
 from tinyphoon.stores import rectangles as r
+from tinyphoon.stores.edges import EDGE_DATA
 from tinyphoon.strategy.orders import mode_in
 from tinyphoon.view.colours import colour_of
 from tinyphoon.view.objects import objects_of
@@ -86,7 +87,7 @@ def _geometry(readout: Readout, picture: NDArray[np.uint8]) -> SeenGeometry:
 
 def _edges(readout: Readout) -> SeenEdges:
     counts = readout.values("edge_counts").astype(np.int32)
-    words = readout.values("edge_data")[: counts.sum()]
+    words = readout.values(EDGE_DATA[readout.core])[: counts.sum()]
     return SeenEdges(
         x_px=(words >> 16).astype(np.int32),
         y_px=np.repeat(np.arange(len(counts), dtype=np.int32), counts),

@@ -1,0 +1,154 @@
+"""Thinning: where a picture has more edges than the store, the weakest are left out, in every part of it alike [ours].
+
+The thesis fills its store from the top, so that a cluttered picture loses its lower part: the floor before the robot. Here
+the scan keeps every edge as a candidate, row by row in SDRAM, and counts the candidates of each band of rows by gradient.
+Then each band gets its share of the store, by the part of the candidates that it has, and a least gradient that keeps to
+it. A second, short pass over the candidates fills the store. A picture whose edges have room keeps them all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from bfsim.api import Buffer, Core, FrameSize, InputRing, OutputRing, Row, i32, kernel, u8, u16, u32
+from tinyphoon.stores.edges import EDGE_CAPACITY, edge_store, store_edges_row
+
+BANDS = 8
+LEVELS = 256
+"""Gradients are bytes."""
+
+
+def thinning_buffers(size: FrameSize, images: str) -> Sequence[Buffer]:
+    """Return the candidates in the memory of `images`, a ring for them, and the least gradient of each band."""
+    width, height = size.width_px, size.height_px
+    return (
+        Buffer("edge_candidates", u32, width, images, rows=height),
+        Buffer("candidate_ring", u32, width, "L1_data_b", rows=2),
+        Buffer("least_gradients", u8, BANDS, "L1_data_b"),
+    )
+
+
+@kernel
+def clear_levels(levels: u16[:]) -> None:
+    """Begin to count."""
+    for place in range(len(levels)):
+        levels[place] = 0
+
+
+@kernel
+def count_levels(candidates: u32[:], count: i32, levels: u16[:], band: i32) -> None:
+    """Count `count` candidates of a row, by gradient, in the 256 numbers of their band."""
+    for place in range(count):
+        level = (band << 8) + i32(candidates[place] & 255)
+        levels[level] = levels[level] + 1
+
+
+@kernel
+def share_out(levels: u16[:], capacity: i32, least: u8[:]) -> i32:
+    """Set the least gradient that each band keeps, so that no more than `capacity` edges stay; return how many do not.
+
+    A band may keep as large a part of its candidates as there is room for all that are still to come. What a band leaves of
+    its share, since edges of one gradient stay or go together, is for the bands below it.
+    """
+    to_come = 0
+    for place in range(len(levels)):
+        to_come = to_come + levels[place]
+    room = capacity
+    left_out = 0
+    for band in range(len(least)):
+        first = band << 8
+        there = 0
+        for level in range(256):
+            there = there + levels[first + level]
+        share = there
+        if to_come > room:
+            share = room * there // to_come
+        kept = 0
+        level = 256
+        while level > 0 and kept + levels[first + level - 1] <= share:
+            level = level - 1
+            kept = kept + levels[first + level]
+        least[band] = min(level, 255)
+        if level == 256:
+            kept = 0
+        room = room - kept
+        to_come = to_come - there
+        left_out = left_out + there - kept
+    return left_out
+
+
+@kernel
+def take_candidates(
+    candidates: u32[:],
+    least: u8[:],
+    band: i32,
+    edge_data: u32[:],
+    edge_index: u32[:],
+    edge_counts: u16[:],
+    y: i32,
+    found: i32,
+) -> i32:
+    """Store the candidates of row `y`, `edge_counts[y]` of them, that reach the least gradient of their band.
+
+    `found` edges are stored before; returns how many are with this row.
+    """
+    edge_index[y] = found
+    before = found
+    for place in range(edge_counts[y]):
+        edge = candidates[place]
+        if i32(edge & 255) >= least[band] and found < len(edge_data):
+            edge_data[found] = edge
+            found = found + 1
+    edge_counts[y] = found - before
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Candidates:
+    """The candidates of a picture of `height` rows: written row by row, then taken into the edge store."""
+
+    core: Core
+    height: int
+    store: tuple[Row, Row, Row]
+    levels: Row
+    least: Row
+    outward: OutputRing
+
+    @classmethod
+    def of(cls, core: Core, height: int) -> Candidates:
+        """Return those of a core."""
+        outward = core.output_ring("candidate_ring", core.rows("edge_candidates"))
+        levels, *_ = core.overlay("segments", u16, BANDS * LEVELS)  # the lines come later
+        return cls(core, height, edge_store(core), levels, core.array("least_gradients"), outward)
+
+    def band(self, y: int) -> int:
+        """Return the band that a row belongs to."""
+        return y * BANDS // self.height
+
+    def begin(self) -> Generator[Any, Any, None]:
+        """Begin a picture."""
+        yield self.core.run(clear_levels, self.levels)
+
+    def add(self, y: int, gradients: Row, directions: Row) -> Generator[Any, Any, None]:
+        """Keep the edges of row `y` as candidates: its pixels with a gradient."""
+        row = yield from self.outward.row()
+        _, index, counts = self.store
+        count = yield self.core.run(store_edges_row, gradients, directions, row, index, counts, y, 0)
+        yield self.core.run(count_levels, row, count, self.levels, self.band(y))
+        self.outward.send()
+
+    def thin(self) -> Generator[Any, Any, tuple[InputRing, int]]:
+        """Share the store out; return a ring of the candidates from the first row on, and how many are left out."""
+        yield from self.outward.flush()
+        left_out: int = yield self.core.run(share_out, self.levels, EDGE_CAPACITY, self.least)
+        return self.core.input_ring(self.core.rows("edge_candidates"), "candidate_ring"), left_out
+
+    def take(self, rows: InputRing, y: int, found: int) -> Generator[Any, Any, int]:
+        """Store what row `y`, the next one, keeps; `found` edges are stored before, returns how many are with it."""
+        row = yield from rows.line()
+        stored: int = yield self.core.run(
+            take_candidates, row, self.least, self.band(y), *self.store, y, found
+        )
+        return stored
