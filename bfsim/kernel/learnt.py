@@ -61,7 +61,7 @@ LEARNT_FROM: dict[Learnt, tuple[str, ...]] = {
     Learnt.LATE_EXTENSION: ("gauss3_row",),
     Learnt.RELOAD_REGISTER: ("match_lines",),
     Learnt.POINTER_COPIES: ("insertion_sort_u16", "shell_sort"),
-    Learnt.COPIED_END: ("insertion_sort_u16", "shell_sort"),
+    Learnt.COPIED_END: ("shell_sort",),
     Learnt.SUNK_MASK: ("crc16_bits",),
     Learnt.NARROW_SUMS: ("counting_sort", "fill_xy", "flood_fill"),
     Learnt.RAW_BYTE: ("bilinear_row",),
