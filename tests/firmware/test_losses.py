@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import ast
+import json
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from bfsim.cli import main
 from bfsim.recording import RecordingWriter, StereoGeometry
-from bfsim.report.as_json import as_json
-from bfsim.run import simulate
 from bfsim.shipped import FIRMWARE_FOLDER
 from tinyphoon import one_eye, tinyphoon
 from tinyphoon.losses import LOSSES
@@ -44,8 +45,13 @@ def test_a_run_on_noise_ends_with_warnings(tmp_path: Path, geometry: StereoGeome
     rng = np.random.default_rng(12)
     with RecordingWriter(tmp_path / "noise.mcap", width=320, height=96, geometry=geometry) as writer:
         writer.add(*rng.integers(0, 256, (2, 96, 640), np.uint8), 0, 0)
-    run = simulate(tmp_path / "noise.mcap")
-    warnings = {(each["kind"], each.get("result")): each for each in as_json(run)["warnings"]}
+    result = CliRunner().invoke(
+        main, ["run", str(tmp_path / "noise.mcap"), "--json", "-"], catch_exceptions=False
+    )
+    run = json.loads(result.stdout)
+    warnings = {(each["kind"], each.get("result")): each for each in run["warnings"]}
     assert (("geometry", None) in warnings) == (geometry is None)
-    lost = run.frames[0].results["edges_lost_A"]
+    lost = run["frames"][0]["results"]["edges_lost_A"]
     assert warnings["lost", "edges_lost_A"]["total"] == lost > 0
+    told = [f"bfsim: warning: {each['kind']}: {each['text']}" for each in run["warnings"]]
+    assert result.stderr.splitlines() == told
