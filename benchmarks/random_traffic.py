@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from bfsim.api import BudgetRow, Buffer, Core, Firmware, Frame, FrameSize, i32, kernel, u8
+from bfsim.api import BudgetRow, Buffer, Core, DmaConfig, Firmware, Frame, FrameSize, i32, kernel, u8
 from bfsim.recording import StereoFrame
 
 SIZE = FrameSize(160, 120)
-STAGES = ("Kernels", "Rings", "Both")
+STAGES = ("Kernels", "L2", "Rings", "Both")
 CALLS = 60  # of a frame in the stage without rings
+L2_CALLS = 40  # of a frame at the port of L2, which both cores store to and load from all the time
+COPIED_WORDS = 256  # by the internal DMA
 LINES_A_CALL = {"Rings": 20, "Both": 2}
 BANKS = ("sdram_bank0", "sdram_bank1", "sdram_bank2", "sdram_bank3")
 SDRAM_WORDS, L2_WORDS = 4096, 1024  # powers of two, of one buffer: eight pages of SDRAM
@@ -50,6 +52,31 @@ def shift(source: i32[:], out: i32[:], first: i32, step: i32, count: i32) -> Non
     for _ in range(count):
         out[place & (len(out) - 1)] = source[(place + 7) & (len(source) - 1)]
         place += step
+
+
+@kernel
+def scatter_worked(out: i32[:], first: i32, step: i32, count: i32) -> i32:
+    """Store `count` words, `step` apart, around and around, with arithmetic between."""
+    place = first
+    value = 1
+    for number in range(count):
+        value = (value << 3) ^ (value >> 5) ^ number
+        value += (value >> 7) * 5 + (value & 63)
+        out[place & (len(out) - 1)] = value
+        place += step
+    return value
+
+
+@kernel
+def gather_worked(source: i32[:], first: i32, step: i32, count: i32) -> i32:
+    """Load `count` words, `step` apart, around and around, with arithmetic between."""
+    place = first
+    value = 1
+    for number in range(count):
+        value = (value << 3) ^ (value >> 5) ^ number
+        value += (value >> 7) * 5 + source[place & (len(source) - 1)]
+        place += step
+    return value
 
 
 @kernel
@@ -96,6 +123,7 @@ def _buffers(size: FrameSize, rng: Random) -> Mapping[str, Sequence[Buffer]]:
             Buffer("near", i32, SDRAM_WORDS, rng.choice(BANKS)),
             Buffer("far", i32, SDRAM_WORDS, rng.choice(BANKS)),
             Buffer("own_l2", i32, L2_WORDS, "l2_shared"),
+            Buffer("words", i32, COPIED_WORDS, "L1_data_a"),
             Buffer("in_ring", u8, line, "L1_data_a", rows=2),
             Buffer("out_ring", u8, line, "L1_data_b", rows=2),
         )
@@ -109,6 +137,9 @@ def _main(rng: Random) -> Any:
             with core.stage("Kernels"):
                 for _ in range(CALLS):
                     yield _call(core, rng)
+            with core.stage("L2"):
+                for _ in range(L2_CALLS):
+                    yield from _meet_at_l2(core, rng)
             for stage, lines in LINES_A_CALL.items():
                 with core.stage(stage):
                     yield from _lines(core, frame, rng, lines)
@@ -129,6 +160,28 @@ def _call(core: Core, rng: Random) -> Any:
     if chance <= 4:
         return core.run(scatter, out, *where)
     return core.run(shift, source, out, *where)
+
+
+def _meet_at_l2(core: Core, rng: Random) -> Play:
+    """Store to L2 or load from it by chance, at times under a lock or beside the internal DMA."""
+    source, out = (core.array(rng.choice(("own_l2", "common_l2"))) for _ in range(2))
+    where = (rng.randrange(L2_WORDS), rng.choice(STRIDES), rng.choice(ACCESSES))
+    stream, chance = core.memory_dma(f"IMDMA_{'AB'.index(core.name)}"), rng.randrange(8)
+    if chance == 0:
+        registers = {"X_COUNT": COPIED_WORDS, "X_MODIFY": 4}
+        stream.program(
+            source={"START_ADDR": source.address, **registers},
+            destination={"START_ADDR": core.array("words").address, **registers},
+        )
+        yield from stream.start(DmaConfig(), DmaConfig(WNR=True))
+    elif chance == 1:
+        yield from core.lock("common")
+    call = rng.choice((scatter, scatter, gather, scatter_worked, gather_worked))
+    yield core.run(call, out if call in (scatter, scatter_worked) else source, *where)
+    if chance == 0:
+        yield from stream.wait()
+    elif chance == 1:
+        yield from core.unlock("common")
 
 
 def _lines(core: Core, frame: Frame, rng: Random, lines_a_call: int) -> Play:

@@ -315,10 +315,14 @@ def _simulate(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
         for each in watchers or ():
             each(frame)
 
-    with progress_bar("Simulating frames") as progress, ending_deaf_kernels():
-        on_seen = tell if watchers else None
+    with progress_bar("Simulating frames", unit="ms simulated") as bar, ending_deaf_kernels():
         done = simulate(
-            feed=Feed(feed), fidelity=Fidelity(fidelity), progress=progress, on_seen=on_seen, **what
+            feed=Feed(feed),
+            fidelity=Fidelity(fidelity),
+            progress=bar,
+            on_seen=tell if watchers else None,
+            on_time=lambda seconds: bar.reached(1000 * seconds),
+            **what,
         )
     if done.interrupted and not done.frames:
         raise KeyboardInterrupt

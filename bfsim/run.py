@@ -50,6 +50,7 @@ def simulate(
     before: Callable[[Identity, int], None] | None = None,
     progress: Callable[[int, int], None] | None = None,
     on_seen: Callable[[SeenFrame], None] | None = None,
+    on_time: Callable[[float], None] | None = None,
 ) -> RunRecord:
     """Run `firmware` on a recording and return the records: a built-in one, "FILE.py:NAME" or "PACKAGE:NAME".
 
@@ -60,7 +61,8 @@ def simulate(
     and may raise; the digest of the recording is not known then. `progress` is called with
     (frames done, frames in all); `profile` names the compiler whose code is costed; `script` is a JSON or TOML file
     that tells the firmware's device on the SPI what to do; `on_seen` is called with what was seen in each frame, if
-    the firmware has a view, which changes nothing in the records. Ctrl-C ends the run with the frames done. Raises a
+    the firmware has a view, which changes nothing in the records; `on_time` is called now and then with the simulated
+    time in seconds. Ctrl-C ends the run with the frames done. Raises a
     BfsimError for anything that is wrong with what was given. A crash in native code ends the process, a notebook's, too;
     standard error then has the name of the kernel.
     """
@@ -115,7 +117,7 @@ def simulate(
             if on_seen:
                 on_seen(SeenFrame(index=index, times_ns=source.take_times_ns(index), cameras=cameras))
 
-        outcome = machine.run(iter(source), count, show if on_seen else None)
+        outcome = machine.run(iter(source), count, show if on_seen else None, on_time)
     identity = replace(
         identity, recording_digest=source.digest, firmware_digest=loaded.digest, firmware_files=loaded.files
     )

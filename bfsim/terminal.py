@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import Timer
+from time import monotonic
 
 from rich.console import Console, RenderableType
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 WIDTH_WITHOUT_TERMINAL = 100
 LEAST_WIDTH = 20
@@ -18,21 +19,50 @@ PATIENCE_S = 1.0
 """What is done sooner shows no bar."""
 
 
+class Bar:
+    """What to tell of something that takes long: call it with what is done, and in all, or None when nobody knows."""
+
+    def __init__(self, progress: Progress, task: TaskID, unit: str) -> None:
+        self.progress = progress
+        """What shows it."""
+        self._task = task
+        self._unit = unit
+        self._began = monotonic()
+
+    def __call__(self, done: int, total: int | None) -> None:
+        """Tell how much is done."""
+        self.progress.update(self._task, completed=done, total=total)
+
+    def reached(self, amount: float) -> None:
+        """Tell how far it is in a unit of its own, of which nobody knows the end; the bar says how many of them a second."""
+        rate = amount / max(monotonic() - self._began, 0.001)
+        self.progress.update(self._task, reached=f"{amount:,.1f} {self._unit}, {rate:,.1f} a second")
+
+
 @contextmanager
-def progress_bar(title: str) -> Iterator[Callable[[int, int | None], None]]:
-    """Yield what to tell (done, in all or None when nobody knows); on a terminal a bar shows it, if it takes long, and leaves nothing behind."""
-    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+def progress_bar(title: str, unit: str = "") -> Iterator[Bar]:
+    """Yield what to tell; on a terminal a bar shows it, if it takes long, and leaves nothing behind.
+
+    `unit`: what `Bar.reached` counts.
+    """
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[reached]}"),
+        TimeRemainingColumn(),
+    )
     console = Console(stderr=True)
-    bar = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
-    task = bar.add_task(title, total=None)
-    start = Timer(PATIENCE_S, bar.start)
+    progress = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
+    task = progress.add_task(title, total=None, reached="")
+    start = Timer(PATIENCE_S, progress.start)
     start.start()
     try:
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+        yield Bar(progress, task, unit)
     finally:
         start.cancel()
         start.join()
-        bar.stop()
+        progress.stop()
 
 
 def print_report(report: RenderableType) -> None:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import ctypes
 import struct
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bfsim.errors import FirmwareError
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.entry import FIRST_ARGUMENT, STALL_SHIFT
 from bfsim.kernel.jit import CompiledKernel
@@ -46,6 +47,28 @@ class Work:
         self.stall_cclk = stall_cclk
         self.value = value
         self.accesses = accesses
+
+
+UNYIELDED = "core.run(...) gives its value when it is yielded: write `yield core.run(...)`, in parentheses within an expression"
+
+
+def _refuse(*_operands: object) -> NoReturn:
+    raise FirmwareError(UNYIELDED)
+
+
+def _refuse_to_iterate(_work: Work) -> NoReturn:
+    raise FirmwareError(
+        "core.run(...) is one call and no wait: write `yield core.run(...)`, not `yield from core.run(...)`"
+    )
+
+
+for _operation in (
+    "bool", "int", "index", "float", "neg", "invert", "abs", "len", "getitem", "eq", "ne", "lt", "le", "gt", "ge",
+    *(side + each for each in ("add", "sub", "mul", "floordiv", "truediv", "mod", "and", "or", "xor", "lshift", "rshift")
+      for side in ("", "r")),
+):  # fmt: skip
+    setattr(Work, f"__{_operation}__", _refuse)
+Work.__iter__ = _refuse_to_iterate  # type: ignore[attr-defined]
 
 
 class PreparedCall:

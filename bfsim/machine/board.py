@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import partial
+from itertools import count
 
 import simpy
 
@@ -35,7 +36,7 @@ from bfsim.machine.detailed.bus import DetailedBus
 from bfsim.machine.dma.checks import DmaSpace
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.memory_dma import Dma
-from bfsim.machine.firmware_lines import line_of
+from bfsim.machine.firmware_lines import line_of, place_of
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.program import Buffer, Buffers, Firmware, FrameSize
 from bfsim.machine.simulation import Simulation
@@ -58,6 +59,9 @@ class Fidelity(StrEnum):
     DETAILED = "detailed"
 
 
+OnTime = Callable[[float], None]
+"""Told the simulated time, in seconds."""
+STEPS_TOLD = 2048  # events between two times that are told
 OnSeen = Callable[[int, tuple[Seen, ...]], None]
 
 
@@ -150,6 +154,7 @@ class Board:
         self._frames: list[FrameRecord] = []
         self._seen: list[tuple[int, tuple[Seen, ...]]] = []
         self._on_seen: OnSeen | None = None
+        self._on_time: OnTime | None = None
         self._caches = {core: caches_of(self.link_map, PROCESSORS[core]) for core in self.spec.chip.cores}
         for core, caches in self._caches.items():
             check_caches(self.link_map, core, caches, self.spec.chip.regions)
@@ -199,12 +204,15 @@ class Board:
         pictures: Iterator[StereoPictures],
         on_frame: Callable[[FrameRecord], None] | None = None,
         on_seen: OnSeen | None = None,
+        on_time: OnTime | None = None,
     ) -> Outcome:
         """Play `pictures` until they end or the user interrupts. Raises DeadlockError when the cores block each other.
 
-        `on_seen` is called with the index of each frame and what its cores saw, if the firmware has a view.
+        `on_seen` is called with the index of each frame and what its cores saw, if the firmware has a view; `on_time` now and
+        then with the simulated time.
         """
         self._on_seen = on_seen
+        self._on_time = on_time
         capture = self._capture(pictures)
         for index, name in enumerate(self.spec.chip.cores):
             self.cores[name] = self._core(index, name, capture, lambda: self._finish_frame(on_frame))
@@ -212,7 +220,7 @@ class Board:
         interrupted = False
         try:
             self._run_until(self._env.all_of(tasks))
-            self._check_end()
+            self._check_end(capture)
             if self._spi.busy is not None:  # the last message
                 self._run_until(self._spi.busy)
         except KeyboardInterrupt:
@@ -223,8 +231,12 @@ class Board:
     def _run_until(self, event: simpy.Event) -> None:
         """Let time pass until `event`, or until nothing can happen any more that lets a core go on."""
         with suppress(simpy.core.EmptySchedule):
-            while not event.processed and not (self._shared.turns and self._is_deadlock()):
+            for steps in count(1):
+                if event.processed or (self._shared.turns and self._is_deadlock()):
+                    break
                 self._env.step()
+                if self._on_time and steps % STEPS_TOLD == 0:
+                    self._on_time(float(self._env.tick / self.spec.clocks.tick_hz))
                 self._tell_seen()  # here, outside of the firmware: what fails is no fault of it
 
     def _tell_seen(self) -> None:
@@ -240,8 +252,8 @@ class Board:
             core.is_done or (name in turns and not turns[name].triggered) for name, core in self.cores.items()
         )
 
-    def _check_end(self) -> None:
-        """Raise an error unless both main loops have ended, with the same frames."""
+    def _check_end(self, capture: Capture) -> None:
+        """Raise an error unless both main loops have ended, with the same frames, and with all of them."""
         if not all(core.is_done for core in self.cores.values()):
             waits = "; ".join(core.describe_wait() for core in self.cores.values())
             raise DeadlockError(f"nothing can happen any more: {waits}")
@@ -250,6 +262,12 @@ class Board:
                 raise FirmwareError(
                     f"every core must take every frame, but only core {name} took frame {core.finished[0].index}"
                 )
+        early = [name for name, core in self.cores.items() if not core.is_over]
+        if early and capture.has_more:
+            raise FirmwareError(
+                f"the main loop of core {early[0]} must go on until next_frame gives None, not end after "
+                f"{len(self._frames)} frames: the recording has more ({place_of(self.firmware.mains[early[0]])})"
+            )
 
     def _capture(self, pictures: Iterator[StereoPictures]) -> Capture:
         ppis = {

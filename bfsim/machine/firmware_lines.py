@@ -21,6 +21,12 @@ def running_line() -> str:
     return f"{frame.f_code.co_filename}:{frame.f_lineno}"
 
 
+def place_of(function: object) -> str:
+    """Return where a function of the firmware begins, such as firmware/core_a.py:41; else its name."""
+    code = getattr(function, "__code__", None)
+    return f"{code.co_filename}:{code.co_firstlineno}" if code else repr(function)
+
+
 def line_at(task: Any) -> str:
     """Return the innermost line of the firmware at which a generator stands, as ` (file:line)`; nothing if it has ended."""
     place = ""

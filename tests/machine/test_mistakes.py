@@ -86,9 +86,55 @@ def no_kernel(core: Core, frame: Frame) -> Play:
     yield core.run(division, frame)  # type: ignore[arg-type]
 
 
+def sum_of_a_call(core: Core, frame: Frame) -> Play:
+    """Use a call for its value."""
+    yield core.run(spin, 10) + 1  # type: ignore[operator]
+
+
+def condition_of_a_call(core: Core, frame: Frame) -> Play:
+    """Ask for its truth, which would always hold."""
+    if core.run(spin, 10):
+        yield core.run(spin, 10)
+
+
+def attribute_of_a_call(core: Core, frame: Frame) -> Play:
+    """Take it for an int."""
+    yield core.run(spin, 10).bit_length()  # type: ignore[attr-defined]
+
+
+def published_call(core: Core, frame: Frame) -> Play:
+    """Publish the call and not its value."""
+    core.publish(spun=core.run(spin, 10))  # type: ignore[arg-type]
+    yield core.run(spin, 10)
+
+
+def call_as_a_wait(core: Core, frame: Frame) -> Play:
+    """Write `yield from` where `yield` is meant."""
+    yield from core.run(spin, 10)  # type: ignore[misc]
+
+
+def wait_as_a_call(core: Core, frame: Frame) -> Play:
+    """Write `yield` where `yield from` is meant."""
+    lines = core.input_ring(frame.rows, "in_ring")
+    yield lines.line()
+
+
+def wait_for_a_row(core: Core, frame: Frame) -> Play:
+    """Write neither."""
+    lines = core.input_ring(frame.rows, "in_ring")
+    yield core.run(first, lines.line())  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize(
     ("body", "kind", "message", "line"),
     [
+        (sum_of_a_call, FirmwareError, r"core\.run.* write `yield core\.run\(\.\.\.\)`, in parentheses", 2),
+        (condition_of_a_call, FirmwareError, r"core\.run.* write `yield core\.run\(\.\.\.\)`, in parent", 2),
+        (attribute_of_a_call, FirmwareError, r"core A: core\.run.* write `yield core.*AttributeError", 2),
+        (published_call, FirmwareError, r"core\.run\(\.\.\.\) gives its value when it is yielded", 2),
+        (call_as_a_wait, FirmwareError, r"write `yield core\.run\(\.\.\.\)`, not `yield from core\.run", 2),
+        (wait_as_a_call, FirmwareError, r"must be written `yield from line\(\.\.\.\)`, not `yield line", 3),
+        (wait_for_a_row, FirmwareError, r"first must get what a wait gives, `\(yield from line\(", 3),
         (no_kernel, FirmwareError, "core.run must get a function with @kernel before it, not division", 2),
         (
             work_in_the_dark,
@@ -163,6 +209,80 @@ def test_a_core_that_leaves_early_is_told() -> None:
 
     with pytest.raises(FirmwareError, match="every core must take every frame, but only core A took frame 1"):
         run(see_all, once, frames=2)
+
+
+def forgotten_post(core: Core, frame: Frame) -> Play:
+    """Nobody is told."""
+    core.post("go")
+    yield core.run(spin, 1)
+
+
+def forgotten_flush(core: Core, frame: Frame) -> Play:
+    """The last lines may not have arrived."""
+    out = core.output_ring("out_ring", core.rows("image"))
+    out.flush()
+    yield core.run(spin, 1)
+
+
+def forgotten_dma(core: Core, frame: Frame) -> Play:
+    """The DMA is not awaited."""
+    core.memory_dma("MDMA1_0").wait()
+    yield core.run(spin, 1)
+
+
+@pytest.mark.parametrize(
+    ("body", "name", "line"),
+    [(forgotten_post, "post", 2), (forgotten_flush, "flush", 3), (forgotten_dma, "wait", 2)],
+)
+def test_a_wait_that_is_never_begun_is_told_with_its_line(body: Any, name: str, line: int) -> None:
+    """Python runs nothing of it and says nothing; it is noticed when the next frame is asked for."""
+    place = f"{__file__}:{body.__code__.co_firstlineno + line}"
+    with pytest.raises(FirmwareError) as caught:
+        run(every_frame(body))
+    told = f"core A: {name}(...) at {place} does nothing: write `yield from` before it; noticed ("
+    assert str(caught.value).startswith(told)
+
+
+def test_a_wait_that_is_never_begun_is_told_at_the_end_of_all() -> None:
+    """Behind the last frame."""
+
+    def main(core: Core) -> Play:
+        yield from see_all(core)
+        core.post("over")
+
+    with pytest.raises(
+        FirmwareError, match=r"post\(\.\.\.\) at .* does nothing: .*; noticed at the end of main"
+    ):
+        run(main)
+
+
+@pytest.mark.parametrize("inside", [True, False])
+def test_a_frame_that_is_not_waited_for_is_told(inside: bool) -> None:
+    """A loop around it would never end; the picture has no rows."""
+
+    def main(core: Core) -> Play:
+        while frame := core.next_frame():
+            if inside:
+                yield core.run(first, frame.rows[0])  # type: ignore[attr-defined]
+
+    with pytest.raises(
+        FirmwareError, match=r"core A: next_frame\(\.\.\.\) at .* write `yield from` before it"
+    ):
+        run(main)
+
+
+def test_a_main_loop_that_ends_before_the_recording_is_told() -> None:
+    """Both cores take one frame of three, which is not what the user has asked for."""
+
+    def once(core: Core) -> Play:
+        yield from core.next_frame()
+
+    message = (
+        r"the main loop of core A must go on until next_frame gives None, not end after 1 frames: .*test_mis"
+    )
+    with pytest.raises(FirmwareError, match=message):
+        run(once, once, frames=3)
+    assert len(run(once, once, frames=1).frames) == 1
 
 
 def test_a_main_loop_without_a_yield_is_refused() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Generator, Iterable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -108,6 +108,12 @@ class CallCache:
         return self._groups.values()
 
     def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> BoundCall:
+        for each in arguments:
+            if isinstance(each, Generator):
+                wait = f"{getattr(each, '__name__', 'wait')}(...)"
+                raise FirmwareError(
+                    f"kernel {kernel.name} must get what a wait gives, `(yield from {wait})`, not the wait `{wait}`"
+                )
         kernel.check(arguments)
         rows = []
         for position in kernel.array_positions:

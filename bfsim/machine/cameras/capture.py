@@ -130,6 +130,11 @@ class Capture:
         self._held[core] = mine.popleft()
         return self._held[core]
 
+    @property
+    def has_more(self) -> bool:
+        """Whether there are pictures left that the firmware has not taken."""
+        return not self._ended or any(each.state in (State.FILLING, State.FULL) for each in self._pairs)
+
     def change_camera(self, core: str, settings: CameraSettings) -> None:
         """Give the camera of a core new settings."""
         self._ppis[core].change(settings)

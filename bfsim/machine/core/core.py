@@ -21,6 +21,7 @@ from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.layouts import Layouts
 from bfsim.machine.core.readout import Readout
 from bfsim.machine.core.synchronised import SharedObjects, SynchronisedCore
+from bfsim.machine.core.waits import awaited
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.memory_dma import Dma, MemoryDma
 from bfsim.machine.dma.ring import InputRing, OutputRing
@@ -171,6 +172,7 @@ class Core(SynchronisedCore):
         yield
         self._enter(before)
 
+    @awaited
     def next_frame(self) -> Generator[Any, Any, Frame | None]:
         """Finish the current frame and wait for the next picture; None when the recording is over."""
         if self._calls.stage != REST:
@@ -207,6 +209,7 @@ class Core(SynchronisedCore):
         """
         self._capture.change_camera(self.name, settings)
 
+    @awaited
     def ppi_status(self) -> Generator[Any, Any, int]:
         """Read PPI_STATUS of this core's PPI, which clears it: the bits of `PpiStatusBit` that were set since the last time."""
         self.program_device(writes=0, reads=1)
@@ -228,6 +231,7 @@ class Core(SynchronisedCore):
         """Return the memory DMA stream `name`, such as MDMA2_1 or IMDMA_0, to be programmed by its registers."""
         return self._dma.stream(name, self)
 
+    @awaited
     def send(self, row: Row, nbytes: int) -> Generator[Any, Any, None]:
         """Send the first `nbytes` of `row` to the device on the SPI, by DMA, once the message before is out."""
         yield from self._sync()
@@ -238,6 +242,7 @@ class Core(SynchronisedCore):
         yield from self._sync()
         self._spi.send(row, nbytes)
 
+    @awaited
     def receive(self, row: Row) -> Generator[Any, Any, int]:
         """Take the next message of the device on the SPI into `row`, if it has one; return its bytes, 0 without one."""
         yield from self._sync()
@@ -275,13 +280,24 @@ class Core(SynchronisedCore):
 
     def play(self, main: Main) -> Generator[Any, Any, None]:
         """Run the firmware's main loop: the process of this core."""
-        task = main(self)
+        try:
+            task = main(self)
+        except (Exception, SystemExit) as error:
+            raise self._told(error) from error
         if not isinstance(task, Generator):
-            raise FirmwareError(f"core {self.name}: the main loop must be a generator function, not {main!r}")
+            raise FirmwareError(
+                f"core {self.name}: the main loop must be a generator function, not {main!r}: "
+                "it waits with `yield from core.next_frame()`, and runs kernels with `yield core.run(...)`"
+            )
         yield from self._perform(task)
         yield from self._sync()
         self._close_frame()
         self.is_done = True
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the firmware was told that the recording is over."""
+        return self._is_over
 
     def _close_frame(self) -> None:
         """Turn the cycles since the last frame's end into a record, if there was a frame."""

@@ -8,12 +8,14 @@ from typing import Any
 import simpy
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.errors import BfsimError, FirmwareError, KernelError
+from bfsim.errors import BfsimError, FirmwareError, KernelError, shown
 from bfsim.kernel import Kernel, Work
+from bfsim.kernel.work import UNYIELDED
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.calls.call_cache import CallCache, DeferredWork
 from bfsim.machine.core.clock import CoreClock
 from bfsim.machine.core.interrupts import Handler, Interrupts
+from bfsim.machine.core.waits import Waits, awaited, name_of
 from bfsim.machine.firmware_lines import line_at, line_of
 from bfsim.machine.memories import Row
 from bfsim.machine.simulation import Simulation
@@ -47,6 +49,9 @@ class PlayingCore(CoreClock):
         self._calls = calls
         self._interrupts = interrupts
         self._unclaimed: Work | None = None
+        self._unclaimed_kernel: Kernel | None = None
+        self.waits = Waits(name)
+        """Waits that the firmware has made and may have forgotten to begin."""
         self._task: Generator[Any, Any, Any] | None = None  # the main loop, or the handler that came between
         self._in_handler = False
         self._frame_index: int | None = None
@@ -66,6 +71,7 @@ class PlayingCore(CoreClock):
         except (LookupError, TypeError, AttributeError):  # the first time, or something is wrong
             call = self._calls.prepare(kernel, arguments)
         # what reaches outside L1 may meet what others do: it runs when the simulated time is there
+        self._unclaimed_kernel = kernel
         work = self._unclaimed = call.run(arguments) if call.stays_in_l1 else DeferredWork(call, arguments)
         return work
 
@@ -80,6 +86,7 @@ class PlayingCore(CoreClock):
         """Ask this core for an interrupt, as a device does."""
         self._interrupts.request(source)
 
+    @awaited
     def idle(self) -> Generator[Any, Any, None]:
         """Wait for an interrupt, and let its handler run; one that was asked for already ends the wait at once."""
         before, self._in_handler = self._in_handler, True
@@ -119,24 +126,44 @@ class PlayingCore(CoreClock):
                     item = self._made(item, task)
                     if item.accesses:
                         yield from self._outside_l1(item)
-                self._cclk += item.issue_cclk + item.stall_cclk
-                self._account.issue_cclk += item.issue_cclk
-                if item.stall_cclk:
-                    stalls = self._account.stall_cclk
-                    stalls[StallReason.INTERLOCK] = stalls.get(StallReason.INTERLOCK, 0) + item.stall_cclk
+                self._charge_work(item)
                 value = item.value
             elif isinstance(item, simpy.Event):
                 value = yield item
             else:
-                raise FirmwareError(
-                    f"core {self.name}: firmware must yield each core.run(...) once, or `yield from` a wait, "
-                    f"not {item!r}{line_at(task)}"
-                )
+                raise self._misused(item, line_at(task))
             if self.can_be_interrupted:
                 yield from self._sync()
                 yield from self._take_interrupts()
         self._check_claimed()
+        self._check_waits(task)
         self._task = before
+
+    def _charge_work(self, work: Work) -> None:
+        """Let the cycles of a call pass, without what its accesses outside L1 stalled."""
+        self._cclk += work.issue_cclk + work.stall_cclk
+        self._account.issue_cclk += work.issue_cclk
+        if work.stall_cclk:
+            stalls = self._account.stall_cclk
+            stalls[StallReason.INTERLOCK] = stalls.get(StallReason.INTERLOCK, 0) + work.stall_cclk
+
+    def _check_waits(self, task: Generator[Any, Any, Any]) -> None:
+        """Raise FirmwareError if `task`, which has ended, has forgotten a wait."""
+        try:
+            self.waits.check()
+        except FirmwareError as error:
+            raise FirmwareError(f"{error} at the end of {name_of(task)}") from None
+
+    def _misused(self, item: object, line: str) -> FirmwareError:
+        """Return what is wrong with a yield of `item`, which is no call and no event."""
+        if isinstance(item, Generator):
+            wait = f"{name_of(item)}(...)"
+            return FirmwareError(
+                f"core {self.name}: a wait must be written `yield from {wait}`, not `yield {wait}`{line}"
+            )
+        return FirmwareError(
+            f"core {self.name}: firmware must yield each core.run(...) once, or `yield from` a wait, not {shown(item)}{line}"
+        )
 
     def _told(self, error: Exception | SystemExit) -> BfsimError:
         """Return what went wrong in the firmware, with its line there."""
@@ -145,7 +172,12 @@ class PlayingCore(CoreClock):
             return self._in_call(error, line)
         if isinstance(error, BfsimError):
             return type(error)(f"{error}{line}")
-        return FirmwareError(f"core {self.name}: firmware failed with {type(error).__name__}: {error}{line}")
+        what = f"{type(error).__name__}: {error}"
+        if forgotten := self.waits.forgotten():
+            return FirmwareError(f"{forgotten} ({what}){line}")
+        if self._unclaimed is not None:
+            return FirmwareError(f"core {self.name}: {UNYIELDED} ({what}){line}")
+        return FirmwareError(f"core {self.name}: firmware failed with {what}{line}")
 
     def _made(self, work: DeferredWork, task: Generator[Any, Any, Any]) -> Work:
         """Make a call that `task` has yielded."""
@@ -162,7 +194,12 @@ class PlayingCore(CoreClock):
 
     def _check_claimed(self) -> None:
         if self._unclaimed is not None:
-            raise FirmwareError(f"core {self.name}: core.run(...) must be yielded, or its cycles are lost")
+            kernel = (
+                f"core.run({self._unclaimed_kernel.name}, ...)" if self._unclaimed_kernel else "core.run(...)"
+            )
+            raise FirmwareError(
+                f"core {self.name}: core.run(...) must be yielded, or its cycles are lost: write `yield {kernel}`"
+            )
 
     def _outside_l1(self, work: Work) -> Generator[Any, Any, None]:
         """Play the accesses of a call outside L1 from the core's clock on, and charge what they stall."""

@@ -15,6 +15,7 @@ from bfsim.machine.core.playing import PlayingCore
 from bfsim.machine.core.semaphore import Semaphore
 from bfsim.machine.core.shared_access import SharedAccess
 from bfsim.machine.core.spin_lock import SpinLock
+from bfsim.machine.core.waits import awaited
 from bfsim.machine.firmware_lines import running_line
 from bfsim.trace import StallReason
 
@@ -37,11 +38,13 @@ class SynchronisedCore(PlayingCore):
 
     _shared: SharedObjects
 
+    @awaited
     def post(self, name: str) -> Generator[Any, Any, None]:
         """Add one to the semaphore `name`, in L2."""
         yield from self._test_and_set()
         self._semaphore(name).post()
 
+    @awaited
     def wait(self, name: str) -> Generator[Any, Any, None]:
         """Take one from the semaphore `name`, trying until another core has posted it."""
         yield from self._test_and_set()
@@ -49,6 +52,7 @@ class SynchronisedCore(PlayingCore):
         if turn is not None:
             yield from self._take_turn(turn, f"semaphore {name!r}")
 
+    @awaited
     def lock(self, name: str) -> Generator[Any, Any, None]:
         """Take the spin lock `name`, trying until the other core gives it back."""
         yield from self._test_and_set()
@@ -60,6 +64,7 @@ class SynchronisedCore(PlayingCore):
             yield from self._take_turn(turn, f"lock {name!r}, held by {lock.holder}")
             lock.holder = self._described()
 
+    @awaited
     def unlock(self, name: str) -> Generator[Any, Any, None]:
         """Give the spin lock `name` back."""
         yield from self._access(log.STORE, 1)  # of zero
@@ -108,6 +113,7 @@ class SynchronisedCore(PlayingCore):
     def _lock(self, name: str) -> SpinLock:
         return self._shared.locks.setdefault(name, SpinLock(self._env, name))
 
+    @awaited
     def interrupt_core(self, other: str) -> Generator[Any, Any, None]:
         """Raise the supplemental interrupt SUPPLEMENTAL_0 at another core."""
         others: Mapping[str, Interrupts] = self._shared.interrupts

@@ -13,6 +13,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus, Walk
+from bfsim.machine.core.waits import Waits, awaited
 from bfsim.machine.dma.channel import ChannelStep, DmaChannel, check_pair
 from bfsim.machine.dma.checks import DmaSpace
 from bfsim.machine.dma.config import DmaConfig
@@ -92,6 +93,12 @@ class MemoryDma:
                 channel.write(register, value, place)
         self.core.program_device(writes=len(source) + len(destination))
 
+    @property
+    def waits(self) -> Waits:
+        """The waits of the core that programs it."""
+        return self.core.waits
+
+    @awaited
     def start(self, source: DmaConfig, destination: DmaConfig) -> Generator[Any, Any, None]:
         """Write both CONFIG registers; the first work unit begins. MmrError for what the chip would flag."""
         place = running_line()
@@ -108,6 +115,7 @@ class MemoryDma:
         self.core.program_device(writes=2)
         self._stopping = True
 
+    @awaited
     def wait(self) -> Generator[Any, Any, None]:
         """Stall until the work that was started is done; with FLOW=AUTO it is after a `stop` only."""
         yield from self.core.wait_event(self.done, f"{self.name}")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from bfsim.chip.dma_registers import COPY_READS, COPY_WRITES
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus.bus import Transfer
+from bfsim.machine.core.waits import Waits, awaited
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.trace import StallReason
@@ -110,6 +111,12 @@ class OutputRing:
         row = self._rows[number % self._depth]
         self._transfers.append(self._stream.copy(row, self._image[number], self._core.now_ticks))
 
+    @property
+    def waits(self) -> Waits:
+        """The waits of the core whose ring it is."""
+        return self._core.waits
+
+    @awaited
     def flush(self) -> Generator[Any, Any, None]:
         """Wait until every line that was sent has arrived."""
         if self._transfers:

@@ -1,0 +1,73 @@
+"""Waits that firmware has made: without `yield from` before it a wait is never begun, and nothing happens."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Generator
+from functools import wraps
+from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
+
+from bfsim.errors import FirmwareError
+from bfsim.machine.firmware_lines import running_line
+
+Wait = Generator[Any, Any, Any]
+
+
+def name_of(wait: Wait) -> str:
+    """Return the name of what made a wait."""
+    return str(getattr(wait, "__name__", "a wait"))
+
+
+class Waits:
+    """What one core's firmware has asked to wait for, since this was looked at last."""
+
+    def __init__(self, core: str) -> None:
+        self._core = core
+        self._made: list[tuple[Wait, str]] = []
+
+    def note(self, wait: Wait) -> None:
+        """Note a wait that the firmware has just made. Who asks for the next frame must have begun all before."""
+        if name_of(wait) == "next_frame":
+            self.check()
+        self._made.append((wait, running_line()))
+
+    def check(self) -> None:
+        """Raise FirmwareError if a wait was never begun."""
+        if forgotten := self.forgotten():
+            raise FirmwareError(f"{forgotten}; noticed")
+        self._made.clear()
+
+    def forgotten(self) -> str:
+        """Say which wait was never begun, and where; empty if none."""
+        for wait, place in self._made:
+            if inspect.getgeneratorstate(wait) == inspect.GEN_CREATED:
+                return f"core {self._core}: {name_of(wait)}(...) at {place} does nothing: write `yield from` before it"
+        return ""
+
+
+class HasWaits(Protocol):
+    """What makes waits for the firmware of one core."""
+
+    @property
+    def waits(self) -> Waits:
+        """Those of the core."""
+
+
+Owner = TypeVar("Owner", bound=HasWaits)
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+Method = Callable[Concatenate[Owner, Arguments], Generator[Any, Any, Result]]
+
+
+def awaited(method: Method[Owner, Arguments, Result]) -> Method[Owner, Arguments, Result]:
+    """Note every wait that this method makes."""
+
+    @wraps(method)
+    def made(
+        self: Owner, /, *arguments: Arguments.args, **named: Arguments.kwargs
+    ) -> Generator[Any, Any, Result]:
+        wait = method(self, *arguments, **named)
+        self.waits.note(wait)
+        return wait
+
+    return made
