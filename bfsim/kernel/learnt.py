@@ -53,6 +53,8 @@ class Learnt(StrEnum):
     KEPT_BITS = "a conversion that keeps every bit that may be set is none"
     STEPPED_COUNTERS = "a counter that only the next iteration wants is stepped in place, last"
     CONSTANT_MOVES = "constants that do not fit in the registers of a loop come from others, by a move"
+    KEPT_RESULTS = "a result that is wanted behind the next call moves out of R0"
+    SINGLE_BITS = "a single bit is set, cleared or toggled by its number, without a mask"
     BIT_COUNTS = "a loop that clears the lowest bit until none is left is an instruction"
 
 
@@ -91,5 +93,7 @@ LEARNT_FROM: dict[Learnt, tuple[str, ...]] = {
     Learnt.KEPT_BITS: ("crc16_table",),
     Learnt.STEPPED_COUNTERS: ("percentiles",),
     Learnt.CONSTANT_MOVES: ("hamming_pairs",),
+    Learnt.KEPT_RESULTS: ("morton",),
+    Learnt.SINGLE_BITS: ("heap_sort",),
     Learnt.BIT_COUNTS: ("popcount_words",),
 }

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
+from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.moves import Moves
@@ -74,7 +75,8 @@ class _Ends:
         self.result.saved_data = min(max(data, 0), 4)
         self.result.saved_pointers = min(max(pointers, 0), 3)
         self.result.saves_frame_pointer = pointers > 3
-        self._results()
+        if self.webs.context.profile.applies(Learnt.KEPT_RESULTS):
+            self._results()
         self._parameters(across)
 
     def _results(self) -> None:

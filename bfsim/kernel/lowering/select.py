@@ -128,10 +128,18 @@ class _Selector(Accesses):
             return
         if each.opcode == "and" and right in EXTENDING_MASKS:
             self.append(Op.EXTEND, each, each.result, DATA, (left, DATA))
-        elif right.lstrip("-").isdigit() and _is_single_bit(each.opcode, int(right)):
+        elif self._is_single_bit(each.opcode, right):
             self.append(Op.ALU, each, each.result, DATA, (left, DATA), overwrites=(left,))
         else:
             self.append(Op.ALU, each, each.result, DATA, (left, DATA), (right, DATA))
+
+    def _is_single_bit(self, opcode: str, right: str) -> bool:
+        """Whether BITSET, BITCLR, BITTGL or NOT does it."""
+        if not right.lstrip("-").isdigit() or not self.context.profile.applies(Learnt.SINGLE_BITS):
+            return False
+        mask = int(right)
+        bits = ~mask if opcode == "and" else mask
+        return (opcode == "xor" and mask == -1) or (bits & 0xFFFFFFFF).bit_count() == 1
 
     def multiply(self, each: Instruction) -> None:
         left, right = each.operands[:2]
@@ -256,14 +264,6 @@ class _Selector(Accesses):
 
 def _decides(branch: Instruction, test: Instruction) -> bool:
     return branch.operands[:1] == (test.result,)
-
-
-def _is_single_bit(opcode: str, mask: int) -> bool:
-    """Whether BITSET, BITCLR, BITTGL or NOT does it."""
-    if opcode == "xor" and mask == -1:
-        return True
-    bits = ~mask if opcode == "and" else mask
-    return (bits & 0xFFFFFFFF).bit_count() == 1
 
 
 def _is_near(relation: str, bound: int) -> bool:
