@@ -10,19 +10,27 @@ from collections.abc import Callable
 from bfsim.kernel.ir_text import Routine, read_module, with_names, write_module
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
+from bfsim.kernel.lowering.merged_stores import merge_stores
 from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.sinking import sink
+from bfsim.kernel.lowering.split_loads import split_loads
 from bfsim.kernel.profile import CompilerProfile
 
 REWRITES: tuple[Callable[[Routine], Routine], ...] = (
+    split_loads,
+    merge_stores,
     with_preheaders,
     without_redundant_loads,
     sink,
     hoist_loads,
 )
 """In this order."""
-LEARNT = {without_redundant_loads: Learnt.CARRIED_LOADS, sink: Learnt.SINKING}
+LEARNT = {
+    split_loads: Learnt.MERGED_LOADS,
+    without_redundant_loads: Learnt.CARRIED_LOADS,
+    sink: Learnt.SINKING,
+}
 """Those that a single measured kernel needs, which can be left out."""
 
 

@@ -1,0 +1,90 @@
+"""Loads and stores stand where GCC has them, whatever LLVM has made of the source."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from bfsim.kernel import GCC_O2
+from bfsim.kernel.isa import Op
+from tests.kernel.modules import import_text
+from tests.kernel.running import run
+
+STRONGEST = """
+@kernel
+def keep(a: u8[:], b: u8[:], kind: u8[:], out: u8[:], limit: i32):
+    for x in range(1, len(a) - 1):
+        if kind[x] == 0:
+            before = a[x - 1]
+        elif kind[x] == 1:
+            before = b[x - 1]
+        else:
+            before = b[x]
+        if a[x] >= limit and a[x] >= before:
+            out[x] = a[x]
+        else:
+            out[x] = 0
+"""
+COUNTED = """
+@kernel
+def count(a: u8[:], counts: i32[:], b: u8[:]):
+    for x in range(len(a)):
+        if a[x] > 7:
+            counts[a[x] & 3] = counts[a[x] & 3] + 1
+        else:
+            counts[a[x] & 3] = b[x]
+"""
+
+
+def rows(seed: int, count: int, length: int = 40) -> list[np.ndarray]:
+    """Random rows of bytes."""
+    random = np.random.default_rng(seed)
+    return [random.integers(0, 12, length, np.uint8) for _ in range(count)]
+
+
+def test_a_load_on_each_way_is_made_on_each_way(tmp_path: Path) -> None:
+    """`before` is loaded whether it is needed behind or not: one access an element, as in the source."""
+    kernel = import_text(STRONGEST, tmp_path).keep
+    a, b, kind, out = rows(1, 4)
+    kind %= 3
+    expected = out.copy()
+    for x in range(1, len(a) - 1):
+        before = a[x - 1] if kind[x] == 0 else b[x - 1] if kind[x] == 1 else b[x]
+        expected[x] = a[x] if a[x] >= 6 and a[x] >= before else 0
+    code = kernel.compile(GCC_O2)
+    totals = code.new_totals()
+    kernel.prepare(code, [a, b, kind, out], totals).run((a, b, kind, out, 6))
+    np.testing.assert_array_equal(out, expected)
+    reads = dict.fromkeys(("a", "b", "kind"), 0)
+    writes = 0
+    for counter, events in zip(code.counters, totals.tolist(), strict=True):
+        for name, read, written in counter.accesses:
+            reads[name] = reads.get(name, 0) + events * read
+            writes += events * written
+    inner = len(a) - 2
+    of_a = int((kind[1:-1] == 0).sum())
+    assert reads["a"] == inner + of_a
+    assert reads["b"] == inner - of_a
+    assert writes == inner
+
+
+def test_stores_at_the_ends_of_both_sides_are_one(tmp_path: Path) -> None:
+    """`out[x] = a[x]` or 0: one store, and a move on the condition, as `if cc R0 = R4`."""
+    kernel = import_text(STRONGEST, tmp_path).keep
+    charges = [
+        each for counter in kernel.counters(GCC_O2) if counter.value is None for each in counter.charges
+    ]
+    assert sum(each.count for each in charges if each.op is Op.STORE8) == 1
+    assert Op.COND_MOVE in {each.op for each in charges}
+
+
+def test_what_the_stores_address_is_still_there(tmp_path: Path) -> None:
+    """One side reads the element that it stores, the other one does not."""
+    kernel = import_text(COUNTED, tmp_path).count
+    a, b = rows(2, 2)
+    counts, expected = np.zeros(4, np.int32), np.zeros(4, np.int32)
+    for value, other in zip(a.tolist(), b.tolist(), strict=True):
+        expected[value & 3] = expected[value & 3] + 1 if value > 7 else other
+    run(kernel, a, counts, b, profile=GCC_O2)
+    np.testing.assert_array_equal(counts, expected)
