@@ -19,7 +19,7 @@ from bfsim.kernel.emit import emit
 from bfsim.kernel.inlining import inlined_calls
 from bfsim.kernel.ir_text import SourceLine, read_module
 from bfsim.kernel.isa import Op
-from bfsim.kernel.lowering.charges import Charge
+from bfsim.kernel.lowering.charges import Access, Charge
 from bfsim.kernel.lowering.rewrites import rewritten
 from bfsim.kernel.lowering.unrolled import marked
 from bfsim.kernel.profile import CompilerProfile
@@ -53,7 +53,7 @@ def _counter(row: dict[str, Any]) -> Counter:
     charges = tuple(
         Charge(**each | {"op": Op(each["op"]), "line": SourceLine(*each["line"])}) for each in row["charges"]
     )
-    accesses = tuple((name, reads, writes) for name, reads, writes in row["accesses"])
+    accesses = tuple(Access(*each) for each in row["accesses"])
     return Counter(**row | {"charges": charges, "accesses": accesses, "enters": tuple(row["enters"])})
 
 

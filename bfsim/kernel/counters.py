@@ -11,10 +11,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine
+from bfsim.kernel.ir_text import Routine, SourceLine
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering import optimised, unoptimised
-from bfsim.kernel.lowering.charges import Charge
+from bfsim.kernel.lowering.charges import Access, Charge
 from bfsim.kernel.profile import CompilerProfile
 
 
@@ -22,7 +22,7 @@ from bfsim.kernel.profile import CompilerProfile
 class Counter:
     """An event that is counted: the execution of block `label`, or of its test `value` being true.
 
-    `charges`: what the event costs. `accesses`: (array, reads, writes) per event. `enters`: the kernels that it enters, as the
+    `charges`: what the event costs. `accesses`: those that the costed code makes. `enters`: the kernels that it enters, as the
     first block of the routine does, and blocks where an inlined one begins.
     """
 
@@ -31,12 +31,21 @@ class Counter:
     value: str | None
     equals: int | None
     charges: tuple[Charge, ...]
-    accesses: tuple[tuple[str, int, int], ...]
+    accesses: tuple[Access, ...]
     nbytes: int = 0
     """Code of the block."""
     depth: int = 0
     """Loops around the block."""
     enters: tuple[str, ...] = ()
+
+    @cached_property
+    def array_accesses(self) -> tuple[tuple[str, int, int], ...]:
+        """(array, reads, writes) per event, without those that routines of the library make."""
+        reads, writes = (
+            Tally(each.array for each in self.accesses if each.writes is written and not each.fills)
+            for written in (False, True)
+        )
+        return tuple((name, reads[name], writes[name]) for name in sorted(reads | writes))
 
     @cached_property
     def line_cclk(self) -> tuple[tuple[SourceLine, int, int], ...]:
@@ -64,11 +73,16 @@ def cost(routine: Routine, profile: CompilerProfile) -> tuple[Counter, ...]:
     lower = optimised.lower if profile.optimises else unoptimised.lower
     blocks = lower(routine, profile)
     flow = ControlFlow(routine)
+    known = _accesses(flow)
     counters: list[Counter] = []
     for block in routine.blocks:
         found = blocks[block.label]
         place, depth = (routine.symbol, block.label), len(flow.loops_of(block.label))
-        accesses, charges = _accesses(flow, block), _merged(found.charges)
+        charges = _merged(found.charges)
+        accesses = (
+            *(known[id(each)] for each in found.accesses),
+            *(known[id(each)]._replace(fills=True) for each in found.fills),
+        )
         enters = (*([routine.symbol] if block is routine.blocks[0] else []), *block.enters)
         if not charges and not accesses and not found.tests and not enters:
             continue  # nothing to count: the block holds no code
@@ -89,13 +103,12 @@ def _merged(charges: Iterable[Charge]) -> tuple[Charge, ...]:
     return tuple(replace(one, count=count) for one, count in counts.items() if count)
 
 
-def _accesses(flow: ControlFlow, block: BasicBlock) -> tuple[tuple[str, int, int], ...]:
-    """Reads and writes of each array, by the parameter's name; other memory has none."""
-    reads: Tally[str] = Tally()
-    writes: Tally[str] = Tally()
-    for each in block.instructions:
-        if each.opcode in ("load", "store"):
-            root = flow.root(each.operands[-1])
-            if root in flow.routine.parameters:
-                (reads if each.opcode == "load" else writes)[root[1:]] += 1
-    return tuple((name, reads[name], writes[name]) for name in sorted(reads | writes))
+def _accesses(flow: ControlFlow) -> dict[int, Access]:
+    """Every load and store of a routine, by the identity of its instruction."""
+    found = {}
+    for block in flow.routine.blocks:
+        rows = (each for each in block.instructions if each.opcode in ("load", "store"))
+        for number, each in enumerate(rows):
+            array = flow.root(each.operands[-1])[1:]
+            found[id(each)] = Access(array, each.opcode == "store", block.label, number)
+    return found

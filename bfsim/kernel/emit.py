@@ -242,7 +242,7 @@ class _Emitter:
         """The counter is hidden: what the body assigns to the loop's name does not change the iterations, as in Python."""
         builder = self.builder
         start, stop = self.value(node.start), self.value(node.stop)
-        counter = self._entry_slot(f"{node.name}.iteration")
+        counter = self._entry_slot(I32, f"{node.name}.iteration")
         builder.store(start, counter)
         test, body, step, after = (
             builder.append_basic_block(name) for name in ("for", "body", "step", "after")
@@ -269,9 +269,14 @@ class _Emitter:
         yield
         self.loops.pop()
 
-    def _entry_slot(self, name: str) -> ir.Value:
-        with self.builder.goto_entry_block():
-            return self.builder.alloca(I32, name=name)
+    def _entry_slot(self, kind: ir.Type, name: str = "") -> ir.Value:
+        """Return a slot at the head of the first block: behind a call that is inlined, LLVM would leave it in memory."""
+        entry = self.builder.function.entry_basic_block
+        before = next((each for each in entry.instructions if each.opname != "alloca"), None)
+        with self.builder.goto_block(entry):
+            if before is not None:
+                self.builder.position_before(before)
+            return self.builder.alloca(kind, name=name)
 
     def _fall_to(self, block: ir.BasicBlock) -> None:
         if not self.builder.block.is_terminated:
@@ -386,8 +391,7 @@ class _Emitter:
 
     def _decided(self, node: tree.Expr) -> ir.Value:
         value = self.value(node)
-        with self.builder.goto_entry_block():
-            slot = self.builder.alloca(I1)
+        slot = self._entry_slot(I1)
         self.builder.store(value, slot)
         return slot
 
@@ -396,8 +400,7 @@ class _Emitter:
 
     def _choose(self, node: tree.Choose) -> ir.Value:
         """Only the chosen side runs, as in Python."""
-        with self.builder.goto_entry_block():
-            slot = self.builder.alloca(register_type(node.type), name="chosen")
+        slot = self._entry_slot(register_type(node.type), "chosen")
         yes, no, after = (self.builder.append_basic_block(name) for name in ("yes", "no", "chosen"))
         self.builder.cbranch(self.value(node.test), yes, no)
         for block, side in ((yes, node.yes), (no, node.no)):

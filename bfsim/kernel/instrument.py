@@ -19,9 +19,8 @@ from bfsim.kernel.derived import Sum, derived
 from bfsim.kernel.entry import entry_point, globals_of, settle
 from bfsim.kernel.guards import Guarded
 from bfsim.kernel.ir_text import DEFINE, ENTRY, KERNEL_CALL, LABEL, read_module
+from bfsim.kernel.tracing import ROUTINES, Tracing
 
-ACCESS = re.compile(r"^  (?:%[\w.$-]+ = load|store) (i\d+|float)(?: [^,]+)?, ptr (%[\w.$-]+)")
-FLOAT_BYTES = 4
 # [ours] In a program of so many counters, a routine of so many of them stays a routine on the host: LLVM takes twice as long
 # for what it inlines there, and the program runs no faster.
 LARGE_PROGRAM_COUNTERS, LARGE_ROUTINE_COUNTERS = 60, 6
@@ -30,16 +29,6 @@ SWITCH = re.compile(r"^  switch (i\d+) ")
 NOISE = re.compile(r" local_unnamed_addr| #\d+| !dbg !\d+")
 LEFT_OUT = ("!", "attributes", "target", "source_filename", ";")
 TERMINATORS = ("  br ", "  ret ", "  switch ", "  unreachable")
-
-TRACE_ACCESS = """
-define internal void @bfsim.trace_access(ptr %address, i64 %access) alwaysinline {
-  %state = load ptr, ptr @bfsim.state
-  %function = load ptr, ptr %state
-  %stamp = load i64, ptr @bfsim.clock
-  call void %function(ptr %state, ptr %address, i64 %access, i64 %stamp)
-  ret void
-}
-"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,17 +50,19 @@ def instrument(
 ) -> str:
     """Return the module `text` with counters and the entry point `entry`.
 
-    With `traced`, every access to an array is also reported to the access trace that the argument block names. With `checked`,
+    With `traced`, every access that was costed is also reported to the access trace that the argument block names. With `checked`,
     every index and divisor is checked (`guards`).
     """
     known = _derived(text, counters)
     guarded = Guarded(text, entry) if checked else None
+    whole = guarded.text if guarded else text
+    tracing = Tracing(whole, counters) if traced else None
     return "\n".join(
         [
             globals_of(counters, entry, traced=traced),
-            _Rewriter(function, counters, traced, known).rewrite(guarded.text if guarded else text),
+            _Rewriter(function, counters, tracing, known).rewrite(whole),
             guarded.run_time() if guarded else "",
-            TRACE_ACCESS if traced else "",
+            ROUTINES if traced else "",
             entry_point(function, counters, entry, traced=traced, checked=checked),
         ]
     )
@@ -90,7 +81,7 @@ class _Rewriter:
 
     function: tree.Function
     counters: Sequence[Counter]
-    traced: bool
+    tracing: Tracing | None
     derived: dict[int, Sum]
     top: str = field(init=False)
     routines: set[str] = field(init=False)
@@ -126,6 +117,8 @@ class _Rewriter:
             if self.at_first_block:
                 yield from self._allocations()
             self.here = self.places.get((self.routine, found.group(1)), [])
+            if self.tracing:
+                self.tracing.begin(self.routine, found.group(1))
             self.at_first_block = self.behind_phis = False
         elif row.startswith("  "):
             yield from self._instruction(row)
@@ -137,22 +130,27 @@ class _Rewriter:
             return
         if not self.behind_phis and " = phi " not in row:
             self.behind_phis = True
-            for each in self.here:
-                if each.counter.value is None and each.number not in self.derived:
-                    yield from _add(each.number, "1")
+            yield from self._begin_block()
         if row.startswith(TERMINATORS):
             yield from _tests([each for each in self.here if each.number not in self.derived], row)
-            if self.traced:
+            if self.tracing:
                 yield from _pass_time(self.here, row)
         if row.startswith("  ret "):
             self.exits += 1
             is_top = self.routine == self.top
             yield from self._leave(f".exit{self.exits}", is_top=is_top)
-        if self.traced:
-            yield from _access(row)
+        if self.tracing:
+            yield from self.tracing.at(row)
         if (call := KERNEL_CALL.search(row)) and call.group(1) in self.routines:
             row = _with_table(row, f"@{call.group(1)}(")
         yield row
+
+    def _begin_block(self) -> Iterator[str]:
+        for each in self.here:
+            if each.counter.value is None and each.number not in self.derived:
+                yield from _add(each.number, "1")
+        if self.tracing:
+            yield from self.tracing.before()
 
     def _allocations(self) -> list[str]:
         slots = [f"  %.bf.{number} = alloca i64" for number in self._counted()]
@@ -270,13 +268,3 @@ def _tests(here: list[_NumberedCounter], terminator: str) -> list[str]:
         rows.append(f"  %.bf.{number}.true = zext i1 {truth} to i64")
         rows.extend(_add(number, f"%.bf.{number}.true"))
     return rows
-
-
-def _access(row: str) -> list[str]:
-    """Tell the access trace about an access: bytes, and 256 more for a write."""
-    found = ACCESS.match(row)
-    if not found:
-        return []
-    nbytes = FLOAT_BYTES if found.group(1) == "float" else int(found.group(1)[1:]) // 8
-    write = 256 if row.startswith("  store") else 0
-    return [f"  call void @bfsim.trace_access(ptr {found.group(2)}, i64 {nbytes + write})"]

@@ -196,7 +196,9 @@ def test_a_table_made_by_the_optimiser_is_costed_and_belongs_to_no_array() -> No
     assert cclk(cost_kernels.translate, row, out) > 0
     assert out.tolist() == [10, 77, 5, 1234, 99, 33, 0, 0]
     names = {
-        name for each in cost_kernels.translate.compile(VDSP_O2).counters for name, _, _ in each.accesses
+        name
+        for each in cost_kernels.translate.compile(VDSP_O2).counters
+        for name, _, _ in each.array_accesses
     }
     assert names == {"row", "out"}
 
@@ -217,7 +219,7 @@ def test_accesses_are_counted_per_array() -> None:
     cost_kernels.copy_words.prepare(code, [words(17), words(17)], totals).run((words(17), words(17)))
     found: dict[str, tuple[int, int]] = {}
     for counter, events in zip(code.counters, totals.tolist(), strict=True):
-        for name, reads, writes in counter.accesses:
+        for name, reads, writes in counter.array_accesses:
             found[name] = (events * reads, events * writes)
     assert found == {"source": (17, 0), "target": (0, 17)}
 

@@ -108,7 +108,7 @@ def test_every_form_of_instruction_has_a_cost() -> None:
     assert (
         sum(each.issue_cclk for each in counters if each.value is None) > len(INSTRUCTIONS.splitlines()) // 2
     )
-    assert {name for each in counters for name, _, _ in each.accesses} <= {"a"}
+    assert {name for each in counters for name, _, _ in each.array_accesses} <= {"a"}
 
 
 def test_a_default_that_never_happens_is_no_way_out_of_a_loop() -> None:

@@ -29,7 +29,7 @@ class Accesses(Calls):
     def load(self, each: Instruction) -> None:
         bank = ANY if each.bits == 32 else DATA
         address, nbytes = (self._address(each), POINTER), self._access_bytes(each)
-        self.append(LOADS[each.bits], each, each.result, bank, address, nbytes=nbytes)
+        self.append(LOADS[each.bits], each, each.result, bank, address, nbytes=nbytes, access=each)
         if self.context.demanded.extended_apart(each):
             self.append(Op.EXTEND, each, f"{each.result}.wide", DATA, (each.result or "", DATA))
         elif self.context.demanded.extended_late(each):
@@ -38,7 +38,9 @@ class Accesses(Calls):
     def store(self, each: Instruction) -> None:
         bank = ANY if each.bits == 32 else DATA
         value, address = (each.operands[0], bank), (self._address(each), POINTER)
-        self.append(STORES[each.bits], each, None, DATA, value, address, nbytes=self._access_bytes(each))
+        self.append(
+            STORES[each.bits], each, None, DATA, value, address, nbytes=self._access_bytes(each), access=each
+        )
 
     def _access_bytes(self, each: Instruction) -> int | None:
         """Bytes have no short form with an offset [PRM]."""

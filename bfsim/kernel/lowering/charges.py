@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
-from bfsim.kernel.ir_text import SourceLine
+from bfsim.kernel.ir_text import Instruction, SourceLine
 from bfsim.kernel.isa import COSTS, Op
 
 
@@ -42,6 +43,17 @@ class Test:
     charges: tuple[Charge, ...]
 
 
+class Access(NamedTuple):
+    """A load or store that the costed code makes: number `number`, from 0, of those that the IR has in block `label`."""
+
+    array: str
+    writes: bool
+    label: str
+    number: int
+    fills: bool = False
+    """Whether a routine of the library makes it, which stores words."""
+
+
 @dataclass(slots=True)
 class BlockCost:
     """What one execution of a block costs: the charges of its false (or default) side, and the tests that change them.
@@ -52,6 +64,10 @@ class BlockCost:
     charges: list[Charge] = field(default_factory=list)
     tests: list[Test] = field(default_factory=list)
     nbytes: int = 0
+    accesses: list[Instruction] = field(default_factory=list)
+    """Loads and stores of the IR that the code of the block makes."""
+    fills: list[Instruction] = field(default_factory=list)
+    """Stores of the IR that a routine of the library makes."""
 
     def add(self, line: SourceLine, *ops: Op) -> None:
         """Append operations of one source line, and their code."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
-from bfsim.kernel.ir_text import SourceLine
+from bfsim.kernel.ir_text import Instruction, SourceLine
 from bfsim.kernel.isa import COSTS, Op
 
 
@@ -31,6 +31,8 @@ class MachineInstruction:
     """Cycles, where they are not those of the operation."""
     nbytes: int | None = None
     """Bytes of code, where they are not those of the operation."""
+    access: Instruction | None = None
+    """The access of the IR that it makes."""
 
     @property
     def code_bytes(self) -> int:

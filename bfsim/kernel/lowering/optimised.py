@@ -12,6 +12,7 @@ from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.block_layout import BlockLayout, edge_of
 from bfsim.kernel.lowering.charges import BlockCost, Charge, Test, charge, instead
 from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.idioms import fills_of
 from bfsim.kernel.lowering.machine_code import MachineInstruction
 from bfsim.kernel.lowering.registers import Allocation, allocate
 from bfsim.kernel.lowering.schedule import Issue, issues
@@ -95,6 +96,9 @@ class _OptimisedLowering:
         self._loops(block, cost)
         self._leave_block(block, cost)
         others = cost.charges[:before] + cost.charges[before + len(instructions) :]
+        cost.accesses = [each.access for each in instructions if each.access is not None]
+        if block.label in self.context.fills:
+            cost.fills = fills_of(self.flow, self.context.fills[block.label])
         cost.nbytes = sum(each.code_bytes for each in instructions) + sum(
             COSTS[each.op].nbytes for each in others
         )

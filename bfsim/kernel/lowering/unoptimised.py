@@ -51,7 +51,7 @@ class _UnoptimisedLowering:
         elif block.terminator.opcode == "ret" and block.terminator.operands:
             code.copied(self.trees.expr(block.terminator.operands[0], block.label))
         cost = self.costs[block.label]
-        cost.charges, cost.nbytes = code.charges, code.nbytes
+        cost.charges, cost.nbytes, cost.accesses = code.charges, code.nbytes, code.accesses
         self.saved |= code.saved
         self._go(block, cost)
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from bfsim.kernel.ir_text import SourceLine
+from bfsim.kernel.ir_text import Instruction, SourceLine
 from bfsim.kernel.isa import ADD_IMMEDIATE, Op
 from bfsim.kernel.lowering.powers import by_power
 
@@ -29,6 +29,8 @@ class Expr:
     """Variable, array, called function, or predicate of a comparison."""
     bits: int = 32
     unsigned: bool = False
+    access: Instruction | None = field(default=None, compare=False)
+    """Of an element: the load or store of the IR."""
 
     @property
     def is_const(self) -> bool:

@@ -7,9 +7,10 @@ pointer registers can do too]. An addition runs where it needs fewer moves.
 
 from __future__ import annotations
 
-from bfsim.kernel.ir_text import SourceLine
+from bfsim.kernel.ir_text import Instruction, SourceLine
 from bfsim.kernel.isa import ADD_IMMEDIATE, COSTS, LONG_IMMEDIATE, SHORT_IMMEDIATE, Op
 from bfsim.kernel.lowering.charges import Charge
+from bfsim.kernel.lowering.unoptimised_expressions import Expr
 from bfsim.kernel.profile import CompilerProfile
 
 MODIFIERS = (
@@ -22,7 +23,10 @@ LARGEST_SIGNED = (1 << 15) - 1
 
 
 class Registers:
-    """Code in the making: `charges` and `nbytes`; `saved`: registers that its function must save for it."""
+    """Code in the making: `charges` and `nbytes`; `saved`: registers that its function must save for it.
+
+    `accesses`: loads and stores of the IR that it makes.
+    """
 
     def __init__(self, profile: CompilerProfile, line: SourceLine) -> None:
         self.profile = profile
@@ -30,11 +34,17 @@ class Registers:
         self.charges: list[Charge] = []
         self.nbytes = 0
         self.saved: set[str] = set()
+        self.accesses: list[Instruction] = []
 
     def op(self, *ops: Op) -> None:
         """Append operations at their cost in the instruction set."""
         self.charges.extend(Charge(each, self.line, COSTS[each].cclk) for each in ops)
         self.nbytes += sum(COSTS[each].nbytes for each in ops)
+
+    def makes(self, element: Expr) -> None:
+        """Note that an element is loaded or stored now."""
+        if element.access is not None:
+            self.accesses.append(element.access)
 
     def move(self, count: int = 1) -> None:
         """Append moves between registers."""

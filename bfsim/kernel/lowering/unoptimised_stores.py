@@ -34,6 +34,7 @@ def assign(code: ExpressionCode, each: TreeStatement) -> None:
         code.address(target)
         code.value(each.value, outermost=True)
         code.op(STORES[target.bits])
+        code.makes(target)
 
 
 def _store_low_bits(code: ExpressionCode, value: Expr, target: Expr) -> None:
@@ -45,6 +46,7 @@ def _store_low_bits(code: ExpressionCode, value: Expr, target: Expr) -> None:
         code.saved.add("R7")
     code.address(target)
     code.op(STORES[target.bits])
+    code.makes(target)
 
 
 def low_bits_of(code: ExpressionCode, value: Expr, target: Expr, *, late: bool) -> bool:

@@ -141,7 +141,7 @@ class Trees:
             if not self.is_counter(value) and value not in self.routine.parameters:
                 yield TreeStatement(self.expr(value, label), self._variable(target), each.line)
         else:
-            element = self._element(self.home[target][1], each.bits, label)
+            element = self._element(self.home[target][1], each, label)
             yield TreeStatement(self.expr(value, label), element, each.line)
 
     def _variable(self, slot: str) -> Expr:
@@ -149,10 +149,12 @@ class Trees:
             return self.extremes.get(slot, Expr("register", name=slot))
         return Expr("decided" if self.is_hidden(slot) else "local", name=slot, bits=self.home[slot][1].bits)
 
-    def _element(self, address: Instruction, bits: int, label: str) -> Expr:
-        array, index = address.operands[-2:]
+    def _element(self, address: Instruction, access: Instruction, label: str) -> Expr:
+        (array, index), bits = address.operands[-2:], access.bits
         unsigned = self.extensions.get(array, bits == BYTE)  # of what is only stored: bytes are pixels
-        return Expr("load", (self.expr(index, label),), name=array[1:], bits=bits, unsigned=unsigned)
+        return Expr(
+            "load", (self.expr(index, label),), name=array[1:], bits=bits, unsigned=unsigned, access=access
+        )
 
     def _value(self, each: Instruction) -> Expr:
         label = self.home[each.result or ""][0]
@@ -160,7 +162,7 @@ class Trees:
             place = self.home[each.operands[0]][1]
             if place.opcode == "alloca":
                 return self._variable(each.operands[0])
-            return self._element(place, each.bits, label)
+            return self._element(place, each, label)
         if each.is_call:
             return self._call(each, label)
         if self._is_corrected(each):

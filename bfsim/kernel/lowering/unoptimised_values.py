@@ -198,6 +198,7 @@ class ExpressionCode(Registers):
         else:
             self.address(each)
         self.op(LOADS[each.bits])
+        self.makes(each)
 
     def address(self, element: Expr) -> None:
         """Put the address of an element into a pointer register."""

@@ -70,7 +70,7 @@ def _spread(group: CallGroup) -> NDArray[np.int64]:
     found = [
         (number, bank, reads + writes, len(banks[counter.routine, array]))
         for number, counter in enumerate(group.code.counters)
-        for array, reads, writes in counter.accesses
+        for array, reads, writes in counter.array_accesses
         for bank in banks[counter.routine, array]
     ]
     return np.array(found, np.int64).reshape(-1, 4).T

@@ -77,7 +77,7 @@ def _add(group: CallGroup, tallies: dict[tuple[str, str], _Tally]) -> None:
             if counter.value is None:
                 once = (counter.routine, place)
                 executions[once] = max(executions.get(once, 0), events)
-        for array, reads, writes in counter.accesses:
+        for array, reads, writes in counter.array_accesses:
             sums = tally(counter.routine).accesses[memory_of[counter.routine, array]]
             sums[0] += events * reads
             sums[1] += events * writes
