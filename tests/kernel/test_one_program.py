@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 from collections import Counter as Tally
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from bfsim.kernel import GCC_O2, VDSP_O2, CompilerProfile, Kernel
+from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, CompilerProfile, Kernel
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.counters import Counter
 from tests.kernel.modules import import_text
+from tests.kernel.programs import programs
+from tests.kernel.running import CALLING_VDSP
+from tests.kernel.test_semantics import arrays_of
 
 ROOM = 1 << 16
+HANDED_ON = {"row": "a"}  # by the random programs, to `mix`
 DTYPES = {"u8": np.uint8, "i16": np.int16, "u16": np.uint16, "i32": np.int32, "f32": np.float32}
 KINDS = {log.LOAD: "load", log.STORE: "store"}
 Accesses = dict[tuple[str, str], int]
@@ -46,6 +54,7 @@ class Run:
             at, kind = entry & log.OFFSET_MASK, entry >> log.KIND_BIT & log.KIND_MASK
             found[max((each for each in first if first[each] <= at), key=first.__getitem__), KINDS[kind]] += 1
         self.traced = dict(found)
+        self.costed = _costed(code.counters, totals.tolist())
         self.arrays = {name: placed[name] for name in self.arrays}
 
     def _placed(self) -> tuple[dict[str, NDArray[Any]], dict[str, int]]:
@@ -60,6 +69,17 @@ class Run:
             placed[name] = arena[first[name] : first[name] + array.nbytes].view(array.dtype)
             placed[name][:] = array
         return placed, first
+
+
+def _costed(counters: Sequence[Counter], totals: Sequence[int]) -> Accesses:
+    """How often the costed code loads from and stores to each array; one that is handed to `mix` keeps its name."""
+    found: Tally[tuple[str, str]] = Tally()
+    for counter, events in zip(counters, totals, strict=False):
+        for name, reads, writes in counter.array_accesses:
+            array = HANDED_ON.get(name, name)
+            found[array, "load"] += events * reads
+            found[array, "store"] += events * writes
+    return {each: count for each, count in found.items() if count}
 
 
 TABLE = """
@@ -143,3 +163,50 @@ def test_what_only_one_side_needs_is_loaded_there(profile: CompilerProfile, tmp_
     arrays = {"row": np.arange(16, dtype=np.uint16), "table": np.arange(16, dtype=np.uint16)}
     run = Run(import_text(text, tmp_path).f, profile, arrays | {"out": np.zeros(16, np.int32)})
     assert run.traced == {("row", "load"): 16, ("table", "load"): 1, ("out", "store"): 1}
+
+
+@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(text=programs(), x=st.sampled_from([0, 3, 900, -7]), y=st.integers(0, 70))
+def test_a_random_program_makes_the_accesses_that_it_is_costed_with(
+    text: str, x: int, y: int, tmp_path: Path
+) -> None:
+    """Array by array, loads and stores, in every profile; whatever the compiler moves, leaves out or repeats."""
+    program = import_text(text, tmp_path).program
+    for profile in (GCC_O0, GCC_O2, CALLING_VDSP):
+        run = Run(program, profile, arrays_of(0), (x, y))
+        assert run.traced == run.costed
+
+
+O0_TEXTS = {
+    "a bound is read in each test": (
+        "def f(a: i32[:], row: i32[:]):\n    for i in range(a[0]):\n        row[i] = i\n",
+        {("a", "load"): 5, ("row", "store"): 4},
+    ),
+    "a minimum reads each value once": (
+        "def f(a: i32[:], row: i32[:]):\n    row[0] = a[1] if a[1] < a[2] else a[2]\n",
+        {("a", "load"): 2, ("row", "store"): 1},
+    ),
+    "a rotation reads its value once": (
+        "def f(a: i32[:], row: i32[:]):\n    row[0] = i32((u32(a[1]) << 3) | (u32(a[1]) >> 29))\n",
+        {("a", "load"): 1, ("row", "store"): 1},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", O0_TEXTS)
+def test_code_that_nobody_optimised_reads_what_gcc_reads(name: str, tmp_path: Path) -> None:
+    """GCC's front end folds and repeats, and so does what is traced."""
+    text, accesses = O0_TEXTS[name]
+    kernel = import_text(f"@kernel\n{text}", tmp_path).f
+    values = {"a": np.array([4, 7, 9, 1], np.int32), "row": np.zeros(4, np.int32)}
+    assert Run(kernel, GCC_O0, values).traced == accesses
+
+
+@pytest.mark.parametrize(("kind", "words"), [("u8", 8), ("u16", 16), ("i32", 32)])
+def test_a_library_routine_that_fills_stores_words(kind: str, words: int, tmp_path: Path) -> None:
+    """A loop that fills is a call of memset with GCC, which stores a word at a time, and a loop with ADI's compiler."""
+    text = f"@kernel\ndef f(a: {kind}[:], n: i32):\n    for i in range(n):\n        a[i] = 0\n"
+    kernel = import_text(text, tmp_path).f
+    arrays = {"a": np.ones(32, DTYPES[kind])}
+    assert Run(kernel, GCC_O2, arrays, (32,)).traced == {("a", "store"): words}
+    assert Run(kernel, VDSP_O2, arrays, (32,)).traced == {("a", "store"): 32}
