@@ -20,9 +20,9 @@ from bfsim.kernel.lowering.jump_threading import JumpThreading
 from bfsim.kernel.lowering.powers import divided_by_power
 from bfsim.kernel.lowering.redundant import AGAIN
 from bfsim.kernel.lowering.scalar_evolution import Increment, ScalarEvolution
+from bfsim.kernel.lowering.widths import BYTE
 from bfsim.kernel.profile import CompilerProfile
 
-BYTE = 8
 FEWEST_ITERATIONS = (
     3  # a loop of so few iterations keeps its branch ["too few iterations" in loop-doloop.cc of GCC 12]
 )

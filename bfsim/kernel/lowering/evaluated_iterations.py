@@ -15,12 +15,12 @@ from bfsim.kernel.lowering.predict import predicate
 
 MOST_ITERATIONS = 1000  # [GCC: max-iterations-to-track]
 DEEPEST = 8  # operations from one iteration's value to the next
-WORD = 0xFFFFFFFF
+WORD_MASK = 0xFFFFFFFF
 
 
 def signed(value: int) -> int:
     """Return 32 bits as a signed number."""
-    return (value & WORD) - ((value & 0x80000000) << 1)
+    return (value & WORD_MASK) - ((value & 0x80000000) << 1)
 
 
 ARITHMETIC: dict[str, Callable[[int, int], int]] = {
@@ -44,7 +44,7 @@ def evaluated_iterations(flow: ControlFlow, loop: Loop, test: str) -> int | None
     arms = {label[1:]: value for value, label in PHI_ARM.findall(counter.text)}
     if set(arms) != {flow.entering(loop), loop.latch} or not _is_number(arms[flow.entering(loop)]):
         return None
-    value = int(arms[flow.entering(loop)]) & WORD
+    value = int(arms[flow.entering(loop)]) & WORD_MASK
     for iteration in range(1, MOST_ITERATIONS + 1):
         if _holds(flow, compare, counter, value) != stays:
             return iteration
@@ -76,13 +76,13 @@ def _holds(flow: ControlFlow, compare: Instruction, counter: Instruction, value:
 def _value(flow: ControlFlow, name: str, counter: Instruction, value: int) -> int:
     """What `name` is in the iteration in which the counter is `value`; 32 bits, not negative."""
     if _is_number(name):
-        return int(name) & WORD
+        return int(name) & WORD_MASK
     if name == counter.result:
         return value
     each = flow.instruction(name)
     assert each is not None
     left, right = (_value(flow, operand, counter, value) for operand in each.operands[:2])
-    return ARITHMETIC[each.opcode](left, right & 31 if "sh" in each.opcode else right) & WORD
+    return ARITHMETIC[each.opcode](left, right & 31 if "sh" in each.opcode else right) & WORD_MASK
 
 
 def _is_number(operand: str) -> bool:

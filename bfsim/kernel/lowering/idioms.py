@@ -10,10 +10,10 @@ from __future__ import annotations
 from bfsim.kernel.ir_text import PHI_ARM, Instruction
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
+from bfsim.kernel.lowering.widths import BYTE
 
 ALLOWED = {"phi", "add", "and", "icmp", "br"}
 FILLING = {"phi", "add", "getelementptr", "trunc", "store", "icmp", "br"}
-BYTE = 8
 MOST_STORES = 15  # fewer words than that are stored one by one [CLEAR_RATIO in GCC's defaults.h]
 WORD_BYTES = 4
 

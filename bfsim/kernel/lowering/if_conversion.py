@@ -13,10 +13,10 @@ from bfsim.kernel.ir_text import PHI_ARM, Instruction
 from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.predict import predicate
+from bfsim.kernel.lowering.widths import BYTE, WORD
 from bfsim.kernel.profile import CompilerProfile
 
 RENAMING = ("trunc", "zext", "sext", "freeze")
-BYTE, WORD = 8, 32
 
 
 class ConversionKind(Enum):

@@ -12,8 +12,7 @@ from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.invariant_code_motion import FIXED
 from bfsim.kernel.lowering.preheaders import with_preheader
-
-BYTE = 8
+from bfsim.kernel.lowering.widths import BYTE
 
 
 def hoist_loads(routine: Routine) -> Routine:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.predict import predicate
+from bfsim.kernel.lowering.widths import WORD
 
 JOINED = ("and", "or", "decided")  # what the blocks of a condition of several parts are called
 RENAMING = ("zext", "sext", "trunc", "freeze")
-WORD = 32
 OPPOSITE = {"lt": "ge", "ge": "lt", "gt": "le", "le": "gt"}
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from bfsim.kernel.isa import ADD_IMMEDIATE, Op
-from bfsim.kernel.lowering.unoptimised_expressions import WORD, Expr, const, simplified
+from bfsim.kernel.lowering.unoptimised_expressions import Expr, const, simplified
 from bfsim.kernel.lowering.unoptimised_registers import MODIFIERS
+from bfsim.kernel.lowering.widths import WORD
 
 if TYPE_CHECKING:
     from bfsim.kernel.lowering.unoptimised_values import ExpressionCode

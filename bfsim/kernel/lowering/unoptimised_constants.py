@@ -10,10 +10,10 @@ from functools import cache
 from typing import NamedTuple
 
 from bfsim.kernel.isa import Op
+from bfsim.kernel.lowering.widths import WORD
 
 MOST_COST = 3  # [GCC] beyond, a multiplication is no worse
 CHEAP_SHIFT = 2  # [PRM] P = P + (P << 1), P = P + (P << 2): at -O0 not used, but believed in
-WORD = 32
 
 
 class ProductPlan(NamedTuple):

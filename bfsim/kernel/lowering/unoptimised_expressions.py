@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from bfsim.kernel.ir_text import Instruction, SourceLine
 from bfsim.kernel.isa import ADD_IMMEDIATE, Op
 from bfsim.kernel.lowering.powers import by_power
+from bfsim.kernel.lowering.widths import WORD
 
 SWAPPED = {"slt": "sgt", "sgt": "slt", "sle": "sge", "sge": "sle",
            "ult": "ugt", "ugt": "ult", "ule": "uge", "uge": "ule", "eq": "eq", "ne": "ne"}  # fmt: skip
 
 
-WORD = 32
 SIGN = 1 << (WORD - 1)
 DIVISIONS = ("sdiv", "srem", "udiv", "urem")
 BITWISE = ("&", "|", "^")

@@ -18,13 +18,13 @@ from bfsim.kernel.lowering.unoptimised_expressions import (
     extreme_of,
     simplified,
 )
+from bfsim.kernel.lowering.widths import BYTE
 
 ARITHMETIC = {"add": "+", "sub": "-", "mul": "*", "and": "&", "or": "|", "xor": "^", "shl": "<<", "lshr": ">>",
               "ashr": ">>", "udiv": "udiv", "urem": "urem", "sdiv": "sdiv", "srem": "srem"}  # fmt: skip
 INTRINSICS = {"smin": "min", "smax": "max", "umin": "umin", "umax": "umax", "abs": "abs"}
 UNSIGNED = ("lshr", "udiv", "urem")
 SHIFT_MASK = "31"
-BYTE = 8
 
 
 def base(label: str) -> str:

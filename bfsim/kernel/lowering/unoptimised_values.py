@@ -10,9 +10,10 @@ from bfsim.kernel.isa import ADD_IMMEDIATE, COMPARE_IMMEDIATE, COMPARE_UNSIGNED_
 from bfsim.kernel.lowering.unoptimised_addresses import offset_of
 from bfsim.kernel.lowering.unoptimised_calls import call, divide
 from bfsim.kernel.lowering.unoptimised_constants import product
-from bfsim.kernel.lowering.unoptimised_expressions import BITWISE, DIVISIONS, WORD, Expr, rotated
+from bfsim.kernel.lowering.unoptimised_expressions import BITWISE, DIVISIONS, Expr, rotated
 from bfsim.kernel.lowering.unoptimised_registers import HALF, MODIFIERS, Registers
 from bfsim.kernel.lowering.unoptimised_stores import low_bits_of
+from bfsim.kernel.lowering.widths import WORD
 
 LOADS = {1: Op.LOAD8, 8: Op.LOAD8, 16: Op.LOAD16, 32: Op.LOAD32}
 ZERO_EXTENSIONS = (0xFF, 0xFFFF)  # R.B (Z), R.L (Z)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from bfsim.kernel.loops import ControlFlow
 
-WORD = 32
+BYTE, WORD = 8, 32
+"""Bits."""
 DEEPEST = 6  # operations that are looked through; each may have several operands
 
 

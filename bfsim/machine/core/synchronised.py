@@ -34,7 +34,12 @@ class SharedObjects:
 
 
 class SynchronisedCore(PlayingCore):
-    """A core's part of semaphores, locks and the other core's interrupt."""
+    """A core's part of semaphores, locks and the other core's interrupt.
+
+    XXX: the counter of a semaphore is not read and written beside its TESTSET, which would be a load and a store of L2,
+    10 to 12 CCLK; and the first TESTSET of a wait decides at its end, those behind it when they have the port, which is
+    11 CCLK earlier.
+    """
 
     _shared: SharedObjects
 

@@ -229,7 +229,13 @@ class MdmaTurns:
 
 
 class L2Port(Arbiter):
-    """The port of L2 that both cores and the internal DMA share."""
+    """The port of L2 that both cores and the internal DMA share.
+
+    XXX: the other DMAs come by a port of their own, 32 bits an SCLK, and meet this one in the sub-banks of L2, which are not
+    modelled: a word holds one for 2 of 5 CCLK at most, so that a load of a core in the same 16 KB waits at most 0.8 CCLK longer
+    on average, 9 % of its latency, and in another one not at all. Nor is it that TESTSET stalls the other core on silicon
+    before revision 0.5 (anomaly 05000248).
+    """
 
     def __init__(self, env: Simulation, l2: L2Spec, cclk_ticks: int, words: Any) -> None:
         super().__init__(env)
