@@ -28,7 +28,9 @@ def derived(routine: Routine, counters: Sequence[Counter]) -> dict[int, Sum]:
     found = _like_blocks_before(flow, blocks)
     counted: dict[str, Sum] = {label: found.get(number, ((1, number),)) for label, number in blocks.items()}
     for number, each in enumerate(counters):
-        if each.routine == routine.symbol and each.value is not None and each.equals is None:
+        if each.routine != routine.symbol or each.value is None or each.equals is not None:
+            continue
+        if flow.blocks[each.label].terminator.operands[:1] == (each.value,):
             known = _side(flow, each.label, counted)
             if known is not None:
                 found[number] = known

@@ -100,7 +100,7 @@ class Calls:
         self.append(Op.ALU, each, each.result, DATA, (each.result or "", DATA))
 
     def fill(self, loop: Loop) -> None:
-        """Call memset instead of iterating; what its time depends on the length is charged per iteration."""
+        """Call memset instead of iterating; of an unknown length, the loop's counters tell (`counted_fills`)."""
         fill = self.context.profile.library.fill
         assert fill is not None
         iterations = self.context.evolution.iterations(loop)
@@ -110,13 +110,11 @@ class Calls:
             for argument in (root, each.operands[0], ""):
                 used = ((argument, ANY),) if argument.startswith("%") else ()
                 self.append(Op.MOVE if used else Op.IMM, each, None, DATA, *used)
-            self.append(Op.CALL, each, None, DATA)
+            is_last = self.context.tail_calls.get(self.label) is each
+            self.append(Op.TAIL_CALL if is_last else Op.CALL, each, None, DATA)
             nbytes = each.bits // isa.BYTE_BITS
-            known = 0 if iterations is None else iterations * nbytes // fill.bytes_per_cclk
-            self.append(Op.LIBRARY, each, None, DATA, cclk=fill.cclk + known, nbytes=0)
-            if iterations is None and nbytes > 1:
-                self.label = loop.header
-                self.append(Op.LIBRARY, each, None, DATA, cclk=1, nbytes=0)
+            cclk = fill.cclk if iterations is None else fill.of(iterations * nbytes)
+            self.append(Op.LIBRARY, each, None, DATA, cclk=cclk, nbytes=0)
 
     def _library(self, each: Instruction, routine: LibraryRoutine) -> None:
         if routine.mix:

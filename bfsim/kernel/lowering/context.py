@@ -58,7 +58,7 @@ class Context:
     @cached_property
     def tail_calls(self) -> dict[str, Instruction]:
         """Calls that are jumps, by the labels of their blocks."""
-        return tail_calls(self.flow, self.arguments, len(self.parameters()))
+        return tail_calls(self.flow, self.arguments, len(self.parameters()), self.fills)
 
     @cached_property
     def _conversion_by_phi(self) -> dict[str, ConvertedIf]:

@@ -13,7 +13,7 @@ from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 from bfsim.kernel.lowering.widths import BYTE
 
 ALLOWED = {"phi", "add", "and", "icmp", "br"}
-FILLING = {"phi", "add", "getelementptr", "trunc", "store", "icmp", "br"}
+FILLING = {"phi", "add", "and", "getelementptr", "trunc", "store", "icmp", "br"}
 MOST_STORES = 15  # fewer words than that are stored one by one [CLEAR_RATIO in GCC's defaults.h]
 WORD_BYTES = 4
 

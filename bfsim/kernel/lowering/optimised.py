@@ -12,6 +12,7 @@ from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.block_layout import BlockLayout, edge_of
 from bfsim.kernel.lowering.charges import BlockCost, Charge, Test, charge, instead
 from bfsim.kernel.lowering.context import Context
+from bfsim.kernel.lowering.counted_fills import block_filled, word_filled
 from bfsim.kernel.lowering.idioms import fills_of
 from bfsim.kernel.lowering.machine_code import MachineInstruction
 from bfsim.kernel.lowering.registers import Allocation, allocate
@@ -95,6 +96,8 @@ class _OptimisedLowering:
         ]
         self._loops(block, cost)
         self._leave_block(block, cost)
+        if block.label in self.context.fills:
+            cost.tests += self._filled(self.context.fills[block.label])
         others = cost.charges[:before] + cost.charges[before + len(instructions) :]
         cost.accesses = [each.access for each in instructions if each.access is not None]
         if block.label in self.context.fills:
@@ -103,6 +106,19 @@ class _OptimisedLowering:
             COSTS[each.op].nbytes for each in others
         )
         return cost
+
+    def _filled(self, loop: Loop) -> list[Test]:
+        """What a routine that fills takes for the length that there is."""
+        fill = self.profile.library.fill
+        if fill is None or self.context.evolution.iterations(loop) is not None:
+            return []
+        parts = ((word_filled(loop.header), fill.word_cclk), (block_filled(loop.header), fill.block_cclk))
+        return [
+            Test(
+                value, None, tuple(Charge(Op.LIBRARY, each.line, cclk) for each in fills_of(self.flow, loop))
+            )
+            for value, cclk in parts
+        ]
 
     def _issues(self, instructions: list[MachineInstruction]) -> list[Issue]:
         if not self.profile.interlocks:

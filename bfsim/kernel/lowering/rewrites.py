@@ -9,6 +9,7 @@ from collections.abc import Callable
 
 from bfsim.kernel.ir_text import Routine, read_module, with_names, write_module
 from bfsim.kernel.learnt import Learnt
+from bfsim.kernel.lowering.counted_fills import count_fills
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
 from bfsim.kernel.lowering.merged_stores import merge_stores
 from bfsim.kernel.lowering.preheaders import with_preheaders
@@ -44,4 +45,4 @@ def _rewritten(routine: Routine, profile: CompilerProfile) -> Routine:
     for rewrite in REWRITES:
         if rewrite not in LEARNT or profile.applies(LEARNT[rewrite]):
             routine = rewrite(routine)
-    return routine
+    return count_fills(routine) if profile.library.fill else routine

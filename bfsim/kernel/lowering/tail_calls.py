@@ -6,18 +6,30 @@ GCC does so at -O2 (-foptimize-sibling-calls), where the arguments on the stack 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction
 from bfsim.kernel.isa import REGISTER_ARGUMENTS
-from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.loops import ControlFlow, Loop
 
 
 def tail_calls(
-    flow: ControlFlow, arguments: Callable[[Instruction], list[str]], parameters: int
+    flow: ControlFlow,
+    arguments: Callable[[Instruction], list[str]],
+    parameters: int,
+    fills: Mapping[str, Loop],
 ) -> dict[str, Instruction]:
-    """Return the calls that become jumps, by the labels of their blocks. `parameters`: how many the caller has."""
+    """Return the calls that become jumps, by the labels of their blocks.
+
+    `parameters`: how many the caller has. `fills`: loops that are a call of the routine that fills; it stands for its store.
+    """
     found = {}
+    for header, loop in fills.items():
+        (way,) = {*flow.blocks[header].successors} - loop.blocks
+        stores = [each for each in flow.blocks[header].instructions if each.opcode == "store"]
+        empty = len(flow.blocks[way].instructions) == 1
+        if len(stores) == 1 and empty and _is_returned(flow, way, None):
+            found[flow.entering(loop)] = stores[0]
     for label, block in flow.blocks.items():
         call = block.instructions[-2] if len(block.instructions) > 1 else None
         if call is None or not call.is_call or not _is_returned(flow, label, call.result):
