@@ -49,7 +49,7 @@ def measure(name: str, folder: Path) -> dict[str, Any]:
         if record and record != found:
             raise SystemExit(f"{name}: the outputs at -{level} must be those at the other level, not {found}")
         record = found
-        levels[level] = _traced(program, name)
+        levels[level] = traced(program, name)
     return record | {"levels": levels}
 
 
@@ -64,7 +64,8 @@ def first_sight(name: str, found: dict[str, Any]) -> dict[str, Any]:
     return {"role": Role.HELD_OUT.value, "first_sight": {"commit": commit, "at": at} | percent}
 
 
-def _traced(program: Path, name: str) -> dict[str, Any]:
+def traced(program: Path, name: str) -> dict[str, Any]:
+    """Run a program of the Blackfin; return cycles and classes of the operations of its function `name` (`trace.summary`)."""
     command = ["bfin-elf-run", "--trace-insn", str(program)]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as run:
         assert run.stderr

@@ -9,10 +9,11 @@ import pytest
 
 from benchmarks.firmware_accuracy import compare, covered, frame_error
 from benchmarks.firmware_twins.harness import lengths
-from benchmarks.firmware_twins.measure import MEASURED, measure, missing_tools
+from benchmarks.firmware_twins.measure import FLAGS, MEASURED, build, measure, missing_tools
 from benchmarks.firmware_twins.measured import measured
 from benchmarks.firmware_twins.recorded import SAMPLES, recorded
 from benchmarks.firmware_twins.twins import TWINS, predict
+from benchmarks.twins.measure import traced
 from bfsim.kernel import GCC_O2
 from tinyphoon.stages.hysteresis import group_edges_row
 from tinyphoon.stages.line_scan import segments_row
@@ -64,3 +65,14 @@ def test_a_measurement_repeats_to_the_cycle(name: str, tmp_path: Path) -> None:
     """Compiled and run again, a twin gives the recorded checksum and the cycles of every call in every variant."""
     kernel = next(each for each in TWINS if each.name == name)
     assert measure(kernel, tmp_path) == json.loads(MEASURED.read_text(encoding="utf-8"))[name]
+
+
+@pytest.mark.toolchain
+@pytest.mark.skipif(
+    bool(missing_tools()), reason="no bfin-elf toolchain (GCC 12.2, GNU simulator 13.1) on PATH"
+)
+def test_the_cycles_of_a_call_are_those_of_its_instructions(tmp_path: Path) -> None:
+    """From the first one to RTS, as the trace of the simulator has them; what the harness itself takes is not in them."""
+    kernel = next(each for each in TWINS if each.name == "take_right_row")
+    program = build(kernel, "calls", tmp_path, ("bfin-elf-gcc", *FLAGS))
+    assert traced(program, kernel.name)["cycles"] == sum(measured()[kernel.name].cycles["calls"])
