@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
 from operator import itemgetter
 from typing import Any
 
@@ -94,6 +95,7 @@ class Kernel:
         for position, array in zip(self.array_positions, arrays, strict=True):
             self.check_array(position, array)
             bound.append((slots[position], array))
+        self._check_overlaps(arrays)
         integers = [(slots[each], each) for each in self.integer_positions]
         floats = [(slots[each], each) for each in self.float_positions]
         result = self.function.result
@@ -177,6 +179,22 @@ class Kernel:
             raise KernelError(
                 f"{parameter.name} must be writeable, because the kernel stores into it {where}"
             )
+
+    def _check_overlaps(self, arrays: Sequence[NDArray[Any]]) -> None:
+        """Raise KernelError if an array that is written lies over one of wider or narrower elements, unless one is of bytes.
+
+        The compiled code may have loaded such an element before the store, as C compilers may.
+        """
+        named = list(zip(self.array_positions, arrays, strict=True))
+        for (position, one), (behind, other) in combinations(named, 2):
+            names = [self.function.parameters[each].name for each in (position, behind)]
+            if one.itemsize == other.itemsize or 1 in (one.itemsize, other.itemsize):
+                continue
+            if not self._written.isdisjoint(names) and np.may_share_memory(one, other):
+                raise KernelError(
+                    f"{names[0]} ({one.dtype}) and {names[1]} ({other.dtype}) must not share memory, for the kernel stores "
+                    f"into it: C compilers take it that elements of different widths do not ({self.name}, {self.place})"
+                )
 
     def sanitize(self, arguments: Sequence[Any]) -> None:
         """Run the kernel as it is written, unoptimised, with every index and divisor checked, and undo what it stored.

@@ -14,6 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from bfsim.errors import KernelError
 from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, CompilerProfile, Kernel
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.access_trace import AccessTrace
@@ -100,6 +101,16 @@ def test_a_load_that_leaves_its_loop_is_made_once(
     arrays = {"out": np.zeros(16, np.int32), "table": np.arange(8).astype(DTYPES[kind])}
     run = Run(kernel, profile, arrays, (1000,))
     assert run.traced == {("table", "load"): loads, ("out", "store"): 1000}
+
+
+def test_arrays_of_different_widths_must_not_share_what_is_written(tmp_path: Path) -> None:
+    """The load before the loop would miss the store: C leaves that undefined, here it is refused; bytes may share."""
+    words = np.zeros(16, np.int32)
+    kernel = import_text(TABLE.format(kind="u16"), tmp_path).f
+    with pytest.raises(KernelError, match=r"out \(int32\) and table \(uint16\) must not share memory"):
+        kernel(words, words.view(np.uint16)[:8], 4)
+    kernel(words[:8], words[8:].view(np.uint16), 4)
+    import_text(TABLE.format(kind="u8"), tmp_path).f(words, words.view(np.uint8), 4)
 
 
 @OPTIMISING
