@@ -59,7 +59,7 @@ def test_a_load_on_each_way_is_made_on_each_way(tmp_path: Path) -> None:
     reads = dict.fromkeys(("a", "b", "kind"), 0)
     writes = 0
     for counter, events in zip(code.counters, totals.tolist(), strict=True):
-        for name, read, written in counter.accesses:
+        for name, read, written in counter.array_accesses:
             reads[name] = reads.get(name, 0) + events * read
             writes += events * written
     inner = len(a) - 2
