@@ -18,6 +18,13 @@ from bfsim.seen import Seen, SeenFrame
 RECORDS = ("blobs", "lines", "circles", "rectangles")
 """Fields of `Seen` that hold records of one picture."""
 
+POINTS = frozenset({"image_px", "centre_px", "start_px", "end_px"})
+COLUMNS = frozenset({"left_px", "right_px", "x_px"})
+ROWS = frozenset({"top_px", "bottom_px", "y_px"})
+"""Fields with both coordinates of a place in a picture, its column or its row."""
+
+Pixels = tuple[int, int]
+
 
 class SeenStore(Mapping[int, dict[str, Any]]):
     """What was seen in each frame (`seen_json`) by the frame's index, in a file that has no name and ends with the process.
@@ -63,11 +70,13 @@ class SeenStore(Mapping[int, dict[str, Any]]):
 def seen_json(frame: SeenFrame, *, with_features: bool) -> dict[str, Any]:
     """Return times, objects, and lines and edges in space; with features also what was found in each picture.
 
-    Keys are the field names of `bfsim.seen`, so each carries its unit. Of an edge in space there is [x, y, z].
+    Keys are the field names of `bfsim.seen`, so each carries its unit. Coordinates in pixels count in the camera's whole
+    picture, also when the firmware looked at an area of it. Of an edge in space there is [x, y, z].
     """
+    corners = {each.camera: each.corner_px for each in frame.cameras}
     plain = {
         "times_ns": frame.times_ns,
-        "objects": [_plain(each) for each in frame.objects],
+        "objects": [_plain(each, corners.get(each.camera, (0, 0))) for each in frame.objects],
         "lines_3d": [_plain(each) for each in frame.lines_3d],
         "edges_3d_mm": [place for each in frame.edges_3d() for place in each.places_mm.tolist()],
     }
@@ -78,12 +87,22 @@ def seen_json(frame: SeenFrame, *, with_features: bool) -> dict[str, Any]:
 
 
 def _features(seen: Seen) -> dict[str, Any]:
-    size = {"width_px": seen.width_px, "height_px": seen.height_px}
-    edges = {each.name: getattr(seen.edges, each.name) for each in fields(seen.edges)}
+    area = {"corner_px": seen.corner_px, "width_px": seen.width_px, "height_px": seen.height_px}
+    edges = _plain(seen.edges, seen.corner_px)
     arrays = {name: each if isinstance(each, int) else each.tolist() for name, each in edges.items()}
-    others = {name: [_plain(each) for each in getattr(seen, name)] for name in RECORDS}
-    return {**size, "edges": arrays, **others}
+    others = {name: [_plain(each, seen.corner_px) for each in getattr(seen, name)] for name in RECORDS}
+    return {**area, "edges": arrays, **others}
 
 
-def _plain(record: Any) -> dict[str, Any]:
-    return {each.name: getattr(record, each.name) for each in fields(record)}
+def _plain(record: Any, corner: Pixels = (0, 0)) -> dict[str, Any]:
+    return {each.name: _in_whole(each.name, getattr(record, each.name), corner) for each in fields(record)}
+
+
+def _in_whole(name: str, value: Any, corner: Pixels) -> Any:
+    """Return a field's value, in coordinates of the whole picture if it is a place in an area that begins at `corner`."""
+    left, top = corner
+    if name in POINTS:
+        return value[0] + left, value[1] + top
+    if name in COLUMNS:
+        return value + left
+    return value + top if name in ROWS else value

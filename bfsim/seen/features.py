@@ -93,7 +93,7 @@ class SeenObject:
     """An object that the firmware knows of.
 
     `accuracy` is 0 to 1. `place_mm` is where its middle is; where `is_direction`, only the way there is known, and its
-    length says nothing. `image_px` is its middle and `image_size_px` its width and height in the picture of `camera`.
+    length says nothing. `image_px` is its middle and `image_size_px` its width and height in what `camera` looked at.
     `width_mm` and `height_mm` are those of its model. `tests`: the names of those passed. `age_frames` is 0 if it was
     seen in this frame.
     """
@@ -177,12 +177,15 @@ class SeenGeometry:
 class Seen:
     """What one core saw. `camera` is left or right; `picture`, UYVY of shape (height, 2 · width), is what it looked at.
 
+    That may be an area of the camera's picture: `corner_px` is where the area's first pixel lies there. All coordinates
+    in pixels count in `picture`.
     Objects and all that is in space are those of the core that has the results of both. Without a `geometry` the
     firmware takes the cameras to be nowhere in particular.
     """
 
     camera: str
     picture: NDArray[np.uint8]
+    corner_px: tuple[int, int] = (0, 0)
     geometry: SeenGeometry | None = None
     edges: SeenEdges = field(default_factory=no_edges)
     blobs: tuple[SeenBlob, ...] = ()

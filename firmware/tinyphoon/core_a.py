@@ -11,7 +11,7 @@ from tinyphoon.stages.object_detection import left_sight, object_detection
 from tinyphoon.stages.object_history import follow_area
 from tinyphoon.stages.stereo_edges import stereo_edges
 from tinyphoon.stages.stereo_lines import stereo_lines
-from tinyphoon.strategy.orders import halvings_of, read_mode, see_by, take_orders
+from tinyphoon.strategy.orders import Orders, halvings_of, read_mode, see_by
 from tinyphoon.strategy.report import report
 
 
@@ -20,6 +20,9 @@ def core_a(core: Core) -> Generator[Any, Any, None]:
 
     Core B writes its results again only when core A is done with them: the cores take the same next pair.
     """
+    orders = Orders(core)
+    yield from orders.take()
+    yield from core.post("core A is done")
     while (frame := (yield from core.next_frame())) is not None:
         mode = yield from read_mode(core)
         area = yield from see_by(core, frame, mode)
@@ -33,6 +36,6 @@ def core_a(core: Core) -> Generator[Any, Any, None]:
         with core.stage("Object detection"):
             yield from follow_area(core, area, halvings_of(core, frame))
             yield from object_detection(core, mode.objects)
-        refused = yield from take_orders(core)  # for the next frame; core B reads them when core A is done
+        yield from orders.take()  # for the next frame; core B reads them when core A is done
         yield from core.post("core A is done")
-        yield from report(core, frame, area, refused)
+        yield from report(core, frame, area, orders.close())

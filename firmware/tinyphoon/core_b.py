@@ -13,7 +13,11 @@ from tinyphoon.strategy.orders import read_mode, see_by
 
 
 def core_b(core: Core) -> Generator[Any, Any, None]:
-    """See every picture of the right camera. The cores end a frame together, to take the same next pair."""
+    """See every picture of the right camera. The cores end a frame together, to take the same next pair.
+
+    Core A is done with orders, too, before the first one.
+    """
+    yield from core.wait("core A is done")
     while (frame := (yield from core.next_frame())) is not None:
         mode = yield from read_mode(core)
         area = yield from see_by(core, frame, mode)

@@ -33,7 +33,7 @@ def run(
     firmware: Firmware = tinyphoon,
     ldf: Any = DEFAULT_LDF,
 ) -> tuple[Board, Outcome]:
-    """Play the frames; mode number n of `names` comes in frame n, to be in force in the next one."""
+    """Play the frames; mode number n of `names` comes in frame n, to be in force in the next one; the first one is in force from the start."""
     height, double_width = frames[0].left.shape
     size = FrameSize(double_width // 2, height)
     link_map = link(parse_ldf(ldf), symbols_of(firmware, size), CM_BF561.chip.regions)
@@ -101,9 +101,9 @@ def test_an_area_of_a_rectified_picture(area: tuple[int, int, int, int]) -> None
 
 def test_a_smaller_area_takes_less_time() -> None:
     """In proportion to its pixels, for the stages that look at every one."""
-    frames = random_frames(128, 96, count=2)
-    _, outcome = run(frames, {"area": [0, 0, 64, 48]})
-    whole, area = (
+    frames = random_frames(128, 96, count=3)
+    _, outcome = run(frames, {}, {"area": [0, 0, 64, 48]})
+    whole, _, area = (
         {each.stage: each.elapsed_cclk for each in frame.cores[0].stages} for frame in outcome.frames
     )
     for stage in ("Edge detection", "Open & closing"):

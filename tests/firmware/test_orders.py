@@ -63,6 +63,23 @@ def test_a_bad_order_is_counted_and_told_and_the_last_good_mode_stays() -> None:
     assert told == [0, checks.CUT_SHORT, 0, 0], "the reason of the last one"
 
 
+def test_what_waits_at_the_start_holds_from_the_first_frame_on() -> None:
+    """For both cores; a bad order too is counted and told with the first frame, once."""
+    strong = {"edges": {"edge_threshold": 100, "strong_threshold": 200}}
+    _, _, plain = run([], 2)
+    unit, _, outcome = run([{"mode": strong}, mode(0, {"edges": {"gauss_px": 4}})], 2)
+    for core in "AB":
+        for whole, thresholded in zip(plain.frames, outcome.frames, strict=True):
+            assert thresholded.results[f"edges_{core}"] < whole.results[f"edges_{core}"] / 2
+    counted = [(each.results["orders_taken_A"], each.results["orders_refused_A"]) for each in outcome.frames]
+    assert counted == [(1, 1), (0, 0)]
+    assert [len(each.remarks) for each in outcome.frames] == [1, 0]
+    assert [decode_results(each.message.payload).refusal & 0xFF for each in unit.received] == [
+        checks.RANGE,
+        0,
+    ]
+
+
 def test_both_cores_obey_from_the_next_frame_on() -> None:
     """Not in the frame in which the mode comes; and until another one comes."""
     strong = {"edges": {"edge_threshold": 100, "strong_threshold": 200}}

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
+
+import numpy as np
 
 from bfsim.report.as_json import json_text
 from bfsim.report.seen_json import SeenStore, seen_json
@@ -40,6 +43,27 @@ def test_features_of_the_pictures_come_when_asked_for() -> None:
     assert left["lines"][1]["end_px"] == [40.0, 5.0]
     assert left["circles"][0]["tests"] == ["centre", "radius"]
     assert (right["width_px"], right["height_px"], right["lines"]) == (80, 60, [])
+
+
+def test_places_in_an_area_count_in_the_whole_picture() -> None:
+    """Points, columns and rows; sizes and what is in space stay as they are."""
+    whole = made.frame()
+    left, right = (replace(each, corner_px=(20, 10)) for each in whole.cameras)
+    plain, shifted = (
+        seen_json(each, with_features=True) for each in (whole, replace(whole, cameras=(left, right)))
+    )
+    for one, other in zip(plain["objects"], shifted["objects"], strict=True):
+        assert np.subtract(other["image_px"], one["image_px"]).tolist() == [20, 10]
+        assert (other["image_size_px"], other["place_mm"]) == (one["image_size_px"], one["place_mm"])
+    before, after = plain["cameras"]["left"], shifted["cameras"]["left"]
+    assert after["corner_px"] == [20, 10]
+    assert np.subtract(after["edges"]["x_px"], before["edges"]["x_px"]).tolist() == [20, 20, 20]
+    assert np.subtract(after["edges"]["y_px"], before["edges"]["y_px"]).tolist() == [10, 10, 10]
+    sides = "left_px", "right_px", "top_px", "bottom_px"
+    moved = [after["blobs"][0][side] - before["blobs"][0][side] for side in sides]
+    assert moved == [20, 20, 10, 10]
+    assert np.subtract(after["lines"][0]["start_px"], before["lines"][0]["start_px"]).tolist() == [20, 10]
+    assert after["circles"][0]["radius_px"] == before["circles"][0]["radius_px"]
 
 
 def test_each_frame_has_its_own() -> None:

@@ -1,8 +1,8 @@
 """Modes and models of the strategy unit: taken in, checked word by word, and obeyed from the next frame on (T §5.2.6).
 
-Core A takes the messages at the end of a frame. The words of a good one go to L2, where both cores copy them from when
-they begin a frame; a bad one is counted, told to the strategy unit with the reason, and changes nothing. A mode is all
-its words, and a table of models all its models; how many words those are is the version of the format.
+Core A takes the messages before the first frame and at the end of each. The words of a good one go to L2, where both cores
+copy them from when they begin a frame; a bad one is counted, told to the strategy unit with the reason, and changes nothing.
+A mode is all its words, and a table of models all its models; how many words those are is the version of the format.
 """
 
 from __future__ import annotations
@@ -90,23 +90,31 @@ def copy_order(words: i32[:], copy: i32[:]) -> None:
         copy[word] = words[word]
 
 
-def take_orders(core: Core) -> Generator[Any, Any, int]:
-    """Take the messages that wait and put the good ones in force; returns why the last bad one is refused, or 0.
+class Orders:
+    """The messages of the strategy unit since the last report to it."""
 
-    Publishes how many `orders_taken` and `orders_refused`, and remarks on each that is refused.
-    """
-    message = core.array("orders")
-    taken = refused = last = 0
-    while nbytes := (yield from core.receive(message)):
-        refusal = yield from _obey(core, message, nbytes)
-        taken += not refusal
-        refused += bool(refusal)
-        if refusal:
-            last = refusal
+    def __init__(self, core: Core) -> None:
+        self._core = core
+        self._taken = self._refused = self._refusal = 0
+
+    def take(self) -> Generator[Any, Any, None]:
+        """Take the messages that wait and put the good ones in force, from the next frame on; remark on each bad one."""
+        core, message = self._core, self._core.array("orders")
+        while nbytes := (yield from core.receive(message)):
+            refusal = yield from _obey(core, message, nbytes)
+            if not refusal:
+                self._taken += 1
+                continue
+            self._refused, self._refusal = self._refused + 1, refusal
             words = MODE_WORDS, MODEL_FIELDS
             core.remark(refusal_text(refusal, message.array, nbytes, *words, _full_size(core)))
-    core.publish(orders_taken=taken, orders_refused=refused)
-    return last
+
+    def close(self) -> int:
+        """Publish how many `orders_taken` and `orders_refused`, and return why the last bad one was refused, or 0."""
+        self._core.publish(orders_taken=self._taken, orders_refused=self._refused)
+        refusal = self._refusal
+        self._taken = self._refused = self._refusal = 0
+        return refusal
 
 
 def _obey(core: Core, message: Row, nbytes: int) -> Generator[Any, Any, int]:

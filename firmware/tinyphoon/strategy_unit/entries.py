@@ -1,8 +1,12 @@
 """What the strategy unit is to send, and when: its script.
 
-A TOML script is a list of tables, and a JSON script an object with the same keys. Each entry has `after_frames`, how many
-frames are to be reported before it is sent, and one order by name, `mode` or `models`; or the words of a payload; or bytes
-that go over the wire as they are, to see what the firmware does with a damaged message:
+A TOML script is a list of tables, and a JSON script an object with the same keys. Each entry has one order by name, `mode`
+or `models`; or the words of a payload; or bytes that go over the wire as they are, to see what the firmware does with a
+damaged message. `after_frames` is how many frames are to be reported before it is sent. Without it, or with 0, it waits when
+the firmware starts and holds from frame 0 on; after n frames it comes in frame n and holds from the next one on:
+
+    [[send]]
+    models = [{name = "ball", colour = "orange", diameter_mm = 43}]
 
     [[send]]
     after_frames = 3
@@ -99,8 +103,8 @@ def _asked(entry: object, at: str) -> _Asked:
             f"{at} must have one of {', '.join(kinds)}, not {' and '.join(found) or 'none of them'}"
         )
     (kind,) = found
-    _require_keys(entry, ("after_frames", kind, *(("type",) if kind == "words" else ())), (), at)
-    after_frames = _whole(entry["after_frames"], 0, MOST_FRAMES, f"{at}.after_frames")
+    _require_keys(entry, (kind, *(("type",) if kind == "words" else ())), ("after_frames",), at)
+    after_frames = _whole(entry.get("after_frames", 0), 0, MOST_FRAMES, f"{at}.after_frames")
     if kind == "bytes":
         octets = bytes(_numbers(entry[kind], 0, 0xFF, f"{at}.{kind}"))
         return _Asked(f"{at}.{kind}", after_frames, octets)

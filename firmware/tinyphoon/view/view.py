@@ -46,10 +46,12 @@ SIDES = {
 def view(readout: Readout) -> Seen:
     """Return what a core saw, in coordinates of the area that it looked at. Stages that it does not have left nothing."""
     mode = mode_in(readout.values("mode"), readout.values("models"))
-    picture = _picture(readout, mode.area)
+    area = area_in(readout.frame, mode.area)
+    picture = _picture(readout, area)
     return Seen(
         camera=CAMERAS[readout.core],
         picture=picture,
+        corner_px=(area.x, area.y),
         geometry=_geometry(readout, picture),
         edges=_edges(readout),
         blobs=_blobs(readout),
@@ -66,8 +68,7 @@ def _picture(readout: Readout, area: Area) -> NDArray[np.uint8]:
     if readout.has_buffer("rectified_image"):
         return readout.values("rectified_image")
     picture = readout.picture()
-    seen = area_in(readout.frame, area)
-    return picture[seen.y : seen.y + seen.height, 2 * seen.x : 2 * (seen.x + seen.width)]
+    return picture[area.y : area.y + area.height, 2 * area.x : 2 * (area.x + area.width)]
 
 
 def _geometry(readout: Readout, picture: NDArray[np.uint8]) -> SeenGeometry:

@@ -1,0 +1,158 @@
+"""Models in plain words, as a script has them, and the words that they become on the SPI.
+
+    {"name": "ball", "colour": "orange", "diameter_mm": 43}
+    {"name": "cone", "shape": "marker", "colour": ["red", "orange"], "width_mm": 40, "height_mm": 60}
+    {"name": "blue goal", "hue_deg": [90, 155], "width_mm": 600}
+
+A name of the indoor field stands for its model, and what is given besides changes that. Any other name is a new model: it
+must have a shape, a colour and a size; its number is the first free one, and the rest is as in the first model of that
+shape. The limits of a blob's width by height follow the size unless they are given. A name does not go over the SPI: the
+report calls a new model by its number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields
+from fractions import Fraction
+from functools import reduce
+from itertools import count
+from math import ceil, floor
+from operator import or_
+from typing import Any
+
+from bfsim.api import FirmwareError, cut, shown
+from tinyphoon.fields import named_words
+from tinyphoon.strategy.colour_names import (
+    COLOUR_NAMES,
+    NARROWEST_DEG,
+    colours_between,
+    colours_named,
+    width_deg,
+)
+from tinyphoon.strategy.models import LARGEST_ASPECT, MODELS, ObjectModel, Shape
+
+BY_NAME = {each.name: each for each in MODELS}
+FIELDS = tuple(each.name for each in fields(ObjectModel) if each.name != "name")
+COLOUR_KEYS = "colour", "hue_deg", "colours"
+KEYS = (*FIELDS, "colour", "hue_deg", "diameter_mm")
+
+
+def words_of_models(models: Sequence[object], at: str) -> list[int]:
+    """Return the words of models, one after the other. Raises FirmwareError that names the model or its key under `at`."""
+    given = [{"name": each} if isinstance(each, str) and each in BY_NAME else each for each in models]
+    numbers = {each.number for each in MODELS}
+    numbers |= {
+        each["number"] for each in given if isinstance(each, Mapping) and _is_whole(each.get("number"))
+    }
+    free = (number for number in count(1) if number not in numbers)
+    return [word for number, each in enumerate(given) for word in _words(each, f"{at}.{number}", free)]
+
+
+def _words(given: object, at: str, free: Iterator[int]) -> list[int]:
+    if not isinstance(given, Mapping):
+        raise _no_model(given, at)
+    base, is_new = _base(given, at)
+    if unknown := [key for key in given if key not in (*KEYS, "name")]:
+        raise FirmwareError(f"{at}.{cut(str(unknown[0]))} must be one of {', '.join(KEYS)}")
+    named = {key: given[key] for key in FIELDS if key in given}
+    named |= _colours(given, at, needed=is_new)
+    named |= _size(given, base, at, needed=is_new)
+    if is_new and "number" not in named:
+        named["number"] = next(free)
+    return named_words(base, _aspects(base, named) | named, at)
+
+
+def _no_model(given: object, at: str) -> FirmwareError:
+    return FirmwareError(
+        f"{at} must be or have the name of one of {', '.join(BY_NAME)}, or a name, a shape, a colour and a size "
+        f"of its own, not be {shown(given)}"
+    )
+
+
+def _base(given: Mapping[str, Any], at: str) -> tuple[ObjectModel, bool]:
+    """Return the model that `given` changes, and whether it is a new one made after that."""
+    name = given.get("name")
+    if isinstance(name, str) and name in BY_NAME:
+        return BY_NAME[name], False
+    if not isinstance(name, str) or "shape" not in given:
+        raise _no_model(given, at)
+    for each in MODELS:
+        if _is_shape(given["shape"], each.shape):
+            return each, True
+    names = ", ".join(each.name.lower() for each in Shape)
+    raise FirmwareError(f"{at}.shape must be one of {names}, not {shown(given['shape'])}")
+
+
+def _is_shape(value: object, shape: Shape) -> bool:
+    """Whether a script means `shape`: by its name in any case, or by its number."""
+    return value.upper() == shape.name if isinstance(value, str) else value == shape
+
+
+def _colours(given: Mapping[str, Any], at: str, *, needed: bool) -> dict[str, int]:
+    """Return the colours that a model is given by name or by hue."""
+    found = [key for key in COLOUR_KEYS if key in given]
+    if len(found) > 1 or (needed and not found):
+        raise FirmwareError(
+            f"{at} must have one of {', '.join(COLOUR_KEYS)}, not {' and '.join(found) or 'none'}"
+        )
+    if "colour" in found:
+        return {"colours": _by_name(given["colour"], f"{at}.colour")}
+    if "hue_deg" in found:
+        return {"colours": _by_hue(given["hue_deg"], f"{at}.hue_deg")}
+    return {}
+
+
+def _by_name(value: object, at: str) -> int:
+    names = value if isinstance(value, list) else [value]
+    if not names or not all(isinstance(each, str) and each in COLOUR_NAMES for each in names):
+        raise FirmwareError(
+            f"{at} must be one of {', '.join(COLOUR_NAMES)}, or a list of them, not {shown(value)}"
+        )
+    return reduce(or_, map(colours_named, names))
+
+
+def _by_hue(value: object, at: str) -> int:
+    if (
+        not isinstance(value, list)
+        or len(value) != 2
+        or not all(isinstance(each, int | float) and 0 <= each <= 360 for each in value)
+        or width_deg(*value) < NARROWEST_DEG
+    ):
+        raise FirmwareError(
+            f"{at} must be [from, to] in degrees of the firmware's colour circle, 0 to 360, {NARROWEST_DEG} or more "
+            f"apart, not {shown(value)}"
+        )
+    return colours_between(*value)
+
+
+def _size(given: Mapping[str, Any], base: ObjectModel, at: str, *, needed: bool) -> dict[str, Any]:
+    """Return the width and the height of a model that has them in one number, as balls have."""
+    is_ball = _is_shape(given.get("shape", base.shape), Shape.BALL)
+    sides = {key: given[key] for key in ("width_mm", "height_mm") if key in given}
+    if "diameter_mm" in given and (sides or not is_ball):
+        raise FirmwareError(
+            f"{at}.diameter_mm must be the only size, and that of a ball; others have width_mm and height_mm"
+        )
+    if "diameter_mm" in given:
+        return dict.fromkeys(("width_mm", "height_mm"), given["diameter_mm"])
+    if is_ball and len(sides) == 1:
+        return dict.fromkeys(("width_mm", "height_mm"), *sides.values())
+    if needed and len(sides) < 2:
+        missing = "diameter_mm" if is_ball else "height_mm" if "width_mm" in sides else "width_mm"
+        raise FirmwareError(f"the key {at}.{missing} must be there")
+    return sides
+
+
+def _aspects(base: ObjectModel, named: Mapping[str, Any]) -> dict[str, int]:
+    """Return the limits of width by height: those of `base`, by as much wider or narrower as the model is."""
+    width, height = named.get("width_mm", base.width_mm), named.get("height_mm", base.height_mm)
+    if not (_is_whole(width) and _is_whole(height)):
+        return {}
+    wider = Fraction(width * base.height_mm, height * base.width_mm)
+    least, most = floor(base.aspect_min * wider), ceil(base.aspect_max * wider)
+    return {"aspect_min": min(max(least, 1), LARGEST_ASPECT), "aspect_max": min(max(most, 1), LARGEST_ASPECT)}
+
+
+def _is_whole(value: object) -> bool:
+    return isinstance(value, int) and value > 0
