@@ -147,7 +147,7 @@ def info_command(path: Path, as_json: bool) -> None:
         print_report(_info_table(info))
 
 
-@record.command(name="calibrate", short_help="Make rectification tables from chessboards.")
+@record.command(name="calibrate", short_help="Make rectification tables and geometry from chessboards.")
 @click.argument("chessboards", metavar="CHESSBOARDS", type=click.Path(path_type=Path))
 @click.argument("path", metavar="RECORDING", type=click.Path(path_type=Path))
 @click.option(
@@ -159,30 +159,65 @@ def info_command(path: Path, as_json: bool) -> None:
     help="Inner corners of the chessboard, across and down.",
 )
 @click.option("--square", type=float, default=20.0, show_default=True, help="Side of its squares in mm.")
+@click.option("--height", type=float, metavar="MM", help="Height of the cameras over the floor in mm.")
+@click.option("--tilt", type=float, metavar="DEG", help="How far the cameras look down, in degrees.")
+@click.option("--fisheye", is_flag=True, help="The lenses are fisheyes: 100 degrees and more across.")
+@click.option("--mono", is_flag=True, help="CHESSBOARDS holds pictures of the one camera of RECORDING.")
 @click.option("--output", type=click.Path(path_type=Path), help="Write this file and leave RECORDING alone.")
 def calibrate_command(
-    chessboards: Path, path: Path, corners: tuple[int, int], square: float, output: Path | None
+    chessboards: Path,
+    path: Path,
+    corners: tuple[int, int],
+    square: float,
+    height: float | None,
+    tilt: float | None,
+    fisheye: bool,
+    mono: bool,
+    output: Path | None,
 ) -> None:
-    """Write rectification tables into RECORDING, made from chessboard pictures of its cameras.
+    """Write rectification tables and the geometry into RECORDING, made from chessboard pictures of its cameras.
 
-    The folder CHESSBOARDS holds pictures left* and right* in pairs, each pair taken at once: the first left goes
-    with the first right, by name. Needs OpenCV: pip install "bfsim[opencv]".
+    The folder CHESSBOARDS holds pictures left* and right*, or folders left and right; left_03 and right_03 were taken
+    at once. Pictures without a board are skipped, and what does not fit the rest is left out; both are listed. Focal
+    length and baseline are measured; height and tilt must be given, here or at the import. Needs OpenCV:
+    pip install "bfsim[opencv]".
 
     \b
     Examples:
       bfsim record calibrate boards/ run.mcap
-      bfsim record calibrate boards/ run.mcap --corners 8x5 --square 25
+      bfsim record calibrate boards/ run.mcap --corners 8x5 --square 25 --height 120 --tilt 10
+      bfsim record calibrate boards/ phone.mcap --mono
     """
     from bfsim import recording
 
-    found = recording.calibrate_recording(chessboards, path, output, corners=corners, square_mm=square)
-    click.echo(
-        f"{output or path}: rectification tables from {found.pair_count} chessboard pairs\n"
-        f"Reprojection error: {found.reprojection_px:.3f} px RMS\n"
-        f"Vertical misalignment: {found.vertical_rms_px:.3f} px RMS, {found.vertical_worst_px:.3f} px at worst "
-        f"(before: {found.vertical_before_px:.3f} px RMS)\n"
-        f"Focal length {found.focal_px:.1f} px, baseline {found.baseline_mm:.2f} mm"
+    found = recording.calibrate_recording(
+        chessboards,
+        path,
+        output,
+        corners=corners,
+        square_mm=square,
+        height_mm=height,
+        tilt_deg=tilt,
+        lens="fisheye" if fisheye else "pinhole",
+        mono=mono,
     )
+    with recording.RecordingReader(output or path) as reader:
+        geometry = reader.geometry
+    report = found.report
+    click.echo(f"{output or path}: rectification tables from {_views_text(report)}")
+    click.echo(
+        f"Reprojection error: {report.reprojection_px:.3f} px RMS; picture by picture: `bfsim record info`"
+    )
+    if len(report.cameras) > 1:
+        click.echo(
+            f"Vertical misalignment: {report.vertical_rms_px:.3f} px RMS, {report.vertical_worst_px:.3f} px at worst "
+            f"(before: {report.vertical_before_px:.3f} px RMS)"
+        )
+    click.echo(f"Geometry: {geometry}")
+    for view in report.outliers:
+        click.echo(f"Left out: {_view_text(view)}: does not fit the others")
+    for each in report.skipped:
+        click.echo(f"Skipped: {each.name}: {each.reason}")
 
 
 _RENDER_HELP = f"""Render SCENE with exact ground truth to the recording OUTPUT.
@@ -300,8 +335,9 @@ def _info_table(info: recording.RecordingInfo) -> Table:
     table.add_row("Right camera", _timing_text(info.right))
     least_ms, greatest_ms = (skew / 1e6 for skew in info.skew_ns)
     table.add_row("Right after left", f"{least_ms:.3f} to {greatest_ms:.3f} ms")
-    table.add_row("Geometry", _geometry_text(info.geometry))
+    table.add_row("Geometry", str(info.geometry or "unknown"))
     table.add_row("Rectification tables", _rectification_text(info.rectified_shares))
+    table.add_row("Calibration", _calibration_text(info.calibration))
     table.add_row("Ground truth", _truth_text(info))
     table.add_row(
         "File", f"{info.size_bytes / 1e6:.1f} MB, compression {info.compression}, checksums verified"
@@ -331,10 +367,25 @@ def _truth_text(info: recording.RecordingInfo) -> str:
     return f"{info.truth_count} frames{disparities}"
 
 
-def _geometry_text(geometry: recording.StereoGeometry | None) -> str:
-    if geometry is None:
-        return "unknown"
+def _calibration_text(report: recording.CalibrationReport | None) -> str:
+    if report is None:
+        return "none"
+    lines = [
+        f"{_views_text(report)}, {report.lens} lens, {report.reprojection_px:.3f} px RMS",
+        *(_view_text(view) for view in report.used),
+        *(f"{_view_text(view)}, left out: does not fit the others" for view in report.outliers),
+        *(f"{each.name} skipped: {each.reason}" for each in report.skipped),
+    ]
+    return "\n".join(lines)
+
+
+def _views_text(report: recording.CalibrationReport) -> str:
+    what = "chessboard pairs" if len(report.cameras) > 1 else "chessboard pictures"
     return (
-        f"focal length {geometry.focal_px:g} px, baseline {geometry.baseline_mm:g} mm, "
-        f"height {geometry.height_mm:g} mm, looking down {geometry.tilt_deg:g}°"
+        f"{len(report.used)} {what}, {len(report.outliers)} left out, {len(report.skipped)} pictures skipped"
     )
+
+
+def _view_text(view: recording.ViewError) -> str:
+    errors = zip(view.names, view.errors_px, strict=True)
+    return ", ".join(f"{name} {error_px:.2f} px" for name, error_px in errors)

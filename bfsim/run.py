@@ -122,14 +122,36 @@ def simulate(
         identity, recording_digest=source.digest, firmware_digest=loaded.digest, firmware_files=loaded.files
     )
     assumptions = (*_assumed_geometry(program, calibration), *_assumed_clocks(spec))
-    return _record(outcome, identity, assumptions, loaded, placement)
+    geometry = _geometry_in_words(program, calibration)
+    return _record(outcome, identity, geometry, assumptions, loaded, placement)
+
+
+def _geometry_in_words(program: Firmware, calibration: Calibration) -> str:
+    """Return which geometry the firmware computes with; nothing for firmware that takes none."""
+    if program.calibration is not None:
+        for each in calibration.geometries:
+            return f"{each} (of the recording)"
+    return f"assumed: {program.assumed_geometry}" if program.assumed_geometry else ""
 
 
 def _assumed_geometry(program: Firmware, calibration: Calibration) -> Iterator[RunWarning]:
-    if program.assumed_geometry and not calibration.geometries:
+    if not program.assumed_geometry:
+        return
+    for each in calibration.geometries:
+        stance = {"height": each.height_mm, "tilt": each.tilt_deg}
+        unknown = " and ".join(name for name, value in stance.items() if value is None)
+        if unknown:
+            text = (
+                f"the recording does not say the {unknown} of its cameras: taken from an assumed geometry, "
+                f"{program.assumed_geometry}, and what is measured by it may be wrong; `bfsim record calibrate --height "
+                "--tilt` or `bfsim record import --geometry` puts yours into a recording"
+            )
+            yield RunWarning(kind=WarningKind.GEOMETRY, text=text)
+    if not calibration.geometries:
         text = (
             f"the recording does not say where its cameras are: {program.assumed_geometry} was assumed, and what is "
-            "measured by it may be wrong; `bfsim record import --geometry` puts yours into a recording"
+            "measured by it may be wrong; `bfsim record calibrate` or `bfsim record import --geometry` puts yours into a "
+            "recording"
         )
         yield RunWarning(kind=WarningKind.GEOMETRY, text=text)
 
@@ -269,6 +291,7 @@ def _identity(
 def _record(
     outcome: Outcome,
     identity: Identity,
+    geometry: str,
     assumptions: tuple[RunWarning, ...],
     loaded: LoadedFirmware,
     placement: LinkerScript,
@@ -289,6 +312,7 @@ def _record(
         code=outcome.code,
         messages=outcome.messages,
         device_notes=outcome.device_notes,
+        geometry=geometry,
         assumptions=assumptions,
         losses=loaded.firmware.losses,
         interrupts=outcome.interrupts,

@@ -235,7 +235,8 @@ class RunRecord:
     `firmware_place` is the file that was named as firmware, or "built in"; `ldf_place` is the LDF's, or "shipped".
     `device_notes` are what the device on the SPI had to say when the run was over.
     `reference` says what the `reference_ms` of `rows` are, None where the firmware has no reference.
-    `assumptions` are warnings of what was not given and had to be assumed; `losses` say in words what those published
+    `geometry` says where the firmware takes the cameras to be, and whether the recording said so; it is empty for firmware
+    that does not ask. `assumptions` are warnings of what was not given and had to be assumed; `losses` say in words what those published
     numbers count that the firmware lost.
     When `interrupted` by Ctrl-C, `kernels` and `traffic` also hold what was done of the frame that was not finished.
     """
@@ -253,6 +254,7 @@ class RunRecord:
     code: tuple[CodeRecord, ...]
     messages: tuple[MessageRecord, ...]
     device_notes: tuple[str, ...]
+    geometry: str
     assumptions: tuple[RunWarning, ...]
     losses: Mapping[str, str]
     interrupts: Mapping[str, int]

@@ -42,7 +42,7 @@ class SourcePixels:
 
 
 class Geometry(Protocol):
-    """Where the two cameras are: what a `bfsim.recording.StereoGeometry` says."""
+    """Where the two cameras are: what a `bfsim.recording.StereoGeometry` says; height and tilt are None where unknown."""
 
     @property
     def focal_px(self) -> float:
@@ -50,14 +50,14 @@ class Geometry(Protocol):
 
     @property
     def baseline_mm(self) -> float:
-        """Distance between the optical centres."""
+        """Distance between the optical centres; 0 where one camera feeds both sides."""
 
     @property
-    def height_mm(self) -> float:
+    def height_mm(self) -> float | None:
         """Height above the floor."""
 
     @property
-    def tilt_deg(self) -> float:
+    def tilt_deg(self) -> float | None:
         """How far the cameras look down."""
 
 
@@ -142,8 +142,8 @@ class Firmware:
     show; it is not simulated.
     `losses`: what the firmware had to leave out, as published number → in words what it counts, such as {"edges_lost":
     "edges without room in the store"}; a run that lost something ends with a warning.
-    `assumed_geometry`: in words, where the firmware takes the cameras to be if the recording does not say; the run ends
-    with a warning then. Empty for firmware that does not ask.
+    `assumed_geometry`: in words, where the firmware takes the cameras to be if the recording does not say, or not all; the
+    run ends with a warning then. Empty for firmware that does not ask.
     `write_through`: memory segments of the LDF in SDRAM that the data caches write through; the rest is written back.
     """
 

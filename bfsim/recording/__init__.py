@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bfsim.recording.calibration import StereoCalibration, calibrate_recording
+from bfsim.recording.calibration_report import CalibrationReport, ViewError
 from bfsim.recording.frames import (
     DisparityImage,
     RectificationTables,
@@ -19,6 +20,7 @@ from bfsim.recording.writer import RecordingWriter
 
 __all__ = [
     "SOURCE_FORMATS",
+    "CalibrationReport",
     "CameraTiming",
     "DisparityImage",
     "ImportSummary",
@@ -32,6 +34,7 @@ __all__ = [
     "StereoFrame",
     "StereoGeometry",
     "UyvyImage",
+    "ViewError",
     "calibrate_recording",
     "describe_recording",
     "import_recording",

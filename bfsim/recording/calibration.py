@@ -1,14 +1,12 @@
-"""From pictures of a chessboard, taken by both cameras at once, to rectification tables.
+"""From pictures of a chessboard, taken by both cameras at once or by the only one, to rectification tables.
 
-OpenCV finds the corners and fits the cameras: a focal length for each axis, a principal point, two radial and two
-tangential terms of distortion for each, and where the right camera is. Loaded only here; the optional extra
-`calibration` installs it.
+OpenCV finds the corners and fits the cameras. Loaded only here; the optional extra `opencv` installs it.
 """
 
 from __future__ import annotations
 
-import importlib
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,46 +15,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
+from bfsim.recording.boards import BoardView, find_views
+from bfsim.recording.calibration_report import CalibrationReport, LensFit, LensName, ViewError
+from bfsim.recording.camera_models import CameraModel, Fisheye, Fit, FittedCamera, Floats, Pinhole
 from bfsim.recording.frames import RectificationTables, StereoGeometry
-from bfsim.recording.images import image_paths, load_image
-from bfsim.recording.planes import Plane, YuvPlanes
 from bfsim.recording.reader import RecordingReader
 from bfsim.recording.rectifying import rectified_rotation
+from bfsim.recording.sources import Skipped
 from bfsim.recording.writer import RecordingWriter
 
-Corners = NDArray[np.float32]
-
 # Fewer views than this leave the distortion to chance. [assumed]
-FEWEST_PAIRS = 5
+FEWEST_VIEWS = 5
 
+OUTLIER_MEDIANS, LEAST_OUTLIER_PX = 3.0, 0.3
+"""A view is left out if its error is more than so many times the median of all, and more than finders of corners err in
+good pictures. [assumed]"""
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StereoCalibration:
-    """What the chessboards tell of the cameras.
+_SKIPPED_LISTED = 5
 
-    reprojection_px is the RMS distance of the corners found from those of the fitted cameras; vertical_rms_px and
-    vertical_worst_px are how far the rows of a corner differ between the rectified pictures, and
-    vertical_before_px (RMS) between the recorded ones. focal_px is that of the rectified pictures, whose
-    principal point is their middle; baseline_mm is as right as the size of the squares.
-    """
-
-    tables: RectificationTables
-    pair_count: int
-    reprojection_px: float
-    vertical_before_px: float
-    vertical_rms_px: float
-    vertical_worst_px: float
-    focal_px: float
-    baseline_mm: float
+_MODELS: dict[LensName, type[CameraModel]] = {"pinhole": Pinhole, "fisheye": Fisheye}
 
 
 @dataclass(frozen=True, slots=True)
-class _Camera:
-    """A fitted camera: its matrix (3, 3), distortion, and rotation (3, 3) into the rectified frame."""
+class StereoCalibration:
+    """The tables that rectify, and what was found on the way to them."""
 
-    matrix: NDArray[np.float64]
-    distortion: NDArray[np.float64]
-    turn: NDArray[np.float64]
+    tables: RectificationTables
+    report: CalibrationReport
 
 
 def calibrate_recording(
@@ -66,15 +51,19 @@ def calibrate_recording(
     *,
     corners: tuple[int, int],
     square_mm: float,
+    height_mm: float | None = None,
+    tilt_deg: float | None = None,
+    lens: LensName = "pinhole",
+    mono: bool = False,
 ) -> StereoCalibration:
-    """Write `recording` with the rectification tables of its cameras to `output`, or in its own place.
+    """Write `recording` with the rectification tables and the geometry of its cameras to `output`, or in its own place.
 
-    The folder `chessboards` holds pictures left* and right*, in pairs by the order of their names, of a board with
-    `corners` (across, down) inner corners. The recording's focal length is kept, if it has one, and its baseline
-    becomes the measured one. Pictures, time stamps and ground truth stay as they are. Raises RecordingError.
+    See `calibrate` for the folder `chessboards`. The recording's focal length, height and tilt are kept, if it has
+    them and no others are given, and its baseline becomes the measured one. Pictures, time stamps and ground truth
+    stay as they are. Raises RecordingError.
     """
     with RecordingReader(recording) as reader:
-        size, geometry, text = (reader.width, reader.height), reader.geometry, reader.description
+        size, old, text = (reader.width, reader.height), reader.geometry, reader.description
         if output is None and reader.other_topics:
             raise RecordingError(
                 f"{reader.path}: recording must hold nothing but bfsim's topics to be calibrated in place, not "
@@ -85,19 +74,24 @@ def calibrate_recording(
         size,
         corners=corners,
         square_mm=square_mm,
-        focal_px=geometry.focal_px if geometry else None,
+        focal_px=old.focal_px if old else None,
+        lens=lens,
+        mono=mono,
     )
-    if geometry is not None:
-        geometry = StereoGeometry(
-            calibration.focal_px, calibration.baseline_mm, geometry.height_mm, geometry.tilt_deg
-        )
+    report = calibration.report
     writer = RecordingWriter(
         output or recording,
         width=size[0],
         height=size[1],
-        geometry=geometry,
+        geometry=StereoGeometry(
+            report.focal_px,
+            report.baseline_mm,
+            old.height_mm if height_mm is None and old else height_mm,
+            old.tilt_deg if tilt_deg is None and old else tilt_deg,
+        ),
         description=text,
         rectification=calibration.tables,
+        calibration=report,
     )
     # The reader closes before the writer takes its file's place.
     with writer, RecordingReader(recording) as reader:
@@ -115,135 +109,149 @@ def calibrate(
     corners: tuple[int, int],
     square_mm: float,
     focal_px: float | None = None,
+    lens: LensName = "pinhole",
+    mono: bool = False,
 ) -> StereoCalibration:
-    """Calibrate two cameras with pictures of `size` (width, height) from a folder of chessboard pairs.
+    """Calibrate cameras with pictures of `size` (width, height) of a board with `corners` (across, down) inner corners.
 
-    `focal_px` is the focal length to rectify to; without it, the mean of the left camera's. Raises RecordingError.
+    The folder `chessboards` holds pictures left* and right* (or folders left and right), of which those with the same
+    rest of the name were taken at once; with `mono` it holds pictures of the only camera. Pictures that show no whole
+    board are skipped; views that do not fit the others are left out; both are in the report. `focal_px` is the focal
+    length to rectify to; without it, the mean of the left camera's. Raises RecordingError.
     """
-    cv2 = _load_opencv()
+    model = _MODELS[lens]()
     if min(corners) < 3 or square_mm <= 0:
         raise RecordingError(
             f"chessboard must have at least 3x3 inner corners and squares above 0 mm, not {corners[0]}x{corners[1]} "
             f"and {square_mm:g} mm"
         )
-    pairs = _find_pairs(cv2, Path(chessboards), size, corners)
-    left_points, right_points = (list(side) for side in zip(*pairs, strict=True))
-    board = np.zeros((corners[0] * corners[1], 3), np.float32)
+    folder = Path(chessboards)
+    views, skipped = find_views(model.cv2, folder, size, corners, mono=mono)
+    if len(views) < FEWEST_VIEWS:
+        raise _too_few(folder, views, skipped, mono=mono)
+    board = np.zeros((corners[0] * corners[1], 3))
     board[:, :2] = np.mgrid[: corners[0], : corners[1]].T.reshape(-1, 2) * square_mm
-    error_px, fitted, rotation, shift = _fit(cv2, [board] * len(pairs), (left_points, right_points), size)
-    # From the left camera, the right one's optical centre is at -R't.
-    turn = rectified_rotation(-(rotation.T @ shift).ravel(), np.array([0.0, 0.0, 1.0]))
-    left, right = (
-        _Camera(matrix, distortion, turn @ back)
-        for (matrix, distortion), back in zip(fitted, (np.eye(3), rotation.T), strict=True)
-    )
-    focal = focal_px or float(np.trace(left.matrix[:2, :2]) / 2)
+    fit, used, errors = _fit_without_outliers(model, board, views, size)
+    turns = _turns(fit, folder)
+    focal = focal_px or float(np.trace(fit.cameras[0].matrix[:2, :2]) / 2)
     target = np.array([[focal, 0, (size[0] - 1) / 2], [0, focal, (size[1] - 1) / 2], [0, 0, 1]])
-    before = np.concatenate([(a - b)[:, 1] for a, b in pairs])
-    after = np.concatenate(
-        [(_rectify(cv2, a, left, target) - _rectify(cv2, b, right, target))[:, 1] for a, b in pairs]
-    )
-    return StereoCalibration(
-        tables=RectificationTables(_table(cv2, left, target, size), _table(cv2, right, target, size)),
-        pair_count=len(pairs),
-        reprojection_px=error_px,
+    pairs = list(zip(fit.cameras, turns, strict=True))
+    tables = [_table(model, camera, turn, target, size) for camera, turn in pairs]
+    before, after = _row_differences(model, pairs, used, target, size)
+    report = CalibrationReport(
+        lens=lens,
+        cameras=tuple(_lens_fit(camera) for camera in fit.cameras),
+        views=errors,
+        skipped=tuple(skipped),
+        reprojection_px=_rms(fit.errors_px),
         vertical_before_px=_rms(before),
         vertical_rms_px=_rms(after),
         vertical_worst_px=float(np.abs(after).max()),
         focal_px=focal,
-        baseline_mm=float(np.linalg.norm(shift)),
+        baseline_mm=float(np.linalg.norm(fit.shift)),
+    )
+    return StereoCalibration(RectificationTables(tables[0], tables[-1]), report)
+
+
+def _too_few(
+    folder: Path, views: Sequence[BoardView], skipped: Sequence[Skipped], *, mono: bool
+) -> RecordingError:
+    what = "pictures" if mono else "pairs"
+    listed = "; ".join(f"{each.name}: {each.reason}" for each in skipped[:_SKIPPED_LISTED])
+    more = f"; and {len(skipped) - _SKIPPED_LISTED} more" if len(skipped) > _SKIPPED_LISTED else ""
+    left_out = f"; skipped were {listed}{more}" if skipped else ""
+    return RecordingError(
+        f"{folder}: chessboard {what} must be at least {FEWEST_VIEWS}, not {len(views)}{left_out}; "
+        "`--corners` says how many inner corners the board has"
     )
 
 
-def _find_pairs(
-    cv2: Any, folder: Path, size: tuple[int, int], corners: tuple[int, int]
-) -> list[tuple[Corners, Corners]]:
-    """Return the corners (count, 2) of each pair of pictures, in the same order in both."""
-    lefts, rights = (image_paths(str(folder / f"{side}*")) for side in ("left", "right"))
-    if len(lefts) != len(rights):
+def _fit_without_outliers(
+    model: CameraModel, board: Floats, views: Sequence[BoardView], size: tuple[int, int]
+) -> tuple[Fit, list[BoardView], tuple[ViewError, ...]]:
+    """Fit the cameras again and again, each time without the views that fit none of the others.
+
+    Return also the views that are left, and the errors of all.
+    """
+    used, outliers = list(views), list[ViewError]()
+    while True:
+        sides = list(zip(*(view.points for view in used), strict=True))
+        fit = model.fit(board, sides, size)
+        errors_px = np.sqrt(np.square(fit.errors_px).mean(axis=0))
+        is_out = errors_px > max(OUTLIER_MEDIANS * float(np.median(errors_px)), LEAST_OUTLIER_PX)
+        all_errors = [
+            ViewError(names=view.names, errors_px=tuple(map(float, each)), is_outlier=False)
+            for view, each in zip(used, fit.errors_px.T, strict=True)
+        ]
+        if not is_out.any() or (~is_out).sum() < FEWEST_VIEWS:
+            return fit, used, (*all_errors, *outliers)
+        outliers += [
+            ViewError(names=each.names, errors_px=each.errors_px, is_outlier=True)
+            for each, out in zip(all_errors, is_out, strict=True)
+            if out
+        ]
+        used = [view for view, out in zip(used, is_out, strict=True) if not out]
+
+
+def _turns(fit: Fit, folder: Path) -> list[Floats]:
+    """Return the rotation (3, 3) of each camera into the rectified frame; the only camera stays as it is."""
+    if len(fit.cameras) == 1:
+        return [np.eye(3)]
+    # From the left camera, the right one's optical centre is at -R't.
+    centre = -(fit.rotation.T @ fit.shift)
+    if centre[0] <= 0:
         raise RecordingError(
-            f"{folder}: chessboard pictures must be in pairs, not {len(lefts)} left* and {len(rights)} right*"
+            f"{folder}: the right camera must be to the right of the left one, but is {-centre[0]:.0f} mm to the left; "
+            "the names of the pictures may be swapped"
         )
-    if len(lefts) < FEWEST_PAIRS:
-        raise RecordingError(
-            f"{folder}: chessboard pairs must be at least {FEWEST_PAIRS}, not {len(lefts)} "
-            f"({lefts[0].name} to {lefts[-1].name})"
-        )
-    pairs = []
-    for left_path, right_path in zip(lefts, rights, strict=True):
-        left, right = (_find_corners(cv2, path, size, corners) for path in (left_path, right_path))
-        # A board turned by half a circle looks the same: begin at the same end in both.
-        if (left[-1] - left[0]) @ (right[-1] - right[0]) < 0:
-            right = right[::-1]
-        pairs.append((left, right))
-    return pairs
+    turn = rectified_rotation(centre, np.array([0.0, 0.0, 1.0]))
+    return [turn, turn @ fit.rotation.T]
 
 
-def _find_corners(cv2: Any, path: Path, size: tuple[int, int], corners: tuple[int, int]) -> Corners:
-    grey = _grey(path, size)
-    found, points = cv2.findChessboardCornersSB(grey, corners, flags=cv2.CALIB_CB_ACCURACY)
-    if not found:
-        raise RecordingError(
-            f"{path}: picture must show a whole chessboard of {corners[0]}x{corners[1]} inner corners, but none is "
-            "found; `--corners` says how many it has"
-        )
-    flat: Corners = points.reshape(-1, 2)
-    return flat
+def _row_differences(
+    model: CameraModel,
+    pairs: Sequence[tuple[FittedCamera, Floats]],
+    views: Sequence[BoardView],
+    target: Floats,
+    size: tuple[int, int],
+) -> tuple[Floats, Floats]:
+    """Return how far the rows of corners differ between both pictures, as recorded and as rectified.
 
-
-def _grey(path: Path, size: tuple[int, int]) -> Plane:
-    image = load_image(path)
-    if image.size != size:
-        raise RecordingError(
-            f"{path}: chessboard picture must be {size[0]}x{size[1]} like the recording, "
-            f"not {image.width}x{image.height}"
-        )
-    return np.ascontiguousarray(YuvPlanes.from_image(image).y)
-
-
-def _fit(
-    cv2: Any, boards: list[Corners], points: tuple[list[Corners], list[Corners]], size: tuple[int, int]
-) -> tuple[float, list[tuple[Any, Any]], Any, Any]:
-    """Return the RMS error, matrix and distortion of both cameras, and the rotation and shift to the right one."""
-    alone = [
-        cv2.calibrateCamera(boards, side, size, None, None, flags=cv2.CALIB_FIX_K3)[1:3] for side in points
-    ]
-    error_px, *fitted, rotation, shift, _, _ = cv2.stereoCalibrate(
-        boards, *points, *alone[0], *alone[1], size, flags=cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_K3
+    Counted are the corners that the rectified pictures show, all if these show none.
+    """
+    if len(pairs) == 1:
+        return np.zeros(1), np.zeros(1)
+    recorded = [np.concatenate([view.points[side] for view in views]) for side in (0, 1)]
+    left, right = (
+        model.rectified(points, camera, turn, target)
+        for points, (camera, turn) in zip(recorded, pairs, strict=True)
     )
-    return error_px, [(fitted[0], fitted[1]), (fitted[2], fitted[3])], rotation, shift
-
-
-def _rectify(cv2: Any, points: Corners, camera: _Camera, target: NDArray[np.float64]) -> Corners:
-    """Return where recorded points (count, 2) are in the rectified picture."""
-    moved = cv2.undistortPoints(points[:, None], camera.matrix, camera.distortion, R=camera.turn, P=target)
-    flat: Corners = moved.reshape(-1, 2)
-    return flat
+    shown = np.all([(each >= 0) & (each < size) for each in (left, right)], axis=(0, 2))
+    if not shown.any():
+        shown[:] = True
+    return (recorded[0] - recorded[1])[shown, 1], (left - right)[shown, 1]
 
 
 def _table(
-    cv2: Any, camera: _Camera, target: NDArray[np.float64], size: tuple[int, int]
+    model: CameraModel, camera: FittedCamera, turn: Floats, target: Floats, size: tuple[int, int]
 ) -> NDArray[np.int32]:
     """Return the nearest source row and column of each rectified pixel (2, height, width), -1 outside."""
-    columns, rows = cv2.initUndistortRectifyMap(
-        camera.matrix, camera.distortion, camera.turn, target, size, cv2.CV_32FC1
-    )
-    table = np.rint(np.stack([rows, columns])).astype(np.int32)
+    columns, rows = model.sources(camera, turn, target, size)
+    # What a lens cannot see may be anywhere, even at infinity.
+    nearest = np.rint(np.nan_to_num(np.stack([rows, columns]), nan=-1, posinf=-1, neginf=-1))
     bounds = np.array(size[::-1])[:, None, None]
-    return np.where(((table >= 0) & (table < bounds)).all(axis=0), table, np.int32(-1))
+    inside = ((nearest >= 0) & (nearest < bounds)).all(axis=0)
+    return np.where(inside, nearest, -1).astype(np.int32)
+
+
+def _lens_fit(camera: FittedCamera) -> LensFit:
+    matrix = camera.matrix
+    return LensFit(
+        focal_px=(float(matrix[0, 0]), float(matrix[1, 1])),
+        principal_px=(float(matrix[0, 2]), float(matrix[1, 2])),
+        distortion=tuple(map(float, np.ravel(camera.distortion))),
+    )
 
 
 def _rms(values: NDArray[Any]) -> float:
     return float(np.sqrt(np.mean(np.square(values, dtype=np.float64))))
-
-
-def _load_opencv() -> Any:
-    try:
-        cv2 = importlib.import_module("cv2")
-    except ImportError as error:
-        raise RecordingError(
-            'OpenCV must be installed to calibrate cameras: pip install "bfsim[opencv]"'
-        ) from error
-    # Threads would add up in another order every time.
-    cv2.setNumThreads(1)
-    return cv2

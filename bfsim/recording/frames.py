@@ -21,28 +21,49 @@ DisparityImage = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class StereoGeometry:
-    """Where the two cameras are: equal, parallel, side by side.
+    """Where the two cameras are: equal, parallel, side by side; or where the one is that feeds both sides.
 
     focal_px is the focal length after rectification, in pixels of the recorded image; baseline_mm the
-    distance between the optical centres; height_mm their height above the floor; tilt_deg how far they look
-    down.
+    distance between the optical centres, 0 for a single camera; height_mm their height above the floor; tilt_deg how
+    far they look down. The last two are None where nobody has measured them, as after a calibration.
     """
 
     focal_px: float
     baseline_mm: float
-    height_mm: float
-    tilt_deg: float
+    height_mm: float | None = None
+    tilt_deg: float | None = None
 
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
-            if not math.isfinite(value):
+            if value is not None and not math.isfinite(value):
                 raise RecordingError(f"stereo geometry: {field.name} must be a finite number, not {value}")
-        for name in ("focal_px", "baseline_mm"):
-            if getattr(self, name) <= 0:
-                raise RecordingError(f"stereo geometry: {name} must be above 0, not {getattr(self, name)}")
-        if not -90 <= self.tilt_deg <= 90:
+        if self.focal_px <= 0:
+            raise RecordingError(f"stereo geometry: focal_px must be above 0, not {self.focal_px}")
+        if self.baseline_mm < 0:
+            raise RecordingError(
+                f"stereo geometry: baseline_mm must be above 0, or 0 for a single camera, not {self.baseline_mm}"
+            )
+        if self.tilt_deg is not None and not -90 <= self.tilt_deg <= 90:
             raise RecordingError(f"stereo geometry: tilt_deg must be -90 to 90, not {self.tilt_deg}")
+
+    def __str__(self) -> str:
+        height, tilt = self.height_mm, self.tilt_deg
+        return ", ".join(
+            (
+                f"focal length {self.focal_px:.6g} px",
+                f"baseline {self.baseline_mm:.6g} mm" if self.baseline_mm else "a single camera",
+                "height unknown" if height is None else f"height {height:g} mm",
+                "tilt unknown" if tilt is None else f"looking down {tilt:g}°",
+            )
+        )
+
+    @property
+    def stance(self) -> tuple[float, float]:
+        """Height in mm and tilt in degrees, for those who need both. Raises RecordingError where one is unknown."""
+        if self.height_mm is None or self.tilt_deg is None:
+            raise RecordingError("stereo geometry: height_mm and tilt_deg must both be known")
+        return self.height_mm, self.tilt_deg
 
 
 @dataclass(frozen=True, slots=True)

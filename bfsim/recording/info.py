@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
+from bfsim.recording.calibration_report import CalibrationReport
 from bfsim.recording.frames import RectificationTables, StereoGeometry
 from bfsim.recording.importer import Progress
 from bfsim.recording.reader import RecordingReader
@@ -40,6 +41,7 @@ class RecordingInfo:
     skew_ns: tuple[int, int]
     geometry: StereoGeometry | None
     rectified_shares: tuple[float, float] | None
+    calibration: CalibrationReport | None
     truth_count: int
     disparity_count: int
     description: str
@@ -69,6 +71,7 @@ def describe_recording(reader: RecordingReader, progress: Progress | None = None
         skew_ns=(min(skews_ns), max(skews_ns)),
         geometry=reader.geometry,
         rectified_shares=_rectified_shares(reader.rectification),
+        calibration=reader.calibration,
         truth_count=reader.truth_count,
         disparity_count=reader.disparity_count,
         description=reader.description,

@@ -37,6 +37,8 @@ DISPARITY_ENCODING = "32FC1"
 """Little-endian float32 disparities in px of the left camera, as a RawImage with the sequence number of its frame."""
 
 GEOMETRY_RECORD = "stereo_geometry"
+CALIBRATION_RECORD = "calibration"
+"""One entry, `json`: a CalibrationReport."""
 DESCRIPTION_RECORD = "recording"
 RECTIFICATION_NAMES = {"left": "rectification_left.npy", "right": "rectification_right.npy"}
 """Attachments: .npy arrays (NumPy's format 1.0), int32, (2, height, width), as `RectificationTables` says."""

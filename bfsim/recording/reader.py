@@ -6,7 +6,6 @@ import json
 import os
 from collections import deque
 from collections.abc import Iterator, Mapping
-from dataclasses import fields
 from types import TracebackType
 from typing import Any, Self
 
@@ -17,6 +16,7 @@ from mcap.records import Message
 
 from bfsim.errors import RecordingError, cut, shown
 from bfsim.recording import layout
+from bfsim.recording.calibration_report import CalibrationReport
 from bfsim.recording.container import McapContainer
 from bfsim.recording.frames import (
     DisparityImage,
@@ -35,7 +35,7 @@ class RecordingReader:
     """Context manager that opens one recording; its properties are checked and known from the start.
 
     width and height are in pixels and the same for both cameras. frame_count is the number of stereo frames.
-    geometry and rectification are None where the recording has none. library names the program that wrote the
+    geometry, rectification and calibration are None where the recording has none. library names the program that wrote the
     file. Everything raises RecordingError.
     """
 
@@ -49,6 +49,7 @@ class RecordingReader:
             self.description = self._metadata(layout.DESCRIPTION_RECORD).get("description", "")
             self.geometry = self._read_geometry()
             self.rectification = self._read_rectification()
+            self.calibration = self._read_calibration()
         except BaseException:
             self._file.close()
             raise
@@ -243,7 +244,9 @@ class RecordingReader:
             return None
         try:
             return StereoGeometry(
-                **{field.name: float(record[field.name]) for field in fields(StereoGeometry)}
+                float(record["focal_px"]),
+                float(record["baseline_mm"]),
+                *(float(record[name]) if name in record else None for name in ("height_mm", "tilt_deg")),
             )
         except KeyError as error:
             raise RecordingError(
@@ -253,6 +256,15 @@ class RecordingReader:
             raise RecordingError(
                 f"{self.path}: metadata {layout.GEOMETRY_RECORD!r}: {cut(str(error))}"
             ) from None
+
+    def _read_calibration(self) -> CalibrationReport | None:
+        record = self._metadata(layout.CALIBRATION_RECORD)
+        if not record:
+            return None
+        try:
+            return CalibrationReport.from_json(record.get("json", ""))
+        except RecordingError as error:
+            raise RecordingError(f"{self.path}: metadata {layout.CALIBRATION_RECORD!r}: {error}") from None
 
     def _read_rectification(self) -> RectificationTables | None:
         found = {side: self._file.attachment(name) for side, name in layout.RECTIFICATION_NAMES.items()}

@@ -24,6 +24,14 @@ _FILE_SUFFIXES: dict[str, SourceFormat] = {
 }  # fmt: skip
 
 
+@dataclass(frozen=True, slots=True)
+class Skipped:
+    """A file that was left out, and why."""
+
+    name: str
+    reason: str
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PictureSource:
     """One stream of pictures, all of one size.

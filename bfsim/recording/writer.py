@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from bfsim import __version__
 from bfsim.errors import RecordingError, shown
 from bfsim.recording import layout
+from bfsim.recording.calibration_report import CalibrationReport
 from bfsim.recording.frames import DisparityImage, RectificationTables, StereoGeometry, UyvyImage
 from bfsim.recording.growing_file import growing_file, writing
 
@@ -42,6 +43,7 @@ class RecordingWriter:
         geometry: StereoGeometry | None = None,
         description: str = "",
         rectification: RectificationTables | None = None,
+        calibration: CalibrationReport | None = None,
     ) -> None:
         self.path = Path(path)
         self.width = width
@@ -50,6 +52,7 @@ class RecordingWriter:
         self._geometry = geometry
         self._description = description
         self._rectification = rectification
+        self._calibration = calibration
         self._last_ns = {layout.LEFT_TOPIC: -1, layout.RIGHT_TOPIC: -1}
         if not self.path.name or (self.path.exists() and not self.path.is_file()):
             raise RecordingError(f"{path}: recording must be a file, not a folder or a device")
@@ -86,8 +89,12 @@ class RecordingWriter:
         self._mcap.start(profile="", library=layout.LIBRARY_PREFIX + __version__)
         self._mcap.add_metadata(layout.DESCRIPTION_RECORD, layout.seal({"description": self._description}))
         if self._geometry is not None:
-            record = {name: repr(float(value)) for name, value in asdict(self._geometry).items()}
+            known = {name: value for name, value in asdict(self._geometry).items() if value is not None}
+            record = {name: repr(float(value)) for name, value in known.items()}
             self._mcap.add_metadata(layout.GEOMETRY_RECORD, layout.seal(record))
+        if self._calibration is not None:
+            record = {"json": self._calibration.to_json()}
+            self._mcap.add_metadata(layout.CALIBRATION_RECORD, layout.seal(record))
         if self._rectification is not None:
             for side, name in layout.RECTIFICATION_NAMES.items():
                 data = layout.table_to_npy(getattr(self._rectification, side))

@@ -270,6 +270,8 @@ def configuration(run: RunRecord) -> Table:
     table.add_column(overflow="fold")
     table.title, table.title_style, table.title_justify = "Configuration", "bold not italic", "left"
     table.add_row("Recording", f"{identity.recording}, {identity.width_px}x{identity.height_px} px")
+    if run.geometry:
+        table.add_row("Geometry", run.geometry)
     table.add_row("Firmware", _firmware(run))
     table.add_row("Board", f"{identity.board}, CCLK {_mhz(identity.cclk_hz)}, SCLK {_mhz(identity.sclk_hz)}")
     table.add_row("LDF", f"{identity.ldf} ({run.ldf_place})")

@@ -49,8 +49,14 @@ THESIS_GEOMETRY = (
 
 
 def geometry_buffer(geometry: Geometry) -> Buffer:
-    """Return the geometry of a recording as a buffer."""
-    return _buffer(geometry.focal_px, geometry.baseline_mm, geometry.height_mm, geometry.tilt_deg)
+    """Return the geometry of a recording as a buffer; a height or tilt it does not say is that of the thesis's robot."""
+    height_mm, tilt_deg = geometry.height_mm, geometry.tilt_deg
+    return _buffer(
+        geometry.focal_px,
+        geometry.baseline_mm,
+        THESIS_HEIGHT_MM if height_mm is None else height_mm,
+        THESIS_TILT_DEG if tilt_deg is None else tilt_deg,
+    )
 
 
 def thesis_geometry_buffer(size: FrameSize) -> Buffer:
@@ -88,8 +94,10 @@ def _check(focal_px: float, baseline_mm: float, height_mm: float) -> None:
     """Raise FirmwareError unless 32 bits can compute with the cameras."""
     if focal_px < 1:
         raise FirmwareError(f"focal length of the cameras must be at least 1 px, not {focal_px:g} px")
-    if baseline_mm < 1 / MICROMETRES:
-        raise FirmwareError(f"baseline of the cameras must be at least 0.001 mm, not {baseline_mm:g} mm")
+    if 0 < baseline_mm < 1 / MICROMETRES:
+        raise FirmwareError(
+            f"baseline of the cameras must be at least 0.001 mm, or 0 for a single one, not {baseline_mm:g} mm"
+        )
     for name, mm, limit in (
         ("baseline", baseline_mm, DEEPEST / (SUBPIXELS * MICROMETRES)),
         ("height", abs(height_mm), HIGHEST / (SUBPIXELS * HEIGHT_STEPS)),

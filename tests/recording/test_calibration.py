@@ -73,17 +73,19 @@ def true_sources(side: str) -> Vector:
 
 def test_errors_are_a_fraction_of_a_pixel(found: StereoCalibration) -> None:
     """Corners fit the cameras found, and rows agree after rectification though they were five pixels apart."""
-    assert found.pair_count == 27
-    assert found.reprojection_px < 0.2
-    assert found.vertical_before_px > 4
-    assert found.vertical_rms_px < 0.15
-    assert found.vertical_worst_px < 0.5
+    assert len(found.report.used) == 27
+    assert found.report.reprojection_px < 0.2
+    assert found.report.vertical_before_px > 4
+    assert found.report.vertical_rms_px < 0.15
+    assert found.report.vertical_worst_px < 0.5
 
 
 def test_baseline_is_measured(found: StereoCalibration) -> None:
     """The distance of the optical centres comes out to half a percent, the shift of the right one included."""
     left, right = real_pair().values()
-    assert found.baseline_mm == pytest.approx(np.linalg.norm(right.position_mm - left.position_mm), rel=0.005)
+    assert found.report.baseline_mm == pytest.approx(
+        np.linalg.norm(right.position_mm - left.position_mm), rel=0.005
+    )
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
@@ -124,13 +126,13 @@ def test_tables_reach_the_recording_and_nothing_else_changes(
     """In place: tables and the measured baseline are new; pictures, stamps, truth, description stay."""
     command = ["calibrate", str(chessboards), str(recording)]
     result = CliRunner().invoke(record, command, catch_exceptions=False)
-    assert "tables from 27 chessboard pairs" in result.output
-    assert f"Reprojection error: {found.reprojection_px:.3f} px RMS" in result.output
+    assert "tables from 27 chessboard pairs, 0 left out, 0 pictures skipped" in result.output
+    assert f"Reprojection error: {found.report.reprojection_px:.3f} px RMS" in result.output
     with RecordingReader(recording) as reader:
         assert isinstance(reader.rectification, RectificationTables)
         np.testing.assert_array_equal(reader.rectification.left, found.tables.left)
         np.testing.assert_array_equal(reader.rectification.right, found.tables.right)
-        assert reader.geometry == StereoGeometry(386.0, found.baseline_mm, 120.0, 10.0)
+        assert reader.geometry == StereoGeometry(386.0, found.report.baseline_mm, 120.0, 10.0)
         assert reader.description == "noise"
         for k, frame in enumerate(reader.frames()):
             assert (frame.left_ns, frame.right_ns, frame.truth) == (5 + k, 6 + k, {"k": k})
@@ -155,6 +157,62 @@ def test_output_leaves_the_recording_alone(chessboards: Path, recording: Path, t
         assert reader.rectification is not None
 
 
+def test_pairs_that_fit_no_other_are_left_out(
+    chessboards: Path, found: StereoCalibration, tmp_path: Path
+) -> None:
+    """A board that moved between the two pictures of a pair spoils nothing: the pair is left out, and said to be."""
+    spoilt = Path(shutil.copytree(chessboards, tmp_path / "spoilt"))
+    for k in (4, 17):
+        with Image.open(spoilt / f"right_{k:02}.png") as picture:
+            moved = picture.transform(SIZE, Image.Transform.AFFINE, (1, 0, 0, 0, 1, -4), fillcolor=80)
+        moved.save(spoilt / f"right_{k:02}.png")
+    report = calibrate(spoilt, SIZE, corners=CORNERS, square_mm=SQUARE_MM, focal_px=386.0).report
+    assert {view.names[0] for view in report.outliers} == {"left_04.png", "left_17.png"}
+    assert min(max(view.errors_px) for view in report.outliers) > 0.5
+    assert report.reprojection_px < 0.2
+    assert report.baseline_mm == pytest.approx(found.report.baseline_mm, rel=0.005)
+
+
+def test_recording_without_geometry_gets_the_measured_one(chessboards: Path, tmp_path: Path) -> None:
+    """Focal length and baseline are kept, what nobody measured is unknown, and options say it."""
+    pytest.importorskip("cv2")
+    path, few = tmp_path / "run.mcap", tmp_path / "few"
+    few.mkdir()
+    for picture in chessboards.glob("*_0[0-5].png"):
+        shutil.copy(picture, few)
+    with RecordingWriter(path, width=320, height=240) as writer:
+        writer.add(np.zeros((240, 640), np.uint8), np.zeros((240, 640), np.uint8), 0, 0)
+    command = ["calibrate", str(few), str(path)]
+    first = CliRunner().invoke(record, command, catch_exceptions=False).output
+    assert "a, height unknown, tilt unknown" in first.replace(" mm, height", "a, height")
+    with RecordingReader(path) as reader:
+        geometry, report = reader.geometry, reader.calibration
+    assert geometry is not None
+    assert report is not None
+    assert geometry.focal_px == pytest.approx(386, rel=0.02)
+    assert geometry.baseline_mm == report.baseline_mm == pytest.approx(30.77, rel=0.02)
+    assert (geometry.height_mm, geometry.tilt_deg) == (None, None)
+    CliRunner().invoke(record, [*command, "--height", "90", "--tilt", "7"], catch_exceptions=False)
+    with RecordingReader(path) as reader:
+        assert reader.geometry is not None
+        assert reader.geometry.stance == (90, 7)
+    shown = CliRunner().invoke(record, ["info", str(path)]).output
+    assert "6 chessboard pairs, 0 left out, 0 pictures skipped, pinhole lens" in shown
+    assert f"left_05.png {report.views[5].errors_px[0]:.2f} px" in shown
+
+
+def test_single_camera(chessboards: Path, tmp_path: Path) -> None:
+    """The pictures of one camera make a geometry without a baseline, and the same tables for both sides."""
+    pytest.importorskip("cv2")
+    for picture in chessboards.glob("left_*.png"):
+        shutil.copy(picture, tmp_path)
+    found = calibrate(tmp_path, SIZE, corners=CORNERS, square_mm=SQUARE_MM, mono=True)
+    assert len(found.report.used) == 27
+    assert found.report.baseline_mm == 0
+    assert found.report.focal_px == pytest.approx(386, rel=0.01)
+    np.testing.assert_array_equal(found.tables.left, found.tables.right)
+
+
 class TestBadPictures:
     """What cannot be calibrated is refused with the names of the files, and the recording stays as it was."""
 
@@ -170,29 +228,51 @@ class TestBadPictures:
             calibrate(pictures, SIZE, corners=corners, square_mm=SQUARE_MM)
         return str(error.value)
 
-    def test_no_chessboard(self, pictures: Path) -> None:
+    def test_some_are_skipped(self, pictures: Path) -> None:
+        """Without a board, of another size, without the other camera's, or no picture at all: listed, and left."""
         Image.new("L", SIZE, 80).save(pictures / "right_03.png")
-        assert "right_03.png: picture must show a whole chessboard of 9x6" in self.refusal(pictures)
+        Image.new("L", (640, 480)).save(pictures / "left_02.png")
+        (pictures / "right_26.png").unlink()
+        (pictures / "left_07.png").write_text("no picture")
+        report = calibrate(pictures, SIZE, corners=CORNERS, square_mm=SQUARE_MM).report
+        assert {(each.name, each.reason) for each in report.skipped} == {
+            ("right_03.png", "no whole chessboard of 9x6 inner corners is found"),
+            ("left_02.png", "picture must be 320x240 like the recording, not 640x480"),
+            ("left_26.png", "has no picture of the other camera"),
+            ("left_07.png", "file must be an image that Pillow reads, not something else"),
+        }
+        assert len(report.used) == 23
+        assert report.reprojection_px < 0.2
 
     def test_other_chessboard(self, pictures: Path) -> None:
-        assert "left_00.png: picture must show a whole chessboard of 9x8" in self.refusal(pictures, (9, 8))
-
-    def test_other_size(self, pictures: Path) -> None:
-        Image.new("L", (640, 480)).save(pictures / "left_02.png")
+        for k in range(6, 27):
+            (pictures / f"left_{k:02}.png").unlink()
+            (pictures / f"right_{k:02}.png").unlink()
         assert (
-            "left_02.png: chessboard picture must be 320x240 like the recording, not 640x480"
-            in self.refusal(pictures)
+            "pairs must be at least 5, not 0; skipped were left_00.png: no whole chessboard of 9x8 inner corners is "
+            "found; " in self.refusal(pictures, (9, 8))
         )
 
     def test_too_few(self, pictures: Path) -> None:
         for k in range(4, 27):
             (pictures / f"left_{k:02}.png").unlink()
             (pictures / f"right_{k:02}.png").unlink()
-        assert "pairs must be at least 5, not 4 (left_00.png to left_03.png)" in self.refusal(pictures)
+        assert "pairs must be at least 5, not 4; `--corners`" in self.refusal(pictures)
 
-    def test_one_without_its_other(self, pictures: Path) -> None:
-        (pictures / "right_26.png").unlink()
-        assert "must be in pairs, not 27 left* and 26 right*" in self.refusal(pictures)
+    def test_names_that_tell_no_pairs(self, pictures: Path) -> None:
+        for k in range(27):
+            (pictures / f"right_{k:02}.png").rename(pictures / f"right_{k + 100}.png")
+        (pictures / "right_126.png").unlink()
+        assert "or be in pairs by order, not 27 left* and 26 right*" in self.refusal(pictures)
+
+    def test_swapped_cameras(self, pictures: Path) -> None:
+        for k in range(6, 27):
+            (pictures / f"left_{k:02}.png").unlink()
+        for k in range(6):
+            (pictures / f"left_{k:02}.png").rename(pictures / f"swapped_{k:02}.png")
+            (pictures / f"right_{k:02}.png").rename(pictures / f"left_{k:02}.png")
+            (pictures / f"swapped_{k:02}.png").rename(pictures / f"right_{k:02}.png")
+        assert " mm to the left; the names of the pictures may be swapped" in self.refusal(pictures)
 
     def test_none(self, tmp_path: Path) -> None:
         pytest.importorskip("cv2")

@@ -91,6 +91,7 @@ def run_of(frames: Sequence[FrameRecord], missed: tuple[int, ...] = ()) -> RunRe
         traffic=(),
         messages=(),
         device_notes=(),
+        geometry="",
         assumptions=(),
         losses={"edges_lost": "edges without room"},
         interrupts={},

@@ -22,7 +22,7 @@ class Pose:
     def cameras(self, geometry: StereoGeometry) -> dict[str, Pinhole]:
         """Return the "left" and the "right" camera."""
         left, right = stereo_pair(
-            np.array([self.x_mm, self.y_mm, geometry.height_mm]),
+            np.array([self.x_mm, self.y_mm, geometry.stance[0]]),
             heading_deg=self.heading_deg,
             geometry=geometry,
         )

@@ -96,7 +96,7 @@ def stereo_pair(
     middle_mm: Vector, *, heading_deg: float, geometry: StereoGeometry
 ) -> tuple[Pinhole, Pinhole]:
     """Return the left and the right camera, parallel, round `middle_mm` (3,)."""
-    heading, tilt = math.radians(heading_deg), math.radians(geometry.tilt_deg)
+    heading, tilt = math.radians(heading_deg), math.radians(geometry.stance[1])
     forward = np.array(
         [math.cos(tilt) * math.cos(heading), math.cos(tilt) * math.sin(heading), -math.sin(tilt)]
     )

@@ -1,0 +1,136 @@
+"""Where the inner corners of a chessboard are in pictures: by two finders of OpenCV, and what had to be skipped."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.errors import RecordingError
+from bfsim.recording.images import image_paths, load_image
+from bfsim.recording.planes import Plane, YuvPlanes
+from bfsim.recording.sources import Skipped
+
+Corners = NDArray[np.float32]
+
+SIDES = ("left", "right")
+
+# Corners are refined in a window of half this part of the least distance of two, at most so many pixels, until they
+# move less, or so often. [assumed; OpenCV's tutorial has 11 px and 0.001 px]
+_WINDOW_PART, _LARGEST_WINDOW_PX = 0.5, 11
+_LEAST_MOVE_PX, _MOST_STEPS = 0.001, 100
+
+
+@dataclass(frozen=True, slots=True)
+class BoardView:
+    """A board as one or both cameras saw it at once: names of the pictures, and the corners (count, 2) in each."""
+
+    names: tuple[str, ...]
+    points: tuple[Corners, ...]
+
+
+def find_views(
+    cv2: Any, folder: Path, size: tuple[int, int], corners: tuple[int, int], *, mono: bool
+) -> tuple[list[BoardView], list[Skipped]]:
+    """Return the boards seen in the pictures of `size` (width, height) of a folder, and the pictures that show none.
+
+    With `mono` every picture is one of the only camera. Without, pictures left* and right* (or those of the folders
+    left and right) go together by what follows in their names, or by their order if the names have nothing in common.
+    Raises RecordingError.
+    """
+    sets, skipped = _together(folder, mono=mono)
+    views = []
+    for paths in sets:
+        found = []
+        for path in paths:
+            try:
+                found.append(_corners_in(cv2, _grey(path, size), corners))
+            except RecordingError as error:
+                skipped.append(Skipped(path.name, str(error).removeprefix(f"{path}: ")))
+        if len(found) == len(paths):
+            first, *others = found
+            points = (first, *(_numbered_like(first, other, corners) for other in others))
+            views.append(BoardView(tuple(path.name for path in paths), points))
+    return views, skipped
+
+
+def _together(folder: Path, *, mono: bool) -> tuple[list[tuple[Path, ...]], list[Skipped]]:
+    """Return the pictures that were taken at once, and those that have no partner."""
+    if mono:
+        return [(path,) for path in image_paths(str(folder))], []
+    lefts, rights = (_pictures_of(folder, side) for side in SIDES)
+    by_key = [
+        {path.stem.removeprefix(side): path for path in paths}
+        for side, paths in zip(SIDES, (lefts, rights), strict=True)
+    ]
+    common = [key for key in by_key[0] if key in by_key[1]]
+    if common:
+        alone = [path for paths in by_key for key, path in paths.items() if key not in common]
+        return [(by_key[0][key], by_key[1][key]) for key in common], [
+            Skipped(path.name, "has no picture of the other camera") for path in alone
+        ]
+    if len(lefts) != len(rights):
+        raise RecordingError(
+            f"{folder}: chessboard pictures must have names that tell the pairs, such as left_01.png and right_01.png, "
+            f"or be in pairs by order, not {len(lefts)} left* and {len(rights)} right*"
+        )
+    return list(zip(lefts, rights, strict=True)), []
+
+
+def _pictures_of(folder: Path, side: str) -> list[Path]:
+    return image_paths(str(folder / side if (folder / side).is_dir() else folder / f"{side}*"))
+
+
+def _grey(path: Path, size: tuple[int, int]) -> Plane:
+    image = load_image(path)
+    if image.size != size:
+        raise RecordingError(
+            f"picture must be {size[0]}x{size[1]} like the recording, not {image.width}x{image.height}"
+        )
+    return np.ascontiguousarray(YuvPlanes.from_image(image).y)
+
+
+def _corners_in(cv2: Any, grey: Plane, corners: tuple[int, int]) -> Corners:
+    """Return the corners (count, 2): by sectors, then so with more effort, then by the squares' outlines.
+
+    The last one sees boards at the rim and in bad light that the first misses, and needs refining.
+    """
+    accurate = cv2.CALIB_CB_ACCURACY
+    for flags in (accurate, accurate | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_EXHAUSTIVE):
+        found, points = cv2.findChessboardCornersSB(grey, corners, flags=flags)
+        if found:
+            return _flat(points)
+    found, points = cv2.findChessboardCorners(
+        grey, corners, flags=cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE
+    )
+    if not found:
+        raise RecordingError(f"no whole chessboard of {corners[0]}x{corners[1]} inner corners is found")
+    return _refined(cv2, grey, _flat(points), corners)
+
+
+def _refined(cv2: Any, grey: Plane, points: Corners, corners: tuple[int, int]) -> Corners:
+    grid = points.reshape(corners[1], corners[0], 2)
+    least_px = min(float(np.linalg.norm(np.diff(grid, axis=axis), axis=2).min()) for axis in (0, 1))
+    half_px = int(np.clip(_WINDOW_PART * least_px, 2, _LARGEST_WINDOW_PX))
+    until = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, _MOST_STEPS, _LEAST_MOVE_PX)
+    return _flat(cv2.cornerSubPix(grey, points[:, None].copy(), (half_px, half_px), (-1, -1), until))
+
+
+def _numbered_like(first: Corners, other: Corners, corners: tuple[int, int]) -> Corners:
+    """Return `other` in the order of `first`: a board that is turned or mirrored has the same corners."""
+    grid = other.reshape(corners[1], corners[0], 2)
+    grids = [grid, grid.swapaxes(0, 1)] if corners[0] == corners[1] else [grid]
+    orders: Sequence[Corners] = [
+        each[::down, ::across].reshape(-1, 2) for each in grids for down in (1, -1) for across in (1, -1)
+    ]
+    shape = first - first.mean(axis=0)
+    best = min(orders, key=lambda points: float(np.square(points - points.mean(axis=0) - shape).sum()))
+    return np.ascontiguousarray(best)
+
+
+def _flat(points: NDArray[np.float32]) -> Corners:
+    return points.reshape(-1, 2)

@@ -1,0 +1,86 @@
+"""What a calibration found, as a recording keeps it: errors of every picture, what was left out, and the lenses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from pydantic import TypeAdapter, ValidationError
+
+from bfsim.errors import RecordingError, cut
+from bfsim.recording.sources import Skipped
+
+LensName = Literal["pinhole", "fisheye"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ViewError:
+    """A view of the board: the names of its pictures, of one camera or the left and the right one, and their errors.
+
+    errors_px are the RMS distances of the corners found from those of the fitted cameras. `is_outlier`: the cameras
+    were fitted without it.
+    """
+
+    names: tuple[str, ...]
+    errors_px: tuple[float, ...]
+    is_outlier: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LensFit:
+    """A camera as it was fitted: focal lengths and principal point, across and down, and the terms of distortion."""
+
+    focal_px: tuple[float, float]
+    principal_px: tuple[float, float]
+    distortion: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CalibrationReport:
+    """What the chessboards tell of the cameras.
+
+    reprojection_px is the RMS distance of the corners found from those of the fitted cameras, without outliers.
+    vertical_rms_px and vertical_worst_px are how far the rows of a corner differ between the rectified pictures, and
+    vertical_before_px (RMS) between the recorded ones; 0 for a single camera, as is baseline_mm. focal_px is that of
+    the rectified pictures, whose principal point is their middle; baseline_mm is as right as the size of the squares.
+    """
+
+    lens: LensName
+    cameras: tuple[LensFit, ...]
+    views: tuple[ViewError, ...]
+    skipped: tuple[Skipped, ...]
+    reprojection_px: float
+    vertical_before_px: float
+    vertical_rms_px: float
+    vertical_worst_px: float
+    focal_px: float
+    baseline_mm: float
+
+    @property
+    def used(self) -> tuple[ViewError, ...]:
+        """The views that the cameras were fitted to."""
+        return tuple(view for view in self.views if not view.is_outlier)
+
+    @property
+    def outliers(self) -> tuple[ViewError, ...]:
+        """The views that were left out because they fit none of the others."""
+        return tuple(view for view in self.views if view.is_outlier)
+
+    def to_json(self) -> str:
+        """The report as text."""
+        return _ADAPTER.dump_json(self).decode()
+
+    @classmethod
+    def from_json(cls, text: str) -> CalibrationReport:
+        """The report out of its text. Raises RecordingError."""
+        try:
+            return _ADAPTER.validate_json(text)
+        except ValidationError as error:
+            first = error.errors()[0]
+            where = ".".join(map(str, first["loc"])) or "it"
+            raise RecordingError(
+                f"calibration must be as bfsim writes it: {cut(where)}: {cut(first['msg'])}"
+            ) from None
+
+
+_ADAPTER = TypeAdapter(CalibrationReport)
