@@ -121,12 +121,12 @@ def simulate(
     identity = replace(
         identity, recording_digest=source.digest, firmware_digest=loaded.digest, firmware_files=loaded.files
     )
-    assumptions = (*_assumed_geometry(program, calibration), *_assumed_clocks(spec))
-    geometry = _geometry_in_words(program, calibration)
+    assumptions = (*assumed_geometry(program, calibration), *_assumed_clocks(spec))
+    geometry = geometry_in_words(program, calibration)
     return _record(outcome, identity, geometry, assumptions, loaded, placement)
 
 
-def _geometry_in_words(program: Firmware, calibration: Calibration) -> str:
+def geometry_in_words(program: Firmware, calibration: Calibration) -> str:
     """Return which geometry the firmware computes with; nothing for firmware that takes none."""
     if program.calibration is not None:
         for each in calibration.geometries:
@@ -134,7 +134,8 @@ def _geometry_in_words(program: Firmware, calibration: Calibration) -> str:
     return f"assumed: {program.assumed_geometry}" if program.assumed_geometry else ""
 
 
-def _assumed_geometry(program: Firmware, calibration: Calibration) -> Iterator[RunWarning]:
+def assumed_geometry(program: Firmware, calibration: Calibration) -> Iterator[RunWarning]:
+    """Yield a warning where the firmware has to assume where the cameras are, or their height or tilt."""
     if not program.assumed_geometry:
         return
     for each in calibration.geometries:

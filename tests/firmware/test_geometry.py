@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from bfsim.api import Calibration, FirmwareError, FrameSize
 from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
-from bfsim.run import calibration_of
+from bfsim.run import assumed_geometry, calibration_of, geometry_in_words
 from tests.firmware.whole_pictures import buffer, random_frames, run
 from tinyphoon import one_eye, tinyphoon
 from tinyphoon.geometry import FARTHEST_MM, GEOMETRY_WORDS, beside_mm, depth_mm, geometry_buffer, look_at
@@ -58,6 +58,45 @@ def test_larger_pictures_of_the_same_camera_have_more_pixels_to_its_focal_length
             assert list(each.values) == [2 * THESIS[0], *THESIS[1:8], 2 * THESIS[8]]
 
 
+def test_what_nobody_measured_is_that_of_the_thesis_and_a_single_camera_has_no_baseline() -> None:
+    """After a calibration of one camera only its focal length is known."""
+    found = geometry_buffer(StereoGeometry(311.25, 0))
+    assert found.values is not None
+    assert list(found.values) == [4980, 0, *THESIS[2:8], 4980]
+
+
+@pytest.mark.parametrize(
+    ("geometry", "in_words", "warning"),
+    [
+        (
+            StereoGeometry(400, 60, 120, 10),
+            "focal length 400 px, baseline 60 mm, height 120 mm, looking down 10°",
+            None,
+        ),
+        (
+            StereoGeometry(400, 0, 120),
+            "focal length 400 px, a single camera, height 120 mm, tilt unknown",
+            "the tilt of",
+        ),
+        (
+            StereoGeometry(400, 60),
+            "height unknown, tilt unknown (of the recording)",
+            "the height and tilt of",
+        ),
+        (None, "assumed: that of the thesis's robot", "does not say where its cameras are"),
+    ],
+)
+def test_a_run_says_its_geometry_and_what_it_assumed(
+    geometry: StereoGeometry | None, in_words: str, warning: str | None
+) -> None:
+    """Depths and places depend on it."""
+    calibration = Calibration(geometries=(geometry,) if geometry else ())
+    assert in_words in geometry_in_words(tinyphoon, calibration)
+    texts = [each.text for each in assumed_geometry(tinyphoon, calibration)]
+    assert len(texts) == (warning is not None)
+    assert (warning or "") in "".join(texts)
+
+
 def test_cameras_that_32_bits_cannot_compute_with_are_refused() -> None:
     """Focal length times baseline is the largest number of all."""
     geometry_buffer(StereoGeometry(1000.0, 134.0, 0, 0))
@@ -69,7 +108,10 @@ def test_cameras_that_32_bits_cannot_compute_with_are_refused() -> None:
     ("geometry", "what"),
     [
         ((0.99, 30.0, 120.0), "focal length of the cameras must be at least 1 px, not 0.99 px"),
-        ((386.0, 0.0009, 120.0), "baseline of the cameras must be at least 0.001 mm, not 0.0009 mm"),
+        (
+            (386.0, 0.0009, 120.0),
+            "baseline of the cameras must be at least 0.001 mm, or 0 for a single one, not 0.0009 mm",
+        ),
         ((386.0, 30.0, 1e9), r"length times height .* below 8388608 px mm, not 386 px times 1e\+09 mm"),
         ((386.0, 30.0, -21800.0), "length times height .* below 8388608 px mm, not 386 px times 21800 mm"),
     ],
