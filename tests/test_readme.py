@@ -1,78 +1,55 @@
-"""The README is true: its firmware runs, its commands exist, and its budget is what `bfsim run` prints."""
+"""The README and the pages are true: their commands, options and files exist, links lead somewhere, and the README is short."""
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
-README = (Path(__file__).parent.parent / "README.md").read_text()
+import click
+import pytest
+
+from bfsim.cli import main
+from tests.pages import PAGES, ROOT
+
+README = (ROOT / "README.md").read_text()
+OF_OTHERS = {"--recording", "--ablate", "--no", "--inline"}
+"""Options of pytest, of scripts and of git."""
 
 
-def bfsim(*arguments: str, cwd: Path | None = None) -> str:
-    """Run the command line, which must succeed, and return what it printed."""
-    command = [sys.executable, "-m", "bfsim", *arguments]
-    environment = {**os.environ, "COLUMNS": "80"}
-    result = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, check=False)
-    assert result.returncode == 0, result.stderr
-    return result.stdout
+def options_of(command: click.Command) -> set[str]:
+    """Every long option of a command and of those below it."""
+    found = {name for each in command.params for name in each.opts if name.startswith("--")}
+    for each in getattr(command, "commands", {}).values():
+        found |= options_of(each)
+    return found | {"--help", "--version"}
 
 
-def test_the_firmware_of_the_readme_runs(tmp_path: Path) -> None:
-    """The example can be pasted into a file and run beside it."""
-    (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    (tmp_path / "brightness.py").write_text(example)
-    report = bfsim("run", "--firmware", "brightness:firmware", "--frames", "2", cwd=tmp_path)
-    assert "Brightness" in report
-    assert "brightness_A" in report
-
-
-def test_the_budget_of_the_readme_is_what_run_prints() -> None:
-    """The sample output is the real one, line by line."""
-    printed = {line.rstrip() for line in bfsim("run").splitlines()}
-    sample = README.split("<!-- budget -->\n")[1].split("\n\nfollowed by")[0]
-    for line in sample.splitlines():
-        assert line.removeprefix("    ").rstrip() in printed
-
-
-def test_the_commands_of_the_readme_exist() -> None:
-    """Every command and option that the README names has a help text with it."""
-    helps = {
-        name: bfsim(*name.split(), "--help")
-        for name in (
-            "run",
-            "profile",
-            "explain",
-            "check",
-            "record import",
-            "record info",
-            "record render",
-            "record calibrate",
-            "ldf",
-            "boards",
-        )
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_the_options_of_a_page_exist(page: Path) -> None:
+    """An option that a page names behind `bfsim`, or in code by itself, is one of a command."""
+    text = page.read_text()
+    named = set(re.findall(r"`(--[a-z-]+)", text))
+    named |= {
+        option for line in re.findall(r"bfsim [^`\n]*", text) for option in re.findall(r" (--[a-z-]+)", line)
     }
-    for name in helps:
-        assert f"`bfsim {name}" in README
-    of_others = {"--help", "--recording"}  # the latter is an option of the tests
-    for option in set(re.findall(r"--[a-z]+", README)) - of_others:
-        assert any(option in text for text in helps.values()), option
+    assert not named - options_of(main) - OF_OTHERS
 
 
-def test_the_files_of_the_readme_exist() -> None:
-    """Every file and folder of the repository that the README names in code is there."""
-    root = Path(__file__).parent.parent
-    in_code = " ".join(re.findall(r"`([^`\n]+)`", README)).split()
-    named = {word for word in in_code if re.match(r"(bfsim|firmware|benchmarks|tests|ldf)/", word)}
-    named |= {f"benchmarks/{word}" for word in in_code if re.fullmatch(r"\w+_\w+\.py", word)}
-    assert len(named) > 20
-    assert not [each for each in named if each != "benchmarks/..." and not (root / each).exists()]
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_the_files_of_a_page_exist(page: Path) -> None:
+    """Every file and folder of the repository that a page names in code is there, and so is what it links to."""
+    text = page.read_text()
+    in_code = " ".join(re.findall(r"`([^`\n]+)`", text)).split()
+    named = {word for word in in_code if re.match(r"(bfsim|firmware|benchmarks|tests|ldf|docs)/\w", word)}
+    missing = [each for each in named if "*" not in each and not (ROOT / each).exists()]
+    links = [
+        each for each in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text) if not (page.parent / each).exists()
+    ]
+    assert not missing + links
 
 
 def test_the_readme_is_short() -> None:
-    """Lines fit 120 columns, and there are not many of them."""
+    """Lines fit 120 columns, tables aside, and there are not many of them."""
     lines = README.splitlines()
-    assert max(map(len, lines)) <= 120
-    assert len(lines) <= 275
+    assert max(len(each) for each in lines if not each.startswith("|")) <= 120
+    assert len(lines) <= 120

@@ -1,0 +1,104 @@
+"""What a page of the documentation has in code blocks, and how to play it in a folder.
+
+A block with a title, ```python title="brightness.py"```, is a file. A `console` block is commands, each behind `$ `, with
+what they print beneath: those lines must appear in that order, and a line `...` stands for any number of others. Other
+`python` blocks are run as scripts. A comment `<!-- run by FILE -->` before a block names who runs it instead.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent
+PAGES = (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
+FENCE = re.compile(
+    r"^(?:<!-- run by (?P<runner>\S+) -->\n)?(?P<indent> *)```(?P<language>\w*)(?P<options>[^\n]*)\n"
+    r"(?P<text>.*?)^(?P=indent)```$",
+    re.DOTALL | re.MULTILINE,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """One code block. `title` names the file that it is, `runner` the file of the project that runs it, or nothing."""
+
+    line: int
+    language: str
+    title: str
+    runner: str
+    text: str
+
+    def commands(self) -> Iterator[tuple[str, list[str]]]:
+        """Yield each command of a `console` block with the lines that it should print."""
+        command, printed = "", list[str]()
+        for line in self.text.splitlines():
+            if line.startswith("$ "):
+                if command:
+                    yield command, printed
+                command, printed = line.removeprefix("$ "), []
+            else:
+                printed.append(line)
+        if command:
+            yield command, printed
+
+
+def blocks_of(page: Path) -> list[Block]:
+    """Return the code blocks of a page, in their order."""
+    text = page.read_text()
+    return [
+        Block(
+            line=text.count("\n", 0, found.start()) + 1,
+            language=found["language"],
+            title="".join(re.findall(r'title="([^"]+)"', found["options"])),
+            runner=found["runner"] or "",
+            text=re.sub(rf"^{found['indent']}", "", found["text"], flags=re.MULTILINE),
+        )
+        for found in FENCE.finditer(text)
+    ]
+
+
+def play(block: Block, folder: Path, environment: Mapping[str, str]) -> None:
+    """Do in `folder` what the reader of a block would do; AssertionError where it fails or prints something else."""
+    if block.title:
+        file = folder / block.title
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(block.text)
+    elif block.language == "console":
+        for command, printed in block.commands():
+            output = _run(["bash", "-c", f"set -euo pipefail\n{command}"], folder, environment)
+            _compare(printed, output, f"{command} (line {block.line})")
+    elif block.language == "python":
+        _run(["python", "-c", block.text], folder, environment)
+
+
+def _run(command: list[str], folder: Path, environment: Mapping[str, str]) -> str:
+    done = subprocess.run(
+        command,
+        cwd=folder,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, f"{command[-1]}\n{done.stdout}"
+    return done.stdout
+
+
+def _compare(printed: list[str], output: str, what: str) -> None:
+    """Raise AssertionError unless the lines are printed in their order; only `...` stands for lines left out."""
+    rest = [line.rstrip() for line in output.splitlines() if line.strip()]
+    may_skip = False
+    for line in (each.rstrip() for each in printed if each.strip()):
+        if line == "...":
+            may_skip = True
+            continue
+        skipped = rest.index(line) if line in rest else len(rest)
+        assert skipped < len(rest), f"{what} must print {line!r}, but prints\n{output}"
+        assert may_skip or not skipped, f"{what} prints {rest[0]!r} before {line!r}"
+        rest, may_skip = rest[skipped + 1 :], False
