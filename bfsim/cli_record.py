@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
+from itertools import groupby
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 SOURCE_FORMATS = ("images", "uyvy", "i420", "y4m", "video")
 """Those of bfsim.recording, which takes its time to import."""
+
+_SKIPPED_LISTED = 10
 
 
 class _Distances(click.ParamType[tuple[float, ...]]):
@@ -57,15 +60,17 @@ def record() -> None:
     "--resize",
     type=Size(),
     metavar="WxH",
-    help="Scale every picture; what sticks out of the aspect ratio is cut off.",
+    help="Scale every picture, by a triangle filter; what sticks out of the aspect ratio is cut off.",
 )
+@click.option("--crop", type=Size(), metavar="WxH", help="Keep the middle of every picture, unscaled.")
 @click.option("--fps", type=float, help="Frames per second.  [default: the source's own, or 30]")
 @click.option(
     "--geometry",
     type=float,
     nargs=4,
     metavar="FOCAL BASELINE HEIGHT TILT",
-    help="Focal length in px, baseline and height over the floor in mm, degrees the cameras look down.",
+    help="Focal length in px of the recorded size, baseline (0 for one camera) and height over the floor in mm, degrees "
+    "the cameras look down.",
 )
 @click.option(
     "--rectification",
@@ -83,6 +88,7 @@ def import_command(
     format: recording.SourceFormat | None,
     size: tuple[int, int] | None,
     resize: tuple[int, int] | None,
+    crop: tuple[int, int] | None,
     fps: float | None,
     geometry: tuple[float, float, float, float] | None,
     rectification: tuple[str, str] | None,
@@ -93,6 +99,7 @@ def import_command(
 
     A SOURCE is a folder of images, a quoted pattern such as "seq/left_*.png", one image, a raw file
     (.uyvy, .yuv or .i420), a .y4m file or a video. Two sources are the left and the right camera.
+    Images that cannot be read, and other files in a folder, are skipped and listed.
 
     \b
     Examples:
@@ -101,6 +108,7 @@ def import_command(
       bfsim record import run.mcap left/ right/ --geometry 386 30.47 120 10
       bfsim record import run.mcap left.uyvy right.uyvy --size 320x240
       bfsim record import run.mcap phone.mp4 --mono --resize 320x240
+      bfsim record import run.mcap "match/*.jpg" --mono --resize 320x240 --geometry 260 0 480 12
     """
     from bfsim import recording
 
@@ -111,6 +119,7 @@ def import_command(
             format=format,
             size=size,
             resize=resize,
+            crop=crop,
             side_by_side=side_by_side,
             mono=mono,
             fps=fps,
@@ -124,6 +133,13 @@ def import_command(
         f"{summary.path}: {summary.frame_count} stereo frames of {summary.width}x{summary.height} "
         f"at {float(summary.fps):g} per second, {summary.size_bytes / 1e6:.1f} MB"
     )
+    if resize or crop:
+        sizes = ", ".join(f"{width}x{height}" for width, height in summary.source_sizes)
+        click.echo(f"{'Scaled by a triangle filter, and cut to shape,' if resize else 'Cut'} from {sizes}")
+    for reason, found in groupby(summary.skipped, key=lambda each: each.reason):
+        skipped = [each.name for each in found]
+        more = f" and {len(skipped) - _SKIPPED_LISTED} more" if len(skipped) > _SKIPPED_LISTED else ""
+        click.echo(f"Skipped: {', '.join(skipped[:_SKIPPED_LISTED])}{more}: {reason}")
 
 
 @record.command(name="info", short_help="Say what is in a recording.")

@@ -11,33 +11,62 @@ from PIL import Image, ImageOps, UnidentifiedImageError
 
 from bfsim.errors import RecordingError
 from bfsim.recording.planes import YuvPlanes
-from bfsim.recording.sources import IMAGE_SUFFIXES, PictureSource, is_pattern
+from bfsim.recording.sources import IMAGE_SUFFIXES, PictureSource, Skipped, is_pattern
 
 _EIGHT_BIT_MODES = frozenset({"1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", "CMYK", "YCbCr"})
 
 
-def open_images(source: str) -> PictureSource:
-    """Images of a folder, of a pattern or of one file, in natural order of their names (2 before 10)."""
-    paths = image_paths(source)
-    size = load_image(paths[0]).size
+def open_images(source: str, *, mixed: bool) -> PictureSource:
+    """Images of a folder, of a pattern or of one file, in natural order of their names (2 before 10).
+
+    Images that cannot be read are skipped, if one can; others that are of another size than the first are refused,
+    unless they may be `mixed`.
+    """
+    paths, others = _images_and_others(source)
+    first = _first_readable(paths)
     return PictureSource(
-        name=source, size=size, count=len(paths), fps=None, pictures=lambda: _pictures(paths, size)
+        name=source,
+        size=first[1],
+        count=len(paths),
+        fps=None,
+        pictures=lambda: _pictures(paths, None if mixed else first),
+        skipped=tuple(Skipped(path.name, "no image by its name") for path in others),
     )
 
 
-def _pictures(paths: list[Path], size: tuple[int, int]) -> Iterator[YuvPlanes]:
+def _first_readable(paths: list[Path]) -> tuple[str, tuple[int, int]]:
+    """Return name and size of the first image that can be read; if none can, raise what is wrong with the first."""
+    errors = []
     for path in paths:
-        image = load_image(path)
-        if image.size != size:
+        try:
+            return path.name, load_image(path).size
+        except RecordingError as error:
+            errors.append(error)
+    raise errors[0]
+
+
+def _pictures(paths: list[Path], model: tuple[str, tuple[int, int]] | None) -> Iterator[YuvPlanes | Skipped]:
+    for path in paths:
+        try:
+            image = load_image(path)
+        except RecordingError as error:
+            yield Skipped(path.name, str(error).removeprefix(f"{path}: "))
+            continue
+        if model and image.size != model[1]:
+            name, size = model
             raise RecordingError(
-                f"{path}: image must be {size[0]}x{size[1]} like {paths[0].name}, the first of its folder, "
-                f"not {image.width}x{image.height}"
+                f"{path}: image must be {size[0]}x{size[1]} like {name}, the first of its folder, "
+                f"not {image.width}x{image.height}; `--resize` or `--crop` brings all to one size"
             )
         yield YuvPlanes.from_image(image)
 
 
 def image_paths(source: str) -> list[Path]:
     """Image files of a folder, of a pattern or of one file, in natural order of their names."""
+    return _images_and_others(source)[0]
+
+
+def _images_and_others(source: str) -> tuple[list[Path], list[Path]]:
     path = Path(source)
     if is_pattern(source):
         anchor = Path(path.anchor)
@@ -45,20 +74,21 @@ def image_paths(source: str) -> list[Path]:
     elif path.is_dir():
         found = list(path.iterdir())
     elif path.exists():
-        return [path]
+        return [path], []
     else:
         raise RecordingError(
             f"{source}: source must be a file, a folder or a pattern of image files, but is not there"
         )
+    files = sorted((file for file in found if file.is_file()), key=_natural_key)
     images = [
-        file for file in found if file.suffix.lower() in IMAGE_SUFFIXES and not file.name.startswith(".")
+        file for file in files if file.suffix.lower() in IMAGE_SUFFIXES and not file.name.startswith(".")
     ]
     if not images:
         raise RecordingError(
             f"{source}: source must hold images ({', '.join(sorted(IMAGE_SUFFIXES))}), "
             f"but none of its {len(found)} files is one"
         )
-    return sorted(images, key=_natural_key)
+    return images, [file for file in files if file not in images]
 
 
 def _natural_key(path: Path) -> list[tuple[int, str]]:

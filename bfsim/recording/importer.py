@@ -16,25 +16,26 @@ from bfsim.recording.images import open_images
 from bfsim.recording.layout import table_from_npy
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.raw import open_i420, open_uyvy, open_y4m
-from bfsim.recording.sources import SOURCE_FORMATS, PictureSource, SourceFormat, guess_format
+from bfsim.recording.sources import SOURCE_FORMATS, PictureSource, Skipped, SourceFormat, guess_format
 from bfsim.recording.video import open_video
 from bfsim.recording.writer import RecordingWriter
 
 DEFAULT_FPS = Fraction(30)
+"""Of sources that do not say: the VGA rate of the OmniVision sensors."""
+
 FPS_PARTS = 1_000_000
 """Frame rates are fractions with denominators up to this; it is the highest rate, too."""
-"""Of sources that do not say: the VGA rate of the OmniVision sensors."""
 
 Progress = Callable[[int, int | None], None]
 """Called after each stereo frame with the frames done and, where known, the frames there are."""
 
-_FILE_OPENERS = {"images": open_images, "y4m": open_y4m, "video": open_video}
+_FILE_OPENERS = {"y4m": open_y4m, "video": open_video}
 _RAW_OPENERS = {"uyvy": open_uyvy, "i420": open_i420}
 
 
 @dataclass(frozen=True, slots=True)
 class ImportSummary:
-    """What an import has written."""
+    """What an import has written, of pictures of which sizes, and what it has skipped."""
 
     path: Path
     width: int
@@ -42,6 +43,8 @@ class ImportSummary:
     frame_count: int
     fps: Fraction
     size_bytes: int
+    source_sizes: tuple[tuple[int, int], ...]
+    skipped: tuple[Skipped, ...]
 
 
 def import_recording(
@@ -51,6 +54,7 @@ def import_recording(
     format: SourceFormat | None = None,
     size: tuple[int, int] | None = None,
     resize: tuple[int, int] | None = None,
+    crop: tuple[int, int] | None = None,
     side_by_side: bool = False,
     mono: bool = False,
     fps: Fraction | float | None = None,
@@ -64,17 +68,22 @@ def import_recording(
 
     Two sources are the left and the right camera. One source needs `side_by_side` (left half, right half) or
     `mono` (one camera feeds both sides). `format` is guessed from the names. `size` is the (width, height) of
-    raw frames; `resize` scales every picture, cutting off what sticks out of its aspect ratio. The k-th
-    stereo frame is stamped k / `fps` seconds; without `fps` the source's own rate counts, or 30. An existing
+    raw frames; `resize` scales every picture by a triangle filter as wide as the scale, cutting off what sticks out of
+    its aspect ratio; `crop` keeps the middle of every picture, and skips smaller ones. A stereo frame of which one
+    picture cannot be read is skipped. The k-th stereo frame is stamped k / `fps` seconds; without `fps` the source's own rate counts, or 30. An existing
     `output` needs `force`. Raises RecordingError, with the file and the frame.
     """
     names = [os.fspath(source) for source in sources]
-    _check_call(names, Path(output), resize=resize, side_by_side=side_by_side, mono=mono, force=force)
-    opened = [_open_source(name, format, size) for name in names]
+    _check_call(
+        names, Path(output), resize=resize, crop=crop, side_by_side=side_by_side, mono=mono, force=force
+    )
+    is_fitted = resize is not None or crop is not None
+    opened = [_open_source(name, format, size, mixed=is_fitted) for name in names]
     rate = _frame_rate(fps, opened)
-    count = _check_pair(opened, side_by_side=side_by_side, resized=resize is not None)
-    pairs = _stereo_pairs(opened, side_by_side)
-    picture_size = resize or _camera_size(opened[0], side_by_side)
+    count = _check_pair(opened, side_by_side=side_by_side, is_fitted=is_fitted)
+    picture_size = resize or crop or _camera_size(opened[0], side_by_side)
+    skipped = [each for source in opened for each in source.skipped]
+    sizes = set()
     with RecordingWriter(
         output,
         width=picture_size[0],
@@ -83,13 +92,48 @@ def import_recording(
         rectification=rectification,
         description=description,
     ) as writer:
-        for index, (left, right) in enumerate(pairs):
-            images = [(side.resized(*resize) if resize else side).to_uyvy() for side in (left, right)]
-            time_ns = round(index * 1_000_000_000 / rate)
-            writer.add(images[0], images[1], time_ns, time_ns)
+        for index, sides in enumerate(_stereo_pairs(opened, side_by_side)):
+            fitted = [_fitted(side, index, resize, crop) for side in sides]
+            left, right = fitted
+            if isinstance(left, Skipped) or isinstance(right, Skipped):
+                skipped += dict.fromkeys(each for each in fitted if isinstance(each, Skipped))
+                continue
+            sizes |= {side.size for side in sides if isinstance(side, YuvPlanes)}
+            time_ns = round(writer.frame_count * 1_000_000_000 / rate)
+            writer.add(left.to_uyvy(), right.to_uyvy(), time_ns, time_ns)
             if progress is not None:
                 progress(index + 1, count)
-    return ImportSummary(writer.path, *picture_size, writer.frame_count, rate, writer.path.stat().st_size)
+        if not writer.frame_count and skipped:
+            raise RecordingError(
+                f"{names[0]}: {skipped[-1].name}: {skipped[-1].reason}, and no picture is left"
+            )
+    return ImportSummary(
+        path=writer.path,
+        width=picture_size[0],
+        height=picture_size[1],
+        frame_count=writer.frame_count,
+        fps=rate,
+        size_bytes=writer.path.stat().st_size,
+        source_sizes=tuple(sorted(sizes)),
+        skipped=tuple(skipped),
+    )
+
+
+def _fitted(
+    picture: YuvPlanes | Skipped, index: int, resize: tuple[int, int] | None, crop: tuple[int, int] | None
+) -> YuvPlanes | Skipped:
+    """Return a picture of one side in the size of the recording, or why it cannot be."""
+    if isinstance(picture, Skipped):
+        return picture
+    if resize:
+        return picture.resized(*resize)
+    if crop:
+        width, height = picture.size
+        if width < crop[0] or height < crop[1]:
+            reason = f"{width}x{height} is too small for `--crop` {crop[0]}x{crop[1]}; `--resize` scales"
+            return Skipped(f"picture {index}", reason)
+        return picture.cropped(*crop)
+    return picture
 
 
 def load_rectification(left: str | os.PathLike[str], right: str | os.PathLike[str]) -> RectificationTables:
@@ -119,6 +163,7 @@ def _check_call(
     output: Path,
     *,
     resize: tuple[int, int] | None,
+    crop: tuple[int, int] | None,
     side_by_side: bool,
     mono: bool,
     force: bool,
@@ -135,11 +180,18 @@ def _check_call(
             f"sources must be {wanted}, not {len(names)}: two (left, right), "
             "or one with `--side-by-side` or `--mono`"
         )
-    if resize is not None and (min(resize) <= 0 or resize[0] % 2):
-        raise RecordingError(f"`--resize` must be above 0 and of even width, not {resize[0]}x{resize[1]}")
+    if resize is not None and crop is not None:
+        raise RecordingError("pictures must be fitted with `--resize` or `--crop`, not both")
+    for option, wanted_size in (("--resize", resize), ("--crop", crop)):
+        if wanted_size is not None and (min(wanted_size) <= 0 or wanted_size[0] % 2):
+            raise RecordingError(
+                f"`{option}` must be above 0 and of even width, not {wanted_size[0]}x{wanted_size[1]}"
+            )
 
 
-def _open_source(name: str, format: SourceFormat | None, size: tuple[int, int] | None) -> PictureSource:
+def _open_source(
+    name: str, format: SourceFormat | None, size: tuple[int, int] | None, *, mixed: bool
+) -> PictureSource:
     chosen = format or guess_format(name)
     if chosen is None:
         kind = "is not there" if not Path(name).exists() else "has a name that does not tell its format"
@@ -147,6 +199,8 @@ def _open_source(name: str, format: SourceFormat | None, size: tuple[int, int] |
             f"{name}: source must be a folder of images or a file of pictures, but it {kind} "
             f"(`--format` {', '.join(SOURCE_FORMATS)})"
         )
+    if chosen == "images":
+        return open_images(name, mixed=mixed)
     if chosen in _FILE_OPENERS:
         return _FILE_OPENERS[chosen](name)
     if size is None or min(size) <= 0:
@@ -166,17 +220,15 @@ def _frame_rate(fps: Fraction | float | None, sources: list[PictureSource]) -> F
     return Fraction(fps).limit_denominator(FPS_PARTS) if fps is not None else next(iter(rates), DEFAULT_FPS)
 
 
-def _check_pair(sources: list[PictureSource], *, side_by_side: bool, resized: bool) -> int | None:
+def _check_pair(sources: list[PictureSource], *, side_by_side: bool, is_fitted: bool) -> int | None:
     """Return how many pictures both sources have, if they know; raise where they do not fit each other."""
     left, right = sources[0], sources[-1]
-    if side_by_side and left.size[0] % 4:
-        raise RecordingError(
-            f"{left.name}: side-by-side image must have a width of 4 x n pixels, not {left.size[0]}"
-        )
-    if left.size != right.size and not resized:
+    if side_by_side:
+        _check_halves(left.name, left.size)
+    if left.size != right.size and not is_fitted:
         raise RecordingError(
             f"left and right images must have one size, not {left.size[0]}x{left.size[1]} ({left.name}) and "
-            f"{right.size[0]}x{right.size[1]} ({right.name}); `--resize` scales both"
+            f"{right.size[0]}x{right.size[1]} ({right.name}); `--resize` or `--crop` brings both to one"
         )
     if left.count is not None and right.count is not None and left.count != right.count:
         raise RecordingError(
@@ -192,16 +244,27 @@ def _camera_size(source: PictureSource, side_by_side: bool) -> tuple[int, int]:
     if width % 2:
         raise RecordingError(
             f"{source.name}: image width must be even (UYVY pixels come in pairs), not {width}; "
-            "`--resize` scales"
+            "`--resize` scales, `--crop` cuts"
         )
     return width // 2 if side_by_side else width, height
 
 
-def _stereo_pairs(sources: list[PictureSource], side_by_side: bool) -> Iterator[tuple[YuvPlanes, YuvPlanes]]:
+def _check_halves(name: str, size: tuple[int, int]) -> None:
+    if size[0] % 4:
+        raise RecordingError(f"{name}: side-by-side image must have a width of 4 x n pixels, not {size[0]}")
+
+
+def _stereo_pairs(
+    sources: list[PictureSource], side_by_side: bool
+) -> Iterator[tuple[YuvPlanes | Skipped, YuvPlanes | Skipped]]:
     """Yield the left and the right picture of each stereo frame."""
     if len(sources) == 1:
         for picture in sources[0].pictures():
-            yield picture.halves() if side_by_side else (picture, picture)
+            if side_by_side and isinstance(picture, YuvPlanes):
+                _check_halves(sources[0].name, picture.size)
+                yield picture.halves()
+            else:
+                yield picture, picture
         return
     rights = sources[1].pictures()
     index = -1

@@ -53,6 +53,19 @@ class YuvPlanes:
             _scaled(self.v, (width // 2, height), cut),
         )
 
+    def cropped(self, width: int, height: int) -> YuvPlanes:
+        """The middle width x height of the picture, which must be as large; by one pixel left or up, if colours ask."""
+        left, top = ((have - want) // 4 * 2 for have, want in zip(self.size, (width, height), strict=True))
+        own_width, own_height = self.size
+
+        def cut(plane: Plane) -> Plane:
+            across, down = -(-own_width // plane.shape[1]), -(-own_height // plane.shape[0])
+            return plane[
+                top // down : -(-(top + height) // down), left // across : -(-(left + width) // across)
+            ]
+
+        return YuvPlanes(cut(self.y), cut(self.u), cut(self.v))
+
     def to_uyvy(self) -> UyvyImage:
         """The picture, of even width, as the camera sends it: uint8 of shape (height, 2 * width)."""
         width, height = self.size

@@ -34,17 +34,19 @@ class Skipped:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PictureSource:
-    """One stream of pictures, all of one size.
+    """One stream of pictures. size is that of the first one.
 
     count is None when only reading to the end tells; fps is None when the source does not say. `pictures`
-    opens the source and yields from the first picture on, one in memory at a time.
+    opens the source and yields from the first picture on, one in memory at a time; in the place of one that cannot be
+    read, why not. `skipped` are files beside them that are no pictures.
     """
 
     name: str
     size: tuple[int, int]
     count: int | None
     fps: Fraction | None
-    pictures: Callable[[], Iterator[YuvPlanes]]
+    pictures: Callable[[], Iterator[YuvPlanes | Skipped]]
+    skipped: tuple[Skipped, ...] = ()
 
 
 def guess_format(source: str) -> SourceFormat | None:

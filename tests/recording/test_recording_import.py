@@ -21,6 +21,7 @@ from bfsim.recording import (
     import_recording,
     load_rectification,
 )
+from bfsim.recording.planes import YuvPlanes
 
 PRIMARIES = {"red": (255, 0, 0), "green": (0, 255, 0), "blue": (0, 0, 255), "white": (255, 255, 255)}
 # BT.601, full range, by the equations of JFIF 1.02: (U, Y, V).
@@ -269,6 +270,46 @@ def test_progress(tmp_path: Path) -> None:
     assert heard == [(1, 3), (2, 3), (3, 3)]
 
 
+def test_mixed_sizes_and_stray_files(tmp_path: Path) -> None:
+    """Upright and lying pictures come to one size; what is no picture is listed, and takes no frame."""
+    (tmp_path / "im").mkdir()
+    save_grey(tmp_path / "im" / "0.png", 10, (30, 40))
+    save_grey(tmp_path / "im" / "1.png", 20, (64, 48))
+    save_grey(tmp_path / "im" / "3.png", 30, (7, 5))
+    (tmp_path / "im" / "2.png").write_text("no image")
+    (tmp_path / "im" / "notes.txt").write_text("a label")
+    for fit, levels in (({"resize": (8, 6)}, [10, 20, 30]), ({"crop": (8, 6)}, [10, 20])):
+        summary = import_recording([tmp_path / "im"], tmp_path / "a.mcap", mono=True, force=True, **fit)
+        frames = frames_of(tmp_path / "a.mcap")
+        assert [set(frame.left[:, 1::2].flat) for frame in frames] == [{level} for level in levels]
+        assert [frame.left_ns for frame in frames] == [round(k * 1e9 / 30) for k in range(len(levels))]
+        assert [each.name for each in summary.skipped][:2] == ["notes.txt", "2.png"]
+    assert summary.skipped[2].reason.startswith("7x5 is too small for `--crop` 8x6")
+    assert summary.source_sizes == ((30, 40), (64, 48))
+
+
+def test_one_bad_picture_takes_its_pair_along(tmp_path: Path) -> None:
+    """What follows stays with its own partner."""
+    for k in range(3):
+        save_grey(tmp_path / "left" / f"{k}.png", k)
+        save_grey(tmp_path / "right" / f"{k}.png", 100 + k)
+    (tmp_path / "left" / "0.png").write_bytes(b"")
+    summary = import_recording([tmp_path / "left", tmp_path / "right"], tmp_path / "a.mcap")
+    frames = frames_of(tmp_path / "a.mcap")
+    assert [(frame.left[0, 1], frame.right[0, 1]) for frame in frames] == [(1, 101), (2, 102)]
+    assert [each.name for each in summary.skipped] == ["0.png"]
+
+
+@pytest.mark.parametrize("layout", ["444", "422", "420"])
+def test_crop_keeps_the_middle(layout: str) -> None:
+    """Brightness and colour are cut alike, on whole colour samples."""
+    y, u = noise((9, 12)), noise({"444": (9, 12), "422": (9, 6), "420": (5, 6)}[layout], 1)
+    found = YuvPlanes(y, u, u).cropped(6, 4)
+    np.testing.assert_array_equal(found.y, y[2:6, 2:8])
+    across, down = (12 // u.shape[1], -(-9 // u.shape[0]))
+    np.testing.assert_array_equal(found.v, u[2 // down : 6 // down, 2 // across : 8 // across])
+
+
 @pytest.fixture
 def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A folder with a little of everything that can be wrong."""
@@ -319,7 +360,13 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
             {"side_by_side": True},
             "large: side-by-side image must have a width of 4 x n pixels, not 10",
         ),
-        (["mixed"], {"mono": True}, r"mixed/1\.png: image must be 8x4 like 0\.png, .* not 8x5"),
+        (
+            ["mixed"],
+            {"mono": True},
+            r"mixed/1\.png: image must be 8x4 like 0\.png, .* not 8x5; `--resize` or",
+        ),
+        (["mixed"], {"mono": True, "crop": (20, 4)}, "mixed: picture 1: 8x5 is too small for `--crop` 20x4"),
+        (["two"], {"mono": True, "crop": (6, 4), "resize": (8, 4)}, "`--resize` or `--crop`, not both"),
         (["empty"], {"mono": True}, r"empty: source must hold images \(\.bmp, .*none of its 0 files"),
         (["texts"], {"mono": True}, "none of its 1 files"),
         (["two/*.jpg"], {"mono": True}, "none of its 0 files"),
