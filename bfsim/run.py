@@ -17,14 +17,15 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.device_script import read_script
 from bfsim.errors import ConfigError, FirmwareError, LinkError, RecordingError, shown
 from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
-from bfsim.linker import LinkerScript, link, parse_ldf
+from bfsim.linker import LinkerScript, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
-from bfsim.machine.board import Board, Fidelity, Outcome, require_cores, symbols_of
+from bfsim.machine.board import Board, Fidelity, Outcome, require_cores
 from bfsim.machine.bus.ahead import compiled_ahead
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.program import Calibration, Firmware, FrameSize, SourcePixels
 from bfsim.machine.spi.device import SpiDevice
 from bfsim.recording import RecordingReader, StereoFrame
+from bfsim.room import place
 from bfsim.seen import Seen, SeenFrame
 from bfsim.trace import Identity, RunRecord, RunWarning, WarningKind
 
@@ -82,8 +83,7 @@ def simulate(
         size = FrameSize(reader.width, reader.height)
         calibration = calibration_of(reader)
         program = loaded.firmware.calibrated(calibration)
-        symbols = symbols_of(program, size, compiler)
-        link_map = link(placement, symbols, spec.chip.regions, chip=spec.chip.name)
+        link_map = place(loaded.firmware, calibration, size, placement, spec, compiler)
         machine = Board(
             spec,
             program,

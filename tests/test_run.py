@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -268,5 +269,13 @@ def test_a_recording_that_breaks_off_is_told_with_its_name(home: Path) -> None:
 def test_pictures_too_large_for_the_rings_are_a_link_error(home: Path) -> None:
     """Lines of 12 000 pixels do not fit twice into 32 KB: the section and the memory are named."""
     recording = record(home / "drive.mcap", 1, width=12_000, height=2)
-    with pytest.raises(LinkError, match="ring.*L1_data_a|L1_data_a.*ring"):
+    with pytest.raises(LinkError, match="ring.*L1_data_a|L1_data_a.*ring") as refused:
         run_eyes(recording)
+    largest = re.search(
+        r"of 12000x2 need more memory .* takes with this LDF are (\d+)x2: ", str(refused.value)
+    )
+    assert largest
+    width = int(largest[1])
+    assert run_eyes(record(home / "largest.mcap", 1, width=width, height=2)).identity.width_px == width
+    with pytest.raises(LinkError):
+        run_eyes(record(home / "larger.mcap", 1, width=width + 192, height=2))

@@ -1,0 +1,83 @@
+"""Places firmware in the memory of a board, or says what the largest pictures are that it has room for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from bfsim.chip.spec import BoardSpec
+from bfsim.errors import BfsimError, LinkError
+from bfsim.kernel import CompilerProfile
+from bfsim.linker import LinkerScript, LinkMap, link
+from bfsim.machine.board import symbols_of
+from bfsim.machine.program import Calibration, Firmware, FrameSize, SourcePixels
+
+_STEPS = 64
+"""Sizes that are looked at: so many, of the shape of the pictures."""
+
+_WIDTH_STEP, _HEIGHT_STEP = 4, 2
+"""Of the sizes: halves of pictures have whole pairs of pixels, and quarters whole rows."""
+
+
+def place(
+    firmware: Firmware,
+    calibration: Calibration,
+    size: FrameSize,
+    placement: LinkerScript,
+    spec: BoardSpec,
+    compiler: CompilerProfile,
+) -> LinkMap:
+    """Return where the linker puts the firmware for pictures of `size`.
+
+    Raises LinkError, which says the largest pictures of the same shape if smaller ones have room.
+    """
+
+    def placed(size: FrameSize) -> LinkMap:
+        symbols = symbols_of(firmware.calibrated(_cut(calibration, size)), size, compiler)
+        return link(placement, symbols, spec.chip.regions, chip=spec.chip.name)
+
+    def fits(step: int) -> bool:
+        try:
+            placed(_scaled(size, step))
+        except BfsimError:
+            return False
+        return True
+
+    try:
+        return placed(size)
+    except LinkError as error:
+        least, most = 1, _STEPS
+        if not fits(least):
+            raise
+        while most - least > 1:
+            middle = (least + most) // 2
+            least, most = (middle, most) if fits(middle) else (least, middle)
+        largest = _scaled(size, least)
+        raise LinkError(
+            f"{error}; pictures of {size} need more memory than there is, and the largest of this shape that this firmware "
+            f"takes with this LDF are {largest}: `bfsim record import --resize {largest}` scales them"
+        ) from error
+
+
+def _scaled(size: FrameSize, step: int) -> FrameSize:
+    """Return the size times step / _STEPS, rounded down, at least the smallest."""
+    width, height = (
+        max(side * step // _STEPS // unit, 1) * unit
+        for side, unit in ((size.width_px, _WIDTH_STEP), (size.height_px, _HEIGHT_STEP))
+    )
+    return replace(size, width_px=width, height_px=height)
+
+
+def _cut(calibration: Calibration, size: FrameSize) -> Calibration:
+    """Return the calibration with as many source pixels as smaller pictures have."""
+    return replace(
+        calibration,
+        sources={
+            core: SourcePixels(
+                np.minimum(source.rows[: size.height_px, : size.width_px], size.height_px - 1),
+                np.minimum(source.columns[: size.height_px, : size.width_px], size.width_px - 1),
+            )
+            for core, source in calibration.sources.items()
+        },
+    )
