@@ -42,6 +42,7 @@ MAY_IMPORT = {
     "explain": {"errors", "kernel", "loading", "trace"},
     "device_script": {"errors"},
     "scenery": {"errors", "loading", "locating", "recording", "shipped"},
+    "room": {"chip", "errors", "kernel", "linker", "machine"},
     "run": {
         "device_script",
         "errors",
@@ -53,6 +54,7 @@ MAY_IMPORT = {
         "machine",
         "recording",
         "loading",
+        "room",
         "shipped",
     },
     "mapping": {"chip", "kernel", "linker", "loading", "machine", "report", "run"},
