@@ -153,7 +153,8 @@ def seen(
     edges = references.suppress(references.magnitude(gx, gy), direction, thresholds.edge_threshold)
     kept = hysteresis(edges, thresholds.strong_threshold, edges.size, edges.size).edges
     data, index, counts = hysteresis_store(kept, direction)
-    colours = references.colours(uyvy, thresholds.eps_black, thresholds.eps_white)
+    limits = thresholds.eps_black, thresholds.eps_white, thresholds.least_chroma
+    colours = references.colours(uyvy, *limits)
     opened = references.dilate(references.erode(colours)).astype(np.uint32)
     return Seen(
         np.array(data or [0], np.uint32),

@@ -89,14 +89,15 @@ def suppress(gradient: Picture, direction: Picture, threshold: int) -> Picture:
     return with_border(kept, 0)
 
 
-def colours(uyvy: Picture, eps_black: int, eps_white: int) -> NDArray[np.uint32]:
-    """Reduce to one bit of 32 per pixel (T Eq. 5.1-5.4), each pixel by itself."""
+def colours(uyvy: Picture, eps_black: int, eps_white: int, least_chroma: int) -> NDArray[np.uint32]:
+    """Reduce to one bit of 32 per pixel, or none (T Eq. 5.1-5.4, and the least chroma), each pixel by itself."""
     u = np.repeat(uyvy[:, 0::4], 2, axis=1).astype(np.int64) - 128
     v = np.repeat(uyvy[:, 2::4], 2, axis=1).astype(np.int64) - 128
-    brightness = luma(uyvy) - np.floor(np.sqrt(v**2 + u**2)).astype(np.int64)
-    hue = 28 * angle(v, u) // 256
-    classes = np.select([brightness < eps_black, brightness > eps_white], [1, 2], 3 + hue)
-    return (1 << classes).astype(np.uint32)
+    chroma = np.floor(np.sqrt(v**2 + u**2)).astype(np.int64)
+    brightness = luma(uyvy) - chroma
+    black = (brightness < eps_black) & ((chroma < least_chroma) | (least_chroma == 0))
+    hue = np.where(chroma < least_chroma, 0, 1 << 3 + 28 * angle(v, u) // 256)
+    return np.select([black, brightness > eps_white], [1 << 1, 1 << 2], hue).astype(np.uint32)
 
 
 def erode(picture: Picture) -> Picture:

@@ -114,7 +114,8 @@ def shipped() -> list[tuple[Words, Words]]:
 
 def opened(uyvy: np.ndarray) -> Words:
     """Return the opened colour image of a picture."""
-    colours = references.colours(uyvy, INDOOR_FIELD.edges.eps_black, INDOOR_FIELD.edges.eps_white)
+    limits = INDOOR_FIELD.edges.eps_black, INDOOR_FIELD.edges.eps_white, INDOOR_FIELD.edges.least_chroma
+    colours = references.colours(uyvy, *limits)
     return references.dilate(references.erode(colours)).astype(np.uint32)
 
 

@@ -15,7 +15,15 @@ from tinyphoon.stages.open_closing import dilate_row, erode_row
 from tinyphoon.strategy.modes import INDOOR_FIELD
 from tinyphoon.tables import arctangent_table
 
-THRESHOLDS = [(INDOOR_FIELD.edges.eps_black, INDOOR_FIELD.edges.eps_white), (-40, 60), (-182, 255), (60, 59)]
+_EDGES = INDOOR_FIELD.edges
+THRESHOLDS = [
+    (_EDGES.eps_black, _EDGES.eps_white, _EDGES.least_chroma),
+    (28, 125, 0),
+    (-40, 60, 1),
+    (-182, 255, 0),
+    (60, 59, 100),
+    (28, 125, 181),
+]
 ANY_WORDS = st.integers(2, 30).flatmap(
     lambda width: arrays(
         np.uint32,
@@ -25,10 +33,10 @@ ANY_WORDS = st.integers(2, 30).flatmap(
 )
 
 
-def reduced(uyvy: Bytes, eps_black: int, eps_white: int) -> np.ndarray:
+def reduced(uyvy: Bytes, eps_black: int, eps_white: int, least_chroma: int = 0) -> np.ndarray:
     """Return the words of one row."""
     words = np.full(len(uyvy) // 2, 2**32 - 1, np.uint32)
-    colour_row(uyvy, arctangent_table(), words, eps_black, eps_white)
+    colour_row(uyvy, arctangent_table(), words, eps_black, eps_white, least_chroma)
     return words
 
 
@@ -39,12 +47,12 @@ def row_of_every_chroma(seed: int) -> Bytes:
     return row
 
 
-@pytest.mark.parametrize(("eps_black", "eps_white"), THRESHOLDS)
-def test_every_chroma_is_reduced_as_in_the_equations(eps_black: int, eps_white: int) -> None:
+@pytest.mark.parametrize("thresholds", THRESHOLDS)
+def test_every_chroma_is_reduced_as_in_the_equations(thresholds: tuple[int, int, int]) -> None:
     """All U and V with random luma give the words of T Eq. 5.1-5.4, whatever the thresholds."""
-    row = row_of_every_chroma(seed=eps_white)
-    expected = references.colours(row[np.newaxis], eps_black, eps_white)[0]
-    np.testing.assert_array_equal(reduced(row, eps_black, eps_white), expected)
+    row = row_of_every_chroma(seed=thresholds[1])
+    expected = references.colours(row[np.newaxis], *thresholds)[0]
+    np.testing.assert_array_equal(reduced(row, *thresholds), expected)
 
 
 def test_all_28_hues_occur_and_each_pixel_has_one_colour() -> None:
@@ -62,13 +70,34 @@ def test_luma_decides_between_black_hue_and_white() -> None:
     assert dark == bright == 1 << 3
 
 
+def pair(luma: int, u: int, v: int) -> Bytes:
+    """A UYVY row of two equal pixels."""
+    return np.array([u, luma, v, luma], np.uint8)
+
+
+def test_grey_has_no_hue_however_noisy() -> None:
+    """A chroma below the least one: black, nothing or white by its luma. The thesis's rule gives the noise a hue."""
+    for noise in (0, 3, -5, 19):
+        shades = [reduced(pair(luma, 128 + noise, 128 - noise), 28, 125, 28)[0] for luma in (20, 90, 200)]
+        assert shades == [BLACK, 0, WHITE]
+        assert reduced(pair(90, 128 + noise, 128 - noise), 28, 125)[0] >= 1 << 3
+
+
+@pytest.mark.parametrize("luma", [30, 60, 81])
+def test_a_saturated_colour_is_never_black(luma: int) -> None:
+    """A red of (200, 30, 30), and the same in the shade; the thesis's rule calls it black."""
+    red = pair(luma, 128 - 25 * luma // 81, 128 + 85 * luma // 81)
+    assert reduced(red, 28, 125, 28)[0] == 1 << 29
+    assert reduced(red, 28, 125)[0] == BLACK
+
+
 @pytest.mark.parametrize("width", WIDTHS)
 def test_rows_of_a_picture(width: int) -> None:
     """Narrow and wide rows with squares of colour come out as in numpy."""
     uyvy = random_uyvy(width, 8, seed=width)
-    expected = references.colours(uyvy, 28, 125)
+    expected = references.colours(uyvy, 28, 125, 20)
     for y in range(8):
-        np.testing.assert_array_equal(reduced(uyvy[y], 28, 125), expected[y])
+        np.testing.assert_array_equal(reduced(uyvy[y], 28, 125, 20), expected[y])
 
 
 @given(ANY_WORDS)

@@ -5,6 +5,7 @@
 #define WHITE (1u << 2)
 #define FIRST_HUE 3
 #define HUES 28
+#define DARKEST -182
 
 HELPER uint32_t colour_word(int32_t brightness, uint32_t hue, int32_t eps_black, int32_t eps_white)
 {
@@ -16,7 +17,7 @@ HELPER uint32_t colour_word(int32_t brightness, uint32_t hue, int32_t eps_black,
 }
 
 KERNEL void colour_row(const uint8_t uyvy[], const uint8_t atan[], uint32_t colours[], int32_t eps_black,
-                       int32_t eps_white, int32_t colours_length)
+                       int32_t eps_white, int32_t least_chroma, int32_t colours_length)
 {
     for (int32_t pair = 0; pair < colours_length >> 1; pair++) {
         int32_t u = uyvy[4 * pair] - 128;
@@ -24,10 +25,13 @@ KERNEL void colour_row(const uint8_t uyvy[], const uint8_t atan[], uint32_t colo
         int32_t chroma = (int32_t)isqrt32((uint32_t)(v * v + u * u));
         int32_t left = uyvy[4 * pair + 1] - chroma;
         int32_t right = uyvy[4 * pair + 3] - chroma;
+        int32_t darkest = eps_black;
         uint32_t hue = 0;
-        if (max(left, right) >= eps_black && min(left, right) <= eps_white)
+        if (least_chroma != 0 && chroma >= least_chroma)
+            darkest = DARKEST;
+        if (chroma >= least_chroma && max(left, right) >= darkest && min(left, right) <= eps_white)
             hue = 1u << (FIRST_HUE + (angle8(v, u, atan) * HUES >> 8));
-        colours[2 * pair] = colour_word(left, hue, eps_black, eps_white);
-        colours[2 * pair + 1] = colour_word(right, hue, eps_black, eps_white);
+        colours[2 * pair] = colour_word(left, hue, darkest, eps_white);
+        colours[2 * pair + 1] = colour_word(right, hue, darkest, eps_white);
     }
 }

@@ -28,7 +28,8 @@ class EdgeThresholds:
     T §2.1.4 in one, and `strong_threshold`: its tau_h, that one edge of a group must reach; both in stored gradient
     units, a quarter of a Sobel gradient; 1..255.
     `eps_black`, `eps_white`: limits of luma minus chroma in grey levels (T Eq. 5.2); -182..255. A pixel
-    below the first is black, above the second white, and has a hue between them.
+    below the first is black, above the second white, and has a hue between them. `least_chroma`: a pixel with less has
+    no hue, and one with as much is never black; in the units of U and V, 0..181; 0: T Eq. 5.2 alone.
     """
 
     gauss_px: Literal[3, 5]
@@ -36,6 +37,7 @@ class EdgeThresholds:
     strong_threshold: int = allowed(1, 255)
     eps_black: int = allowed(-182, 255, at_most="eps_white")
     eps_white: int = allowed(-182, 255)
+    least_chroma: int = allowed(0, 181)
 
 
 @kernel
@@ -202,7 +204,8 @@ def scan(
             line = yield from camera.line()
             yield core.run(grey_row, line, grey[y])
             row = yield from colours.row()
-            yield core.run(colour_row, line, atan, row, thresholds.eps_black, thresholds.eps_white)
+            limits = thresholds.eps_black, thresholds.eps_white, thresholds.least_chroma
+            yield core.run(colour_row, line, atan, row, *limits)
             colours.send()
         # Gauss, Sobel and suppression each need lines below theirs
         smoothed, sloped, done = y - reach, y - reach - 1, y - reach - 2

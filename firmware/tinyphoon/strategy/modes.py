@@ -100,6 +100,9 @@ INDOOR_FIELD = Mode(
         # Lines and walls under the field's lamps start at 103 and are mostly far brighter; the lit side of the
         # ball reaches 121 and must keep its colour.
         eps_white=125,
+        # Half a hue is 6.4 degrees: at this chroma a noise of three levels in U or V turns a colour by as much. And light
+        # that is a tenth too warm or too cold for the camera's white balance gives a bright grey, of 255 levels, no more.
+        least_chroma=28,
     ),
     blobs=BlobThresholds(
         colour_groups=colour_groups(MODELS),
