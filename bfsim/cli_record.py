@@ -14,7 +14,7 @@ from rich.table import Table
 
 from bfsim import shipped
 from bfsim.cli_sizes import Size
-from bfsim.errors import shown
+from bfsim.errors import RecordingError, shown
 from bfsim.terminal import print_report, progress_bar
 
 if TYPE_CHECKING:
@@ -145,18 +145,26 @@ def import_command(
 @record.command(name="info", short_help="Say what is in a recording.")
 @click.argument("path", metavar="RECORDING", type=click.Path(path_type=Path))
 @click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
-def info_command(path: Path, as_json: bool) -> None:
+@click.option(
+    "--plot",
+    type=click.Path(path_type=Path),
+    help="Write the plot of the calibration's residuals to this PNG file.",
+)
+def info_command(path: Path, as_json: bool, plot: Path | None) -> None:
     """Describe RECORDING. Reads all of it, so an answer also says that it is whole.
 
     \b
     Examples:
       bfsim record info run.mcap
+      bfsim record info run.mcap --plot residuals.png
       bfsim record info run.mcap --json
     """
     from bfsim import recording
 
     with recording.RecordingReader(path) as reader, progress_bar("Reading") as progress:
         info = recording.describe_recording(reader, progress)
+        if plot:
+            _write(plot, reader.residual_plot())
     if as_json:
         click.echo(json.dumps(asdict(info), default=str, indent=2))
     else:
@@ -222,7 +230,7 @@ def calibrate_command(
     report = found.report
     click.echo(f"{output or path}: rectification tables from {_views_text(report)}")
     click.echo(
-        f"Reprojection error: {report.reprojection_px:.3f} px RMS; picture by picture: `bfsim record info`"
+        f"Reprojection error: {report.reprojection_px:.3f} px RMS; picture by picture: `bfsim record info`, --plot FILE"
     )
     if len(report.cameras) > 1:
         click.echo(
@@ -341,6 +349,13 @@ def render_command(
         click.echo(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
     if chessboards:
         click.echo(f"{chessboards}: chessboard pictures of the same cameras")
+
+
+def _write(path: Path, data: bytes) -> None:
+    try:
+        path.write_bytes(data)
+    except OSError as error:
+        raise RecordingError(f"{path}: file must be writable: {error.strerror}") from None
 
 
 def _info_table(info: recording.RecordingInfo) -> Table:

@@ -21,6 +21,7 @@ from bfsim.recording.camera_models import CameraModel, Fisheye, Fit, FittedCamer
 from bfsim.recording.frames import RectificationTables, StereoGeometry
 from bfsim.recording.reader import RecordingReader
 from bfsim.recording.rectifying import rectified_rotation
+from bfsim.recording.residual_plot import draw_residuals
 from bfsim.recording.sources import Skipped
 from bfsim.recording.writer import RecordingWriter
 
@@ -38,10 +39,11 @@ _MODELS: dict[LensName, type[CameraModel]] = {"pinhole": Pinhole, "fisheye": Fis
 
 @dataclass(frozen=True, slots=True)
 class StereoCalibration:
-    """The tables that rectify, and what was found on the way to them."""
+    """The tables that rectify, what was found on the way to them, and a plot (PNG) of how far the corners are off."""
 
     tables: RectificationTables
     report: CalibrationReport
+    plot: bytes
 
 
 def calibrate_recording(
@@ -92,6 +94,7 @@ def calibrate_recording(
         description=text,
         rectification=calibration.tables,
         calibration=report,
+        residual_plot=calibration.plot,
     )
     # The reader closes before the writer takes its file's place.
     with writer, RecordingReader(recording) as reader:
@@ -150,7 +153,9 @@ def calibrate(
         focal_px=focal,
         baseline_mm=float(np.linalg.norm(fit.shift)),
     )
-    return StereoCalibration(RectificationTables(tables[0], tables[-1]), report)
+    points = list(zip(*(view.points for view in used), strict=True))
+    plot = draw_residuals(errors, points, fit.residuals_px, size)
+    return StereoCalibration(RectificationTables(tables[0], tables[-1]), report, plot)
 
 
 def _too_few(

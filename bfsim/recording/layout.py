@@ -39,6 +39,8 @@ DISPARITY_ENCODING = "32FC1"
 GEOMETRY_RECORD = "stereo_geometry"
 CALIBRATION_RECORD = "calibration"
 """One entry, `json`: a CalibrationReport."""
+RESIDUAL_PLOT_NAME = "calibration_residuals.png"
+"""Attachment: what `residual_plot` draws."""
 DESCRIPTION_RECORD = "recording"
 RECTIFICATION_NAMES = {"left": "rectification_left.npy", "right": "rectification_right.npy"}
 """Attachments: .npy arrays (NumPy's format 1.0), int32, (2, height, width), as `RectificationTables` says."""

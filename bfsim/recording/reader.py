@@ -69,6 +69,16 @@ class RecordingReader:
         """Compressions of the file's chunks, "" for none."""
         return sorted({index.compression for index in self._file.summary.chunk_indexes})
 
+    def residual_plot(self) -> bytes:
+        """Plot (PNG) of how far the chessboards' corners are from the fitted cameras'."""
+        plot = self._file.attachment(layout.RESIDUAL_PLOT_NAME)
+        if plot is None:
+            raise RecordingError(
+                f"{self.path}: recording must be calibrated to have a plot of residuals, and is not; "
+                "`bfsim record calibrate` does that"
+            )
+        return plot
+
     @property
     def truth_count(self) -> int:
         """How many frames have ground truth."""

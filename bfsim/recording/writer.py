@@ -44,6 +44,7 @@ class RecordingWriter:
         description: str = "",
         rectification: RectificationTables | None = None,
         calibration: CalibrationReport | None = None,
+        residual_plot: bytes | None = None,
     ) -> None:
         self.path = Path(path)
         self.width = width
@@ -53,6 +54,7 @@ class RecordingWriter:
         self._description = description
         self._rectification = rectification
         self._calibration = calibration
+        self._residual_plot = residual_plot
         self._last_ns = {layout.LEFT_TOPIC: -1, layout.RIGHT_TOPIC: -1}
         if not self.path.name or (self.path.exists() and not self.path.is_file()):
             raise RecordingError(f"{path}: recording must be a file, not a folder or a device")
@@ -99,6 +101,8 @@ class RecordingWriter:
             for side, name in layout.RECTIFICATION_NAMES.items():
                 data = layout.table_to_npy(getattr(self._rectification, side))
                 self._mcap.add_attachment(0, 0, name, "application/octet-stream", data)
+        if self._residual_plot is not None:
+            self._mcap.add_attachment(0, 0, layout.RESIDUAL_PLOT_NAME, "image/png", self._residual_plot)
         image_schema = register_schema(self._mcap, RawImage)
         truth_schema = self._mcap.register_schema(layout.TRUTH_SCHEMA, "jsonschema", layout.TRUTH_JSON_SCHEMA)
         self._channels = {

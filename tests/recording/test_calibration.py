@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import shutil
 import sys
 from pathlib import Path
@@ -21,6 +22,8 @@ from bfsim.recording import (
     calibrate_recording,
 )
 from bfsim.recording.calibration import StereoCalibration, calibrate
+from bfsim.recording.calibration_report import CalibrationReport, ViewError
+from bfsim.recording.residual_plot import draw_residuals
 from bfsim.recording.scenes.chessboard import write_chessboards
 from bfsim.recording.scenes.drive import Pose
 from bfsim.recording.scenes.lens import Lens, Misfit, rectified
@@ -199,6 +202,34 @@ def test_recording_without_geometry_gets_the_measured_one(chessboards: Path, tmp
     shown = CliRunner().invoke(record, ["info", str(path)]).output
     assert "6 chessboard pairs, 0 left out, 0 pictures skipped, pinhole lens" in shown
     assert f"left_05.png {report.views[5].errors_px[0]:.2f} px" in shown
+    CliRunner().invoke(
+        record, ["info", str(path), "--plot", str(tmp_path / "plot.png")], catch_exceptions=False
+    )
+    with Image.open(tmp_path / "plot.png") as plot:
+        assert plot.width > 1000
+
+
+def test_residuals_are_drawn_and_kept(tmp_path: Path) -> None:
+    """Each corner's arrow is as long as its error, times what the caption says; bars of outliers are red."""
+    points = [[np.array([[100.0, 50.0]]), np.array([[200.0, 150.0]])]]
+    residuals = np.array([[[[0.4, 0.0]], [[0.0, 0.4]]]])
+    views = [ViewError(names=(f"{k}.png",), errors_px=(0.4 + k,), is_outlier=k == 2) for k in range(3)]
+    with Image.open(io.BytesIO(draw_residuals(views, points, residuals, (260, 200)))) as plot:
+        pixels = np.asarray(plot).astype(int)
+    # Two plot pixels to one of the picture: 0.8 of them are drawn 20 times as long.
+    origin = np.array([12, 28])
+    start = origin + np.array([2 * 99.6, 100])
+    across = np.linspace(start, start + np.array([16, 0]), 9).round().astype(int)
+    assert (pixels[across[:, 1], across[:, 0]].min(axis=1) < 100).all()
+    assert (pixels[across[0, 1], across[-1, 0] + 4] == 255).all()
+    assert (pixels == (205, 30, 30)).all(axis=2).any()
+
+
+@pytest.mark.parametrize("text", ["", "{}", '{"lens": "wide"}', "[1]"])
+def test_a_report_in_another_form_is_refused(text: str) -> None:
+    """A recording may come from anywhere."""
+    with pytest.raises(RecordingError, match="calibration must be as bfsim writes it: "):
+        CalibrationReport.from_json(text)
 
 
 def test_single_camera(chessboards: Path, tmp_path: Path) -> None:
