@@ -63,7 +63,8 @@ MAY_IMPORT = {
     "cli_boards": {"chip", "report", "terminal"},
     "cli_sizes": {"errors"},
     "cli_ldf": {"cli_sizes", "errors", "mapping", "report", "shipped", "terminal"},
-    "cli_record": {"cli_sizes", "errors", "recording", "scenery", "shipped", "terminal"},
+    "cli_recorded": {"recording"},
+    "cli_record": {"cli_recorded", "cli_sizes", "errors", "recording", "scenery", "shipped", "terminal"},
     "cli_seen": {"errors", "recording", "report", "run", "seen"},
     "cli": {
         "endings",
