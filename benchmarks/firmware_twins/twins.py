@@ -15,6 +15,14 @@ from tinyphoon.stages.circle_fit import fit_circle
 from tinyphoon.stages.circle_outline import refine_row
 from tinyphoon.stages.circle_votes import draw_lines
 from tinyphoon.stages.colour_reduction import colour_row
+from tinyphoon.stages.edge_correspondence import (
+    match_edges,
+    spread_left_row,
+    spread_right_row,
+    store_edges3d_row,
+    take_left_row,
+    take_right_row,
+)
 from tinyphoon.stages.edge_detection import (
     direction_row,
     gauss3_row,
@@ -29,14 +37,13 @@ from tinyphoon.stages.line_detection import fit_lines
 from tinyphoon.stages.line_refinement import look_at_row
 from tinyphoon.stages.line_scan import segments_row
 from tinyphoon.stages.open_closing import dilate_row, erode_row
-from tinyphoon.stages.stereo_edges import stereo_edges_row, take_right_row
 from tinyphoon.stores.edges import store_edges_row
 
 TWINS: tuple[Kernel, ...] = (
     grey_row, colour_row, gauss3_row, sobel_row, magnitude_row, direction_row, suppress_row, store_edges_row,
     group_edges_row, label_edges_row, keep_edges_row, erode_row, dilate_row, segment_row, segments_row,
     connect_near, fit_lines, connect_far, look_at_row, select_edges_row, draw_lines, refine_row, fit_circle,
-    take_right_row, stereo_edges_row,
+    take_left_row, take_right_row, spread_left_row, spread_right_row, match_edges, store_edges3d_row,
 )  # fmt: skip
 
 

@@ -37,7 +37,7 @@ CAMERA_FRAMES = 3  # one that is worked on, one that waits, one that is filled
 def buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     """Return the buffers of each core for pictures of `size`."""
     return {
-        "A": (*_left_buffers(size), *stereo_line_buffers(), *stereo_edge_buffers()),
+        "A": (*_left_buffers(size), *stereo_line_buffers(), *stereo_edge_buffers("sdram_bank2")),
         "B": _core_buffers(size, camera="sdram_bank1", images="sdram_bank3"),
         "shared": (
             *exchange_buffers(size),

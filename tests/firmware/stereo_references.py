@@ -111,6 +111,26 @@ def line_3d(rig: Rig, line: Words, other: Words) -> tuple[Point, Point] | None:
 
 Edge = tuple[int, int, int]
 """x, direction, gradient."""
+Rows = Sequence[Sequence[Edge]]
+NEVER = 65535
+
+
+@dataclass(slots=True)
+class Choice:
+    """The best pair of an edge as pairs come in, from left to right, and the score of its best rival."""
+
+    best: int = NEVER
+    partner: Edge | None = None
+    rival: int = NEVER
+
+    def see(self, score: int, partner: Edge) -> None:
+        """Look at a pair. What is a pixel beside the best so far is no rival of it."""
+        is_apart = self.partner is None or partner[0] - self.partner[0] > 1
+        if score < self.best:
+            self.rival = self.best if is_apart else self.rival
+            self.best, self.partner = score, partner
+        elif is_apart:
+            self.rival = min(self.rival, score)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,41 +140,90 @@ class EdgeLimits:
     is_mutual: bool
     level_range: int
     direction_range: int
-    min_disparity: int
-    max_disparity: int
+    nearest_mm: int
+    farthest_mm: int
+    lack: int
+    margin: int
 
-    def best(self, edge: Edge, others: Sequence[Edge], side: int) -> Edge | None:
-        """The edge that corresponds: the nearest, or the most similar one and then the nearest."""
-        x, direction, gradient = edge
-        fitting = []
-        for other in others:
-            disparity, off = side * (x - other[0]), turn(other[1], direction)
-            if (
-                self.min_disparity <= disparity <= self.max_disparity
-                and off <= self.direction_range
-                and not self.is_level(other)
-            ):
-                unlike = 2 * off + abs(other[2] - gradient) if self.is_mutual else 0
-                fitting.append((unlike, disparity, other))
-        return min(fitting)[2] if fitting else None
+    def disparities(self, rig: Rig) -> range:
+        """Those that are wanted."""
+        least, most = (
+            floor(Fraction(rig.focal * rig.baseline, 16000 * depth))
+            for depth in (self.farthest_mm, self.nearest_mm)
+        )
+        return range(least + 1, most + 1)
+
+    def unlike(self, edge: Edge, other: Edge) -> int | None:
+        """How unlike two edges are; None if too much."""
+        off = turn(edge[1], other[1])
+        return 2 * off + abs(edge[2] - other[2]) if off <= self.direction_range else None
+
+    def around(self, left: Rows, right: Rows, y: int, x: int, disparity: int) -> int:
+        """How unlike the most similar pairs of this disparity are in the four rows around."""
+        total = 0
+        for row in (y - 2, y - 1, y + 1, y + 2):
+            pairs = [
+                self.unlike(edge, other)
+                for edge in (left[row] if 0 <= row < len(left) else ())
+                for other in right[row]
+                if abs(edge[0] - x) <= abs(row - y) and edge[0] - other[0] == disparity
+            ]
+            total += min([self.lack, *(each for each in pairs if each is not None)])
+        return total
+
+    def supported(self, left: Rows, right: Rows, y: int, most: int) -> dict[Edge, Edge]:
+        """The partners of left edges of a row: best of each other by a margin, with support."""
+        lefts = {edge: Choice() for edge in left[y]}
+        rights = {other: Choice() for other in right[y]}
+        support = {}
+        for edge in left[y]:
+            for other in right[y]:
+                disparity, own = edge[0] - other[0], self.unlike(edge, other)
+                if 0 <= disparity <= most and own is not None:
+                    around = self.around(left, right, y, edge[0], disparity)
+                    support[edge, other] = around < 4 * self.lack
+                    lefts[edge].see(own + around, other)
+                    rights[other].see(own + around, edge)
+        return {
+            edge: mine.partner
+            for edge, mine in lefts.items()
+            if mine.partner
+            and support[edge, mine.partner]
+            and (theirs := rights[mine.partner]).partner == edge
+            and all(each.best + self.margin <= each.rival for each in (mine, theirs))
+        }
+
+    def nearest(self, left: Sequence[Edge], right: Sequence[Edge], wanted: range) -> dict[Edge, Edge]:
+        """T §5.2.8: the partners with the least disparity."""
+        found = {}
+        for edge in left:
+            fitting = [
+                (edge[0] - other[0], other)
+                for other in right
+                if edge[0] - other[0] in wanted and self.unlike(edge, other) is not None
+            ]
+            if fitting:
+                found[edge] = min(fitting)[1]
+        return found
 
     def is_level(self, edge: Edge) -> bool:
         """Whether a gradient is too near to up or down."""
         return min(turn(edge[1], 64), turn(edge[1], 192)) < self.level_range
 
 
-def edges_3d(
-    rig: Rig, left: Sequence[Sequence[Edge]], right: Sequence[Sequence[Edge]], limits: EdgeLimits
-) -> list[tuple[int, ...]]:
+def edges_3d(rig: Rig, left: Rows, right: Rows, limits: EdgeLimits) -> list[tuple[int, ...]]:
     """3-D edges from the bottom row on: X, Y, Z and the number of the left edge in the store."""
     found = []
+    wanted = limits.disparities(rig)
+    steep = [[[edge for edge in row if not limits.is_level(edge)] for row in rows] for rows in (left, right)]
     for y in reversed(range(len(left))):
         first = sum(len(row) for row in left[:y])
-        for number, edge in enumerate(left[y]):
-            other = None if limits.is_level(edge) else limits.best(edge, right[y], 1)
-            if other is None or (limits.is_mutual and limits.best(other, left[y], -1) != edge):
-                continue
+        if limits.is_mutual:
+            partners = limits.supported(*steep, y, wanted.stop - 1)
+        else:
+            partners = limits.nearest(steep[0][y], steep[1][y], wanted)
+        for edge, other in partners.items():
             point = rig.point(16 * edge[0], 16 * y, 16 * (edge[0] - other[0]))
-            if point:
-                found.append((*point, first + number))
+            if point and edge[0] - other[0] in wanted:
+                found.append((*point, first + left[y].index(edge)))
     return found

@@ -16,7 +16,20 @@ from tests.firmware.stereo_references import Edge, EdgeLimits, Rig, edges_3d
 from tests.firmware.whole_pictures import buffer, random_frames, run, stereo
 from tinyphoon.exchange import copy_words, pack_edge_rows
 from tinyphoon.geometry import GEOMETRY_WORDS
-from tinyphoon.stages.stereo_edges import StereoEdgeThresholds, is_level, stereo_edges_row, take_right_row
+from tinyphoon.stages.edge_correspondence import (
+    REACH,
+    WINDOW_ROWS,
+    disparity_at,
+    is_level,
+    match_edges,
+    match_nearest,
+    spread_left_row,
+    spread_right_row,
+    store_edges3d_row,
+    take_left_row,
+    take_right_row,
+)
+from tinyphoon.stages.stereo_edges import StereoEdgeThresholds
 from tinyphoon.stages.stereo_lines import Correspondence
 from tinyphoon.stores.edges import EDGE_DATA
 from tinyphoon.stores.lines import LINE_WORDS
@@ -47,19 +60,28 @@ def found(
     pack_edge_rows(index, counts, rows)
     table = np.full(room * EDGE3D_WORDS, GARBAGE, np.int16)
     left_row, right_row = np.full((2, rig.width), GARBAGE, np.uint32)
+    windows = np.full((2, WINDOW_ROWS * rig.width), GARBAGE, np.uint16)
+    partners, *scores = np.full((4, rig.width), GARBAGE, np.uint16)
     geometry = np.array([rig.focal, rig.baseline, *[0] * (GEOMETRY_WORDS - 2)], np.int32)
-    limits = (
-        int(mode.correspondence),
-        mode.level_range,
-        mode.direction_range,
-        mode.min_disparity,
-        mode.max_disparity,
-    )
-    number = 0
-    for y in reversed(range(len(left))):
-        count = take_right_row(shared, rows, y, right_row, mode.level_range)
-        picture = *store(left), y, left_row, right_row, count
-        number = stereo_edges_row(*picture, geometry, *limits, rig.width, rig.height, table, number)
+    least, most = (disparity_at(geometry, depth) for depth in (mode.farthest_mm, mode.nearest_mm))
+    number, pictures = 0, (store(left), (shared, rows))
+    for ahead in reversed(range(-REACH, len(left) + REACH)):
+        y, level = ahead + REACH, mode.level_range
+        spread_left_row(*pictures[0], ahead, windows[0], ahead % WINDOW_ROWS, level)
+        spread_right_row(*pictures[1], ahead, windows[1], ahead % WINDOW_ROWS, level)
+        if y >= len(left):
+            continue
+        left_count = take_left_row(*pictures[0], y, left_row, level)
+        row = left_row, left_count, right_row, take_right_row(*pictures[1], y, right_row, level)
+        if mode.correspondence is Correspondence.MUTUAL:
+            limits = mode.direction_range, most, mode.lack, mode.margin
+            match_edges(*row, *windows, y % WINDOW_ROWS, partners, *scores, *limits)
+        else:
+            match_nearest(*row, partners, mode.direction_range, least + 1, most)
+        pairs = left_row, left_count, right_row, partners, least + 1
+        number = store_edges3d_row(
+            *pictures[0][:2], y, *pairs, geometry, rig.width, rig.height, table, number
+        )
     return [tuple(each) for each in table.reshape(-1, EDGE3D_WORDS)[: min(number, room)].tolist()], number
 
 
@@ -69,8 +91,10 @@ def limits_of(mode: StereoEdgeThresholds) -> EdgeLimits:
         is_mutual=mode.correspondence is Correspondence.MUTUAL,
         level_range=mode.level_range,
         direction_range=mode.direction_range,
-        min_disparity=mode.min_disparity,
-        max_disparity=mode.max_disparity,
+        nearest_mm=mode.nearest_mm,
+        farthest_mm=mode.farthest_mm,
+        lack=mode.lack,
+        margin=mode.margin,
     )
 
 
@@ -83,13 +107,15 @@ edges = st.dictionaries(
 @given(st.lists(st.tuples(edges, edges), min_size=1, max_size=4), st.data())
 def test_any_edges(pairs: list[tuple[Row, Row]], data: st.DataObject) -> None:
     """Any rows, limits and cameras."""
-    low = data.draw(st.integers(1, 40))
+    low = data.draw(st.integers(1, 2000))
     mode = StereoEdgeThresholds(
         correspondence=data.draw(st.sampled_from(Correspondence)),
         level_range=data.draw(st.integers(0, 66)),
         direction_range=data.draw(st.integers(0, 128)),
-        min_disparity=low,
-        max_disparity=low + data.draw(st.integers(0, 200)),
+        nearest_mm=low,
+        farthest_mm=low + data.draw(st.integers(0, 30000)),
+        lack=data.draw(st.integers(0, 4096)),
+        margin=data.draw(st.integers(0, 60)),
     )
     rig = replace(ROBOT, focal=data.draw(st.integers(300, 20000)), baseline=data.draw(st.integers(1, 100000)))
     left, right = (list(rows) for rows in zip(*pairs, strict=True))
@@ -101,8 +127,11 @@ NEAR = StereoEdgeThresholds(
     correspondence=Correspondence.NEAREST,
     level_range=0,
     direction_range=8,
-    min_disparity=8,
-    max_disparity=100,
+    # 100 px to 8
+    nearest_mm=117,
+    farthest_mm=1500,
+    lack=32,
+    margin=24,
 )
 LIKE = replace(NEAR, correspondence=Correspondence.MUTUAL, level_range=16)
 BOTH = pytest.mark.parametrize("mode", [NEAR, LIKE])
@@ -110,10 +139,10 @@ BOTH = pytest.mark.parametrize("mode", [NEAR, LIKE])
 
 @BOTH
 def test_edge_in_closed_form(mode: StereoEdgeThresholds) -> None:
-    """20 pixels are 588 mm; the point lies where T Eq. 3.17 says, and the edge is the second of the store."""
-    left = [[(30, 0, 9)], [(200, 5, 9)], []]
-    right = [[], [(180, 0, 20)], []]
-    assert found(left, right, mode) == ([(62, -181, 588, 1)], 1)
+    """20 pixels are 588 mm; the points lie where T Eq. 3.17 says, and the first edge of the store has none."""
+    left = [[(30, 0, 9), (200, 5, 9)], [(200, 5, 9)]]
+    right = [[(180, 0, 20)], [(180, 0, 20)]]
+    assert found(left, right, mode) == ([(62, -181, 588, 2), (62, -182, 588, 1)], 2)
 
 
 @pytest.mark.parametrize(
@@ -129,29 +158,61 @@ def test_edge_in_closed_form(mode: StereoEdgeThresholds) -> None:
 @BOTH
 def test_pairs_that_must_not_match(mode: StereoEdgeThresholds, other: Row) -> None:
     """In the same row, and yet not the same edge."""
-    assert found([[(200, 0, 9)]], [other], mode) == ([], 0)
+    assert found([[(200, 0, 9)]] * 2, [other] * 2, mode) == ([], 0)
     assert found([[(200, 0, 9)], []], [[], [(180, 0, 9)]], mode) == ([], 0)
 
 
 def test_the_nearest_or_the_most_similar_is_taken() -> None:
     """Of several that fit, the thesis takes the one with the least disparity, ours the one whose gradient is alike."""
-    left = [[(200, 250, 80)]]
-    right = [[(150, 252, 81), (170, 252, 40), (180, 100, 80), (199, 250, 80)]]
-    ((nearest,), _), ((likest,), _) = found(left, right, NEAR), found(left, right, LIKE)
+    left = [[(200, 250, 80)]] * 2
+    right = [[(150, 252, 81), (170, 252, 40), (180, 100, 80)]] * 2
+    ((nearest, _), _), ((likest, _), _) = found(left, right, NEAR), found(left, right, LIKE)
     assert (nearest[2], likest[2]) == (392, 235)
+
+
+def test_an_edge_whose_partner_is_farther_than_is_wanted_gets_no_other() -> None:
+    """The partner is 2 m away; ours finds it and drops it, the thesis takes what is within its limits."""
+    left, right = [[(200, 250, 80)]] * 2, [[(170, 252, 40), (194, 250, 80)]] * 2
+    assert found(left, right, LIKE) == ([], 0)
+    assert [each[2] for each in found(left, right, NEAR)[0]] == [392, 392]
+
+
+def test_an_edge_that_is_as_like_two_has_no_depth() -> None:
+    """A rival may have no nearly as good a score, unless it is the pixel beside; it is the same for the right edge."""
+    one, two, beside = [[(170, 0, 80)]], [[(150, 0, 80), (170, 0, 80)]], [[(170, 0, 80), (171, 0, 60)]]
+    assert [found([[(200, 0, 80)]] * 3, right * 3, LIKE)[1] for right in (one, two, beside)] == [3, 0, 3]
+    assert found([[(200, 0, 80), (210, 0, 80)]] * 3, one * 3, LIKE)[1] == 0
+
+
+@pytest.mark.parametrize(
+    ("columns", "disparities", "number"),
+    [
+        ([200], [30], 0),
+        ([200, 201], [30, 30], 2),  # it leans by 45 degrees
+        ([200, 202], [30, 30], 0),  # another edge
+        ([200, 200], [30, 31], 0),  # another depth
+        ([200, None, 202], [30, None, 30], 2),  # a row is missing
+    ],
+)
+def test_an_edge_needs_support(columns: list[int | None], disparities: list[int | None], number: int) -> None:
+    """In one row at least of the two above and the two below, the same disparity must be beside it."""
+    pairs = list(zip(columns, disparities, strict=True))
+    left = [[] if x is None else [(x, 0, 80)] for x, _ in pairs]
+    right = [[] if x is None or d is None else [(x - d, 0, 80)] for x, d in pairs]
+    assert found(left, right, LIKE)[1] == number
 
 
 def test_an_edge_belongs_to_one_edge_only() -> None:
     """Two left edges, one right edge: it belongs to the one that is more like it."""
-    left, right = [[(190, 0, 60), (200, 0, 90)]], [[(170, 0, 85)]]
-    assert [each[3] for each in found(left, right, LIKE)[0]] == [1]
-    assert [each[3] for each in found(left, right, NEAR)[0]] == [0, 1]
+    left, right = [[(190, 0, 60), (200, 0, 90)]] * 2, [[(170, 0, 85)]] * 2
+    assert [each[3] for each in found(left, right, LIKE)[0]] == [3, 1]
+    assert [each[3] for each in found(left, right, NEAR)[0]] == [2, 3, 0, 1]
 
 
 def test_level_edges_are_left_out() -> None:
     """A line along the row has a partner everywhere; ours takes none of them."""
     row = [[(x, 64, 80) for x in range(150, 210)]]
-    assert found(row, row, LIKE) == ([], 0)
+    assert found(row * 2, row * 2, LIKE) == ([], 0)
     assert found(row, row, NEAR)[1] > 50
     assert [is_level(direction << 8, 16) for direction in (48, 49, 79, 80, 176, 177, 207, 208)] == [
         0,
@@ -170,10 +231,10 @@ def test_a_full_table_keeps_the_bottom_of_the_picture() -> None:
 
 
 @pytest.mark.parametrize("limits", [(0, 10), (11, 10)])
-def test_disparities_that_contradict_each_other_are_refused(limits: tuple[int, int]) -> None:
-    """No disparity has no depth."""
-    with pytest.raises(ValueError, match="disparities must be 1 or more and rise"):
-        replace(NEAR, min_disparity=limits[0], max_disparity=limits[1])
+def test_depths_that_contradict_each_other_are_refused(limits: tuple[int, int]) -> None:
+    """Nothing is 0 mm away."""
+    with pytest.raises(ValueError, match="depths must be 1 mm or more and rise"):
+        replace(NEAR, nearest_mm=limits[0], farthest_mm=limits[1])
 
 
 def rows_of(board, core: str) -> list[Row]:
@@ -226,10 +287,10 @@ def test_random_pictures(width: int, height: int) -> None:
 
 
 def test_more_3d_edges_than_room_are_counted() -> None:
-    """Stripes: the same in both pictures, so that each has a corresponding one at another stripe."""
+    """Stripes of any grey levels, so that each edge is unlike the others, 20 px to the left in the right picture."""
+    stripes = np.random.default_rng(5).permutation(np.linspace(0, 255, 34)).astype(np.uint8)
     x = np.arange(320)
-    uyvy = np.full((240, 640), 128, np.uint8)
-    uyvy[:, 1::2] = np.where(x // 10 % 2, 255, 0)
-    uyvy[150:, 1::2] = 0  # the edge store holds no more
-    results = check_board(stereo((uyvy, uyvy)), 320, 240)
+    pictures = np.full((2, 240, 640), 128, np.uint8)
+    pictures[0, :, 1::2], pictures[1, :, 1::2] = stripes[x // 10], stripes[(x + 20) // 10]
+    results = check_board(stereo(tuple(pictures)), 320, 240)
     assert results["edges_3d_lost_A"] > 0

@@ -1,9 +1,8 @@
 """3-D edges: edges of the left picture that an edge of the right one corresponds to, for obstacles of any kind (T §5.2.8).
 
-The corresponding edge lies in the same row, has nearly the same gradient direction and a disparity within limits. The plain
-way of the thesis takes the nearest, which is the one with the least disparity. The better way, ours, takes the one whose
-gradient is most alike, and only if each is the best of the other. Edges whose gradient looks up or down belong to lines
-along the row, all of whose edges are alike: with `level_range` they are left out, as T §5.2.7 leaves out such lines.
+The corresponding edge lies in the same row, has nearly the same gradient direction and a disparity within limits; which one
+it is says `edge_correspondence.py`. Edges whose gradient looks up or down belong to lines along the row, all of whose edges
+are alike: with `level_range` they are left out, as T §5.2.7 leaves out such lines.
 """
 
 from __future__ import annotations
@@ -12,16 +11,24 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from bfsim.api import Buffer, Core, Frame, i16, i32, kernel, u16, u32
+from bfsim.api import Buffer, Core, Frame, Row, i16, u16, u32
 from tinyphoon.fields import allowed
-from tinyphoon.geometry import store_point
-from tinyphoon.stages.line_segments import NONE, turn_between
+from tinyphoon.geometry import FARTHEST_MM
+from tinyphoon.stages.edge_correspondence import (
+    REACH,
+    WINDOW_ROWS,
+    disparity_at,
+    match_edges,
+    match_nearest,
+    spread_left_row,
+    spread_right_row,
+    store_edges3d_row,
+    take_left_row,
+    take_right_row,
+)
 from tinyphoon.stages.stereo_lines import Correspondence
 from tinyphoon.stores.edges import edge_store
-from tinyphoon.stores.lines import SUBPIXELS
-from tinyphoon.stores.lines3d import EDGE3D_CAPACITY, EDGE3D_LEFT, EDGE3D_WORDS, EDGE3D_X
-
-DISPARITY_BITS = 12
+from tinyphoon.stores.lines3d import EDGE3D_CAPACITY, EDGE3D_WORDS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,152 +36,69 @@ class StereoEdgeThresholds:
     """What makes two edges correspond.
 
     `correspondence`: how the edge is chosen. `level_range`: how near to straight up or down a gradient is left out, in
-    1/256 of a turn; 0 for none. `direction_range`: how far their gradient directions may differ, in 1/256 of a turn. `min_disparity`,
-    `max_disparity`: in pixels, 1 and more.
+    1/256 of a turn; 0 for none. `direction_range`: how far their gradient directions may differ, in 1/256 of a turn.
+    `nearest_mm`, `farthest_mm`: depths between which edges are wanted. Only for MUTUAL: `lack`, what a pair's score gets for
+    each of the rows around without a pair of its disparity, and `margin`, how much less its score must be than any
+    rival's. A score is made of grey levels of gradients and of twice the directions' 1/256.
     """
 
     correspondence: Correspondence
     level_range: int = allowed(0, 64)
     direction_range: int = allowed(0, 64)
-    min_disparity: int = allowed(1, 1023, at_most="max_disparity")
-    max_disparity: int = allowed(1, 1023)
+    nearest_mm: int = allowed(1, FARTHEST_MM, at_most="farthest_mm")
+    farthest_mm: int = allowed(1, FARTHEST_MM)
+    lack: int = allowed(0, 4096)
+    margin: int = allowed(0, 4096)
 
     def __post_init__(self) -> None:
-        if not 1 <= self.min_disparity <= self.max_disparity:
+        if not 1 <= self.nearest_mm <= self.farthest_mm:
             raise ValueError(
-                f"disparities must be 1 or more and rise, not {self.min_disparity} to {self.max_disparity}"
+                f"depths must be 1 mm or more and rise, not {self.nearest_mm} to {self.farthest_mm}"
             )
 
 
-def stereo_edge_buffers() -> Sequence[Buffer]:
-    """Return the buffers of the stage on core A: in L1 if there is room, else in L2."""
-    return (Buffer("edges_3d", i16, EDGE3D_WORDS * EDGE3D_CAPACITY, "data1"),)
+def stereo_edge_buffers(images: str) -> Sequence[Buffer]:
+    """Return the buffers of the stage on core A, in the memory of `images`: they are written only, which costs little."""
+    return (Buffer("edges_3d", i16, EDGE3D_WORDS * EDGE3D_CAPACITY, images),)
 
 
-@kernel
-def is_level(edge: u32, level_range: i32) -> i32:
-    """Return 1 for an edge whose gradient looks up or down, to less than `level_range`; else 0."""
-    from_up = abs(turn_between(i32(edge >> 8 & 255) << 1 & 255, 128))
-    return 1 if from_up < level_range << 1 else 0
+@dataclass(frozen=True, slots=True)
+class _Rows:
+    """Rows of both edge stores, without level edges: one as a list, and those around it in windows.
 
-
-@kernel
-def take_edges(edges: u32[:], first: i32, count: i32, row: u32[:], level_range: i32) -> i32:
-    """Copy `count` edges from place `first` on to `row`, without the level ones, and return how many are left."""
-    taken = 0
-    for place in range(first, first + count):
-        edge = edges[place]
-        if is_level(edge, level_range) == 0:
-            row[taken] = edge
-            taken = taken + 1
-    return taken
-
-
-@kernel
-def take_right_row(right_edges: u32[:], right_rows: u32[:], y: i32, row: u32[:], level_range: i32) -> i32:
-    """Copy row `y` of the edge store that core B shares, without the level edges; return how many are left."""
-    here = right_rows[y]
-    return take_edges(right_edges, i32(here & 0xFFFF), i32(here >> 16), row, level_range)
-
-
-@kernel
-def matching_edge(
-    edge: u32,
-    others: u32[:],
-    count: i32,
-    side: i32,
-    by_likeness: i32,
-    direction_range: i32,
-    min_disparity: i32,
-    max_disparity: i32,
-) -> i32:
-    """Return the place of the one of `count` other edges that corresponds to an edge, or NONE.
-
-    `side` is 1 for an edge of the left picture and others of the right one, -1 for the reverse. With `by_likeness` 0 it
-    is the nearest, with 1 the one with the most similar gradient and of these the nearest.
+    They lie in L1 over the segments and the rings of the stages before, which have finished with them.
     """
-    x = i32(edge >> 16)
-    best = NONE
-    least: i32 = 1 << 30
-    # the others go to the right: the first ones are those with the greatest disparity, or with the least
-    last_disparity = min_disparity if side > 0 else -max_disparity
-    for place in range(count):
-        other = others[place]
-        apart = x - i32(other >> 16)
-        if apart < last_disparity:
-            break
-        disparity = side * apart
-        if min_disparity <= disparity <= max_disparity:
-            turn = abs(turn_between(i32(other >> 8 & 255), i32(edge >> 8 & 255)))
-            if turn <= direction_range:
-                unlike = 2 * turn + abs(i32(other & 255) - i32(edge & 255))
-                off = (by_likeness * unlike << DISPARITY_BITS) + disparity
-                if off < least:
-                    best = place
-                    least = off
-    return best
 
+    core: Core
+    left: tuple[Row, ...]
+    right: tuple[Row, ...]
+    left_row: Row
+    right_row: Row
+    windows: tuple[Row, Row]
+    level_range: int
 
-@kernel
-def stereo_edges_row(
-    edge_data: u32[:],
-    edge_index: u32[:],
-    edge_counts: u16[:],
-    y: i32,
-    left_row: u32[:],
-    right_row: u32[:],
-    right_count: i32,
-    geometry: i32[:],
-    is_mutual: i32,
-    level_range: i32,
-    direction_range: i32,
-    min_disparity: i32,
-    max_disparity: i32,
-    width: i32,
-    height: i32,
-    edges_3d: i16[:],
-    found: i32,
-) -> i32:
-    """Store the 3-D edges of row `y`, where the right picture has the `right_count` edges in `right_row`.
-
-    `left_row` is room for those of the left one. `found` is how many the rows before gave; returns it with this row.
-    Those beyond the length of `edges_3d` are counted, not stored.
-    """
-    place = i32(edge_index[y])
-    left_count = take_edges(edge_data, place, i32(edge_counts[y]), left_row, level_range)
-    for left in range(left_count):
-        edge = left_row[left]
-        right = matching_edge(
-            edge, right_row, right_count, 1, is_mutual, direction_range, min_disparity, max_disparity
+    @classmethod
+    def of(cls, core: Core, width: int, level_range: int) -> _Rows:
+        left_row, right_row, *_ = core.overlay("segments", u32, width)
+        right = core.array("right_edge_data"), core.array("right_edge_rows")
+        rings = ("colour_ring", "eroded_ring")
+        left_window, right_window = (core.overlay(each, u16, WINDOW_ROWS * width)[0] for each in rings)
+        return cls(
+            core, edge_store(core), right, left_row, right_row, (left_window, right_window), level_range
         )
-        if right != NONE and is_mutual != 0:
-            back = matching_edge(
-                right_row[right], left_row, left_count, -1, is_mutual, direction_range, min_disparity, max_disparity
-            )  # fmt: skip
-            if back != left:
-                right = NONE
-        if right != NONE:
-            x = i32(edge >> 16)
-            disparity = SUBPIXELS * (x - i32(right_row[right] >> 16))
-            base = EDGE3D_WORDS * found
-            stored = 1
-            if base < len(edges_3d):
-                stored = store_point(
-                    geometry,
-                    SUBPIXELS * x,
-                    SUBPIXELS * y,
-                    disparity,
-                    width,
-                    height,
-                    edges_3d,
-                    base + EDGE3D_X,
-                )
-            if stored != 0 and base < len(edges_3d):
-                while edge_data[place] != edge:
-                    place = place + 1
-                edges_3d[base + EDGE3D_LEFT] = place
-            found = found + stored
-    return found
+
+    def take(self, y: int) -> Generator[Any, Any, tuple[Row, int, Row, int]]:
+        """Return row `y`: the edges of the left picture and how many, those of the right one and how many."""
+        left: int = yield self.core.run(take_left_row, *self.left, y, self.left_row, self.level_range)
+        right: int = yield self.core.run(take_right_row, *self.right, y, self.right_row, self.level_range)
+        return self.left_row, left, self.right_row, right
+
+    def spread(self, y: int) -> Generator[Any, Any, None]:
+        """Put row `y` into the windows; it may lie outside the picture."""
+        left, right = self.windows
+        rest = y % WINDOW_ROWS, self.level_range
+        yield self.core.run(spread_left_row, *self.left, y, left, *rest)
+        yield self.core.run(spread_right_row, *self.right, y, right, *rest)
 
 
 def stereo_edges(core: Core, frame: Frame, thresholds: StereoEdgeThresholds) -> Generator[Any, Any, int]:
@@ -183,24 +107,31 @@ def stereo_edges(core: Core, frame: Frame, thresholds: StereoEdgeThresholds) -> 
     Core B must have posted that its edges are there. Publishes `edges_3d`, that number, and `edges_3d_lost`, how many
     found no room.
     """
-    store = edge_store(core)
-    right = core.array("right_edge_data"), core.array("right_edge_rows")
-    left_row, right_row, *_ = core.overlay("segments", u32, frame.width)
+    rows = _Rows.of(core, frame.width, thresholds.level_range)
     geometry, edges_3d = core.array("geometry"), core.array("edges_3d")
-    level_range = thresholds.level_range
-    limits = (
-        int(thresholds.correspondence),
-        level_range,
-        thresholds.direction_range,
-        thresholds.min_disparity,
-        thresholds.max_disparity,
-    )
-    size = frame.width, frame.height
+    partners, *scores = core.overlay("opened_ring", u16, frame.width)
+    least: int = yield core.run(disparity_at, geometry, thresholds.farthest_mm)
+    most: int = yield core.run(disparity_at, geometry, thresholds.nearest_mm)
+    least += 1  # to what is nearer than that
+    is_mutual = thresholds.correspondence is Correspondence.MUTUAL
+    limits = thresholds.direction_range, most, thresholds.lack, thresholds.margin
+    if is_mutual:
+        for y in range(frame.height + REACH - 1, frame.height - REACH - 1, -1):
+            yield from rows.spread(y)
     found = 0
     for y in range(frame.height - 1, -1, -1):
-        count = yield core.run(take_right_row, *right, y, right_row, level_range)
-        rows = left_row, right_row, count
-        found = yield core.run(stereo_edges_row, *store, y, *rows, geometry, *limits, *size, edges_3d, found)
+        row = yield from rows.take(y)
+        if is_mutual:
+            yield from rows.spread(y - REACH)
+            place = *rows.windows, y % WINDOW_ROWS
+            yield core.run(match_edges, *row, *place, partners, *scores, *limits)
+        else:
+            yield core.run(match_nearest, *row, partners, thresholds.direction_range, least, most)
+        left, left_count, right, _ = row
+        pairs = left, left_count, right, partners, least
+        store = core.array("edge_data"), core.array("edge_index"), y
+        size = frame.width, frame.height
+        found = yield core.run(store_edges3d_row, *store, *pairs, geometry, *size, edges_3d, found)
     kept = min(found, EDGE3D_CAPACITY)
     core.publish(edges_3d=kept, edges_3d_lost=found - kept)
     return kept

@@ -27,5 +27,5 @@ EDGE3D_Z = 2
 EDGE3D_LEFT = 3  # number of the edge in `edge_data` of core A
 EDGE3D_WORDS = 4
 
-EDGE3D_CAPACITY = 2048
-"""16 KB: half of the edges of a full edge store."""
+EDGE3D_CAPACITY = 4096
+"""32 KB: half of the edges of a full edge store. Those of cluttered rooms gave 1900 to 3100."""
