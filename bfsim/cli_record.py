@@ -187,6 +187,9 @@ def info_command(path: Path, as_json: bool, plot: Path | None) -> None:
 @click.option("--tilt", type=float, metavar="DEG", help="How far the cameras look down, in degrees.")
 @click.option("--fisheye", is_flag=True, help="The lenses are fisheyes: 100 degrees and more across.")
 @click.option("--mono", is_flag=True, help="CHESSBOARDS holds pictures of the one camera of RECORDING.")
+@click.option(
+    "--resize", is_flag=True, help="Scale the chessboards, as `record import --resize` scaled RECORDING."
+)
 @click.option("--output", type=click.Path(path_type=Path), help="Write this file and leave RECORDING alone.")
 def calibrate_command(
     chessboards: Path,
@@ -197,6 +200,7 @@ def calibrate_command(
     tilt: float | None,
     fisheye: bool,
     mono: bool,
+    resize: bool,
     output: Path | None,
 ) -> None:
     """Write rectification tables and the geometry into RECORDING, made from chessboard pictures of its cameras.
@@ -224,6 +228,7 @@ def calibrate_command(
         tilt_deg=tilt,
         lens="fisheye" if fisheye else "pinhole",
         mono=mono,
+        resize=resize,
     )
     with recording.RecordingReader(output or path) as reader:
         geometry = reader.geometry

@@ -34,13 +34,13 @@ class BoardView:
 
 
 def find_views(
-    cv2: Any, folder: Path, size: tuple[int, int], corners: tuple[int, int], *, mono: bool
+    cv2: Any, folder: Path, size: tuple[int, int], corners: tuple[int, int], *, mono: bool, resize: bool
 ) -> tuple[list[BoardView], list[Skipped]]:
     """Return the boards seen in the pictures of `size` (width, height) of a folder, and the pictures that show none.
 
     With `mono` every picture is one of the only camera. Without, pictures left* and right* (or those of the folders
     left and right) go together by what follows in their names, or by their order if the names have nothing in common.
-    Raises RecordingError.
+    With `resize`, pictures of other sizes are scaled as an import scales them. Raises RecordingError.
     """
     sets, skipped = _together(folder, mono=mono)
     views = []
@@ -48,7 +48,7 @@ def find_views(
         found = []
         for path in paths:
             try:
-                found.append(_corners_in(cv2, _grey(path, size), corners))
+                found.append(_corners_in(cv2, _grey(path, size, resize=resize), corners))
             except RecordingError as error:
                 skipped.append(Skipped(path.name, str(error).removeprefix(f"{path}: ")))
         if len(found) == len(paths):
@@ -85,13 +85,17 @@ def _pictures_of(folder: Path, side: str) -> list[Path]:
     return image_paths(str(folder / side if (folder / side).is_dir() else folder / f"{side}*"))
 
 
-def _grey(path: Path, size: tuple[int, int]) -> Plane:
+def _grey(path: Path, size: tuple[int, int], *, resize: bool) -> Plane:
     image = load_image(path)
+    planes = YuvPlanes.from_image(image)
     if image.size != size:
-        raise RecordingError(
-            f"picture must be {size[0]}x{size[1]} like the recording, not {image.width}x{image.height}"
-        )
-    return np.ascontiguousarray(YuvPlanes.from_image(image).y)
+        if not resize:
+            raise RecordingError(
+                f"picture must be {size[0]}x{size[1]} like the recording, not {image.width}x{image.height}; `--resize` "
+                "scales it as `bfsim record import --resize` does"
+            )
+        planes = planes.resized(*size)
+    return np.ascontiguousarray(planes.y)
 
 
 def _corners_in(cv2: Any, grey: Plane, corners: tuple[int, int]) -> Corners:

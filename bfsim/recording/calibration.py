@@ -57,6 +57,7 @@ def calibrate_recording(
     tilt_deg: float | None = None,
     lens: LensName = "pinhole",
     mono: bool = False,
+    resize: bool = False,
 ) -> StereoCalibration:
     """Write `recording` with the rectification tables and the geometry of its cameras to `output`, or in its own place.
 
@@ -79,6 +80,7 @@ def calibrate_recording(
         focal_px=old.focal_px if old else None,
         lens=lens,
         mono=mono,
+        resize=resize,
     )
     report = calibration.report
     writer = RecordingWriter(
@@ -114,12 +116,14 @@ def calibrate(
     focal_px: float | None = None,
     lens: LensName = "pinhole",
     mono: bool = False,
+    resize: bool = False,
 ) -> StereoCalibration:
     """Calibrate cameras with pictures of `size` (width, height) of a board with `corners` (across, down) inner corners.
 
     The folder `chessboards` holds pictures left* and right* (or folders left and right), of which those with the same
     rest of the name were taken at once; with `mono` it holds pictures of the only camera. Pictures that show no whole
-    board are skipped; views that do not fit the others are left out; both are in the report. `focal_px` is the focal
+    board are skipped; views that do not fit the others are left out; both are in the report. With `resize`, pictures of another size are scaled as an import with
+    `--resize` scales them. `focal_px` is the focal
     length to rectify to; without it, the mean of the left camera's. Raises RecordingError.
     """
     model = _MODELS[lens]()
@@ -129,7 +133,7 @@ def calibrate(
             f"and {square_mm:g} mm"
         )
     folder = Path(chessboards)
-    views, skipped = find_views(model.cv2, folder, size, corners, mono=mono)
+    views, skipped = find_views(model.cv2, folder, size, corners, mono=mono, resize=resize)
     if len(views) < FEWEST_VIEWS:
         raise _too_few(folder, views, skipped, mono=mono)
     board = np.zeros((corners[0] * corners[1], 3))

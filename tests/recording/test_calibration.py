@@ -232,6 +232,19 @@ def test_a_report_in_another_form_is_refused(text: str) -> None:
         CalibrationReport.from_json(text)
 
 
+def test_larger_chessboards_are_scaled_like_the_recording(chessboards: Path, tmp_path: Path) -> None:
+    """A recording may have been imported smaller than its cameras' pictures, and cut to another shape."""
+    pytest.importorskip("cv2")
+    for path in chessboards.glob("left_0*.png"):
+        with Image.open(path) as picture:
+            large = Image.new("L", (640, 520), 80)
+            large.paste(picture.resize((640, 480), Image.Resampling.BICUBIC), (0, 20))
+        large.save(tmp_path / path.name)
+    report = calibrate(tmp_path, SIZE, corners=CORNERS, square_mm=SQUARE_MM, mono=True, resize=True).report
+    assert len(report.used) == 10
+    assert report.focal_px == pytest.approx(386, rel=0.02)
+
+
 def test_single_camera(chessboards: Path, tmp_path: Path) -> None:
     """The pictures of one camera make a geometry without a baseline, and the same tables for both sides."""
     pytest.importorskip("cv2")
@@ -268,7 +281,10 @@ class TestBadPictures:
         report = calibrate(pictures, SIZE, corners=CORNERS, square_mm=SQUARE_MM).report
         assert {(each.name, each.reason) for each in report.skipped} == {
             ("right_03.png", "no whole chessboard of 9x6 inner corners is found"),
-            ("left_02.png", "picture must be 320x240 like the recording, not 640x480"),
+            (
+                "left_02.png",
+                "picture must be 320x240 like the recording, not 640x480; `--resize` scales it as `bfsim record import --resize` does",
+            ),
             ("left_26.png", "has no picture of the other camera"),
             ("left_07.png", "file must be an image that Pillow reads, not something else"),
         }
