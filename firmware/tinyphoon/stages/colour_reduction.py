@@ -16,7 +16,8 @@ BLACK = 1 << 1  # T Eq. 5.2 and 5.3: class 1
 WHITE = 1 << 2
 FIRST_HUE = 3
 HUES = 28
-DARKEST = -182  # no luma less its chroma is below
+MOST_CHROMA = 181  # of U and V of -128
+DARKEST = -MOST_CHROMA  # no luma less its chroma is below
 
 
 @kernel
@@ -39,15 +40,14 @@ def colour_row(
     the two may have a colour. It is the 8-bit angle of (V, U) cut into 28 equal parts: dividing it by 10, as
     T Eq. 5.2 is printed, would make 26 hues and not the 28 of its text. A pixel of no colour is 0.
     """
+    never_black = least_chroma if least_chroma != 0 else MOST_CHROMA + 1
     for pair in range(len(colours) >> 1):
         u = uyvy[4 * pair] - 128
         v = uyvy[4 * pair + 2] - 128
         chroma = i32(isqrt32(u32(v * v + u * u)))
         left = uyvy[4 * pair + 1] - chroma
         right = uyvy[4 * pair + 3] - chroma
-        darkest = eps_black
-        if least_chroma != 0 and chroma >= least_chroma:
-            darkest = DARKEST
+        darkest = eps_black if chroma < never_black else DARKEST
         hue: u32 = 0
         if chroma >= least_chroma and max(left, right) >= darkest and min(left, right) <= eps_white:
             hue = u32(1) << (FIRST_HUE + (angle8(v, u, atan) * HUES >> 8))
