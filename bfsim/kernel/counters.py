@@ -80,7 +80,7 @@ def cost(routine: Routine, profile: CompilerProfile) -> tuple[Counter, ...]:
         place, depth = (routine.symbol, block.label), len(flow.loops_of(block.label))
         charges = _merged(found.charges)
         accesses = (
-            *(known[id(each)] for each in found.accesses),
+            *(known[id(each)] for each in found.accesses if id(each) in known),
             *(known[id(each)]._replace(fills=True) for each in found.fills),
         )
         enters = (*([routine.symbol] if block is routine.blocks[0] else []), *block.enters)
@@ -104,11 +104,12 @@ def _merged(charges: Iterable[Charge]) -> tuple[Charge, ...]:
 
 
 def _accesses(flow: ControlFlow) -> dict[int, Access]:
-    """Every load and store of a routine, by the identity of its instruction."""
+    """Every load and store of a routine, by the identity of its instruction; a compiler's own table is no array of the kernel."""
     found = {}
     for block in flow.routine.blocks:
         rows = (each for each in block.instructions if each.opcode in ("load", "store"))
         for number, each in enumerate(rows):
-            array = flow.root(each.operands[-1])[1:]
-            found[id(each)] = Access(array, each.opcode == "store", block.label, number)
+            root = flow.root(each.operands[-1])
+            if not root.startswith("@"):
+                found[id(each)] = Access(root[1:], each.opcode == "store", block.label, number)
     return found

@@ -148,9 +148,9 @@ def test_smaller_pictures(step: int, size: tuple[int, int]) -> None:
     """The cameras skip pixels, and settle again; the stages see what they send."""
     frames = random_frames(128, 96, count=4)
     board, outcome = run(frames, {"camera": {"width": size[0], "height": size[1]}})
-    # taken at the end of frame 0, set when frame 1 begins: frame 2 is the first one after the change, 3 the second
+    # taken before frame 0, set when it begins: frame 1 is the first one after the change, 2 the second, 3 the third
     sent = [
-        settled(skipped(uyvy, step), 1, camera)
+        settled(skipped(uyvy, step), 2, camera)
         for uyvy, camera in ((frames[-1].left, LEFT_CAMERA), (frames[-1].right, RIGHT_CAMERA))
     ]
     check(board, outcome, *sent)
@@ -162,7 +162,7 @@ def test_an_area_of_smaller_pictures() -> None:
     names = {"camera": {"width": 64, "height": 48}, "area": [20, 10, 30, 30]}
     board, outcome = run(frames, names)
     sent = [
-        part(settled(skipped(uyvy, 2), 1, camera), (20, 10, 30, 30))
+        part(settled(skipped(uyvy, 2), 2, camera), (20, 10, 30, 30))
         for uyvy, camera in ((frames[-1].left, LEFT_CAMERA), (frames[-1].right, RIGHT_CAMERA))
     ]
     check(board, outcome, *sent)
@@ -172,4 +172,4 @@ def test_pictures_settle_after_new_camera_settings() -> None:
     """A gain that changes makes the pictures drift for some frames; the same one again does not."""
     frames = random_frames(64, 48, count=3)
     board, outcome = run(frames, {"camera": {"gain": 20}})
-    check(board, outcome, settled(frames[2].left, 0, LEFT_CAMERA), settled(frames[2].right, 0, RIGHT_CAMERA))
+    check(board, outcome, settled(frames[2].left, 1, LEFT_CAMERA), settled(frames[2].right, 1, RIGHT_CAMERA))
