@@ -27,6 +27,7 @@ from bfsim.machine.spi.device import SpiDevice
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.room import place
 from bfsim.seen import Seen, SeenFrame
+from bfsim.spans import Span
 from bfsim.trace import Identity, RunRecord, RunWarning, WarningKind
 
 BUILT_IN_RECORDING = shipped.RECORDING
@@ -52,6 +53,7 @@ def simulate(
     progress: Callable[[int, int], None] | None = None,
     on_seen: Callable[[SeenFrame], None] | None = None,
     on_time: Callable[[float], None] | None = None,
+    on_spans: Callable[[Sequence[Span]], None] | None = None,
 ) -> RunRecord:
     """Run `firmware` on a recording and return the records: a built-in one, "FILE.py:NAME" or "PACKAGE:NAME".
 
@@ -63,7 +65,7 @@ def simulate(
     (frames done, frames in all); `profile` names the compiler whose code is costed; `script` is a JSON or TOML file
     that tells the firmware's device on the SPI what to do; `on_seen` is called with what was seen in each frame, if
     the firmware has a view, which changes nothing in the records; `on_time` is called now and then with the simulated
-    time in seconds. Ctrl-C ends the run with the frames done. Raises a
+    time in seconds; `on_spans` with what the cores and devices did since the last time. Ctrl-C ends the run with the frames done. Raises a
     BfsimError for anything that is wrong with what was given. A crash in native code ends the process, a notebook's, too;
     standard error then has the name of the kernel.
     """
@@ -117,7 +119,7 @@ def simulate(
             if on_seen:
                 on_seen(SeenFrame(index=index, times_ns=source.take_times_ns(index), cameras=cameras))
 
-        outcome = machine.run(iter(source), count, show if on_seen else None, on_time)
+        outcome = machine.run(iter(source), count, show if on_seen else None, on_time, on_spans)
     identity = replace(
         identity, recording_digest=source.digest, firmware_digest=loaded.digest, firmware_files=loaded.files
     )

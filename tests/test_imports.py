@@ -20,10 +20,11 @@ MAY_IMPORT = {
     "clocks": {"errors"},
     "trace": {"errors"},
     "seen": set(),
+    "spans": {"trace"},
     "chip": {"errors", "clocks"},
     "kernel": {"errors"},
     "linker": {"errors", "chip"},
-    "machine": {"errors", "signals", "clocks", "seen", "trace", "chip", "kernel", "linker"},
+    "machine": {"errors", "signals", "clocks", "seen", "spans", "trace", "chip", "kernel", "linker"},
     "api": {"chip", "errors", "kernel", "machine", "seen", "trace"},
     "recording": {"errors", "drafts", "seen"},
     "report": {
@@ -47,6 +48,7 @@ MAY_IMPORT = {
         "device_script",
         "errors",
         "seen",
+        "spans",
         "trace",
         "chip",
         "kernel",
@@ -83,7 +85,8 @@ MAY_IMPORT = {
 }
 MACHINE = {
     "firmware_lines": set(),
-    "simulation": set(),
+    "timeline": set(),
+    "simulation": {"timeline"},
     "program": {"core", "spi"},  # the types of what a main loop gets, and of the device that firmware brings
     "memories": {"program"},
     "code": {"memories", "program"},
@@ -99,7 +102,18 @@ MACHINE = {
         "simulation",
         "core",
     },  # core: the type of what a ring waits for
-    "core": {"bus", "calls", "cameras", "dma", "firmware_lines", "memories", "program", "simulation", "spi"},
+    "core": {
+        "bus",
+        "calls",
+        "cameras",
+        "dma",
+        "firmware_lines",
+        "memories",
+        "program",
+        "simulation",
+        "spi",
+        "timeline",
+    },
 }
 """Each block of the machine and what it may import of the others. The board wires them: it imports them all."""
 READ_VERSION = {"recording", "run", "cli"}  # these also read `bfsim.__version__`

@@ -42,8 +42,10 @@ from bfsim.machine.program import Buffer, Buffers, Firmware, FrameSize
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi.device import LARGEST_MESSAGE_BYTES, SpiDevice, device_at_work
 from bfsim.machine.spi.spi import Spi
+from bfsim.machine.timeline import Timeline
 from bfsim.seen import Seen
 from bfsim.signals import uninterrupted
+from bfsim.spans import Span
 from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, MessageRecord, TrafficRecord
 
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
@@ -63,6 +65,9 @@ OnTime = Callable[[float], None]
 """Told the simulated time, in seconds."""
 STEPS_TOLD = 2048  # events between two times that are told
 OnSeen = Callable[[int, tuple[Seen, ...]], None]
+OnSpans = Callable[[Sequence[Span]], None]
+SPANS_TOLD = 4096
+"""Spans are told so many at a time, or some more."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -155,6 +160,7 @@ class Board:
         self._seen: list[tuple[int, tuple[Seen, ...]]] = []
         self._on_seen: OnSeen | None = None
         self._on_time: OnTime | None = None
+        self._on_spans: OnSpans | None = None
         self._caches = {core: caches_of(self.link_map, PROCESSORS[core]) for core in self.spec.chip.cores}
         for core, caches in self._caches.items():
             check_caches(self.link_map, core, caches, self.spec.chip.regions)
@@ -205,14 +211,17 @@ class Board:
         on_frame: Callable[[FrameRecord], None] | None = None,
         on_seen: OnSeen | None = None,
         on_time: OnTime | None = None,
+        on_spans: OnSpans | None = None,
     ) -> Outcome:
         """Play `pictures` until they end or the user interrupts. Raises DeadlockError when the cores block each other.
 
         `on_seen` is called with the index of each frame and what its cores saw, if the firmware has a view; `on_time` now and
-        then with the simulated time.
+        then with the simulated time; `on_spans` again and again with what the cores and devices did since.
         """
         self._on_seen = on_seen
         self._on_time = on_time
+        self._on_spans = on_spans
+        self._env.timeline = Timeline(self.spec.clocks.cclk_ticks) if on_spans else None
         capture = self._capture(pictures)
         for index, name in enumerate(self.spec.chip.cores):
             self.cores[name] = self._core(index, name, capture, lambda: self._finish_frame(on_frame))
@@ -226,6 +235,7 @@ class Board:
         except KeyboardInterrupt:
             interrupted = True
             self._tell_seen()
+        self._tell_spans(at_least=0)
         return self._outcome(capture, interrupted)
 
     def _run_until(self, event: simpy.Event) -> None:
@@ -238,12 +248,20 @@ class Board:
                 if self._on_time and steps % STEPS_TOLD == 0:
                     self._on_time(float(self._env.tick / self.spec.clocks.tick_hz))
                 self._tell_seen()  # here, outside of the firmware: what fails is no fault of it
+                self._tell_spans(SPANS_TOLD)
 
     def _tell_seen(self) -> None:
         """Tell what was seen in each frame that is done, as a whole: a frame with a record has been told, too."""
         while self._seen and self._on_seen:
             with uninterrupted():
                 self._on_seen(*self._seen.pop(0))
+
+    def _tell_spans(self, at_least: int) -> None:
+        """Tell what happened since the last time, if it is so much."""
+        timeline = self._env.timeline
+        if timeline and self._on_spans and len(timeline.spans) >= at_least:
+            with uninterrupted():
+                self._on_spans(timeline.take())
 
     def _is_deadlock(self) -> bool:
         """Whether every core has ended or waits for another one, whatever DMA and cameras go on doing."""

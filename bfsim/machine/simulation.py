@@ -11,6 +11,8 @@ from typing import Protocol
 
 import simpy
 
+from bfsim.machine.timeline import Timeline
+
 
 class Followed(Protocol):
     """What keeps its own time behind the simulation's."""
@@ -32,6 +34,8 @@ class Simulation(simpy.Environment):
     def __init__(self) -> None:
         super().__init__()
         self._bus: Followed | None = None
+        self.timeline: Timeline | None = None
+        """What is told what happens when, if anybody wants to know."""
 
     def follow(self, bus: Followed) -> None:
         """Play `bus` up to each event from now on."""

@@ -16,6 +16,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus.bus import Bus, Transfer
 from bfsim.machine.core.accounts import FrameAccounts
 from bfsim.machine.simulation import Simulation
+from bfsim.machine.timeline import CoreTimeline
 from bfsim.trace import StallReason
 
 
@@ -36,6 +37,7 @@ class CoreClock:
         self._owed_cclk = 0  # of a wait: what passed before its interrupts, on no account yet
         self._accounts = FrameAccounts(name, stages)
         self._account = self._accounts.now
+        self._timeline = CoreTimeline(env.timeline, name) if env.timeline else None
 
     @property
     def now_ticks(self) -> int:
@@ -62,24 +64,28 @@ class CoreClock:
             yield from self._sync()
             self._bus.settle()
             if transfer.end is None:
-                yield from self._blocked(iter([self._bus.when_done(transfer)]), "DMA")
+                yield from self._blocked(iter([self._bus.when_done(transfer)]), "DMA", reason)
         self._charge(reason, self._until(transfer.end))
 
     def wait_event(self, event: simpy.Event | None, what: str) -> Generator[Any, Any, None]:
         """Stall until `event`, the end of a DMA that this core started."""
         yield from self._sync()
         if event is not None and not event.processed:
-            yield from self._blocked(iter([event]), what)
+            yield from self._blocked(iter([event]), what, StallReason.RING_EMPTY)
             self._wake(StallReason.RING_EMPTY)
 
     def stall(self, reason: StallReason, cclk: int) -> None:
         """Let `cclk` cycles pass without work, for `reason`."""
+        if self._timeline:
+            self._timeline.wait(reason, self._cclk, cclk)
         self._cclk += cclk
         stalls = self._account.stall_cclk
         stalls[reason] = stalls.get(reason, 0) + cclk
 
     def issue(self, cclk: int) -> None:
         """Let `cclk` cycles pass with work that is no kernel's."""
+        if self._timeline:
+            self._timeline.work(self._cclk, cclk)
         self._cclk += cclk
         self._account.issue_cclk += cclk
 
@@ -103,7 +109,7 @@ class CoreClock:
 
     def _charge(self, reason: StallReason | None, waited_cclk: int) -> None:
         """Let `waited_cclk` pass, and charge them with what the wait owes from before its interrupts."""
-        self._cclk += waited_cclk
+        self._pass_waiting(reason, waited_cclk)
         waited_cclk, self._owed_cclk = waited_cclk + self._owed_cclk, 0
         if reason is None:
             self._account.idle_cclk += waited_cclk
@@ -111,8 +117,19 @@ class CoreClock:
             stalls = self._account.stall_cclk
             stalls[reason] = stalls.get(reason, 0) + waited_cclk
 
-    def _blocked(self, wait: Any, what: str) -> Generator[Any, Any, Any]:
-        """Play `wait`, a generator of events, saying meanwhile what the core waits for."""
+    def _pass_waiting(self, reason: StallReason | None, cclk: int) -> None:
+        """Let `cclk` cycles of a wait pass that are on no account yet."""
+        if self._timeline:
+            self._timeline.wait(reason, self._cclk, cclk)
+        self._cclk += cclk
+
+    def _blocked(
+        self,
+        wait: Any,
+        what: str,
+        reason: StallReason | None,  # noqa: ARG002  # of what passes before an interrupt
+    ) -> Generator[Any, Any, Any]:
+        """Play `wait`, a generator of events, saying meanwhile what the core waits for; `reason` is as for `_wake`."""
         self.waiting_for = f"{what}, since cycle {self._cclk:,}"
         result = yield from wait
         self.waiting_for = None

@@ -182,7 +182,7 @@ class Core(SynchronisedCore):
         self._check_claimed()
         yield from self._sync()
         self._close_frame()
-        pair = yield from self._blocked(self._capture.claim(self.name), "the next picture")
+        pair = yield from self._blocked(self._capture.claim(self.name), "the next picture", None)
         self._wake(None)
         if pair is None:
             self._is_over = True
@@ -236,7 +236,7 @@ class Core(SynchronisedCore):
         """Send the first `nbytes` of `row` to the device on the SPI, by DMA, once the message before is out."""
         yield from self._sync()
         if self._spi.busy is not None:
-            yield from self._blocked(iter([self._spi.busy]), "the SPI")
+            yield from self._blocked(iter([self._spi.busy]), "the SPI", StallReason.RING_FULL)
             self._wake(StallReason.RING_FULL)
         self.program_device(writes=TRANSFER_WRITES)
         yield from self._sync()
@@ -272,6 +272,8 @@ class Core(SynchronisedCore):
         if conflicts_cclk:
             self.stall(StallReason.L1_CONFLICT, conflicts_cclk)
         self._entered_at_cclk = self._cclk
+        if self._timeline:
+            self._timeline.enter(stage, self._cclk)
         self._accounts.enter(stage)
         self._account = self._accounts.now
         self._calls.enter(stage)
@@ -303,6 +305,8 @@ class Core(SynchronisedCore):
         """Turn the cycles since the last frame's end into a record, if there was a frame."""
         if self._frame is None:
             return
+        if self._timeline:
+            self._timeline.end_frame(self._frame.index, self._cclk)
         cycles = self._accounts.close(self._cclk)
         self._account = self._accounts.now
         self.finished.append(

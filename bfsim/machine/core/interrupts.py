@@ -61,12 +61,12 @@ class Interrupts:
         """Whether any interrupt waits."""
         return bool(self._waiting)
 
-    def take(self) -> Handler:
-        """Take the interrupt that comes first."""
+    def take(self) -> tuple[str, Handler]:
+        """Take the interrupt that comes first; return its source and what is attached to it."""
         source = min(self._waiting, key=lambda each: (each.ivg, each.value))
         self._waiting.remove(source)
         self.counts[source.name] = self.counts.get(source.name, 0) + 1
-        return self._handlers[source]
+        return source.name, self._handlers[source]
 
     def next_request(self) -> simpy.Event:
         """Return the event at which the next interrupt is asked for."""

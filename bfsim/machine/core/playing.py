@@ -93,7 +93,7 @@ class PlayingCore(CoreClock):
         yield from self._sync()
         self._in_handler = before
         if not self._interrupts.is_waiting:
-            yield from self._blocked(iter([self._interrupts.next_request()]), "an interrupt")
+            yield from self._blocked(iter([self._interrupts.next_request()]), "an interrupt", None)
             self._wake(None)
         if not self._in_handler:
             yield from self._take_interrupts()
@@ -121,12 +121,13 @@ class PlayingCore(CoreClock):
                 raise self._told(error) from error
             if item is self._unclaimed and item is not None:
                 self._unclaimed = None
+                stalls: dict[StallReason, int] = {}
                 if isinstance(item, DeferredWork):
                     yield from self._sync()
                     item = self._made(item, task)
                     if item.accesses:
-                        yield from self._outside_l1(item)
-                self._charge_work(item)
+                        stalls = yield from self._outside_l1(item)
+                self._charge_work(item, stalls)
                 value = item.value
             elif isinstance(item, simpy.Event):
                 value = yield item
@@ -139,13 +140,19 @@ class PlayingCore(CoreClock):
         self._check_waits(task)
         self._task = before
 
-    def _charge_work(self, work: Work) -> None:
-        """Let the cycles of a call pass, without what its accesses outside L1 stalled."""
-        self._cclk += work.issue_cclk + work.stall_cclk
-        self._account.issue_cclk += work.issue_cclk
+    def _charge_work(self, work: Work, stalls: dict[StallReason, int]) -> None:
+        """Let the cycles of a call pass; `stalls` are those of its accesses outside L1."""
         if work.stall_cclk:
-            stalls = self._account.stall_cclk
-            stalls[StallReason.INTERLOCK] = stalls.get(StallReason.INTERLOCK, 0) + work.stall_cclk
+            stalls[StallReason.INTERLOCK] = work.stall_cclk
+        if self._timeline:
+            name = self._unclaimed_kernel.name if self._unclaimed_kernel else "TESTSET"
+            self._timeline.call(name, self._cclk, work.issue_cclk, stalls)
+        self._cclk += work.issue_cclk
+        self._account.issue_cclk += work.issue_cclk
+        sums = self._account.stall_cclk
+        for reason, cclk in stalls.items():
+            self._cclk += cclk
+            sums[reason] = sums.get(reason, 0) + cclk
 
     def _check_waits(self, task: Generator[Any, Any, Any]) -> None:
         """Raise FirmwareError if `task`, which has ended, has forgotten a wait."""
@@ -201,26 +208,25 @@ class PlayingCore(CoreClock):
                 f"core {self.name}: core.run(...) must be yielded, or its cycles are lost: write `yield {kernel}`"
             )
 
-    def _outside_l1(self, work: Work) -> Generator[Any, Any, None]:
-        """Play the accesses of a call outside L1 from the core's clock on, and charge what they stall."""
+    def _outside_l1(self, work: Work) -> Generator[Any, Any, dict[StallReason, int]]:
+        """Play the accesses of a call outside L1 from the core's clock on, and return the cycles that they stall."""
         begin, cclk = self.now_ticks, work.issue_cclk + work.stall_cclk
         yield self._bus.access(self._number, begin, cclk, work.accesses)
-        for reason, stalled in zip(BUS_STALLS, self._bus.stalls_of(self._number), strict=True):
-            if stalled:
-                self.stall(reason, stalled)
+        stalls = zip(BUS_STALLS, self._bus.stalls_of(self._number), strict=True)
+        return {reason: stalled for reason, stalled in stalls if stalled}
 
     @property
     def can_be_interrupted(self) -> bool:
         """Whether a handler would be called now."""
         return self._interrupts.are_handled and not self._in_handler
 
-    def _blocked(self, wait: Any, what: str) -> Generator[Any, Any, Any]:
+    def _blocked(self, wait: Any, what: str, reason: StallReason | None) -> Generator[Any, Any, Any]:
         """Play `wait`, a generator of events, saying meanwhile what the core waits for; interrupts are taken as they come."""
         if self.can_be_interrupted:
-            wait = self._interruptible(wait)
-        return super()._blocked(wait, what)
+            wait = self._interruptible(wait, reason)
+        return super()._blocked(wait, what, reason)
 
-    def _interruptible(self, wait: Any) -> Generator[Any, Any, Any]:
+    def _interruptible(self, wait: Any, reason: StallReason | None) -> Generator[Any, Any, Any]:
         owed_cclk, what = 0, self.waiting_for
         self._in_handler = True  # the clock still stands where the wait began: nobody else may take them
         while True:
@@ -233,7 +239,7 @@ class PlayingCore(CoreClock):
                 yield self._env.any_of([event, self._interrupts.next_request()])
                 if self._interrupts.is_waiting:
                     passed_cclk = self._until(self._env.tick)
-                    self._cclk += passed_cclk
+                    self._pass_waiting(reason, passed_cclk)
                     owed_cclk += passed_cclk
                     if self._is_spinning:
                         self._bus.pause_spinning(self._number)
@@ -250,10 +256,13 @@ class PlayingCore(CoreClock):
         events = self._board.chip.events
         before, self._in_handler = self._in_handler, True
         while self._interrupts.is_waiting:
-            handler = self._interrupts.take()
+            source, handler = self._interrupts.take()
+            begin_cclk = self._cclk
             self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk)
             task = handler(self)
             if isinstance(task, Generator):
                 yield from self._perform(task)
             self.stall(StallReason.INTERRUPT, events.interrupt_exit_cclk)
+            if self._timeline:
+                self._timeline.interrupt(source, begin_cclk, self._cclk)
         self._in_handler = before

@@ -87,7 +87,7 @@ class SynchronisedCore(PlayingCore):
         if self._board.chip.l2:
             self._is_spinning = True
             self._bus.spin(self._number, self.now_ticks)
-        yield from self._blocked(iter([turn]), what)
+        yield from self._blocked(iter([turn]), what, StallReason.SEMAPHORE)
         self._shared.turns.pop(self.name, None)
         if self._is_spinning:
             self._is_spinning = False
@@ -108,6 +108,7 @@ class SynchronisedCore(PlayingCore):
             self.issue(issue_cclk)
         else:
             self._check_claimed()
+            self._unclaimed_kernel = None
             self._unclaimed = DeferredWork(SharedAccess(self._bus, self._number, kind, issue_cclk), ())
             yield self._unclaimed
         yield from self._sync()

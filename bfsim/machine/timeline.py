@@ -1,0 +1,89 @@
+"""What happens when, for whoever wants to know: cores and devices tell it, and nothing that they do depends on it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from bfsim.spans import Span, SpanKind
+from bfsim.trace import REST, StallReason
+
+
+class Timeline:
+    """The spans that were told since they were taken last."""
+
+    def __init__(self, cclk_ticks: int) -> None:
+        self.spans: list[Span] = []
+        self._cclk_ticks = cclk_ticks
+
+    def take(self) -> list[Span]:
+        """Return the spans that were told since the last time."""
+        spans, self.spans = self.spans, []
+        return spans
+
+    def cclk(self, tick: int) -> int:
+        """Return the first CCLK edge at or after a tick."""
+        return -(-tick // self._cclk_ticks)
+
+
+class CoreTimeline:
+    """What one core does: calls, other work and waits fill its time without a gap, and so do the stages that it is in."""
+
+    def __init__(self, timeline: Timeline, core: str) -> None:
+        self._timeline = timeline
+        self._where = f"core {core}"
+        self._stage = REST
+        self._entered_cclk = 0
+        self._frame_cclk = 0
+
+    def call(
+        self, kernel: str, begin_cclk: int, issue_cclk: int, stall_cclk: Mapping[StallReason, int]
+    ) -> None:
+        """Tell a call of a kernel, or of an instruction, that began at a cycle."""
+        end_cclk = begin_cclk + issue_cclk + sum(stall_cclk.values())
+        self._timeline.spans.append(
+            Span(
+                SpanKind.CALL, self._where, kernel, begin_cclk, end_cclk, self._stage, issue_cclk, stall_cclk
+            )
+        )
+
+    def work(self, begin_cclk: int, cclk: int) -> None:
+        """Tell work that is no kernel's."""
+        if cclk:
+            self._timeline.spans.append(
+                Span(
+                    SpanKind.WORK, self._where, "other work", begin_cclk, begin_cclk + cclk, self._stage, cclk
+                )
+            )
+
+    def wait(self, reason: StallReason | None, begin_cclk: int, cclk: int, flow: int = 0) -> None:
+        """Tell a stall, or a wait of a core that has nothing to do without a `reason`; `flow`: of the transfer that ended it."""
+        if not cclk:
+            return
+        kind, name, stalls = SpanKind.IDLE, "idle", {}
+        if reason is not None:
+            kind, name, stalls = SpanKind.STALL, reason.value, {reason: cclk}
+        self._timeline.spans.append(
+            Span(kind, self._where, name, begin_cclk, begin_cclk + cclk, self._stage, 0, stalls, 0, flow)
+        )
+
+    def interrupt(self, source: str, begin_cclk: int, end_cclk: int) -> None:
+        """Tell an interrupt from its entry to its exit."""
+        self._timeline.spans.append(
+            Span(SpanKind.INTERRUPT, self._where, source, begin_cclk, end_cclk, self._stage)
+        )
+
+    def enter(self, stage: str, at_cclk: int) -> None:
+        """Tell the stage that ends at a cycle, and begin `stage`."""
+        if at_cclk > self._entered_cclk:
+            self._timeline.spans.append(
+                Span(SpanKind.STAGE, self._where, self._stage, self._entered_cclk, at_cclk, self._stage)
+            )
+        self._stage, self._entered_cclk = stage, at_cclk
+
+    def end_frame(self, index: int, at_cclk: int) -> None:
+        """Tell the frame that ends at a cycle, and the part of its last stage."""
+        self.enter(self._stage, at_cclk)
+        self._timeline.spans.append(
+            Span(SpanKind.FRAME, self._where, f"frame {index}", self._frame_cclk, at_cclk)
+        )
+        self._frame_cclk = at_cclk

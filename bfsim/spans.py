@@ -1,0 +1,69 @@
+"""The timeline of a run: flat records of what each core and device did, from one cycle to another.
+
+They are handed out while the run goes on (`bfsim.run.simulate(..., on_spans=...)`), so that a long run takes no more memory.
+Cycles are CCLK cycles from the start of the run. What a device does between two edges of the CCLK begins and ends at the next one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+from types import MappingProxyType
+from typing import NamedTuple
+
+from bfsim.trace import StallReason
+
+
+class SpanKind(StrEnum):
+    """What was going on: CALL, WORK, STALL and IDLE fill the time of a core exactly, and so do its STAGEs."""
+
+    FRAME = "frame"
+    STAGE = "stage"
+    CALL = "kernel"
+    WORK = "other work"
+    STALL = "stall"
+    IDLE = "idle"
+    INTERRUPT = "interrupt"
+    TRANSFER = "transfer"
+    LINE = "camera line"
+    MESSAGE = "message"
+    LOCK = "lock"
+    LEVEL = "level"
+
+
+TRACKS = {
+    SpanKind.FRAME: "frames", SpanKind.STAGE: "stages", SpanKind.CALL: "work", SpanKind.WORK: "work", SpanKind.STALL: "work",
+    SpanKind.IDLE: "work", SpanKind.INTERRUPT: "interrupts", SpanKind.TRANSFER: "transfers", SpanKind.LINE: "lines",
+    SpanKind.MESSAGE: "messages", SpanKind.LOCK: "locks",
+}  # fmt: skip
+"""The track of a core or device that a span of each kind lies on. Each LEVEL has one of its own."""
+
+
+class Span(NamedTuple):
+    """Something that went on from `begin_cclk` to `end_cclk` at `where`: a core, a DMA channel, a camera, a semaphore.
+
+    Spans of one track come in the order of time and never overlap. Of a core, issue + stall + idle = elapsed, and `stage`
+    is the row of the budget that it counts to; where in a call its stalls were is not known. `value` is the bytes of what was
+    moved, or the level. `flow` is the same number in a transfer and in the wait that it ended, else 0.
+    """
+
+    kind: SpanKind
+    where: str
+    name: str
+    begin_cclk: int
+    end_cclk: int
+    stage: str = ""
+    issue_cclk: int = 0
+    stall_cclk: Mapping[StallReason, int] = MappingProxyType({})
+    value: int = 0
+    flow: int = 0
+
+    @property
+    def elapsed_cclk(self) -> int:
+        """Cycles from begin to end."""
+        return self.end_cclk - self.begin_cclk
+
+    @property
+    def track(self) -> tuple[str, str]:
+        """What it lies on: `where`, and which track there."""
+        return self.where, self.name if self.kind is SpanKind.LEVEL else TRACKS[self.kind]

@@ -1,0 +1,203 @@
+"""The timeline: what cores and devices tell of themselves, to the cycle, and that telling changes nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bfsim.api import Core, Frame
+from bfsim.machine.board import Fidelity
+from bfsim.machine.cameras.capture import Feed
+from bfsim.machine.program import Main
+from bfsim.spans import Span, SpanKind
+from bfsim.trace import StallReason
+from tests.machine.kernels import copy, fill, spin, total
+from tests.machine.made_boards import CHIP, in_work, made_board
+from tests.machine.placements import code_in, shipped
+from tests.machine.rig import STAGES, Play, cycles_of, every_frame, noise, see_all
+from tests.machine.timelines import assert_orderly, assert_tiled, told
+
+LDFS = {name: shipped(f"{name}.ldf") for name in ("thesis", "l2", "sdram", "cache")} | {
+    "code in SDRAM": code_in("SDRAM")
+}
+
+Step = tuple[str, int]
+STEPS = st.lists(
+    st.tuples(
+        st.sampled_from(["spin", "sdram", "l2", "fill", "ring", "lock", "interrupt", "stage", "more", "dma"]),
+        st.integers(0, 300),
+    ),
+    max_size=12,
+)
+
+
+def do(core: Core, frame: Frame, step: Step) -> Play:
+    """Do one of the things that firmware does."""
+    what, number = step
+    match what:
+        case "spin":
+            yield core.run(spin, number)
+        case "sdram":
+            yield core.run(total, core.array("in_sdram"))
+        case "l2":
+            yield core.run(total, core.array("in_l2"))
+        case "fill":
+            yield core.run(fill, core.array("in_sdram"), number)
+        case "ring":
+            ring, out = (
+                core.input_ring(frame.rows, "in_ring"),
+                core.output_ring("out_ring", core.rows("image")),
+            )
+            for _ in range(frame.height):
+                source, target = (yield from ring.line()), (yield from out.row())
+                yield core.run(copy, source, target)
+                out.send()
+            yield from out.flush()
+        case "lock":
+            yield from core.lock("word")
+            yield core.run(spin, number)
+            yield from core.unlock("word")
+        case "interrupt":
+            yield from core.interrupt_core("B" if core.name == "A" else "A")
+        case "stage":
+            with core.stage(STAGES[0]):
+                yield core.run(spin, number)
+                with core.stage(STAGES[1]):
+                    yield core.run(total, core.array("in_l2"))
+        case "more":
+            with core.stage(STAGES[1]):
+                yield from core.post("token")
+                yield from core.wait("token")
+        case "dma":
+            stream = core.output_ring("out_ring", core.rows("image"))
+            (yield from stream.row()).array[:] = number & 255
+            stream.send()
+
+
+def handler(core: Core) -> Play:
+    """An interrupt that takes its time, and a stage of its own."""
+    with core.stage(STAGES[1]):
+        yield core.run(spin, 50)
+
+
+def main_of(steps: Sequence[Step], *, handles: bool) -> Main:
+    """Make a main loop of steps; at the end of each frame the cores wait for each other."""
+
+    def main(core: Core, frame: Frame) -> Play:
+        if handles:
+            core.on_interrupt("SUPPLEMENTAL_0", handler)
+            core.on_interrupt("MDMA1_0", handler)
+        for each in steps:
+            yield from do(core, frame, each)
+        yield from core.post(core.name)
+        yield from core.wait("B" if core.name == "A" else "A")
+
+    return every_frame(main)
+
+
+EVERYTHING = [
+    (name, 200)
+    for name in ("spin", "ring", "sdram", "lock", "stage", "interrupt", "l2", "more", "fill", "dma")
+]
+
+
+@pytest.mark.parametrize("feed", Feed)
+@pytest.mark.parametrize("ldf", LDFS)
+@pytest.mark.parametrize("fidelity", Fidelity)
+def test_spans_fill_the_time_of_a_core_and_add_up_to_its_budget(
+    ldf: str, feed: Feed, fidelity: Fidelity
+) -> None:
+    """To the cycle, by stage: issue, every reason of a stall, and idle; with and without a timeline a run is the same."""
+    mains = main_of(EVERYTHING, handles=True), main_of(EVERYTHING[::-1], handles=True)
+    how: dict[str, Any] = {"ldf": LDFS[ldf], "feed": feed, "fidelity": fidelity}
+    outcome, spans = told(made_board(*mains, **how))
+    assert len(outcome.frames) == 2
+    assert_orderly(spans)
+    assert_tiled(outcome.frames, spans)
+    board = made_board(*mains, **how)
+    assert board.run(noise(2, board.size)) == outcome
+
+
+@given(STEPS, STEPS, st.booleans(), st.booleans(), st.sampled_from(list(LDFS)))
+@settings(max_examples=25, deadline=None)
+def test_spans_of_chance_firmware_add_up(
+    steps_a: list[Step], steps_b: list[Step], a_handles: bool, b_handles: bool, ldf: str
+) -> None:
+    """Whatever the cores do, and in whichever order they meet."""
+    mains = main_of(steps_a, handles=a_handles), main_of(steps_b, handles=b_handles)
+    outcome, spans = told(made_board(*mains, ldf=LDFS[ldf]))
+    assert_orderly(spans)
+    assert_tiled(outcome.frames, spans)
+
+
+def of_kind(spans: Sequence[Span], kind: SpanKind, where: str = "core A") -> list[Span]:
+    """Return the spans of one kind at one place."""
+    return [each for each in spans if (each.kind, each.where) == (kind, where)]
+
+
+def test_a_call_begins_where_the_last_one_ended_and_lasts_what_it_costs() -> None:
+    """Two calls in a stage: name, stage, issue cycles, and nothing between them."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        yield core.run(spin, 100)
+        yield core.run(spin, 7)
+
+    _, spans = told(made_board(in_work(work)), frames=1)
+    first, second = of_kind(spans, SpanKind.CALL)
+    assert (first.name, first.stage, first.issue_cclk) == ("spin", "Work", cycles_of(spin, 100))
+    assert first.elapsed_cclk == first.issue_cclk + sum(first.stall_cclk.values())
+    assert second.begin_cclk == first.end_cclk
+
+
+def test_a_call_holds_the_stalls_of_its_accesses() -> None:
+    """A call that reads SDRAM is one span, its stalls by reason inside."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        yield core.run(total, core.array("in_sdram"))
+
+    outcome, spans = told(made_board(in_work(work)), frames=1)
+    (call,) = of_kind(spans, SpanKind.CALL)
+    (cost,) = [each for each in outcome.frames[0].cores[0].stages if each.stage == "Work"]
+    assert (call.issue_cclk, call.stall_cclk) == (cost.issue_cclk, cost.stall_cclk)
+    assert StallReason.SDRAM_PAGE_HIT in call.stall_cclk
+
+
+def test_a_wait_that_is_interrupted_has_a_span_before_and_one_behind() -> None:
+    """A waits for B, who interrupts it on the way: wait, handler, wait."""
+
+    def wait(core: Core, frame: Frame) -> Play:
+        core.on_interrupt("SUPPLEMENTAL_0", handler)
+        yield from core.wait("B")
+
+    def interrupt(core: Core, frame: Frame) -> Play:
+        yield core.run(spin, 1000)
+        yield from core.interrupt_core("A")
+        yield core.run(spin, 1000)
+        yield from core.post("B")
+
+    _, spans = told(made_board(every_frame(wait), every_frame(interrupt)), frames=1)
+    waits = [each for each in of_kind(spans, SpanKind.STALL) if StallReason.SEMAPHORE in each.stall_cclk]
+    (taken,) = of_kind(spans, SpanKind.INTERRUPT)
+    assert taken.name == "SUPPLEMENTAL_0"
+    assert [each.end_cclk for each in waits[:1]] == [taken.begin_cclk]
+    assert [each.begin_cclk for each in waits[1:]] == [taken.end_cclk]
+    assert taken.elapsed_cclk > CHIP.events.interrupt_entry_cclk + CHIP.events.interrupt_exit_cclk
+
+
+def test_spans_are_told_while_the_run_goes_on() -> None:
+    """A timeline is handed out in parts, and nobody keeps it."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        for _ in range(400):
+            yield core.run(spin, 1)
+            yield from core.post("token")
+
+    parts: list[int] = []
+    board = made_board(every_frame(work), see_all)
+    board.run(noise(20, board.size), on_spans=lambda spans: parts.append(len(spans)))
+    assert len(parts) >= 4
+    assert max(parts) < 5000
