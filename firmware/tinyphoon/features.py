@@ -50,7 +50,7 @@ def features(
         circles = yield from circle_detection(core, frame, blobs, mode.ball_colours, mode.circles)
         blobs = yield from blob_merging(core, blobs, circles, mode.blobs.merged)
         rectangles = yield from rectangle_detection(
-            core, blobs, lines, mode.rectangle_colours, mode.rectangles
+            core, blobs, lines, mode.rectangle_colours, mode.goal_colours, mode.rectangles
         )
     outlines = Outlines(blobs=blobs, circles=circles, rectangles=rectangles)
     return Features(frame=frame, edges=edges, lines=lines, outlines=outlines)

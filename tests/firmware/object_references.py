@@ -26,9 +26,9 @@ def rounded(value: Fraction) -> int:
 
 
 def border_cost(
-    line: Sequence[int], side: str, box: Record, reach: int, overlap: int, dark: int
+    line: Sequence[int], side: str, box: Record, border: int, reach: int, overlap: int, dark: int
 ) -> int | None:
-    """How far a line is from the border of a box on a side, in 1/16 px; None if it cannot be."""
+    """How far a line is from a border on a side of a box, in 1/16 px; None if it cannot be."""
     x0, y0, x1, y1 = line
     upright = side in ("left", "right")
     ends = [(y0, x0), (y1, x1)] if upright else [(x0, y0), (x1, y1)]  # along, across
@@ -46,7 +46,6 @@ def border_cost(
         return c0 + floor(Fraction((c1 - c0) * (along - a0) + run // 2, run))
 
     outermost = max if side in ("right", "bottom") else min
-    border = 16 * box[side] + (8 if side in ("right", "bottom") else -8)
     cost = abs(outermost(across(low), across(high)) - border)
     if cost > reach:
         return None
@@ -55,14 +54,31 @@ def border_cost(
     return cost if inside else cost + dark
 
 
-def rectangle(lines: Sequence[Sequence[int]], box: Record, reach: int, overlap: int, dark: int) -> list[int]:
-    """The border lines left, right, top and bottom of a box, -1 for none."""
-    found = []
-    for side in ("left", "right", "top", "bottom"):
-        costs = [border_cost(line, side, box, reach, overlap, dark) for line in lines]
+def post_end(line: Sequence[int] | None, top: int, bottom: int) -> int:
+    """Where a post ends: at the end of its line, from the bottom of its blob down to half as far again, or with the blob."""
+    end = max(line[1], line[3]) if line else bottom
+    return end if bottom < end <= bottom + (bottom - top) // 2 else bottom
+
+
+def rectangle(
+    lines: Sequence[Sequence[int]], box: Record, goals: int, reach: int, overlap: int, dark: int
+) -> list[int]:
+    """The border lines left, right, top and bottom of a box, -1 for none; `goals` are the colours of goals."""
+
+    def nearest(side: str, border: int, within: int) -> int:
+        costs = [border_cost(line, side, box, border, within, overlap, dark) for line in lines]
         near = [(cost, number) for number, cost in enumerate(costs) if cost is not None]
-        found.append(min(near)[1] if near else -1)
-    return found
+        return min(near)[1] if near else -1
+
+    borders = {side: 16 * box[side] - 8 for side in ("left", "top")}
+    borders |= {side: 16 * box[side] + 8 for side in ("right", "bottom")}
+    found = {side: nearest(side, border, reach) for side, border in borders.items()}
+    posts = [lines[found[side]] if found[side] >= 0 else None for side in ("left", "right")]
+    feet = max(post_end(post, borders["top"], borders["bottom"]) for post in posts)
+    if box["colours"] & goals and feet > borders["bottom"]:
+        mouth = nearest("bottom", feet + reach // 2, reach // 2)
+        found["bottom"] = mouth if mouth >= 0 else found["bottom"]
+    return [found[side] for side in ("left", "right", "top", "bottom")]
 
 
 # Tests
@@ -249,10 +265,17 @@ def row_below(line: Sequence[int] | None, bottom: int, column: int) -> int:
     return y0 + floor(Fraction((y1 - y0) * (column - x0) + (x1 - x0) // 2, x1 - x0))
 
 
-def foot_row(line: Sequence[int] | None, bottom: int, column: int, is_cut: bool) -> int:
-    """The row of a foot: the bottom line, or the end of the blob if that is more than one pixel above it, but not more than four."""
+def foot_row(
+    line: Sequence[int] | None, post: Sequence[int] | None, rows: tuple[int, int], column: int, is_cut: bool
+) -> int:
+    """The row of a foot: the bottom line, or the end of the blob if that is more than one pixel above it, but not more than four.
+
+    Not where the line of the post goes on below that end by more than a pixel.
+    """
+    top, bottom = rows
     end, row = row_below(None, bottom, column), row_below(line, bottom, column)
-    return end if 16 < row - end <= 64 and not is_cut else row
+    goes_on = post_end(post, 16 * top - 8, end) > end + 16
+    return end if 16 < row - end <= 64 and not is_cut and not goes_on else row
 
 
 def rectangle_at(
@@ -260,12 +283,13 @@ def rectangle_at(
     model: Any,
     box: Record,
     parts: Sequence[Record],
-    bottom: Sequence[int] | None,
+    borders: dict[str, Sequence[int] | None],
     geometry: Sequence[int],
     refined: bool,
     size: tuple[int, int],
 ) -> Record:
-    """A rectangle by the floor below it; `bottom` is its bottom line, `parts` are those of a merged blob."""
+    """A rectangle by the floor below it; `borders` are its lines, `parts` are those of a merged blob."""
+    bottom = borders["bottom"]
     width, height = size
     middle_x, middle_y = 8 * (width - 1), 8 * (height - 1)
     cut = box["top"] <= 1 or box["bottom"] >= height - 2
@@ -278,7 +302,8 @@ def rectangle_at(
         corners = []
         for side, column in (("left", 16 * box["left"] - 8), ("right", 16 * box["right"] + 8)):
             is_cut = box["left"] <= 1 if side == "left" else box["right"] >= width - 2
-            below = foot_row(bottom, lowest_at(box, parts, side), column, is_cut) - middle_y
+            rows = rows_at(box, parts, side)
+            below = foot_row(bottom, borders[side], rows, column, is_cut) - middle_y
             corners.append((column - middle_x, below, floor_depth(geometry, below, 0)))
         cuts = box["left"] <= 1, box["right"] >= width - 2
         if all(each[2] for each in corners):
@@ -293,18 +318,19 @@ def on_floor(geometry: Sequence[int], column: int, row: int, depth: int) -> tupl
     return aside(geometry, depth, column), aside(geometry, depth, row), depth
 
 
-def lowest_at(box: Record, parts: Sequence[Record], side: str) -> int:
-    """The lowest row of the part that reaches farthest to a side, the last of such, and of those above or below it."""
+def rows_at(box: Record, parts: Sequence[Record], side: str) -> tuple[int, int]:
+    """The rows of the part that reaches farthest to a side, the last of such, and of those above or below it."""
     ends = [each for each in parts if each[side] == box[side]]
     if not ends:
-        return box["bottom"]
+        return box["top"], box["bottom"]
     end = ends[-1]
 
     def shares_columns(one: Record) -> bool:
         common = min(one["right"], end["right"]) + 1 - max(one["left"], end["left"])
         return 2 * common >= min(sides(one)[0], sides(end)[0])
 
-    return max(each["bottom"] for each in parts if shares_columns(each))
+    column = [each for each in parts if shares_columns(each)]
+    return min(each["top"] for each in column), max(each["bottom"] for each in column)
 
 
 def between_feet(
@@ -368,9 +394,12 @@ def sight(
         if model.shape == BALL:
             found = ball_at(found, model, outline, geometry, thresholds.refined, size)
         else:
-            bottom = lines[outline["bottom"]] if outline and outline["bottom"] >= 0 else None
+            borders = {
+                side: lines[outline[side]] if outline and outline[side] >= 0 else None
+                for side in ("left", "right", "bottom")
+            }
             parts = [each for at, each in enumerate(boxes[:number]) if parents[at] == number]
-            found = rectangle_at(found, model, box, parts, bottom, geometry, thresholds.refined, size)
+            found = rectangle_at(found, model, box, parts, borders, geometry, thresholds.refined, size)
         count += 1
         if len(seen) < room:
             seen.append(found)

@@ -60,11 +60,14 @@ def goal(
     return blobs, [len(inside)] * len(blobs), place, line
 
 
-def placed(blobs: Any, parents: Any, line: Any = None, *, refined: bool = True) -> np.ndarray:
-    """Where the only goal is seen."""
+def placed(
+    blobs: Any, parents: Any, line: Any = None, post: Any = None, *, refined: bool = True
+) -> np.ndarray:
+    """Where the only goal is seen, with its bottom line and the line to its left."""
     thresholds = replace(INDOOR_FIELD.objects, refined=refined)
-    borders = [{"left": -1, "right": -1, "top": -1, "bottom": 0, "blob": len(blobs) - 1}] if line else []
-    lines = [[round(each) for each in line]] if line else []
+    left = 1 if post else -1
+    borders = [{"left": left, "right": -1, "top": -1, "bottom": 0, "blob": len(blobs) - 1}] if line else []
+    lines = [[round(each) for each in ends] for ends in (line, post) if ends]
     (found,) = see(
         blobs, rectangles=borders, parents=parents, lines=lines, models=(GOAL,), thresholds=thresholds
     )
@@ -92,6 +95,19 @@ def test_a_line_painted_before_the_goal(below_px: float, is_floor_line: bool) ->
     line[1] = line[3] = 16 * (blobs[0]["bottom"] + 0.5 + below_px)  # both feet end in one row
     wanted = placed(blobs, parents) if is_floor_line else placed(blobs, parents, line, refined=False)
     assert placed(blobs, parents, line)[2] == pytest.approx(wanted[2], abs=2)
+
+
+@pytest.mark.parametrize(("post_px", "is_foot"), [(1, True), (1.1, False)])
+def test_a_post_that_goes_on_below_its_blob(post_px: float, is_foot: bool) -> None:
+    """Where the border of a post ends lower than its colour, the blob's end is no foot, and the bottom line is the goal's."""
+    blobs, parents, _, line = goal((0, 900), 0)
+    end = 16 * (blobs[0]["bottom"] + 0.5)
+    line[1] = line[3] = end + 32  # as painted on the floor
+    post = 16 * blobs[0]["left"], 16 * blobs[0]["top"], 16 * blobs[0]["left"], end + 16 * post_px
+    as_before, of_line = placed(blobs, parents, line), placed(blobs, parents, line, refined=False)
+    found = placed(blobs, parents, line, post)
+    assert (found[2] == as_before[2]) == is_foot
+    assert is_foot or found[2] == pytest.approx((as_before[2] + of_line[2]) / 2, abs=2)
 
 
 def test_a_cut_end_has_no_foot() -> None:

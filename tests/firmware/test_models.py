@@ -19,11 +19,11 @@ from tinyphoon.strategy.models import (
     MODELS,
     RED,
     YELLOW,
+    Shape,
     check_models,
     colour_groups,
+    colours_of,
     model_words,
-    rectangular_colours,
-    spherical_colours,
 )
 from tinyphoon.strategy.modes import INDOOR_FIELD
 
@@ -49,9 +49,9 @@ def test_colours_come_from_the_models() -> None:
     """Each group once; the segmentation looks for those of the models and nothing else."""
     assert colour_groups(MODELS) == (BLUE, YELLOW, RED)
     assert INDOOR_FIELD.blobs.colour_groups == colour_groups(INDOOR_FIELD.models)
-    assert spherical_colours(MODELS) == YELLOW
-    assert rectangular_colours(MODELS) == BLUE | YELLOW | RED
-    assert spherical_colours([MARKER]) == 0
+    assert colours_of(MODELS, Shape.BALL) == YELLOW
+    assert colours_of(MODELS, Shape.GOAL, Shape.MARKER) == BLUE | YELLOW | RED
+    assert colours_of([MARKER], Shape.BALL) == 0
 
 
 @pytest.mark.parametrize(

@@ -337,10 +337,14 @@ circles = st.fixed_dictionaries(
     lambda blob, nudge: SEEN_WELL | {"blob": blob, "x": 2552 + nudge}, st.integers(0, 4), st.integers(-99, 99)
 )
 borders = st.fixed_dictionaries(
-    dict.fromkeys(("left", "right", "top", "bottom"), st.integers(-1, 0)) | {"blob": st.integers(0, 4)}
+    {"left": st.sampled_from([-1, 1]), "right": st.sampled_from([-1, 1]), "top": st.just(-1)}
+    | {"bottom": st.integers(-1, 0), "blob": st.integers(0, 4)}
 )
 level_lines = st.tuples(
     st.integers(0, 2000), st.integers(0, 3800), st.integers(2500, 5000), st.integers(0, 3800)
+)
+upright_lines = st.tuples(
+    st.integers(0, 5000), st.integers(0, 1900), st.integers(0, 5000), st.integers(1900, 3800)
 )
 
 
@@ -352,16 +356,16 @@ level_lines = st.tuples(
     ),
     st.lists(circles, max_size=4),
     st.lists(borders, max_size=4),
-    level_lines,
+    st.tuples(level_lines, upright_lines),
     st.booleans(),
     st.sampled_from([THESIS, StereoGeometry(311, 30, 60, 0), StereoGeometry(772, 60, 300, 45)]),
 )
-def test_as_the_reference(blobs, circles, rectangles, line, refined, geometry) -> None:
+def test_as_the_reference(blobs, circles, rectangles, lines, refined, geometry) -> None:
     """Bit for bit, with any records."""
     thresholds = replace(THRESHOLDS, refined=refined)
     boxes, parents = blobs
     limits = {"thresholds": thresholds, "geometry": geometry, "room": 4}
-    see(boxes, circles, rectangles, parents=parents, lines=[line], **limits)
+    see(boxes, circles, rectangles, parents=parents, lines=lines, **limits)
 
 
 @pytest.mark.parametrize(

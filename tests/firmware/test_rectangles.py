@@ -34,12 +34,14 @@ def line_words(lines: Sequence[Sequence[int]]) -> np.ndarray:
     return table.ravel()
 
 
-def find(lines: Sequence[Sequence[int]], *boxes: dict[str, int], colours: int = BLUE) -> list[list[int]]:
+def find(
+    lines: Sequence[Sequence[int]], *boxes: dict[str, int], colours: int = BLUE, goals: int = 0
+) -> list[list[int]]:
     """What the stage leaves: left, right, top, bottom, blob of each rectangle."""
     core = BareCore({"rectangles": [np.full(RECTANGLE_CAPACITY * RECTANGLE_WORDS, 77, np.int16)]})
     core.arrays |= {"blob_data": [blob_words(*boxes)], "lines": [line_words(lines)]}
     core.arrays |= {"label_parents": [np.arange(len(boxes), dtype=np.uint8)]}
-    count = core.play(rectangle_detection(core, len(boxes), len(lines), colours, LIMITS))
+    count = core.play(rectangle_detection(core, len(boxes), len(lines), colours, goals, LIMITS))
     assert core.published["rectangles"] == count
     lost = core.published["rectangles_lost"]
     assert lost == sum(each["colours"] & colours != 0 for each in boxes) - count
@@ -85,6 +87,28 @@ def test_the_nearest_one() -> None:
     )  # unless it is 2 px farther off
 
 
+@pytest.mark.parametrize(
+    ("post_end", "mouth", "found"),
+    [
+        (1700, 1700, True),  # from the end of the post
+        (1700, 1699, False),
+        (1700, 1764, True),  # to 4 px below
+        (1700, 1765, False),
+        (1936, 1940, True),  # the post is half as long again as the blob is high
+        (1937, 1940, False),  # and a little more: some other thing
+        (1600, 1672, False),  # the post ends with the blob: what is 4 px below that is no border
+    ],
+)
+@pytest.mark.parametrize("side", [LEFT, RIGHT])
+def test_the_bottom_line_of_a_goal(side: tuple[int, ...], post_end: int, mouth: int, found: bool) -> None:
+    """Its back ends above the mouth: the line below the posts is the goal's, another thing's is where its blob ends."""
+    x0, y0, x1, y1 = side
+    post = (x0, y0, x1, post_end) if y1 > y0 else (x0, post_end, x1, y1)
+    some = [BOTTOM, post, (1600, mouth, 2880, mouth)]
+    assert find(some, BOX, goals=BLUE)[0][3] == (2 if found else 0)
+    assert find(some, BOX, goals=YELLOW)[0][3] == 0
+
+
 def test_only_blobs_of_rectangles() -> None:
     """Others have no record."""
     other = BOX | {"colours": YELLOW}
@@ -98,7 +122,7 @@ def test_parts_of_a_merged_blob() -> None:
     boxes = BOX | {"right": 120}, BOX | {"left": 160}, BOX
     limits = 64, LIMITS.overlap, 32
     lines = line_words([BOTTOM])
-    assert find_rectangles(blob_words(*boxes), parents, 3, BLUE, lines, 1, table, *limits) == 1
+    assert find_rectangles(blob_words(*boxes), parents, 3, BLUE, 0, lines, 1, table, *limits) == 1
     assert table[:RECTANGLE_WORDS].tolist() == [NO_LINE, NO_LINE, NO_LINE, 0, 2]
 
 
@@ -120,11 +144,12 @@ def near_lines(draw: st.DrawFn) -> tuple[int, int, int, int]:
     return ends if draw(st.booleans()) else (*ends[2:], *ends[:2])
 
 
-@given(st.lists(lines | near_lines(), max_size=8))
-def test_as_the_reference(some: list[tuple[int, int, int, int]]) -> None:
+@given(st.lists(lines | near_lines(), max_size=8), st.sampled_from([BLUE, YELLOW]))
+def test_as_the_reference(some: list[tuple[int, int, int, int]], goals: int) -> None:
     """Bit for bit, with any lines."""
-    wanted = references.rectangle(some, BOX, 16 * LIMITS.border_px, LIMITS.overlap, 16 * LIMITS.dark_px)
-    assert find(some, BOX) == [[*wanted, 0]]
+    limits = 16 * LIMITS.border_px, LIMITS.overlap, 16 * LIMITS.dark_px
+    wanted = references.rectangle(some, BOX, goals, *limits)
+    assert find(some, BOX, goals=goals) == [[*wanted, 0]]
 
 
 @pytest.mark.parametrize("ends", [(32767, -32768, -32768, 32767), (-32768, -32768, 32767, -32768)])
@@ -132,11 +157,12 @@ def test_lines_as_long_as_a_word_can_say(ends: tuple[int, ...]) -> None:
     """Nothing overflows in pictures up to 640 x 480."""
     within = tuple(max(-8, min(each, 10240)) for each in ends)
     box = BOX | {"right": 639, "bottom": 479}
-    wanted = references.rectangle([within], box, 64, 128, 32)
+    wanted = references.rectangle([within], box, BLUE, 64, 128, 32)
     table = np.zeros(RECTANGLE_WORDS, np.int16)
     parents = np.zeros(1, np.uint8)
     assert (
-        find_rectangles(blob_words(box), parents, 1, BLUE, line_words([within]), 1, table, 64, 128, 32) == 1
+        find_rectangles(blob_words(box), parents, 1, BLUE, BLUE, line_words([within]), 1, table, 64, 128, 32)
+        == 1
     )
     assert table.tolist() == [*wanted, 0]
 

@@ -7,6 +7,10 @@ the lines on it.
 
 A line may be longer than the side, as where the background carries it on (T Figure 6.9); only its part beside the
 blob is looked at.
+
+A goal's blob is mostly its back, which ends below where the back does, farther from the camera than the mouth, and its
+posts are so thin that their colour gets lost. Their border lines do not: a goal's bottom line is looked for below the
+lower end of those first.
 """
 
 from __future__ import annotations
@@ -18,7 +22,7 @@ from typing import Any
 from bfsim.api import Buffer, Core, i16, i32, kernel, u8, u32
 from tinyphoon.fields import allowed
 from tinyphoon.stores.blobs import ACROSS, BLOB_WORDS, COLOURS, DOWN
-from tinyphoon.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, SUBPIXELS
+from tinyphoon.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
 from tinyphoon.stores.rectangles import (
     NO_LINE,
     RECTANGLE_BLOB,
@@ -135,9 +139,23 @@ def border_line(
 
 
 @kernel
+def post_end(lines: i16[:], line: i32, top: i32, bottom: i32) -> i32:
+    """Return where a goal's post ends: with the blob that has these rows, or farther down with its border line, if that is seen.
+
+    A line that goes on by more than half of the blob is also something else's. All in 1/16 px.
+    """
+    if line == NO_LINE:
+        return bottom
+    at = line * LINE_WORDS
+    end = max(lines[at + LINE_Y0], lines[at + LINE_Y1])
+    return max(bottom, end) if end <= bottom + (bottom - top >> 1) else bottom
+
+
+@kernel
 def find_rectangle(
     blob_data: u32[:],
     blob: i32,
+    goals: u32,
     lines: i16[:],
     count: i32,
     rectangles: i16[:],
@@ -146,7 +164,10 @@ def find_rectangle(
     overlap: i32,
     dark: i32,
 ) -> None:
-    """Make record `place` of a blob: its border lines among the first `count` lines. Distances in 1/16 px."""
+    """Make record `place` of a blob: its border lines among the first `count` lines. Distances in 1/16 px.
+
+    `goals` are the colours of goals.
+    """
     across = blob_data[blob * BLOB_WORDS + ACROSS]
     down = blob_data[blob * BLOB_WORDS + DOWN]
     left = SUBPIXELS * i32(across & 0xFFFF) - HALF_PIXEL
@@ -154,18 +175,24 @@ def find_rectangle(
     top = SUBPIXELS * i32(down & 0xFFFF) - HALF_PIXEL
     bottom = SUBPIXELS * i32(down >> 16) + HALF_PIXEL
     at = place * RECTANGLE_WORDS
-    rectangles[at + RECTANGLE_LEFT] = border_line(
-        lines, count, UPRIGHT, TOWARDS_0, top, bottom, left, reach, overlap, dark
-    )
-    rectangles[at + RECTANGLE_RIGHT] = border_line(
-        lines, count, UPRIGHT, AWAY, top, bottom, right, reach, overlap, dark
-    )
+    left_line = border_line(lines, count, UPRIGHT, TOWARDS_0, top, bottom, left, reach, overlap, dark)
+    right_line = border_line(lines, count, UPRIGHT, AWAY, top, bottom, right, reach, overlap, dark)
+    bottom_line: i32 = NO_LINE
+    if blob_data[blob * BLOB_WORDS + COLOURS] & goals != 0:
+        feet = max(post_end(lines, left_line, top, bottom), post_end(lines, right_line, top, bottom))
+        if feet > bottom:
+            below = reach >> 1
+            bottom_line = border_line(
+                lines, count, LEVEL, AWAY, left, right, feet + below, below, overlap, dark
+            )
+    if bottom_line == NO_LINE:
+        bottom_line = border_line(lines, count, LEVEL, AWAY, left, right, bottom, reach, overlap, dark)
+    rectangles[at + RECTANGLE_LEFT] = left_line
+    rectangles[at + RECTANGLE_RIGHT] = right_line
     rectangles[at + RECTANGLE_TOP] = border_line(
         lines, count, LEVEL, TOWARDS_0, left, right, top, reach, overlap, dark
     )
-    rectangles[at + RECTANGLE_BOTTOM] = border_line(
-        lines, count, LEVEL, AWAY, left, right, bottom, reach, overlap, dark
-    )
+    rectangles[at + RECTANGLE_BOTTOM] = bottom_line
     rectangles[at + RECTANGLE_BLOB] = blob
 
 
@@ -175,6 +202,7 @@ def find_rectangles(
     parents: u8[:],
     blobs: i32,
     colours: u32,
+    goals: u32,
     lines: i16[:],
     count: i32,
     rectangles: i16[:],
@@ -182,29 +210,32 @@ def find_rectangles(
     overlap: i32,
     dark: i32,
 ) -> i32:
-    """Make a record of each blob that has some of `colours` and is no part of another; returns how many there are, also beyond the room."""
+    """Make a record of each blob that has some of `colours` and is no part of another; returns how many there are, also beyond the room.
+
+    `goals` are those of goals.
+    """
     found: i32 = 0
     room = len(rectangles) // RECTANGLE_WORDS
     for blob in range(blobs):
         if parents[blob] == blob and blob_data[blob * BLOB_WORDS + COLOURS] & colours != 0:
             if found < room:
-                find_rectangle(blob_data, blob, lines, count, rectangles, found, reach, overlap, dark)
+                find_rectangle(blob_data, blob, goals, lines, count, rectangles, found, reach, overlap, dark)
             found = found + 1
     return found
 
 
 def rectangle_detection(
-    core: Core, blobs: int, lines: int, colours: int, thresholds: RectangleThresholds
+    core: Core, blobs: int, lines: int, colours: int, goals: int, thresholds: RectangleThresholds
 ) -> Generator[Any, Any, int]:
     """Look for the border lines of the blobs of rectangular models, merged ones too, and leave them in `rectangles`.
 
-    `blobs` and `lines` are how many are in their stores, `colours` those of the models. Publishes `rectangles`, how many
+    `blobs` and `lines` are how many are in their stores, `colours` those of the models, `goals` those of goals. Publishes `rectangles`, how many
     are stored, and `rectangles_lost`, how many had no room. Returns how many are stored.
     """
     limits = SUBPIXELS * thresholds.border_px, thresholds.overlap, SUBPIXELS * thresholds.dark_px
     found = yield core.run(
         find_rectangles,
-        *(core.array("blob_data"), core.array("label_parents"), blobs, colours),
+        *(core.array("blob_data"), core.array("label_parents"), blobs, colours, goals),
         *(core.array("lines"), lines, core.array("rectangles")),
         *limits,
     )

@@ -19,7 +19,7 @@ from tinyphoon.geometry import (
 )
 from tinyphoon.stages.object_places import HALF_PIXEL, depth_by_floor, floor_extent, place_object, principal
 from tinyphoon.stages.object_tests import GOAL
-from tinyphoon.stages.rectangle_detection import crossing
+from tinyphoon.stages.rectangle_detection import crossing, post_end
 from tinyphoon.stores.blobs import (
     ACROSS,
     BLOB_WORDS,
@@ -44,7 +44,13 @@ from tinyphoon.stores.objects import (
     OBJECT_Y,
     OBJECT_Z,
 )
-from tinyphoon.stores.rectangles import NO_LINE, RECTANGLE_BOTTOM, RECTANGLE_WORDS
+from tinyphoon.stores.rectangles import (
+    NO_LINE,
+    RECTANGLE_BOTTOM,
+    RECTANGLE_LEFT,
+    RECTANGLE_RIGHT,
+    RECTANGLE_WORDS,
+)
 from tinyphoon.strategy.models import LARGEST_MM, MODEL_FLOOR, MODEL_HEIGHT, MODEL_SHAPE, MODEL_WIDTH
 
 NO_PART = -1
@@ -70,16 +76,24 @@ def bottom_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], col
 
 
 @kernel
-def foot_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], column: i32, cut: i32) -> i32:
+def foot_row(
+    down: u32, rectangles: i16[:], rectangle: i32, border: i32, lines: i16[:], column: i32, cut: i32
+) -> i32:
     """Return where a goal stands on the floor at an end of its blob, in 1/16 px; `down` are the rows of the part that is there.
 
     That is the goal's bottom line, with one exception. If the part ends a little above that line, the part's end is the
     foot of a post, and the line is one that is painted on the floor: its front edge is nearer to the camera, and the blur
-    moves it further down the thinner it looks. Where the picture has `cut` the part off, its end is no foot.
+    moves it further down the thinner it looks. Where the picture has `cut` the part off, or where the goal's `border` at
+    that end goes on below it, its end is no foot.
     """
     end = bottom_row(down, rectangles, NO_OUTLINE, lines, column)
     line = bottom_row(down, rectangles, rectangle, lines, column)
-    return end if end + OPENING_LOSS < line <= end + FLOOR_LINE and cut == 0 else line
+    if rectangle == NO_OUTLINE or cut != 0:
+        return line
+    post = i32(rectangles[rectangle * RECTANGLE_WORDS + border])
+    if post_end(lines, post, SUBPIXELS * i32(down & 0xFFFF) - HALF_PIXEL, end) > end + OPENING_LOSS:
+        return line
+    return end if end + OPENING_LOSS < line <= end + FLOOR_LINE else line
 
 
 @kernel
@@ -241,8 +255,12 @@ def see_rectangle(
         right_down = rows_at_end(blob_data, parents, blob, 1)
         cut_left = is_cut_before(across)
         cut_right = is_cut_behind(across, width)
-        left_row = foot_row(left_down, rectangles, rectangle, lines, left, cut_left) - middle_y
-        right_row = foot_row(right_down, rectangles, rectangle, lines, right, cut_right) - middle_y
+        left_row = (
+            foot_row(left_down, rectangles, rectangle, RECTANGLE_LEFT, lines, left, cut_left) - middle_y
+        )
+        right_row = (
+            foot_row(right_down, rectangles, rectangle, RECTANGLE_RIGHT, lines, right, cut_right) - middle_y
+        )
         wide = models[model + MODEL_WIDTH]
         left = left - middle_x
         right = right - middle_x

@@ -130,14 +130,9 @@ def colour_groups(models: Iterable[ObjectModel]) -> tuple[int, ...]:
     return tuple(sorted({each.colours for each in models}))
 
 
-def spherical_colours(models: Iterable[ObjectModel]) -> int:
-    """Return the colours of the models that are spheres, for the circle detection."""
-    return reduce(or_, (each.colours for each in models if each.shape == Shape.BALL), 0)
-
-
-def rectangular_colours(models: Iterable[ObjectModel]) -> int:
-    """Return the colours of the models that are rectangles, for the rectangle detection."""
-    return reduce(or_, (each.colours for each in models if each.shape != Shape.BALL), 0)
+def colours_of(models: Iterable[ObjectModel], *shapes: Shape) -> int:
+    """Return the colours of the models of some shapes, for what looks for these."""
+    return reduce(or_, (each.colours for each in models if each.shape in shapes), 0)
 
 
 def model_words(models: Sequence[ObjectModel]) -> NDArray[np.int32]:

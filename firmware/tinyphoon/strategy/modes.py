@@ -19,9 +19,9 @@ from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.strategy.models import (
     MODELS,
     ObjectModel,
+    Shape,
     colour_groups,
-    rectangular_colours,
-    spherical_colours,
+    colours_of,
 )
 
 
@@ -45,12 +45,17 @@ class Mode:
     @property
     def ball_colours(self) -> int:
         """The colours of spheres."""
-        return spherical_colours(self.models)
+        return colours_of(self.models, Shape.BALL)
 
     @property
     def rectangle_colours(self) -> int:
         """The colours of rectangles."""
-        return rectangular_colours(self.models)
+        return colours_of(self.models, Shape.GOAL, Shape.MARKER)
+
+    @property
+    def goal_colours(self) -> int:
+        """The colours of goals."""
+        return colours_of(self.models, Shape.GOAL)
 
 
 FITTED_CIRCLES = CircleThresholds(
