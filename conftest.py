@@ -16,8 +16,8 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_cmdline_main(config: pytest.Config) -> Iterator[None]:
-    """Keep compiled kernels in a folder of this run, which its workers share: every run starts cold, and compiles once."""
-    if hasattr(config, "workerinput"):
+    """Keep compiled kernels where BFSIM_CACHE_DIR says; without it in a folder of this run, which its workers share and which starts empty."""
+    if hasattr(config, "workerinput") or "BFSIM_CACHE_DIR" in os.environ:
         return (yield)
     with tempfile.TemporaryDirectory(prefix="bfsim-tests-", ignore_cleanup_errors=True) as folder:
         os.environ["BFSIM_CACHE_DIR"] = folder
