@@ -148,11 +148,22 @@ def _takes_a_run(command: Command) -> Command:
     is_flag=True,
     help="Add edges, blobs, lines and shapes of each picture to the JSON, beside objects, 3-D lines and 3-D edges.",
 )
+@click.option(
+    "--full",
+    is_flag=True,
+    help="Print every table: stalls by reason, cycles, frames, results, configuration, digests.",
+)
 @takes_views
 def run(
-    json_path: Path | None, features: bool, show: bool, overlay: Path | None, mcap: Path | None, **what: Any
+    json_path: Path | None,
+    features: bool,
+    full: bool,
+    show: bool,
+    overlay: Path | None,
+    mcap: Path | None,
+    **what: Any,
 ) -> None:
-    """Run RECORDING through the firmware and print the frame timing budget.
+    """Run RECORDING through the firmware and print the frame timing budget on one screen.
 
     RECORDING is an MCAP file (see `bfsim record`); without it, the built-in soccer scene runs.
 
@@ -160,11 +171,13 @@ def run(
     Examples:
       bfsim run
       bfsim run drive.mcap --frames 20 --ldf l2
+      bfsim run --full
       bfsim run drive.mcap --feed recorded --json drive.json
       bfsim run drive.mcap --overlay drive-seen --mcap drive-seen.mcap
     """
     from bfsim.report.as_json import json_chunks
     from bfsim.report.save import require_apart, require_place, write_text
+    from bfsim.report.screen import screen
     from bfsim.report.seen_json import SeenStore
     from bfsim.report.tables import run_report
 
@@ -185,7 +198,7 @@ def run(
                 click.echo(chunk, nl=False)
             _warn(done)
         else:
-            print_report(run_report(done))
+            print_report(run_report(done) if full else screen(done))
             if json_path:
                 write_text(json_path, json_chunks(done, seen))
     _exit_if_interrupted(done)

@@ -55,8 +55,21 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 
 def test_run_prints_the_budget() -> None:
-    """`bfsim run` needs nothing and prints rate, budget per core, configuration and digests."""
-    result = bfsim("run", "--frames", 2)
+    """`bfsim run` needs nothing and prints rate, budget, what ran and digests on a screen of 80 columns by 30 lines."""
+    result = bfsim("run", COLUMNS="80")
+    assert result.returncode == 0, result.stderr
+    assert not result.stderr
+    for words in ("frames/s", "bound by core A's Edge detection", "A ms", "B ms", "Open & closing", "(the rest)", "thesis",
+                  "cm-bf561", "thesis.ldf", "vdsp-O2", "cycles"):  # fmt: skip
+        assert words in result.stdout
+    lines = result.stdout.splitlines()
+    assert 24 <= len(lines) <= 30
+    assert max(map(len, lines)) <= 80
+
+
+def test_run_prints_every_table_if_asked() -> None:
+    """`--full`: the budget of each core, configuration and digests."""
+    result = bfsim("run", "--frames", 2, "--full")
     assert result.returncode == 0, result.stderr
     assert not result.stderr
     for words in ("frames/s", "Core A", "Core B", "Edge detection", "Open & closing", "(the rest)", "thesis", "cm-bf561",

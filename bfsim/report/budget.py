@@ -16,6 +16,9 @@ from bfsim.trace import REST, BudgetRow, CoreFrame, FrameRecord, RunRecord, Stag
 FRAME = "Frame"
 """The row that sums all others."""
 
+FRAMES_FOR_P95 = 20
+"""A p95 is worth telling of so many frames: of fewer, the nearest rank of 95 % is the last one, the maximum."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spread:
@@ -103,6 +106,11 @@ def frame_rate_hz(frames: Sequence[FrameRecord], cclk_hz: float) -> float:
 def latency_cclk(frame: FrameRecord) -> int:
     """Cycles from the last line coming in to the result going out."""
     return frame.result_cclk - frame.last_line_cclk
+
+
+def has_p95(run: RunRecord) -> bool:
+    """Whether a run has frames enough for a p95."""
+    return len(run.frames) >= FRAMES_FOR_P95
 
 
 def stage_names(run: RunRecord) -> tuple[str, ...]:

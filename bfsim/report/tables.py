@@ -11,6 +11,7 @@ from rich.text import Text
 
 from bfsim.report.budget import (
     FRAME,
+    FRAMES_FOR_P95,
     Budget,
     CoreBudget,
     Spread,
@@ -19,13 +20,14 @@ from bfsim.report.budget import (
     budget_rows,
     costs_of,
     elapsed_cclk,
+    has_p95,
     latency_cclk,
     milliseconds,
 )
 from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.report.split_table import SplitTable
 from bfsim.report.warnings import MISSED_LISTED, warnings_of
-from bfsim.trace import REST, BudgetRow, CodeRecord, FrameRecord, Reference, RunRecord, StallReason
+from bfsim.trace import REST, BudgetRow, CodeRecord, FrameRecord, RunRecord, StallReason
 
 SHOWN_AT_EACH_END = 4
 """Frames listed at the beginning and at the end of a long run."""
@@ -40,11 +42,12 @@ def run_report(run: RunRecord) -> RenderableType:
     hz = run.identity.cclk_hz
     return stacked(
         headline(run, budget),
-        *(_budget_table(core, hz, run.reference) for core in budget.cores),
+        *(_budget_table(run, core) for core in budget.cores),
+        *_p95_note(run),
         *_reference_note(run),
         *_start_up_note(run, budget),
         *_stall_table(budget, len(run.frames), hz),
-        *(_cycle_table(core) for core in budget.cores),
+        *(_cycle_table(run, core) for core in budget.cores),
         _frame_table(run),
         *_results_table(run),
         *_remarks(run),
@@ -83,14 +86,15 @@ def headline(run: RunRecord, budget: Budget) -> Text:
     lines = [
         f"{budget.frame_rate_hz:.2f} frames/s, {1000 / budget.frame_rate_hz:.2f} ms a frame",
         f"Latency from last line in to result out: median {median:.2f} ms, max {maximum:.2f} ms",
-        f"Frames done: {len(run.frames)}, missed: {_missed(run)}",
+        f"Frames done: {len(run.frames)}, missed: {missed(run)}",
     ]
     if run.interrupted:
         lines.append("Interrupted: this is the report of the frames done until then.")
     return Text("\n".join(lines))
 
 
-def _missed(run: RunRecord) -> str:
+def missed(run: RunRecord) -> str:
+    """Return how many frames were missed, and which."""
     if not run.missed:
         return "0"
     listed = ", ".join(str(index) for index in run.missed[:MISSED_LISTED])
@@ -102,9 +106,9 @@ def percent(part: float, whole: float) -> str:
     return f"{100 * part / whole:.1f}" if whole else "0.0"
 
 
-def _budget_table(core: CoreBudget, hz: float, reference: Reference | None) -> Table:
-    beside = () if reference is None else (reference.name,)
-    columns = ("min", "median", "p95", "max", *beside, "share", "issue", "stall", "idle")
+def _budget_table(run: RunRecord, core: CoreBudget) -> Table:
+    hz, beside = run.identity.cclk_hz, () if run.reference is None else (run.reference,)
+    columns = (*_heads(run), *(each.name for each in beside), "share", "issue", "stall", "idle")
     table = new_table(
         f"Core {core.core}: ms per frame; share, issue, stall and idle in %",
         "Stage",
@@ -112,8 +116,8 @@ def _budget_table(core: CoreBudget, hz: float, reference: Reference | None) -> T
     )
     for row in core.all_rows:
         table.add_row(
-            _name(row),
-            *(f"{milliseconds(cclk, hz):.2f}" for cclk in _columns(row.elapsed_cclk)),
+            named(row),
+            *(f"{milliseconds(cclk, hz):.2f}" for cclk in _columns(run, row.elapsed_cclk)),
             *("" if row.reference_ms is None else f"{row.reference_ms:g}" for _ in beside),
             percent(core.share(row), 1),
             *(percent(part, row.elapsed_cclk.total) for part in _split(row)),
@@ -123,17 +127,29 @@ def _budget_table(core: CoreBudget, hz: float, reference: Reference | None) -> T
     return table
 
 
-def _name(row: StageRow) -> str:
+def named(row: StageRow) -> str:
     """Return the name of a row, indented if the row is a part of the one above."""
     return row.name if row.within is None else f"  {row.name}"
 
 
-def _columns(spread: Spread) -> tuple[int, int, int, int]:
-    return spread.minimum, spread.median, spread.p95, spread.maximum
+def _heads(run: RunRecord) -> tuple[str, ...]:
+    """Return the heads of `_columns`."""
+    return ("min", "median", "p95", "max") if has_p95(run) else ("min", "median", "max")
+
+
+def _columns(run: RunRecord, spread: Spread) -> tuple[int, ...]:
+    p95 = (spread.p95,) if has_p95(run) else ()
+    return spread.minimum, spread.median, *p95, spread.maximum
 
 
 def _split(row: StageRow) -> tuple[int, int, int]:
     return row.issue_cclk, sum(row.stall_cclk.values()), row.idle_cclk
+
+
+def _p95_note(run: RunRecord) -> Iterator[Text]:
+    """Say why there is no p95, if there is none."""
+    if not has_p95(run):
+        yield Text(f"A p95 is told from {FRAMES_FOR_P95} frames on: of fewer it is the max.")
 
 
 def _reference_note(run: RunRecord) -> Iterator[Text]:
@@ -164,7 +180,7 @@ def _stall_table(budget: Budget, frames: int, hz: float) -> Iterator[Table]:
                 _stall_cells(core, row, reason, frames, hz)
                 for core, row in zip(budget.cores, rows, strict=True)
             ]
-            name = _name(rows[0]) if reason is reasons[0] else ""
+            name = named(rows[0]) if reason is reasons[0] else ""
             table.add_row(name, reason, *sum(cells, ()), end_section=reason is reasons[-1])
     if table.row_count:
         yield table
@@ -177,13 +193,11 @@ def _stall_cells(
     return f"{milliseconds(cclk, hz) / frames:.2f}", percent(cclk, core.frame.elapsed_cclk.total)
 
 
-def _cycle_table(core: CoreBudget) -> Table:
-    table = new_table(
-        f"Core {core.core}: CCLK cycles per frame", "Stage", "min", "median", "p95", "max", "all frames"
-    )
+def _cycle_table(run: RunRecord, core: CoreBudget) -> Table:
+    table = new_table(f"Core {core.core}: CCLK cycles per frame", "Stage", *_heads(run), "all frames")
     for row in core.all_rows:
-        cells = [f"{cclk:,}" for cclk in (*_columns(row.elapsed_cclk), row.elapsed_cclk.total)]
-        table.add_row(_name(row), *cells, end_section=row is core.rows[-1])
+        cells = [f"{cclk:,}" for cclk in (*_columns(run, row.elapsed_cclk), row.elapsed_cclk.total)]
+        table.add_row(named(row), *cells, end_section=row is core.rows[-1])
     return table
 
 
@@ -225,10 +239,10 @@ def _results_table(run: RunRecord) -> Iterator[Table]:
     """Yield what the firmware published, if it did."""
     names = dict.fromkeys(name for frame in run.frames for name in frame.results)
     if names:
-        table = new_table("Results per frame", "Result", "min", "median", "p95", "max")
+        table = new_table("Results per frame", "Result", *_heads(run))
         for name in names:
             spread = Spread.of([frame.results[name] for frame in run.frames if name in frame.results])
-            table.add_row(name, *(f"{value:,}" for value in _columns(spread)))
+            table.add_row(name, *(f"{value:,}" for value in _columns(run, spread)))
         yield table
 
 
@@ -273,7 +287,7 @@ def configuration(run: RunRecord) -> Table:
     if run.geometry:
         table.add_row("Geometry", run.geometry)
     table.add_row("Firmware", _firmware(run))
-    table.add_row("Board", f"{identity.board}, CCLK {_mhz(identity.cclk_hz)}, SCLK {_mhz(identity.sclk_hz)}")
+    table.add_row("Board", f"{identity.board}, CCLK {mhz(identity.cclk_hz)}, SCLK {mhz(identity.sclk_hz)}")
     table.add_row("LDF", f"{identity.ldf} ({run.ldf_place})")
     table.add_row("Compiler", f"{identity.compiler}, LLVM {identity.llvm_version}")
     for each in run.code:
@@ -318,5 +332,6 @@ def _code(code: CodeRecord) -> str:
     )
 
 
-def _mhz(hz: float) -> str:
+def mhz(hz: float) -> str:
+    """Return a rate in MHz."""
     return f"{hz / 1e6:.6g} MHz"
