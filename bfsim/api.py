@@ -18,6 +18,8 @@ from bfsim.machine.program import Buffer, Buffers, Calibration, Firmware, FrameS
 from bfsim.machine.spi.device import Script, SpiDevice, SpiMessage
 from bfsim.seen import (
     Colour,
+    NamedColour,
+    PictureColours,
     Seen,
     SeenBlob,
     SeenCircle,
@@ -35,7 +37,7 @@ from bfsim.trace import BudgetRow, Reference
 
 __all__ = [
     "BudgetRow", "Buffer", "Buffers", "Calibration", "CameraSettings", "Colour", "Core", "DmaConfig", "Firmware", "FirmwareError", "Flow", "Frame",
-    "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "OutputRing", "PpiStatusBit", "Readout", "Reference", "Row", "Script", "Seen", "SeenBlob",
+    "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "NamedColour", "OutputRing", "PictureColours", "PpiStatusBit", "Readout", "Reference", "Row", "Script", "Seen", "SeenBlob",
     "SeenCircle", "SeenEdges", "SeenEdges3D", "SeenGeometry", "SeenLine", "SeenLine3D", "SeenObject", "SeenRectangle", "Solid", "SourcePixels",
     "SpiDevice", "SpiMessage", "WdSize", "Work", "cut", "f32", "i8", "i16", "i32", "kernel", "no_edges_3d", "quotient", "remainder", "shown", "sqrt", "u8", "u16", "u32", "write_descriptor",
 ]  # fmt: skip

@@ -12,6 +12,7 @@ import click
 
 from bfsim import __version__
 from bfsim.cli_boards import boards
+from bfsim.cli_colours import colours
 from bfsim.cli_ldf import PREPROCESSOR_OPTIONS, ldf
 from bfsim.cli_record import record
 from bfsim.cli_seen import Watchers, require_view, takes_views, watching
@@ -65,6 +66,7 @@ def main() -> None:
 
 main.add_command(record)
 main.add_command(boards)
+main.add_command(colours)
 main.add_command(ldf)
 
 _RUN_PARAMETERS = (

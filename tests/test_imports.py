@@ -62,6 +62,8 @@ MAY_IMPORT = {
     "mapping": {"chip", "kernel", "linker", "loading", "machine", "report", "run"},
     "endings": {"errors", "signals"},
     "terminal": set(),
+    "colouring": {"device_script", "errors", "loading", "machine", "recording", "seen"},
+    "cli_colours": {"colouring", "errors", "report", "shipped", "terminal"},
     "cli_boards": {"chip", "report", "terminal"},
     "cli_sizes": {"errors"},
     "cli_ldf": {"cli_sizes", "errors", "mapping", "report", "shipped", "terminal"},
@@ -80,7 +82,7 @@ MAY_IMPORT = {
         "shipped",
         "terminal",
     }
-    | {"cli_boards", "cli_ldf", "cli_record", "cli_seen"},
+    | {"cli_boards", "cli_colours", "cli_ldf", "cli_record", "cli_seen"},
     "__main__": {"cli", "endings", "signals"},
 }
 MACHINE = {

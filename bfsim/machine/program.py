@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from bfsim.errors import FirmwareError, shown
 from bfsim.kernel.types import FloatType, Number
 from bfsim.machine.spi.device import Script, SpiDevice, device_at_work
-from bfsim.seen import Seen
+from bfsim.seen import PictureColours, Seen
 from bfsim.trace import BudgetRow, Reference
 
 if TYPE_CHECKING:
@@ -140,6 +140,8 @@ class Firmware:
     that names the key of the script and what it must be. Without it nobody listens there.
     `view`: what a core has in memory at the end of a frame → what it saw, for people and files, if there is anything to
     show; it is not simulated.
+    `colours`: a UYVY picture of shape (height, 2 · width), the user's script and the number of a frame → what the firmware
+    calls the colours of the picture in that frame, for `bfsim colours`; not simulated either.
     `losses`: what the firmware had to leave out, as published number → in words what it counts, such as {"edges_lost":
     "edges without room in the store"}; a run that lost something ends with a warning.
     `assumed_geometry`: in words, where the firmware takes the cameras to be if the recording does not say, or not all; the
@@ -155,6 +157,7 @@ class Firmware:
     calibration: Callable[[Calibration], Buffers] | None = None
     spi: Callable[[Script], SpiDevice] | None = None
     view: Callable[[Readout], Seen | None] | None = None
+    colours: Callable[[NDArray[np.uint8], Script, int], PictureColours] | None = None
     losses: Mapping[str, str] = field(default_factory=dict)
     assumed_geometry: str = ""
     write_through: tuple[str, ...] = ()

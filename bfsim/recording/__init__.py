@@ -11,6 +11,7 @@ from bfsim.recording.frames import (
     StereoGeometry,
     UyvyImage,
 )
+from bfsim.recording.images import picture_of_file
 from bfsim.recording.importer import ImportSummary, import_recording, load_rectification
 from bfsim.recording.info import CameraTiming, RecordingInfo, describe_recording
 from bfsim.recording.reader import RecordingReader
@@ -39,4 +40,5 @@ __all__ = [
     "describe_recording",
     "import_recording",
     "load_rectification",
+    "picture_of_file",
 ]

@@ -10,6 +10,7 @@ from pathlib import Path
 from PIL import Image, ImageOps, UnidentifiedImageError
 
 from bfsim.errors import RecordingError
+from bfsim.recording.frames import UyvyImage
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.sources import IMAGE_SUFFIXES, PictureSource, Skipped, is_pattern
 
@@ -59,6 +60,14 @@ def _pictures(paths: list[Path], model: tuple[str, tuple[int, int]] | None) -> I
                 f"not {image.width}x{image.height}; `--resize` or `--crop` brings all to one size"
             )
         yield YuvPlanes.from_image(image)
+
+
+def picture_of_file(path: Path) -> UyvyImage:
+    """Return an image as a camera would send it, UYVY; of an odd width the last column is left out."""
+    picture = load_image(path).convert("RGB")
+    if picture.width < 2:
+        raise RecordingError(f"{path}: image must be at least 2 pixels wide, not {picture.width}")
+    return YuvPlanes.from_image(picture.crop((0, 0, picture.width // 2 * 2, picture.height))).to_uyvy()
 
 
 def image_paths(source: str) -> list[Path]:

@@ -20,9 +20,12 @@ from bfsim.seen.features import (
     Solid,
     no_edges_3d,
 )
+from bfsim.seen.naming import NamedColour, PictureColours
 
 __all__ = [
     "Colour",
+    "NamedColour",
+    "PictureColours",
     "Point",
     "PointMm",
     "Seen",

@@ -32,7 +32,10 @@ def main() -> None:
     IMAGES.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         bfsim("run", "--frames", str(FRAME + 1), "--overlay", folder)
-        keep_small(sorted(Path(folder).glob("*.png"))[FRAME], "overlay.png", 1320)
+        keep_small(sorted(Path(folder).glob("frame-*.png"))[FRAME], "overlay.png", 1320)
+        colours = Path(folder) / "colours.png"
+        bfsim("colours", "--frame", str(FRAME), "--out", str(colours))
+        keep_small(colours, "colours.png", 980)
         placement = Path(folder) / "placement.png"
         bfsim("ldf", "--picture", str(placement))
         keep_small(placement, "placement.png", 1360)

@@ -10,6 +10,7 @@ from tinyphoon.geometry import THESIS_GEOMETRY
 from tinyphoon.losses import LOSSES
 from tinyphoon.one_core import one_core
 from tinyphoon.strategy_unit.unit import StrategyUnit
+from tinyphoon.view.picture_colours import picture_colours
 from tinyphoon.view.view import view
 
 THESIS = Reference(
@@ -36,6 +37,7 @@ tinyphoon = Firmware(
     calibration=calibration_buffers,
     spi=StrategyUnit,
     view=view,
+    colours=picture_colours,
     losses=LOSSES,
     assumed_geometry=THESIS_GEOMETRY,
 )
@@ -49,6 +51,7 @@ one_eye = Firmware(
     calibration=calibration_buffers,
     spi=StrategyUnit,
     view=view,
+    colours=picture_colours,
     losses=LOSSES,
     assumed_geometry=THESIS_GEOMETRY,
 )

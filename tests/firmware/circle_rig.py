@@ -153,7 +153,7 @@ def seen(
     edges = references.suppress(references.magnitude(gx, gy), direction, thresholds.edge_threshold)
     kept = hysteresis(edges, thresholds.strong_threshold, edges.size, edges.size).edges
     data, index, counts = hysteresis_store(kept, direction)
-    limits = thresholds.eps_black, thresholds.eps_white, thresholds.least_chroma
+    limits = thresholds.colour_limits
     colours = references.colours(uyvy, *limits)
     opened = references.dilate(references.erode(colours)).astype(np.uint32)
     return Seen(

@@ -115,7 +115,7 @@ def shipped() -> list[tuple[Words, Words]]:
 def opened(uyvy: np.ndarray) -> Words:
     """Return the opened colour image of a picture."""
     rule = INDOOR_FIELD.edges
-    colours = references.colours(uyvy, rule.eps_black, rule.eps_white, rule.least_chroma)
+    colours = references.colours(uyvy, *rule.colour_limits)
     return references.dilate(references.erode(colours)).astype(np.uint32)
 
 

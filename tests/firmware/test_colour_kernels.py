@@ -7,22 +7,26 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from PIL import Image
 
+from bfsim.recording.planes import YuvPlanes
 from tests.firmware import references
 from tests.firmware.pictures import WIDTHS, Bytes, random_uyvy
-from tinyphoon.stages.colour_reduction import BLACK, WHITE, colour_row
+from tinyphoon.stages.colour_reduction import AS_IT_IS, BLACK, WHITE, balance_row, colour_row
 from tinyphoon.stages.open_closing import dilate_row, erode_row
 from tinyphoon.strategy.modes import INDOOR_FIELD
 from tinyphoon.tables import arctangent_table
 
 _EDGES = INDOOR_FIELD.edges
 THRESHOLDS = [
-    (_EDGES.eps_black, _EDGES.eps_white, _EDGES.least_chroma),
-    (28, 125, 0),
-    (-40, 60, 1),
-    (-182, 255, 0),
-    (60, 59, 100),
-    (28, 125, 181),
+    _EDGES.colour_limits,
+    (28, 125, 0, 0),
+    (28, 125, 28, 28),
+    (28, 125, 40, 0),
+    (-40, 60, 1, 1),
+    (-182, 255, 0, 0),
+    (60, 59, 100, 30),
+    (28, 125, 181, 181),
 ]
 ANY_WORDS = st.integers(2, 30).flatmap(
     lambda width: arrays(
@@ -33,10 +37,13 @@ ANY_WORDS = st.integers(2, 30).flatmap(
 )
 
 
-def reduced(uyvy: Bytes, eps_black: int, eps_white: int, least_chroma: int = 0) -> np.ndarray:
-    """Return the words of one row."""
+def reduced(
+    uyvy: Bytes, eps_black: int, eps_white: int, least_chroma: int = 0, shade_chroma: int | None = None
+) -> np.ndarray:
+    """Return the words of one row; without a `shade_chroma` the least chroma is that of all."""
     words = np.full(len(uyvy) // 2, 2**32 - 1, np.uint32)
-    colour_row(uyvy, arctangent_table(), words, eps_black, eps_white, least_chroma)
+    shade = least_chroma if shade_chroma is None else shade_chroma
+    colour_row(uyvy, arctangent_table(), words, eps_black, eps_white, least_chroma, shade)
     return words
 
 
@@ -48,7 +55,7 @@ def row_of_every_chroma(seed: int) -> Bytes:
 
 
 @pytest.mark.parametrize("thresholds", THRESHOLDS)
-def test_every_chroma_is_reduced_as_in_the_equations(thresholds: tuple[int, int, int]) -> None:
+def test_every_chroma_is_reduced_as_in_the_equations(thresholds: tuple[int, int, int, int]) -> None:
     """All U and V with random luma give the words of T Eq. 5.1-5.4, whatever the thresholds."""
     row = row_of_every_chroma(seed=thresholds[1])
     expected = references.colours(row[np.newaxis], *thresholds)[0]
@@ -91,13 +98,63 @@ def test_a_saturated_colour_is_never_black(luma: int) -> None:
     assert reduced(red, 28, 125)[0] == BLACK
 
 
+@pytest.mark.parametrize(("luma", "least"), [(0, 20), (32, 22), (64, 24), (127, 27), (128, 28), (255, 28)])
+def test_the_least_chroma_rises_with_the_luma(luma: int, least: int) -> None:
+    """From 20 without luma to 28 at 128 and above: one less has no hue, so much has one, and in the shade is not black."""
+    with_hue, without = (
+        reduced(pair(luma, 128, 128 + chroma), 0, 255, 28, 20)[0] for chroma in (least, least - 1)
+    )
+    assert with_hue == 1 << 3
+    assert without == (BLACK if luma < least - 1 else 0)
+
+
+def balanced(uyvy: Bytes, red_gain: int, blue_gain: int) -> Bytes:
+    """Return a row with its red and blue multiplied, in 64ths."""
+    row = uyvy.copy()
+    balance_row(row, red_gain, blue_gain)
+    return row
+
+
+def uyvy_of(colours: np.ndarray) -> Bytes:
+    """A UYVY row of pairs of equal pixels, (pairs, RGB)."""
+    return YuvPlanes.from_image(Image.fromarray(colours[None].repeat(2, axis=1))).to_uyvy()[0]
+
+
+def test_gains_of_one_change_nothing() -> None:
+    """Every pair of U and V stays, whatever the luma."""
+    row = row_of_every_chroma(seed=7)
+    np.testing.assert_array_equal(balanced(row, AS_IT_IS, AS_IT_IS), row)
+
+
+@pytest.mark.parametrize(("red", "blue"), [(80, 50), (56, 90), (64, 128), (200, 30)])
+def test_a_grey_of_any_brightness_under_other_light_becomes_grey_again(red: int, blue: int) -> None:
+    """Light that divides red and blue by the gains: U and V of all its greys are none, but for rounding before the gains."""
+    greens = (1 - 0.299 * 64 / red - 0.114 * 64 / blue) / 0.587  # such that the luma is that of the grey
+    lit = np.arange(20, 230)[:, None] * [64 / red, greens, 64 / blue]
+    lit = lit[(lit < 255).all(axis=1)]
+    row = balanced(uyvy_of(lit.round().astype(np.uint8)), red, blue)
+    assert np.abs(row[0::2].astype(int) - 128).max() <= 1 + max(red, blue, 64) / 64
+
+
+def test_colours_are_those_of_multiplied_red_and_blue() -> None:
+    """Of random colours: (R, B) are multiplied where the luma is kept, as in the equations of BT.601; clipped at the ends."""
+    row = np.random.default_rng(5).integers(0, 256, 4 * 500, np.uint8)
+    u, v = row[0::4].astype(float) - 128, row[2::4].astype(float) - 128
+    luma = (row[1::4].astype(float) + row[3::4]) / 2
+    red, blue = (luma + v / 0.713) * 80 / 64, (luma + u / 0.564) * 50 / 64
+    expected = np.clip([0.564 * (blue - luma), 0.713 * (red - luma)], -128, 127)
+    found = balanced(row, 80, 50)
+    np.testing.assert_array_equal(found[1::2], row[1::2])
+    assert np.abs([found[0::4] - 128.0, found[2::4] - 128.0] - expected).max() <= 1.5
+
+
 @pytest.mark.parametrize("width", WIDTHS)
 def test_rows_of_a_picture(width: int) -> None:
     """Narrow and wide rows with squares of colour come out as in numpy."""
     uyvy = random_uyvy(width, 8, seed=width)
-    expected = references.colours(uyvy, 28, 125, 20)
+    expected = references.colours(uyvy, 28, 125, 20, 10)
     for y in range(8):
-        np.testing.assert_array_equal(reduced(uyvy[y], 28, 125, 20), expected[y])
+        np.testing.assert_array_equal(reduced(uyvy[y], 28, 125, 20, 10), expected[y])
 
 
 @given(ANY_WORDS)

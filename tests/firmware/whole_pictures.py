@@ -147,7 +147,7 @@ def check_core(
 ) -> None:
     """Compare all that core `core` left in memory and published for the picture `uyvy`."""
     check_edges(board, core, uyvy, results, INDOOR_FIELD.edges, sighted)
-    limits = INDOOR_FIELD.edges.eps_black, INDOOR_FIELD.edges.eps_white, INDOOR_FIELD.edges.least_chroma
+    limits = INDOOR_FIELD.edges.colour_limits
     colours = references.colours(uyvy, *limits)
     opened = references.dilate(references.erode(colours))
     np.testing.assert_array_equal(buffer(board, core, "colour_image"), colours)

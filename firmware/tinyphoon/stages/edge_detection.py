@@ -15,7 +15,7 @@ from tinyphoon.areas import WHOLE_PICTURE, Area
 from tinyphoon.arithmetic import angle8, isqrt32
 from tinyphoon.fields import allowed
 from tinyphoon.scan_lines import line_ring, window
-from tinyphoon.stages.colour_reduction import colour_row
+from tinyphoon.stages.colour_reduction import AS_IT_IS, balance_row, colour_row
 from tinyphoon.stages.edge_thinning import Candidates
 from tinyphoon.stages.hysteresis import LABELS, EdgeGroups, hysteresis
 
@@ -29,7 +29,9 @@ class EdgeThresholds:
     units, a quarter of a Sobel gradient; 1..255.
     `eps_black`, `eps_white`: limits of luma minus chroma in grey levels (T Eq. 5.2); -182..255. A pixel
     below the first is black, above the second white, and has a hue between them. `least_chroma`: a pixel with less has
-    no hue, and one with as much is never black; in the units of U and V, 0..181; 0: T Eq. 5.2 alone.
+    no hue, and one with as much is never black; in the units of U and V, 0..181; 0: T Eq. 5.2 alone. `shade_chroma`: the
+    least chroma of a pixel without luma, from which it rises with the luma to `least_chroma` at 128.
+    `red_gain`, `blue_gain`: the white balance, by which red and blue are multiplied before; in 64ths, 16..255.
     """
 
     gauss_px: Literal[3, 5]
@@ -38,6 +40,19 @@ class EdgeThresholds:
     eps_black: int = allowed(-182, 255, at_most="eps_white")
     eps_white: int = allowed(-182, 255)
     least_chroma: int = allowed(0, 181)
+    shade_chroma: int = allowed(0, 181, at_most="least_chroma")
+    red_gain: int = allowed(16, 255)
+    blue_gain: int = allowed(16, 255)
+
+    @property
+    def colour_limits(self) -> tuple[int, int, int, int]:
+        """The last arguments of `colour_row`."""
+        return self.eps_black, self.eps_white, self.least_chroma, self.shade_chroma
+
+    @property
+    def gains(self) -> tuple[int, int]:
+        """The last arguments of `balance_row`."""
+        return self.red_gain, self.blue_gain
 
 
 @kernel
@@ -203,9 +218,10 @@ def scan(
         if y < height:
             line = yield from camera.line()
             yield core.run(grey_row, line, grey[y])
+            if thresholds.gains != (AS_IT_IS, AS_IT_IS):
+                yield core.run(balance_row, line, *thresholds.gains)
             row = yield from colours.row()
-            limits = thresholds.eps_black, thresholds.eps_white, thresholds.least_chroma
-            yield core.run(colour_row, line, atan, row, *limits)
+            yield core.run(colour_row, line, atan, row, *thresholds.colour_limits)
             colours.send()
         # Gauss, Sobel and suppression each need lines below theirs
         smoothed, sloped, done = y - reach, y - reach - 1, y - reach - 2

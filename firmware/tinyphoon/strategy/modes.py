@@ -8,6 +8,7 @@ from tinyphoon.areas import AS_RECORDED, WHOLE_PICTURE, Area, Camera
 from tinyphoon.fields import not_ordered
 from tinyphoon.stages.blob_detection import BlobThresholds
 from tinyphoon.stages.circle_detection import CircleThresholds
+from tinyphoon.stages.colour_reduction import AS_IT_IS
 from tinyphoon.stages.edge_detection import EdgeThresholds
 from tinyphoon.stages.line_detection import LineThresholds
 from tinyphoon.stages.line_refinement import RefinementThresholds
@@ -108,6 +109,11 @@ INDOOR_FIELD = Mode(
         # Half a hue is 6.4 degrees: at this chroma a noise of three levels in U or V turns a colour by as much. And light
         # that is a tenth too warm or too cold for the camera's white balance gives a bright grey, of 255 levels, no more.
         least_chroma=28,
+        # There a noise of three levels turns a colour by two thirds of a hue: less than what models allow on either side.
+        shade_chroma=20,
+        # Cameras balance themselves; pictures that are not are measured by `bfsim colours`.
+        red_gain=AS_IT_IS,
+        blue_gain=AS_IT_IS,
     ),
     blobs=BlobThresholds(
         colour_groups=colour_groups(MODELS),

@@ -1,0 +1,100 @@
+"""`bfsim colours`: what firmware calls each colour of a picture."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import click
+
+from bfsim.errors import ConfigError, shown
+from bfsim.shipped import FIRMWARE, RECORDING
+from bfsim.terminal import print_report
+
+
+class _Area(click.ParamType[tuple[int, int, int, int]]):
+    """Left and top, width and height, such as 10,20,64x48."""
+
+    name = "X,Y,WxH"
+
+    def convert(
+        self, value: str, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, int, int, int]:
+        found = re.fullmatch(r"(\d{1,5}),(\d{1,5}),([1-9]\d{0,4})x([1-9]\d{0,4})", value, re.ASCII)
+        if found is None:
+            self.fail(f"must be left,top,width x height, such as 10,20,64x48, not {shown(value)}", param, ctx)
+        left, top, width, height = map(int, found.groups())
+        return left, top, width, height
+
+
+@click.command(short_help="Show what the firmware calls each colour of a picture.")
+@click.argument("picture", required=False, type=click.Path(path_type=Path))
+@click.option(
+    "--firmware",
+    metavar="NAME",
+    default=FIRMWARE[0],
+    show_default=True,
+    help=f"Firmware to ask: {' or '.join(FIRMWARE)}, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
+)
+@click.option(
+    "--frame",
+    metavar="N",
+    type=click.IntRange(min=0),
+    help="Which frame of a recording, from 0; its left picture is taken.  [default: 0]",
+)
+@click.option(
+    "--script",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="What the firmware's device on the SPI is told, as for `bfsim run`: thresholds of colours that hold in that frame.",
+)
+@click.option(
+    "--grey",
+    type=_Area(),
+    metavar="X,Y,WxH",
+    help="A patch of the picture that is grey or white, to measure the white balance by.",
+)
+@click.option(
+    "--out",
+    metavar="FILE.png",
+    type=click.Path(path_type=Path),
+    help="Draw the picture and its colours side by side.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of the table.")
+def colours(
+    picture: Path | None,
+    firmware: str,
+    frame: int | None,
+    script: Path | None,
+    grey: tuple[int, int, int, int] | None,
+    out: Path | None,
+    as_json: bool,
+) -> None:
+    """Print what the firmware calls each colour of PICTURE, in degrees of its hue, and how much of the picture has it.
+
+    PICTURE is an image file, or a recording (see `bfsim record`); without it, the built-in one. Below the table the firmware says which white balance
+    would make the picture grey on average, and with --grey the patch.
+
+    \b
+    Examples:
+      bfsim colours ball.jpg
+      bfsim colours ball.jpg --out ball-colours.png
+      bfsim colours drive.mcap --frame 12 --script orders.json
+      bfsim colours ball.jpg --grey 40,200,64x32
+    """
+    from bfsim.colouring import coloured
+    from bfsim.report.naming import colours_json, colours_picture, colours_report
+    from bfsim.report.save import require_apart, require_place, write_bytes
+
+    if out:
+        if out.suffix.lower() != ".png":
+            raise ConfigError(f"--out must be a file *.png, not {out}")
+        require_place(out)
+        require_apart(out, (picture, script))
+    done = coloured(picture or RECORDING, firmware=firmware, script=script, frame=frame, grey=grey)
+    if out:
+        write_bytes(out, [colours_picture(done.picture, done.colours)])
+    if as_json:
+        click.echo(colours_json(done.colours, done.patch_notes), nl=False)
+    else:
+        print_report(colours_report(done.colours, done.patch_notes))

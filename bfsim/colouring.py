@@ -1,0 +1,117 @@
+"""What a firmware calls the colours of a picture, or of a picture of a recording."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.device_script import read_script
+from bfsim.errors import BfsimError, ConfigError, FirmwareError
+from bfsim.loading import LoadedFirmware, load_firmware
+from bfsim.machine.firmware_lines import line_of
+from bfsim.machine.spi.device import Script
+from bfsim.recording import RecordingReader, picture_of_file
+from bfsim.seen import PictureColours
+
+MCAP_MAGIC = b"\x89MCAP"
+
+Area = tuple[int, int, int, int]
+"""Left, top, width and height, in pixels."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Coloured:
+    """A picture, UYVY of shape (height, 2 · width), its colours, and what the firmware says of its grey patch, if asked for one."""
+
+    picture: NDArray[np.uint8]
+    colours: PictureColours
+    patch_notes: tuple[str, ...]
+
+
+def coloured(
+    path: Path,
+    *,
+    firmware: str,
+    script: Path | None = None,
+    frame: int | None = None,
+    grey: Area | None = None,
+) -> Coloured:
+    """Return what `firmware` calls the colours of the picture at `path`, or of the left picture of `frame` of a recording.
+
+    `script`: what the firmware's device is told, whose orders may change the colours. `grey`: a patch that is known to be
+    grey. Raises a BfsimError for anything that is wrong with what was given.
+    """
+    loaded = load_firmware(firmware)
+    if loaded.firmware.colours is None:
+        raise ConfigError(
+            f"{loaded.name} must have `colours` to say what it calls them, but has none; give its Firmware a "
+            "colours=..., a function from a picture to a bfsim.api.PictureColours"
+        )
+    told = read_script(script)[0] if script else {}
+    picture = _picture(path, frame)
+    patch = None if grey is None else _patch(picture, grey)
+    colours = _named(loaded, picture, told, frame or 0)
+    patch_notes = () if patch is None else _named(loaded, patch, told, frame or 0).notes
+    return Coloured(picture=picture, colours=colours, patch_notes=patch_notes)
+
+
+def _picture(path: Path, frame: int | None) -> NDArray[np.uint8]:
+    try:
+        with path.open("rb") as file:
+            is_recording = file.read(len(MCAP_MAGIC)) == MCAP_MAGIC
+    except OSError as error:
+        raise ConfigError(f"{path} must be a picture or a recording to be read: {error.strerror}") from error
+    if not is_recording:
+        if frame is not None:
+            raise ConfigError(f"--frame must go with a recording, and {path} is none")
+        return picture_of_file(path)
+    wanted = frame or 0
+    with RecordingReader(path) as reader:
+        if wanted >= reader.frame_count:
+            raise ConfigError(f"--frame must be 0 to {reader.frame_count - 1} in {path}, not {wanted}")
+        return next(each.left for each in reader.frames() if each.index == wanted)
+
+
+def _patch(picture: NDArray[np.uint8], area: Area) -> NDArray[np.uint8]:
+    """Return a part of a picture; its ends lie between pairs of pixels, which share their colour."""
+    left, top, width, height = area
+    right, bottom = left + width, top + height
+    rows, columns = picture.shape[0], picture.shape[1] // 2
+    if right > columns or bottom > rows:
+        raise ConfigError(
+            f"--grey must lie in the picture of {columns}x{rows}, not end at column {right} and row {bottom}"
+        )
+    return picture[top:bottom, left // 2 * 4 : -(-right // 2) * 4]
+
+
+def _named(loaded: LoadedFirmware, picture: NDArray[np.uint8], told: Script, frame: int) -> PictureColours:
+    """Return what the firmware makes of a picture. Raises FirmwareError where it fails, or where that cannot be drawn."""
+    ask = loaded.firmware.colours
+    assert ask is not None
+    try:
+        with loaded.own.named():
+            found: object = ask(picture, told, frame)
+    except BfsimError:
+        raise
+    except (Exception, SystemExit) as error:
+        what = f"{type(error).__name__}: {error}{line_of(error)}"
+        raise FirmwareError(f"colours of {loaded.name} failed with {what}") from error
+    if not isinstance(found, PictureColours):
+        raise FirmwareError(
+            f"colours of {loaded.name} must return a bfsim.api.PictureColours, not a {type(found).__name__}"
+        )
+    shape = picture.shape[0], picture.shape[1] // 2
+    if found.numbers.shape != shape or found.numbers.dtype != np.uint8:
+        raise FirmwareError(
+            f"colours of {loaded.name} must return numbers of uint8 and of shape {shape}, not {found.numbers.dtype} "
+            f"of {found.numbers.shape}"
+        )
+    if not found.named or found.numbers.max(initial=0) >= len(found.named):
+        raise FirmwareError(
+            f"colours of {loaded.name} must name every number in its picture, up to {found.numbers.max()}, but "
+            f"names {len(found.named)}"
+        )
+    return found
