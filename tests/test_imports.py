@@ -92,10 +92,10 @@ MACHINE = {
     "program": {"core", "spi"},  # the types of what a main loop gets, and of the device that firmware brings
     "memories": {"program"},
     "code": {"memories", "program"},
-    "bus": {"memories", "simulation"},
+    "bus": {"memories", "simulation", "timeline"},
     "calls": {"bus", "memories"},
     "detailed": {"bus", "memories", "simulation"},
-    "cameras": {"bus", "memories", "program", "simulation"},
+    "cameras": {"bus", "memories", "program", "simulation", "timeline"},
     "spi": {"bus", "firmware_lines", "memories", "simulation"},
     "dma": {
         "bus",

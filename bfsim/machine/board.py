@@ -221,7 +221,9 @@ class Board:
         self._on_seen = on_seen
         self._on_time = on_time
         self._on_spans = on_spans
-        self._env.timeline = Timeline(self.spec.clocks.cclk_ticks) if on_spans else None
+        if on_spans:
+            self._env.timeline = Timeline(self.spec.clocks.cclk_ticks)
+            self._bus.use(self._env.timeline)
         capture = self._capture(pictures)
         for index, name in enumerate(self.spec.chip.cores):
             self.cores[name] = self._core(index, name, capture, lambda: self._finish_frame(on_frame))
@@ -235,7 +237,7 @@ class Board:
         except KeyboardInterrupt:
             interrupted = True
             self._tell_seen()
-        self._tell_spans(at_least=0)
+        self._tell_spans(is_over=True)
         return self._outcome(capture, interrupted)
 
     def _run_until(self, event: simpy.Event) -> None:
@@ -248,7 +250,7 @@ class Board:
                 if self._on_time and steps % STEPS_TOLD == 0:
                     self._on_time(float(self._env.tick / self.spec.clocks.tick_hz))
                 self._tell_seen()  # here, outside of the firmware: what fails is no fault of it
-                self._tell_spans(SPANS_TOLD)
+                self._tell_spans()
 
     def _tell_seen(self) -> None:
         """Tell what was seen in each frame that is done, as a whole: a frame with a record has been told, too."""
@@ -256,12 +258,16 @@ class Board:
             with uninterrupted():
                 self._on_seen(*self._seen.pop(0))
 
-    def _tell_spans(self, at_least: int) -> None:
-        """Tell what happened since the last time, if it is so much."""
-        timeline = self._env.timeline
-        if timeline and self._on_spans and len(timeline.spans) >= at_least:
-            with uninterrupted():
-                self._on_spans(timeline.take())
+    def _tell_spans(self, *, is_over: bool = False) -> None:
+        """Tell what happened since the last time, if that is enough or the run is over."""
+        timeline, now = self._env.timeline, self._env.tick
+        if not timeline or not self._on_spans or (len(timeline.spans) < SPANS_TOLD and not is_over):
+            return
+        with uninterrupted():
+            self._bus.tell(now + is_over)
+            if is_over:
+                timeline.end(now)
+            self._on_spans(timeline.take())
 
     def _is_deadlock(self) -> bool:
         """Whether every core has ended or waits for another one, whatever DMA and cameras go on doing."""

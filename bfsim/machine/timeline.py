@@ -14,11 +14,33 @@ class Timeline:
     def __init__(self, cclk_ticks: int) -> None:
         self.spans: list[Span] = []
         self._cclk_ticks = cclk_ticks
+        self._levels: dict[tuple[str, str], tuple[int, int]] = {}  # since when, and how high
 
     def take(self) -> list[Span]:
         """Return the spans that were told since the last time."""
         spans, self.spans = self.spans, []
         return spans
+
+    def span(
+        self, kind: SpanKind, where: str, name: str, begin_cclk: int, end_cclk: int, value: int = 0
+    ) -> None:
+        """Tell what a device did; `value` is as in `Span`."""
+        self.spans.append(Span(kind, where, name, begin_cclk, end_cclk, value=value))
+
+    def level(self, where: str, name: str, value: int, at_cclk: int) -> None:
+        """Note how high a level is from a cycle on, and tell how high it was until then; all levels begin at 0."""
+        since_cclk, before = self._levels.get((where, name), (0, 0))
+        if value != before:
+            if at_cclk > since_cclk:
+                self.span(SpanKind.LEVEL, where, name, since_cclk, at_cclk, before)
+            self._levels[where, name] = at_cclk, value
+
+    def end(self, tick: int) -> None:
+        """Tell the levels as they are when the run is over."""
+        at_cclk = self.cclk(tick)
+        for (where, name), (since_cclk, value) in self._levels.items():
+            if at_cclk > since_cclk:
+                self.span(SpanKind.LEVEL, where, name, since_cclk, at_cclk, value)
 
     def cclk(self, tick: int) -> int:
         """Return the first CCLK edge at or after a tick."""
@@ -65,6 +87,10 @@ class CoreTimeline:
         self._timeline.spans.append(
             Span(kind, self._where, name, begin_cclk, begin_cclk + cclk, self._stage, 0, stalls, 0, flow)
         )
+
+    def level(self, name: str, value: int, at_cclk: int) -> None:
+        """Note how high a level of the core's own is from a cycle on."""
+        self._timeline.level(self._where, name, value, at_cclk)
 
     def interrupt(self, source: str, begin_cclk: int, end_cclk: int) -> None:
         """Tell an interrupt from its entry to its exit."""

@@ -19,7 +19,7 @@ from tests.machine.kernels import copy, fill, spin, total
 from tests.machine.made_boards import CHIP, in_work, made_board
 from tests.machine.placements import code_in, shipped
 from tests.machine.rig import STAGES, Play, cycles_of, every_frame, noise, see_all
-from tests.machine.timelines import assert_orderly, assert_tiled, told
+from tests.machine.timelines import assert_flows, assert_orderly, assert_tiled, told
 
 LDFS = {name: shipped(f"{name}.ldf") for name in ("thesis", "l2", "sdram", "cache")} | {
     "code in SDRAM": code_in("SDRAM")
@@ -134,6 +134,7 @@ def test_spans_fill_the_time_of_a_core_and_add_up_to_its_budget(
     assert len(outcome.frames) == 2
     assert_orderly(spans)
     assert_tiled(outcome.frames, spans)
+    assert_flows(spans)
     board = made_board(*mains, **how)
     assert board.run(noise(2, board.size)) == outcome
 
@@ -148,6 +149,7 @@ def test_spans_of_chance_firmware_add_up(
     outcome, spans = told(made_board(*mains, ldf=LDFS[ldf]))
     assert_orderly(spans)
     assert_tiled(outcome.frames, spans)
+    assert_flows(spans)
 
 
 def of_kind(spans: Sequence[Span], kind: SpanKind, where: str = "core A") -> list[Span]:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
 from bfsim.machine.board import Board, Outcome
-from bfsim.spans import Span
+from bfsim.spans import Span, SpanKind
 from bfsim.trace import CoreFrame, FrameRecord, StageCost
 from tests.machine.rig import noise
 
@@ -82,3 +82,15 @@ def _costs(spans: Sequence[Span]) -> Iterator[StageCost]:
         issue_cclk = sum(each.issue_cclk for each in mine)
         idle_cclk = sum(each.elapsed_cclk for each in mine) - issue_cclk - sum(stalls.values())
         yield StageCost(stage=stage, issue_cclk=issue_cclk, stall_cclk=dict(stalls), idle_cclk=idle_cclk)  # type: ignore[arg-type]
+
+
+def assert_flows(spans: Sequence[Span]) -> None:
+    """A transfer with a flow ended a wait of one core, or of both; every wait with one was ended by one transfer."""
+    transfers = [each for each in spans if each.kind is SpanKind.TRANSFER and each.flow]
+    waits = [each for each in spans if each.kind in {SpanKind.STALL, SpanKind.IDLE} and each.flow]
+    assert len(transfers) + len(waits) == sum(each.flow > 0 for each in spans)
+    by_flow = {each.flow: each for each in transfers}
+    assert len(by_flow) == len(transfers)
+    assert {each.flow for each in waits} == set(by_flow)
+    assert len({(each.flow, each.where) for each in waits}) == len(waits)
+    assert all(by_flow[each.flow].end_cclk <= each.end_cclk for each in waits)

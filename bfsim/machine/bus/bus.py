@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import lcm
 from typing import Any
@@ -23,9 +23,11 @@ from bfsim.errors import FirmwareError
 from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.sdram import new_sdram
+from bfsim.machine.bus.told import ToldBus
 from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
+from bfsim.machine.timeline import Timeline
 
 TRANSFER_LAYOUT = struct.Struct(f"@{w.TRANSFER_WORDS}q")
 
@@ -66,6 +68,9 @@ class TransferPlan:
 
     master: int
     words: tuple[int, ...]
+    nbytes: int
+    name: str = field(default="", kw_only=True)
+    """What is moved, for people."""
 
 
 class Transfer:
@@ -92,6 +97,7 @@ class Bus:
         self, env: Simulation, board: BoardSpec, memories: Memories, weave: Weave = compiled_weave
     ) -> None:
         self._env = env
+        self._board = board
         self._chip = board.chip
         self._clocks = board.clocks
         self._registers = memories.registers
@@ -102,6 +108,7 @@ class Bus:
         self._advance = weave(self._state, self._memory)
         self._transfers = 0
         self._waiting: dict[int, simpy.Event] = {}
+        self._told: ToldBus | None = None
         self._state[: w.SDRAM_WORDS] = new_sdram(board)
         self._set_up(board, memories)
         self._set_masters(board)
@@ -148,14 +155,16 @@ class Bus:
                 w.FIFO: chip.dma.fifo_words + (chip.ppi_fifo_words if number in (w.PPI0, w.PPI1) else 0),
                 w.GAP_NUMERATOR: gap.numerator, w.GAP_DENOMINATOR: gap.denominator * chip.dma.fifo_words,
             }  # fmt: skip
-            for field, value in fields.items():
-                self._state[w.MASTERS_AT + number + field] = value
+            for word, value in fields.items():
+                self._state[w.MASTERS_AT + number + word] = value
 
     # ---- time
 
     def settle(self) -> None:
         """Grant everything that was asked for before the simulated time."""
         self.play_until(self._env.tick)
+        if self._told:
+            self._told.sample(self._env.tick)
 
     def play_until(self, tick: int) -> bool:
         """Grant everything that was asked for before `tick`; stop early, with True, at an end that somebody waits for.
@@ -238,6 +247,7 @@ class Bus:
                 destination.offset, destination.x_count, destination.x_modify, destination.y_modify, destination.x_count,
                 pace.start, parts, element, line, pace.line_elements, 0, 0,
             ),
+            count * element_bytes,
         )  # fmt: skip
 
     def post(self, plan: TransferPlan, at: int = 0) -> Transfer:
@@ -261,6 +271,8 @@ class Bus:
         posted = words[w.POSTED]
         words[w.POSTS_AT + 2 * posted], words[w.POSTS_AT + 2 * posted + 1] = plan.master, place
         words[w.POSTED] = posted + 1
+        if self._told:
+            self._told.post(plan.master, number, plan.name, max(at, now), plan.nbytes, now)
         return Transfer(self, number, place)
 
     def when_done(self, transfer: Transfer) -> simpy.Event:
@@ -286,6 +298,26 @@ class Bus:
     def lost_by(self, master: int) -> int:
         """Return how many elements a peripheral's DMA has lost, since they found its FIFO full or did not come in time."""
         return int(self.words[w.MASTERS_AT + master + w.ALL_LOST])
+
+    # ---- the timeline
+
+    def use(self, timeline: Timeline) -> None:
+        """Tell `timeline` of transfers and of the load from now on."""
+        self._told = ToldBus(timeline, self._board, self.words)
+
+    @property
+    def timeline(self) -> Timeline | None:
+        """What is told what happens when, if anybody wants to know."""
+        return self._env.timeline
+
+    def tell(self, until: int) -> None:
+        """Tell the timeline of the transfers that were over before tick `until`."""
+        if self._told:
+            self._told.tell(until)
+
+    def flow_of(self, transfer: Transfer | None) -> int:
+        """Return the flow from a transfer, if any, to the wait that it has just ended; 0 if nobody is told."""
+        return self._told.flow_of(transfer.number) if self._told and transfer else 0
 
     # ---- cores
 

@@ -17,6 +17,7 @@ import simpy
 from numpy.typing import NDArray
 
 from bfsim.clocks import Clocks
+from bfsim.machine.bus.bus import Transfer
 from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.memories import Row
@@ -72,7 +73,8 @@ class State(StrEnum):
 class Pair:
     """A pair of frame buffers, one per core.
 
-    `index` is the recording's frame in it, `picture` the lines of that, `lost` the words that its PPIs lost.
+    `index` is the recording's frame in it, `picture` the lines of that, `lost` the words that its PPIs lost, `last` the
+    transfer that ended last.
     """
 
     rows: Mapping[str, Sequence[Row]]
@@ -82,6 +84,7 @@ class Pair:
     full_at_ticks: int = 0
     users: int = 0
     lost: dict[str, int] = field(default_factory=dict)
+    last: Transfer | None = None
 
 
 class Capture:
@@ -263,3 +266,4 @@ class Capture:
             yield ppi.through
         yield ppi.receive(image, pair.picture[core], start)
         pair.lost[core] = ppi.end_picture()
+        pair.last = ppi.transfer

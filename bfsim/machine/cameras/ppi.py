@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -15,13 +16,15 @@ from bfsim.clocks import PeriodicEdges
 from bfsim.errors import FirmwareError
 from bfsim.kernel.types import u8
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Bus, Pace, Walk
+from bfsim.machine.bus.bus import Bus, Pace, Transfer, Walk
 from bfsim.machine.cameras.oscillator import Oscillator
 from bfsim.machine.cameras.ppi_status import PpiStatus
 from bfsim.machine.cameras.settling import CameraSettings, Settling
 from bfsim.machine.cameras.skipping import SKIPS, skipped
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.program import FrameSize
+from bfsim.machine.timeline import Timeline
+from bfsim.spans import SpanKind
 
 
 class Ppi:
@@ -66,6 +69,9 @@ class Ppi:
         self._lost = 0
         self.through: simpy.Event | None = None
         """The event at which the last picture that was begun is in its frame buffer."""
+        self.transfer: Transfer | None = None
+        """The transfer of that."""
+        self._begin = 0
 
     def _send(self, size: FrameSize) -> None:
         """Program sensor and PPI for pictures of `size`."""
@@ -146,11 +152,15 @@ class Ppi:
             element_bytes=self._word_bytes,
             pace=Pace(start, words, self._word_ticks, self._line_ticks),
         )
-        self.through = self._bus.when_done(self._bus.post(plan))
+        self.transfer = self._bus.post(replace(plan, name=f"picture → {rows[0].buffer}"))
+        self.through = self._bus.when_done(self.transfer)
+        self._begin = start
         return self.through
 
     def end_picture(self) -> int:
         """Ask for the interrupts of a picture's end; return how many of its words found the FIFO full: any of them sets OVR."""
+        if timeline := self._bus.timeline:
+            self._tell_lines(timeline)
         total = self._bus.lost_by(self._master)
         lost, self._lost = total - self._lost, total
         if lost:
@@ -159,3 +169,19 @@ class Ppi:
         if self.status.causes:
             self._interrupt(f"{self._name}_ERROR")
         return lost
+
+    def _tell_lines(self, timeline: Timeline) -> None:
+        """Tell when the camera sent the lines of the picture that has just ended."""
+        nbytes = 2 * self.size.width_px
+        sent = PeriodicEdges(self._word_ticks).after(nbytes // self._word_bytes)
+        lines = PeriodicEdges(self._line_ticks)
+        for number in range(self.size.height_px):
+            begin = self._begin + lines.after(number)
+            timeline.span(
+                SpanKind.LINE,
+                self._name,
+                f"line {number}",
+                timeline.cclk(begin),
+                timeline.cclk(begin + sent),
+                nbytes,
+            )

@@ -7,7 +7,7 @@ issue + stall + idle = elapsed holds by construction.
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from typing import Any
 
 import simpy
@@ -65,14 +65,16 @@ class CoreClock:
             self._bus.settle()
             if transfer.end is None:
                 yield from self._blocked(iter([self._bus.when_done(transfer)]), "DMA", reason)
-        self._charge(reason, self._until(transfer.end))
+        self._charge(reason, self._until(transfer.end), transfer)
 
-    def wait_event(self, event: simpy.Event | None, what: str) -> Generator[Any, Any, None]:
-        """Stall until `event`, the end of a DMA that this core started."""
+    def wait_event(
+        self, event: simpy.Event | None, what: str, last: Callable[[], Transfer | None]
+    ) -> Generator[Any, Any, None]:
+        """Stall until `event`, the end of a DMA that this core started; `last`: returns its last transfer then."""
         yield from self._sync()
         if event is not None and not event.processed:
             yield from self._blocked(iter([event]), what, StallReason.RING_EMPTY)
-            self._wake(StallReason.RING_EMPTY)
+            self._wake(StallReason.RING_EMPTY, ended_by=last())
 
     def stall(self, reason: StallReason, cclk: int) -> None:
         """Let `cclk` cycles pass without work, for `reason`."""
@@ -89,6 +91,11 @@ class CoreClock:
         self._cclk += cclk
         self._account.issue_cclk += cclk
 
+    def tell_level(self, name: str, value: int) -> None:
+        """Tell the timeline, if there is one, how high a level of this core's is from now on."""
+        if self._timeline:
+            self._timeline.level(name, value, self._cclk)
+
     def program_device(self, writes: int, reads: int = 0) -> None:
         """Write and read registers of a device: that is DMA set-up."""
         events = self._board.chip.events
@@ -103,13 +110,13 @@ class CoreClock:
         assert tick is not None
         return max(0, -(-tick // self._cclk_ticks) - self._cclk)
 
-    def _wake(self, reason: StallReason | None, step_cclk: int = 1) -> None:
+    def _wake(self, reason: StallReason | None, step_cclk: int = 1, ended_by: Transfer | None = None) -> None:
         """Go on at the first CCLK edge from now, or whole `step_cclk` later; that was a stall, or idle without a reason."""
-        self._charge(reason, -(-self._until(self._env.tick) // step_cclk) * step_cclk)
+        self._charge(reason, -(-self._until(self._env.tick) // step_cclk) * step_cclk, ended_by)
 
-    def _charge(self, reason: StallReason | None, waited_cclk: int) -> None:
+    def _charge(self, reason: StallReason | None, waited_cclk: int, ended_by: Transfer | None = None) -> None:
         """Let `waited_cclk` pass, and charge them with what the wait owes from before its interrupts."""
-        self._pass_waiting(reason, waited_cclk)
+        self._pass_waiting(reason, waited_cclk, ended_by)
         waited_cclk, self._owed_cclk = waited_cclk + self._owed_cclk, 0
         if reason is None:
             self._account.idle_cclk += waited_cclk
@@ -117,10 +124,10 @@ class CoreClock:
             stalls = self._account.stall_cclk
             stalls[reason] = stalls.get(reason, 0) + waited_cclk
 
-    def _pass_waiting(self, reason: StallReason | None, cclk: int) -> None:
+    def _pass_waiting(self, reason: StallReason | None, cclk: int, ended_by: Transfer | None = None) -> None:
         """Let `cclk` cycles of a wait pass that are on no account yet."""
-        if self._timeline:
-            self._timeline.wait(reason, self._cclk, cclk)
+        if self._timeline and cclk:
+            self._timeline.wait(reason, self._cclk, cclk, self._bus.flow_of(ended_by))
         self._cclk += cclk
 
     def _blocked(

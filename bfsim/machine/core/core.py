@@ -183,7 +183,7 @@ class Core(SynchronisedCore):
         yield from self._sync()
         self._close_frame()
         pair = yield from self._blocked(self._capture.claim(self.name), "the next picture", None)
-        self._wake(None)
+        self._wake(None, ended_by=pair.last if pair else None)
         if pair is None:
             self._is_over = True
             return None

@@ -18,6 +18,11 @@ class Semaphore:
         self._count = 0
         self._waiters: deque[simpy.Event] = deque()
 
+    @property
+    def count(self) -> int:
+        """The counter."""
+        return self._count
+
     def post(self) -> None:
         """Add one, or let the first waiter go on."""
         if self._waiters:

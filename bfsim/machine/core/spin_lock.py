@@ -16,6 +16,8 @@ class SpinLock:
         self.name = name
         self.core: str | None = None
         self.holder: str | None = None
+        self.since_cclk = 0
+        """When it was taken, by the clock of its core."""
         self._env = env
         self._waiters: deque[tuple[simpy.Event, str]] = deque()
 

@@ -17,6 +17,7 @@ from bfsim.machine.core.shared_access import SharedAccess
 from bfsim.machine.core.spin_lock import SpinLock
 from bfsim.machine.core.waits import awaited
 from bfsim.machine.firmware_lines import running_line
+from bfsim.spans import SpanKind
 from bfsim.trace import StallReason
 
 OTHER_CORE = "SUPPLEMENTAL_0"  # the supplemental interrupt that one core raises at the other
@@ -48,6 +49,7 @@ class SynchronisedCore(PlayingCore):
         """Add one to the semaphore `name`, in L2."""
         yield from self._test_and_set()
         self._semaphore(name).post()
+        self._tell_count(name)
 
     @awaited
     def wait(self, name: str) -> Generator[Any, Any, None]:
@@ -56,6 +58,7 @@ class SynchronisedCore(PlayingCore):
         turn = self._semaphore(name).take()
         if turn is not None:
             yield from self._take_turn(turn, f"semaphore {name!r}")
+        self._tell_count(name)
 
     @awaited
     def lock(self, name: str) -> Generator[Any, Any, None]:
@@ -68,6 +71,7 @@ class SynchronisedCore(PlayingCore):
         if turn is not None:
             yield from self._take_turn(turn, f"lock {name!r}, held by {lock.holder}")
             lock.holder = self._described()
+        lock.since_cclk = self._cclk
 
     @awaited
     def unlock(self, name: str) -> Generator[Any, Any, None]:
@@ -78,6 +82,8 @@ class SynchronisedCore(PlayingCore):
             raise FirmwareError(
                 f"core {self.name} must not give lock {name!r} back, which {lock.holder or 'nobody'} holds"
             )
+        if timeline := self._env.timeline:
+            timeline.span(SpanKind.LOCK, f"lock {name}", f"core {self.name}", lock.since_cclk, self._cclk)
         lock.release()
 
     def _take_turn(self, turn: simpy.Event, what: str) -> Generator[Any, Any, None]:
@@ -95,6 +101,10 @@ class SynchronisedCore(PlayingCore):
             yield self._bus.stop_spinning(self._number)
             self._in_handler = before
         self._wake(StallReason.SEMAPHORE)
+
+    def _tell_count(self, name: str) -> None:
+        if timeline := self._env.timeline:
+            timeline.level(f"semaphore {name}", "count", self._semaphore(name).count, self._cclk)
 
     def _described(self) -> str:
         return f"core {self.name} since cycle {self._cclk:,} ({running_line()})"

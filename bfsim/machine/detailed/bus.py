@@ -43,7 +43,9 @@ class DetailedBus(Bus):
     # ---- time: nothing here is ever behind the simulation
 
     def settle(self) -> None:
-        """Do nothing: everything that is due has happened."""
+        """Let nothing happen: everything that is due has."""
+        if self._told:
+            self._told.sample(self._env.tick)
 
     def play_until(self, tick: int) -> bool:  # noqa: ARG002
         """Do nothing, and stop at nothing: the simulation plays every master."""
@@ -59,7 +61,9 @@ class DetailedBus(Bus):
     def _plan(
         self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, setup: int, pace: Pace
     ) -> TransferPlan:  # fmt: skip
-        return DetailedPlan(master, (), mode, source, destination, count, element_bytes, setup, pace)
+        return DetailedPlan(
+            master, (), count * element_bytes, mode, source, destination, count, element_bytes, setup, pace
+        )
 
     def post(self, plan: TransferPlan, at: int = 0) -> Transfer:
         """Put a transfer behind those that its master has already; it begins at tick `at` or later."""
@@ -72,6 +76,8 @@ class DetailedBus(Bus):
         assert transfer.done.callbacks is not None
         transfer.done.callbacks.append(lambda _event: self._forget(number))
         self._channels[plan.master].post(transfer)
+        if self._told:
+            self._told.post(plan.master, number, plan.name, transfer.at, plan.nbytes, self._env.tick)
         return Transfer(self, number, w.NONE)
 
     def _forget(self, number: int) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus.bus import Bus, Transfer, TransferPlan, Walk
 from bfsim.machine.memories import Row
@@ -39,6 +41,7 @@ class MdmaStream:
         size = element_bytes(self._word_bytes, source.offset, destination.offset, source.nbytes)
         count = source.nbytes // size
         inward, outward = (Walk(each.offset, count, size, size) for each in (source, destination))
-        return self._bus.plan_copy(
+        plan = self._bus.plan_copy(
             self._master, inward, outward, count, element_bytes=size, setup=self._startup_ticks
         )
+        return replace(plan, name=f"{source.buffer} → {destination.buffer}")

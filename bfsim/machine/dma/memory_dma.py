@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import simpy
@@ -12,7 +13,7 @@ from bfsim.chip.dma_registers import ELEMENT_BYTES
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Bus, Walk
+from bfsim.machine.bus.bus import Bus, Transfer, Walk
 from bfsim.machine.core.waits import Waits, awaited
 from bfsim.machine.dma.channel import ChannelStep, DmaChannel, check_pair
 from bfsim.machine.dma.checks import DmaSpace
@@ -80,6 +81,7 @@ class MemoryDma:
         self.done: simpy.Event | None = None
         """The event at which the present work ends, None when nothing was started."""
         self._stopping = False
+        self._last: Transfer | None = None
 
     def _read16(self, address: int) -> int:
         offset = self._memories.offset_of(address, 2)
@@ -118,12 +120,13 @@ class MemoryDma:
     @awaited
     def wait(self) -> Generator[Any, Any, None]:
         """Stall until the work that was started is done; with FLOW=AUTO it is after a `stop` only."""
-        yield from self.core.wait_event(self.done, f"{self.name}")
+        yield from self.core.wait_event(self.done, f"{self.name}", lambda: self._last)
 
     def _run(self, source: ChannelStep, destination: ChannelStep) -> Generator[Any, Any, None]:
         """Move one work unit after the other, until one of the channels stops."""
         while source.unit and destination.unit:
             transfer, rows = self._post(source, destination), destination.unit.y_count
+            self._last = transfer
             noted = 0
             while transfer.end is None:
                 yield (
@@ -152,7 +155,7 @@ class MemoryDma:
         self.source.stop()
         self.destination.stop()
 
-    def _post(self, source: ChannelStep, destination: ChannelStep) -> Any:
+    def _post(self, source: ChannelStep, destination: ChannelStep) -> Transfer:
         """Have the descriptors fetched and then the words moved, one transfer behind the other; return the last one."""
         assert source.unit is not None
         assert destination.unit is not None
@@ -162,7 +165,8 @@ class MemoryDma:
                 elements = step.fetch.elements
                 offset = self._memories.offset_of(step.fetch.address, elements * ELEMENT_BYTES)
                 setup_sclk = elements * self._dma.descriptor_sclk
-                self._bus.post(self._bus.plan_fetch(master, offset, elements, setup_sclk * self._sclk_ticks))
+                fetch = self._bus.plan_fetch(master, offset, elements, setup_sclk * self._sclk_ticks)
+                self._bus.post(replace(fetch, name="descriptor"))
         plan = self._bus.plan_copy(
             master,
             self._walk(source.unit),
@@ -171,7 +175,7 @@ class MemoryDma:
             element_bytes=destination.unit.word_bytes,
             setup=self._dma.startup_sclk * self._sclk_ticks,
         )
-        return self._bus.post(plan)
+        return self._bus.post(replace(plan, name="work unit"))
 
     def _walk(self, unit: WorkUnit) -> Walk:
         offset = self._memories.offset_of(unit.start_address, unit.word_bytes)

@@ -64,7 +64,9 @@ class InputRing:
         # one line ahead: its row is the one that the core gave up with this call
         self._coming = self._fetch(number + 1) if number + 1 < self._height else None
         core.settle()
-        if not core.has(transfer):
+        is_there = core.has(transfer)
+        core.tell_level(f"ring {self._rows[0].buffer}", int(is_there))
+        if not is_there:
             yield from core.wait_transfer(transfer, StallReason.RING_EMPTY)
         return self._rows[number % self._depth]
 
@@ -110,6 +112,12 @@ class OutputRing:
         self._core.program_device(writes=COPY_WRITES, reads=COPY_READS)
         row = self._rows[number % self._depth]
         self._transfers.append(self._stream.copy(row, self._image[number], self._core.now_ticks))
+        self._tell_fill()
+
+    def _tell_fill(self) -> None:
+        """Tell how many rows wait for their DMA."""
+        on_their_way = [each for each in self._transfers[-self._depth :] if not self._core.has(each)]
+        self._core.tell_level(f"ring {self._rows[0].buffer}", len(on_their_way))
 
     @property
     def waits(self) -> Waits:

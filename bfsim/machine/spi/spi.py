@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
+from dataclasses import replace
 from fractions import Fraction
 from math import ceil
 from typing import Any
@@ -18,6 +19,7 @@ from bfsim.machine.bus.bus import Bus, Pace, Transfer, Walk
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi.device import LARGEST_MESSAGE_BYTES, WORD_BYTES, SpiDevice, SpiMessage, device_at_work
+from bfsim.spans import SpanKind
 from bfsim.trace import MessageRecord
 
 
@@ -72,7 +74,7 @@ class Spi:
             w.SPI, self._walk(row.offset, nbytes), self._walk(self._outside, nbytes), nbytes // WORD_BYTES,
             element_bytes=WORD_BYTES, pace=self._pace(nbytes),
         )  # fmt: skip
-        yield self._bus.when_done(self._bus.post(plan))
+        yield self._bus.when_done(self._bus.post(replace(plan, name=f"{row.buffer} → out")))
         octets = self._memories.bytes_from(self._outside, nbytes).tobytes()
         with device_at_work():
             kind = self._device.receive(octets, self._now_ns)
@@ -99,7 +101,7 @@ class Spi:
             w.SPI, self._walk(self._outside, nbytes), self._walk(row.offset, nbytes), nbytes // WORD_BYTES,
             element_bytes=WORD_BYTES, pace=self._pace(nbytes),
         )  # fmt: skip
-        transfer = self._bus.post(plan)
+        transfer = self._bus.post(replace(plan, name=f"{message.type} → {row.buffer}"))
         begin, self.busy = self._env.tick, self._bus.when_done(transfer)
         assert self.busy.callbacks is not None
         kind = message.type if nbytes == len(message.octets) else f"{message.type} (cut short)"
@@ -130,6 +132,9 @@ class Spi:
 
     def _record(self, direction: str, kind: str, nbytes: int, begin: int) -> None:
         cclk_ticks = self._clocks.cclk_ticks
+        if timeline := self._env.timeline:
+            edges = timeline.cclk(begin), timeline.cclk(self._env.tick)
+            timeline.span(SpanKind.MESSAGE, "SPI", f"{kind} {direction}", *edges, nbytes)
         self.records.append(
             MessageRecord(
                 direction=direction, type=kind, nbytes=nbytes,

@@ -1,0 +1,107 @@
+"""What the bus tells the timeline: its transfers, when they are over, and how much of the time it is busy.
+
+The compiled code knows of none of it. When a transfer began follows from its end and from those of its master before it.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from bfsim.chip.spec import BoardSpec
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.traffic import MASTERS
+from bfsim.machine.timeline import Timeline
+from bfsim.spans import Span, SpanKind
+
+NAMES = {master: name for name, masters in MASTERS.items() for master in masters}
+MOST_PENDING = 1024
+"""Transfers that are noted before those that are over are told: far fewer than the ends that the bus remembers."""
+SAMPLE_CCLK = 60_000
+"""Cycles, at least, that a number for the load of a bus is of: 100 µs at 600 MHz."""
+
+_BUSY = {
+    "DMA": [master for name, masters in MASTERS.items() for master in masters if not name.startswith("core")],
+    "cores": [master for name, masters in MASTERS.items() for master in masters if name.startswith("core")],
+}
+_AT_L2_PORT = (w.IMDMA_0, w.IMDMA_1, *_BUSY["cores"])
+"""Who comes through the port of L2 that is modelled."""
+
+
+class _Posted(NamedTuple):
+    """A transfer that was posted: its number and name, the tick from which it may begin, and its bytes."""
+
+    number: int
+    name: str
+    at: int
+    nbytes: int
+
+
+class ToldBus:
+    """A bus as the timeline sees it. `words`: the bus's state."""
+
+    def __init__(self, timeline: Timeline, board: BoardSpec, words: Sequence[int]) -> None:
+        self._timeline = timeline
+        self._words = words
+        self._l2 = board.chip.l2
+        self._cclk_ticks = board.clocks.cclk_ticks
+        self._posted: dict[int, deque[_Posted]] = {}
+        self._pending: dict[int, bool] = {}  # by number: whether a core waited for its end
+        self._free_at: dict[int, int] = {}
+        self._sampled_cclk = 0
+        self._busy = dict.fromkeys(_BUSY, 0)
+        self._l2_bytes = 0
+
+    # ---- transfers
+
+    def post(self, master: int, number: int, name: str, at: int, nbytes: int, now: int) -> None:
+        """Note a transfer that may begin at tick `at`."""
+        if len(self._pending) >= MOST_PENDING:
+            self.tell(now)
+        self._pending[number] = False
+        self._posted.setdefault(master, deque()).append(_Posted(number, name, at, nbytes))
+
+    def flow_of(self, number: int) -> int:
+        """Return the flow from a transfer to the wait that it has just ended; 0 if it was told already."""
+        if number not in self._pending:
+            return 0
+        self._pending[number] = True
+        return number + 1
+
+    def tell(self, now: int) -> None:
+        """Tell the transfers that were over before tick `now`: nobody begins to wait for them any more."""
+        for master, posted in self._posted.items():
+            while posted and w.NONE != (end := self._words[w.ENDS_AT + posted[0].number % w.ENDS]) < now:
+                number, name, at, nbytes = posted.popleft()
+                begin, self._free_at[master] = max(at, self._free_at.get(master, 0)), end
+                flow = number + 1 if self._pending.pop(number) else 0
+                edges = self._timeline.cclk(begin), self._timeline.cclk(end)
+                self._timeline.spans.append(
+                    Span(SpanKind.TRANSFER, NAMES[master], name, *edges, value=nbytes, flow=flow)
+                )
+
+    # ---- load
+
+    def sample(self, now: int) -> None:
+        """Tell how busy the bus was since the last time, if that is long enough ago; it has come up to tick `now`."""
+        now_cclk = now // self._cclk_ticks
+        elapsed_cclk = now_cclk - self._sampled_cclk
+        if elapsed_cclk < SAMPLE_CCLK:
+            return
+        for who, masters in _BUSY.items():
+            before, self._busy[who] = self._busy[who], self._sum(masters, w.IN_SDRAM, (w.BUSY,))
+            percent = 100 * (self._busy[who] - before) // (elapsed_cclk * self._cclk_ticks)
+            self._timeline.level("SDRAM bus", f"busy with {who}, %", percent, self._sampled_cclk)
+        if self._l2:
+            before, self._l2_bytes = (
+                self._l2_bytes,
+                self._sum(_AT_L2_PORT, w.IN_L2, (w.READ_BYTES, w.WRITTEN_BYTES)),
+            )
+            held_cclk = (self._l2_bytes - before) * self._l2.next_cclk // self._l2.port_bytes
+            self._timeline.level("L2 port", "busy, %", 100 * held_cclk // elapsed_cclk, self._sampled_cclk)
+        self._sampled_cclk = now_cclk
+
+    def _sum(self, masters: Sequence[int], memory: int, counters: Sequence[int]) -> int:
+        rows = [w.TRAFFIC_AT + (master * w.MEMORIES + memory) * w.TRAFFIC_WORDS for master in masters]
+        return sum(self._words[row + each] for row in rows for each in counters)
