@@ -1,4 +1,7 @@
-"""The 3-D lines that the firmware sees in stereo frames: its edge, line and stereo stages on a simulated board."""
+"""The 3-D lines that the firmware sees in stereo frames: its edge, line and stereo stages on a simulated board.
+
+The 3-D edges are found too, for they vote on the lines.
+"""
 
 from __future__ import annotations
 
@@ -13,16 +16,17 @@ from benchmarks.playing import play
 from bfsim.api import BudgetRow, Calibration, Core, Firmware, Frame, Readout
 from bfsim.recording import StereoFrame
 from tinyphoon.buffers import buffers, calibration_buffers
-from tinyphoon.exchange import share_lines
+from tinyphoon.exchange import share_edges, share_lines
 from tinyphoon.stages.edge_detection import edge_detection
 from tinyphoon.stages.line_detection import line_detection
 from tinyphoon.stages.line_refinement import line_refinement
 from tinyphoon.stages.rectification import rectification
+from tinyphoon.stages.stereo_edges import stereo_edges
 from tinyphoon.stages.stereo_lines import stereo_lines
 from tinyphoon.stores.lines3d import LINE3D_WORDS, LINE3D_X0, LINE3D_Z1
 from tinyphoon.strategy.modes import Mode
 
-STAGES = ("Edge detection", "Line detection", "3-D lines")
+STAGES = ("Edge detection", "Line detection", "3-D lines", "3-D edges")
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,27 +44,32 @@ def see_stereo(
 ) -> list[SeenStereo]:
     """Return what the firmware finds in each of `frames`."""
 
-    def features(core: Core, frame: Frame) -> Generator[Any, Any, int]:
+    def features(core: Core, frame: Frame) -> Generator[Any, Any, tuple[int, int]]:
         with core.stage("Edge detection"):
             frame = yield from rectification(core, frame)
-            yield from edge_detection(core, frame, mode.edges)
+            edges = yield from edge_detection(core, frame, mode.edges)
         with core.stage("Line detection"):
             count: int = yield from line_detection(core, frame, mode.lines)
             yield from line_refinement(core, frame, count, mode.refinement)
-        return count
+        return edges, count
 
     def core_a(core: Core) -> Generator[Any, Any, None]:
         while (frame := (yield from core.next_frame())) is not None:
-            count = yield from features(core, frame)
+            _, lines = yield from features(core, frame)
             yield from core.wait("core B is done")
             with core.stage("3-D lines"):
-                yield from stereo_lines(core, frame, count, mode.stereo_lines)
+                vote = yield from stereo_lines(core, frame, lines, mode.stereo_lines)
+            with core.stage("3-D edges"):
+                yield from stereo_edges(core, frame, mode.stereo_edges, vote)
+            with core.stage("3-D lines"):
+                yield from vote.close()
             yield from core.post("core A is done")
 
     def core_b(core: Core) -> Generator[Any, Any, None]:
         while (frame := (yield from core.next_frame())) is not None:
-            count = yield from features(core, frame)
-            yield from share_lines(core, count)
+            edges, lines = yield from features(core, frame)
+            yield from share_lines(core, lines)
+            yield from share_edges(core, edges)
             yield from core.post("core B is done")
             yield from core.wait("core A is done")
 

@@ -34,7 +34,7 @@ from tinyphoon.strategy.modes import INDOOR_FIELD, Mode
 PLAIN = replace(
     INDOOR_FIELD,
     refinement=replace(INDOOR_FIELD.refinement, reach=0),
-    stereo_lines=replace(INDOOR_FIELD.stereo_lines, correspondence=Correspondence.NEAREST),
+    stereo_lines=replace(INDOOR_FIELD.stereo_lines, correspondence=Correspondence.NEAREST, edge_range=0),
 )
 """The thesis's way."""
 

@@ -31,8 +31,9 @@ def core_a(core: Core) -> Generator[Any, Any, None]:
             yield from left_sight(core, found.frame, found.outlines, mode.objects)
         yield from core.wait("core B is done")
         with core.stage("Line detection"):
-            yield from stereo_lines(core, found.frame, found.lines, mode.stereo_lines)
-            yield from stereo_edges(core, found.frame, mode.stereo_edges)
+            vote = yield from stereo_lines(core, found.frame, found.lines, mode.stereo_lines)
+            yield from stereo_edges(core, found.frame, mode.stereo_edges, vote)
+            yield from vote.close()
         with core.stage("Object detection"):
             yield from follow_area(core, area, halvings_of(core, frame))
             yield from object_detection(core, mode.objects)

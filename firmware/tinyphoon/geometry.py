@@ -131,6 +131,13 @@ def depth_mm(geometry: i32[:], disparity: i32) -> i32:
 
 
 @kernel
+def disparity_at(geometry: i32[:], depth: i32) -> i32:
+    """Return the disparity of what is at a positive depth in mm, in 1/16 px, rounded (T Eq. 3.16)."""
+    reach = geometry[GEOMETRY_FOCAL] * geometry[GEOMETRY_BASELINE]
+    return (reach // depth + MICROMETRES // 2) // MICROMETRES
+
+
+@kernel
 def beside_mm(geometry: i32[:], depth: i32, off_axis: i32) -> i32:
     """Return how far beside the axis a point is, X or Y of T Eq. 3.17, in mm, rounded.
 

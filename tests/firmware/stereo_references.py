@@ -5,7 +5,7 @@ Lines are rows of t_Line's words, in 1/16 px. Numbers are fractions and are roun
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import floor
@@ -33,6 +33,10 @@ class Rig:
         off_axis = (x - 8 * (self.width - 1), y - 8 * (self.height - 1))
         point = (*(rounded(Fraction(z * off, self.focal)) for off in off_axis), z)
         return point if z > 0 and max(map(abs, point)) <= 32767 else None
+
+    def disparity(self, depth: int) -> int:
+        """The disparity of what is so many mm away, in 1/16 px."""
+        return rounded(Fraction(self.focal * self.baseline, 1000 * depth))
 
 
 def rounded(number: Fraction) -> int:
@@ -147,10 +151,7 @@ class EdgeLimits:
 
     def disparities(self, rig: Rig) -> range:
         """Those that are wanted."""
-        least, most = (
-            floor(Fraction(rig.focal * rig.baseline, 16000 * depth))
-            for depth in (self.farthest_mm, self.nearest_mm)
-        )
+        least, most = (rig.disparity(depth) // 16 for depth in (self.farthest_mm, self.nearest_mm))
         return range(least + 1, most + 1)
 
     def unlike(self, edge: Edge, other: Edge) -> int | None:
@@ -211,19 +212,49 @@ class EdgeLimits:
         return min(turn(edge[1], 64), turn(edge[1], 192)) < self.level_range
 
 
+Partners = Mapping[Edge, Edge]
+
+
+def partners_of(rig: Rig, left: Rows, right: Rows, limits: EdgeLimits) -> list[Partners]:
+    """The left edges of each row that have a partner, and that."""
+    wanted = limits.disparities(rig)
+    steep = [[[edge for edge in row if not limits.is_level(edge)] for row in rows] for rows in (left, right)]
+    if limits.is_mutual:
+        return [limits.supported(*steep, y, wanted.stop - 1) for y in range(len(left))]
+    return [limits.nearest(*pair, wanted) for pair in zip(*steep, strict=True)]
+
+
 def edges_3d(rig: Rig, left: Rows, right: Rows, limits: EdgeLimits) -> list[tuple[int, ...]]:
     """3-D edges from the bottom row on: X, Y, Z and the number of the left edge in the store."""
     found = []
     wanted = limits.disparities(rig)
-    steep = [[[edge for edge in row if not limits.is_level(edge)] for row in rows] for rows in (left, right)]
-    for y in reversed(range(len(left))):
+    for y, partners in reversed([*enumerate(partners_of(rig, left, right, limits))]):
         first = sum(len(row) for row in left[:y])
-        if limits.is_mutual:
-            partners = limits.supported(*steep, y, wanted.stop - 1)
-        else:
-            partners = limits.nearest(steep[0][y], steep[1][y], wanted)
         for edge, other in partners.items():
             point = rig.point(16 * edge[0], 16 * y, 16 * (edge[0] - other[0]))
             if point and edge[0] - other[0] in wanted:
                 found.append((*point, first + left[y].index(edge)))
     return found
+
+
+def elected(
+    lines_3d: Sequence[Line3D],
+    lefts: Sequence[Words],
+    rights: Sequence[Words],
+    partners: Sequence[Partners],
+    edge_range: int,
+) -> list[Line3D]:
+    """The 3-D lines that more edges are for than against; `partners` are those of each row."""
+
+    def majority(line: Words, other: Words) -> int:
+        top, bottom = rows(line)
+        votes = [
+            abs(16 * (edge[0] - own[0]) - column(line, 16 * y) + column(other, 16 * y)) <= edge_range
+            for y, pairs in enumerate(partners)
+            if top <= 16 * y <= bottom
+            for edge, own in pairs.items()
+            if abs(16 * edge[0] - column(line, 16 * y)) <= edge_range
+        ]
+        return sum(1 if each else -1 for each in votes)
+
+    return [each for each in lines_3d if majority(lefts[each[6]], rights[each[7]]) > 0]

@@ -15,11 +15,10 @@ from bfsim.run import BUILT_IN_RECORDING
 from tests.firmware.stereo_references import Edge, EdgeLimits, Rig, edges_3d
 from tests.firmware.whole_pictures import buffer, random_frames, run, stereo
 from tinyphoon.exchange import copy_words, pack_edge_rows
-from tinyphoon.geometry import GEOMETRY_WORDS
+from tinyphoon.geometry import GEOMETRY_WORDS, disparity_at
 from tinyphoon.stages.edge_correspondence import (
     REACH,
     WINDOW_ROWS,
-    disparity_at,
     is_level,
     match_edges,
     match_nearest,
@@ -63,7 +62,7 @@ def found(
     windows = np.full((2, WINDOW_ROWS * rig.width), GARBAGE, np.uint16)
     partners, *scores = np.full((4, rig.width), GARBAGE, np.uint16)
     geometry = np.array([rig.focal, rig.baseline, *[0] * (GEOMETRY_WORDS - 2)], np.int32)
-    least, most = (disparity_at(geometry, depth) for depth in (mode.farthest_mm, mode.nearest_mm))
+    least, most = (disparity_at(geometry, depth) // 16 for depth in (mode.farthest_mm, mode.nearest_mm))
     number, pictures = 0, (store(left), (shared, rows))
     for ahead in reversed(range(-REACH, len(left) + REACH)):
         y, level = ahead + REACH, mode.level_range

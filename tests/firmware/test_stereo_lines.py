@@ -16,9 +16,10 @@ from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
 from tests.firmware import stereo_references as references
 from tests.firmware.stereo_references import Line3D, Rig, Words
+from tests.firmware.test_stereo_edges import limits_of, rows_of
 from tests.firmware.whole_pictures import buffer, run
 from tinyphoon.arithmetic import angle8
-from tinyphoon.geometry import GEOMETRY_WORDS
+from tinyphoon.geometry import GEOMETRY_WORDS, disparity_at
 from tinyphoon.stages.line_correspondence import line_slopes
 from tinyphoon.stages.stereo_lines import Correspondence, StereoLineThresholds, mutual_lines, nearest_lines
 from tinyphoon.stores.lines import LINE_WORDS
@@ -55,7 +56,8 @@ def found(
     if mode.correspondence is Correspondence.NEAREST:
         count = nearest_lines(geometry, *pictures, mode.angle_range, rig.width, rig.height, lines_3d)
     else:
-        limits = mode.angle_range, mode.min_disparity, mode.max_disparity, mode.min_common
+        disparities = (disparity_at(geometry, depth) for depth in (mode.farthest_mm, mode.nearest_mm))
+        limits = mode.angle_range, *disparities, mode.min_common
         count = mutual_lines(geometry, *pictures, *limits, rig.width, rig.height, lines_3d)
     return [tuple(each) for each in lines_3d.reshape(-1, LINE3D_WORDS)[:count].tolist()]
 
@@ -66,7 +68,7 @@ def expected(
     """What the reference makes of them."""
     result = []
     limits = mode.angle_range, mode.min_rise
-    common = (mode.min_disparity, mode.max_disparity), mode.min_common
+    common = (rig.disparity(mode.farthest_mm), rig.disparity(mode.nearest_mm)), mode.min_common
     for number, each in enumerate(left):
         if references.is_level(each, mode.min_rise):
             continue
@@ -111,14 +113,15 @@ def test_any_lines(data: st.DataObject, correspondence: Correspondence) -> None:
     """Both ways of choosing, over pictures of 640x480 and all thresholds."""
     left = data.draw(st.lists(any_line, max_size=6))
     right = data.draw(seen_from_the_right(left))
-    low = data.draw(st.integers(-100, 400))
+    nearest = data.draw(st.integers(1, 2000))
     mode = StereoLineThresholds(
         correspondence=correspondence,
         angle_range=data.draw(st.integers(0, 30)),
         min_rise=data.draw(st.integers(16, 300)),
-        min_disparity=low,
-        max_disparity=low + data.draw(st.integers(0, 3000)),
+        nearest_mm=nearest,
+        farthest_mm=nearest + data.draw(st.integers(0, 30000)),
         min_common=data.draw(st.integers(0, 256)),
+        edge_range=0,
     )
     rig = Rig(
         focal=data.draw(st.integers(1000, 20000)),
@@ -200,6 +203,20 @@ def test_a_rise_that_32_bits_cannot_hold_is_refused() -> None:
         replace(MODE, min_rise=15)
 
 
+@pytest.mark.parametrize(("disparity_px", "number"), [(2, 0), (3, 1), (29, 1), (30, 0)])
+def test_lines_out_of_the_range(disparity_px: int, number: int) -> None:
+    """The range is in mm, known to a sixteenth of a pixel: 30 px are 392 mm, 2 px 5881 mm."""
+    mode = replace(MODE, nearest_mm=393, farthest_mm=5700)
+    right = line(200 - disparity_px, 60, 200 - disparity_px, 180)
+    assert len(found([line(200, 60, 200, 180)], [right], mode)) == number
+
+
+def test_depths_that_contradict_each_other_are_refused() -> None:
+    """The nearest must not be farther than the farthest."""
+    with pytest.raises(ValueError, match="depths must be 1 mm or more and rise, not 11 to 10"):
+        replace(MODE, nearest_mm=11, farthest_mm=10)
+
+
 @pytest.mark.parametrize("mode", BOTH)
 def test_rendered_lines(mode: StereoLineThresholds) -> None:
     """On the board: the 3-D lines of a rendered scene are those of the lines that both cores left."""
@@ -211,8 +228,11 @@ def test_rendered_lines(mode: StereoLineThresholds) -> None:
         buffer(board, core, name)[0, : LINE_WORDS * results[f"lines_{core}"]].reshape(-1, LINE_WORDS).tolist()
         for core, name in (("A", "lines"), ("B", "lines"))
     ]
-    wanted = expected(*lines, mode)
-    assert found(*lines, mode) == wanted
+    every = expected(*lines, mode)
+    assert found(*lines, mode) == every
+    edges = [rows_of(board, core) for core in ("A", "B")]
+    partners = references.partners_of(ROBOT, *edges, limits_of(INDOOR_FIELD.stereo_edges))
+    wanted = references.elected(every, *lines, partners, mode.edge_range)
     assert len(wanted) > 3
     (seen,) = see_stereo(
         [replace(frames[-1], index=0)], Calibration(), replace(INDOOR_FIELD, stereo_lines=mode)

@@ -10,7 +10,7 @@ edges, by a margin, and must have support in one row at least.
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel, u16, u32
-from tinyphoon.geometry import GEOMETRY_BASELINE, GEOMETRY_FOCAL, MICROMETRES, store_point
+from tinyphoon.geometry import store_point
 from tinyphoon.stages.line_segments import NONE, turn_between
 from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.stores.lines3d import EDGE3D_LEFT, EDGE3D_WORDS, EDGE3D_X
@@ -20,12 +20,6 @@ REACH = 2
 
 WINDOW_ROWS = 2 * REACH + 1
 WORST = 0xFFFF
-
-
-@kernel
-def disparity_at(geometry: i32[:], depth: i32) -> i32:
-    """Return the disparity of what is `depth` mm away, in whole pixels, rounded down."""
-    return geometry[GEOMETRY_FOCAL] * geometry[GEOMETRY_BASELINE] // (MICROMETRES * SUBPIXELS * depth)
 
 
 @kernel

@@ -71,8 +71,6 @@ def share_out(levels: u16[:], capacity: i32, least: u8[:]) -> i32:
             level = level - 1
             kept = kept + levels[first + level]
         least[band] = min(level, 255)
-        if level == 256:
-            kept = 0
         room = room - kept
         to_come = to_come - there
         left_out = left_out + there - kept

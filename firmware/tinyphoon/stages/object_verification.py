@@ -12,7 +12,7 @@ of what is seen of it, which the border of one picture may cut and that of the o
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel
-from tinyphoon.geometry import GEOMETRY_BASELINE, GEOMETRY_FOCAL, MICROMETRES, depth_mm
+from tinyphoon.geometry import GEOMETRY_BASELINE, MICROMETRES, depth_mm, disparity_at
 from tinyphoon.stages.object_places import HALF_PIXEL
 from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.stores.objects import (
@@ -123,13 +123,6 @@ def weighted(one: i32, weight: i32, other: i32, other_weight: i32) -> i32:
 
 
 @kernel
-def disparity_of(geometry: i32[:], depth: i32) -> i32:
-    """Return the disparity of what is at a positive depth in mm, in 1/16 px, rounded (T Eq. 3.16)."""
-    reach = geometry[GEOMETRY_FOCAL] * geometry[GEOMETRY_BASELINE]
-    return (reach // depth + MICROMETRES // 2) // MICROMETRES
-
-
-@kernel
 def move_to(left: i16[:], one: i32, depth: i32) -> None:
     """Move an object along the way to it to a depth; it must have one."""
     at = one * OBJECT_WORDS
@@ -151,7 +144,7 @@ def refine_place(geometry: i32[:], left: i16[:], one: i32, disparity: i32, dispa
     by_disparity = depth_mm(geometry, disparity)
     if depth <= 0:
         return 0
-    if abs(disparity_of(geometry, depth) - disparity) > disparity_range:
+    if abs(disparity_at(geometry, depth) - disparity) > disparity_range:
         if by_disparity != 0:
             move_to(left, one, by_disparity)
             left[at + OBJECT_MEASURES] = BY_DISPARITY

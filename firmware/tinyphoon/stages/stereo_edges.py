@@ -11,13 +11,12 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from bfsim.api import Buffer, Core, Frame, Row, i16, u16, u32
+from bfsim.api import Buffer, Core, Frame, Row, i16, u16
 from tinyphoon.fields import allowed
-from tinyphoon.geometry import FARTHEST_MM
+from tinyphoon.geometry import FARTHEST_MM, disparity_at
 from tinyphoon.stages.edge_correspondence import (
     REACH,
     WINDOW_ROWS,
-    disparity_at,
     match_edges,
     match_nearest,
     spread_left_row,
@@ -26,8 +25,10 @@ from tinyphoon.stages.edge_correspondence import (
     take_left_row,
     take_right_row,
 )
-from tinyphoon.stages.stereo_lines import Correspondence
+from tinyphoon.stages.line_votes import LineVote
+from tinyphoon.stages.stereo_lines import Correspondence, check_depths
 from tinyphoon.stores.edges import edge_store
+from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.stores.lines3d import EDGE3D_CAPACITY, EDGE3D_WORDS
 
 
@@ -51,10 +52,7 @@ class StereoEdgeThresholds:
     margin: int = allowed(0, 4096)
 
     def __post_init__(self) -> None:
-        if not 1 <= self.nearest_mm <= self.farthest_mm:
-            raise ValueError(
-                f"depths must be 1 mm or more and rise, not {self.nearest_mm} to {self.farthest_mm}"
-            )
+        check_depths(self.nearest_mm, self.farthest_mm)
 
 
 def stereo_edge_buffers(images: str) -> Sequence[Buffer]:
@@ -66,7 +64,7 @@ def stereo_edge_buffers(images: str) -> Sequence[Buffer]:
 class _Rows:
     """Rows of both edge stores, without level edges: one as a list, and those around it in windows.
 
-    They lie in L1 over the segments and the rings of the stages before, which have finished with them.
+    They lie in L1 over the rings of the stages before, which have finished with them.
     """
 
     core: Core
@@ -79,7 +77,7 @@ class _Rows:
 
     @classmethod
     def of(cls, core: Core, width: int, level_range: int) -> _Rows:
-        left_row, right_row, *_ = core.overlay("segments", u32, width)
+        left_row, right_row = core.rows("candidate_ring")
         right = core.array("right_edge_data"), core.array("right_edge_rows")
         rings = ("colour_ring", "eroded_ring")
         left_window, right_window = (core.overlay(each, u16, WINDOW_ROWS * width)[0] for each in rings)
@@ -101,8 +99,10 @@ class _Rows:
         yield self.core.run(spread_right_row, *self.right, y, right, *rest)
 
 
-def stereo_edges(core: Core, frame: Frame, thresholds: StereoEdgeThresholds) -> Generator[Any, Any, int]:
-    """Find the 3-D edges of the edge store and the one that core B shares. Returns how many are in `edges_3d`.
+def stereo_edges(
+    core: Core, frame: Frame, thresholds: StereoEdgeThresholds, vote: LineVote
+) -> Generator[Any, Any, int]:
+    """Find the 3-D edges of the edge store and the one that core B shares; they vote. Returns how many are in `edges_3d`.
 
     Core B must have posted that its edges are there. Publishes `edges_3d`, that number, and `edges_3d_lost`, how many
     found no room.
@@ -110,9 +110,9 @@ def stereo_edges(core: Core, frame: Frame, thresholds: StereoEdgeThresholds) -> 
     rows = _Rows.of(core, frame.width, thresholds.level_range)
     geometry, edges_3d = core.array("geometry"), core.array("edges_3d")
     partners, *scores = core.overlay("opened_ring", u16, frame.width)
-    least: int = yield core.run(disparity_at, geometry, thresholds.farthest_mm)
-    most: int = yield core.run(disparity_at, geometry, thresholds.nearest_mm)
-    least += 1  # to what is nearer than that
+    far: int = yield core.run(disparity_at, geometry, thresholds.farthest_mm)
+    near: int = yield core.run(disparity_at, geometry, thresholds.nearest_mm)
+    least, most = far // SUBPIXELS + 1, near // SUBPIXELS  # whole pixels between
     is_mutual = thresholds.correspondence is Correspondence.MUTUAL
     limits = thresholds.direction_range, most, thresholds.lack, thresholds.margin
     if is_mutual:
@@ -127,6 +127,7 @@ def stereo_edges(core: Core, frame: Frame, thresholds: StereoEdgeThresholds) -> 
             yield core.run(match_edges, *row, *place, partners, *scores, *limits)
         else:
             yield core.run(match_nearest, *row, partners, thresholds.direction_range, least, most)
+        yield from vote.add(y, row, partners)
         left, left_count, right, _ = row
         pairs = left, left_count, right, partners, least
         store = core.array("edge_data"), core.array("edge_index"), y

@@ -1,7 +1,8 @@
 """3-D lines: lines of the left picture that a line of the right one corresponds to, and their depth (T §5.2.7).
 
 The disparity at both ends of the left line is that to the other line's straight continuation, as lines may be cut into
-different segments (T Eq. 5.10 to 5.12; 5.12 as it is printed takes x and y of different ends).
+different segments (T Eq. 5.10 to 5.12; 5.12 as it is printed takes x and y of different ends). Which of them to believe
+says `line_votes.py`.
 """
 
 from __future__ import annotations
@@ -14,9 +15,10 @@ from typing import Any
 from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel, u32
 from tinyphoon.exchange import as_words, copy_words, shared_count
 from tinyphoon.fields import allowed
-from tinyphoon.geometry import store_point
+from tinyphoon.geometry import FARTHEST_MM, disparity_at, store_point
 from tinyphoon.stages.line_correspondence import LEVEL, best_line, column_at, line_slopes, nearest_line
 from tinyphoon.stages.line_segments import NONE, SEGMENT_CAPACITY
+from tinyphoon.stages.line_votes import LineVote
 from tinyphoon.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1
 from tinyphoon.stores.lines3d import LINE3D_LEFT, LINE3D_RIGHT, LINE3D_WORDS, LINE3D_X0, LINE3D_X1
 
@@ -34,20 +36,29 @@ class StereoLineThresholds:
 
     `correspondence`: how the line is chosen. `angle_range`: how far its angle may differ, in 1/256 of a turn.
     `min_rise`: rows by columns, in 1/256, from which a line is not nearly horizontal, 16 or more. Only for MUTUAL:
-    `min_disparity` and `max_disparity`, in 1/16 px, and `min_common`, the rows that both lines have by the rows that
-    either has, in 1/256.
+    `nearest_mm` and `farthest_mm`, the depths between which lines are wanted, and `min_common`, the rows that both lines
+    have by the rows that either has, in 1/256. `edge_range`: how far a 3-D edge that votes on a line may be from it, and its
+    disparity from the line's to be for it, in 1/16 px; 0 for no vote.
     """
 
     correspondence: Correspondence
     angle_range: int = allowed(0, 64)
     min_rise: int = allowed(16, 4096)
-    min_disparity: int = allowed(0, 1 << 14, at_most="max_disparity")
-    max_disparity: int = allowed(0, 1 << 14)
+    nearest_mm: int = allowed(1, FARTHEST_MM, at_most="farthest_mm")
+    farthest_mm: int = allowed(1, FARTHEST_MM)
     min_common: int = allowed(0, 256)
+    edge_range: int = allowed(0, 256)
 
     def __post_init__(self) -> None:
         if self.min_rise < 16:  # a slope of 16 over 2048 rows still goes into 32 bits
             raise ValueError(f"min_rise must be 16 or more, not {self.min_rise}")
+        check_depths(self.nearest_mm, self.farthest_mm)
+
+
+def check_depths(nearest_mm: int, farthest_mm: int) -> None:
+    """Raise ValueError unless these can be the least and the greatest depth that is wanted."""
+    if not 1 <= nearest_mm <= farthest_mm:
+        raise ValueError(f"depths must be 1 mm or more and rise, not {nearest_mm} to {farthest_mm}")
 
 
 def stereo_line_buffers() -> Sequence[Buffer]:
@@ -155,10 +166,11 @@ def mutual_lines(
 
 @dataclass(frozen=True, slots=True)
 class _Workspace:
-    """What the stage needs in L1; it lies over the segments, which the line detection has finished with."""
+    """What the stage and the vote need in L1; it lies over the segments, which the line detection has finished with."""
 
     left_slopes: Row
     right_slopes: Row
+    votes: Row
     right_words: Row
     right_lines: Row
 
@@ -166,20 +178,20 @@ class _Workspace:
     def of(cls, core: Core) -> _Workspace:
         slopes = core.overlay("segments", i32, SEGMENT_CAPACITY)
         words = LINE_WORDS * SEGMENT_CAPACITY
-        # the second row of the lines begins behind the second row of slopes
+        # the second row of the lines begins behind the third row of slopes
         return cls(
-            *slopes[:2], core.overlay("segments", u32, words // 2)[1], core.overlay("segments", i16, words)[1]
+            *slopes[:3], core.overlay("segments", u32, words // 2)[1], core.overlay("segments", i16, words)[1]
         )
 
 
 def stereo_lines(
     core: Core, frame: Frame, left_count: int, thresholds: StereoLineThresholds
-) -> Generator[Any, Any, int]:
-    """Find the 3-D lines of `left_count` lines in `lines` and those that core B shares. Returns how many, in `lines_3d`.
+) -> Generator[Any, Any, LineVote]:
+    """Find the 3-D lines of `left_count` lines in `lines` and those that core B shares, in `lines_3d`. Returns the vote on them.
 
-    Core B must have posted that its lines are there. Publishes `lines_3d`, that number.
+    Core B must have posted that its lines are there. The vote needs the memory of the segments until it is closed.
     """
-    work, lines = _Workspace.of(core), core.array("lines")
+    work, lines, geometry = _Workspace.of(core), core.array("lines"), core.array("geometry")
     right_count = yield from shared_count(core, "right_line_count")
     words = (right_count * LINE_WORDS + 1) // 2
     yield core.run(copy_words, as_words(core, "right_lines"), work.right_words, words)
@@ -189,8 +201,11 @@ def stereo_lines(
     rest = frame.width, frame.height, core.array("lines_3d")
     find, limits = nearest_lines, (thresholds.angle_range,)
     if thresholds.correspondence is Correspondence.MUTUAL:
-        common = thresholds.min_disparity, thresholds.max_disparity, thresholds.min_common
-        find, limits = mutual_lines, (*limits, *common)
-    found: int = yield core.run(find, core.array("geometry"), *pictures, *limits, *rest)
-    core.publish(lines_3d=found)
-    return found
+        least: int = yield core.run(disparity_at, geometry, thresholds.farthest_mm)
+        most: int = yield core.run(disparity_at, geometry, thresholds.nearest_mm)
+        find, limits = mutual_lines, (*limits, least, most, thresholds.min_common)
+    found: int = yield core.run(find, geometry, *pictures, *limits, *rest)
+    left, right = (lines, work.left_slopes), (work.right_lines, work.right_slopes)
+    vote = LineVote(core, found, left, right, work.votes, thresholds.edge_range)
+    yield from vote.open()
+    return vote

@@ -16,7 +16,6 @@ from tinyphoon.stages.object_detection import ObjectThresholds
 from tinyphoon.stages.rectangle_detection import RectangleThresholds
 from tinyphoon.stages.stereo_edges import StereoEdgeThresholds
 from tinyphoon.stages.stereo_lines import Correspondence, StereoLineThresholds
-from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.strategy.models import (
     MODELS,
     ObjectModel,
@@ -191,11 +190,13 @@ INDOOR_FIELD = Mode(
         angle_range=8,
         # The tangent of 22.5 degrees: the rows of flatter lines say little about columns.
         min_rise=106,
-        # From the far end of the field, 5 m, to what both cameras just see, 9 cm.
-        min_disparity=2 * SUBPIXELS,
-        max_disparity=128 * SUBPIXELS,
+        # As for edges.
+        nearest_mm=100,
+        farthest_mm=10_000,
         # A line that is cut in one picture may lack half.
         min_common=128,
+        # A pixel and a half: edges are found to half a pixel in each picture, and lines to as much.
+        edge_range=24,
     ),
     stereo_edges=StereoEdgeThresholds(
         correspondence=Correspondence.MUTUAL,
