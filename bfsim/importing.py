@@ -137,6 +137,12 @@ class ImportedFile:
             return False
 
 
+def relative_name(module: str, path: Path) -> str:
+    """Return the name of a module's file below the folder that it is imported from."""
+    below = len(module.split(".")) + (path.name == "__init__.py")  # parts of the path
+    return "/".join(path.parts[-below:])
+
+
 class _FromSource(SourceFileLoader):
     """Compiles the source each time: the time stamp of a .pyc is too coarse to tell an edit."""
 
@@ -151,8 +157,7 @@ class _FromSource(SourceFileLoader):
     def get_code(self, fullname: str) -> CodeType:
         path = Path(self.path)
         stat, written = path.stat(), path.read_bytes()
-        below = len(fullname.split(".")) + (path.name == "__init__.py")  # parts of the path
-        relative = "/".join(path.parts[-below:])
+        relative = relative_name(fullname, path)
         self._own.sources[fullname] = ImportedFile(path, relative, hashlib.sha256(written).hexdigest())
         code: CodeType = self.source_to_code(written, self.path)
         # Kernels read their source there, which must be what was compiled.

@@ -53,7 +53,7 @@ def _in_file(name: str) -> tuple[str, Root]:
     while (folder / "__init__.py").is_file():
         names.insert(0, folder.name)
         folder = folder.parent
-    return ".".join(names), Root(folder)
+    return ".".join(names), Root(folder, names[0] if folder in _installed() else "")
 
 
 def _is_file(path: Path) -> bool:

@@ -16,6 +16,7 @@ from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
 from bfsim.device_script import read_script
 from bfsim.errors import ConfigError, FirmwareError, LinkError, RecordingError, shown
+from bfsim.given import given_firmware
 from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
 from bfsim.linker import LinkerScript, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
@@ -25,10 +26,11 @@ from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.program import Calibration, Firmware, FrameSize, SourcePixels
 from bfsim.machine.spi.device import SpiDevice
 from bfsim.recording import RecordingReader, StereoFrame
+from bfsim.result import Run
 from bfsim.room import place
 from bfsim.seen import Seen, SeenFrame
 from bfsim.spans import Span
-from bfsim.trace import Identity, RunRecord, RunWarning, WarningKind
+from bfsim.trace import Identity, RunWarning, WarningKind
 
 BUILT_IN_RECORDING = shipped.RECORDING
 PLACEMENTS = shipped.LDF_FOLDER
@@ -38,7 +40,7 @@ DEFAULT_LDF = shipped.DEFAULT_LDFS["ADSP-BF561"]
 def simulate(
     recording: Path | None = None,
     *,
-    firmware: str = shipped.FIRMWARE[0],
+    firmware: Firmware | str = shipped.FIRMWARE[0],
     board: str = "cm-bf561",
     ldf: Path | None = None,
     defines: Mapping[str, str] = MappingProxyType({}),
@@ -54,8 +56,11 @@ def simulate(
     on_seen: Callable[[SeenFrame], None] | None = None,
     on_time: Callable[[float], None] | None = None,
     on_spans: Callable[[Sequence[Span]], None] | None = None,
-) -> RunRecord:
-    """Run `firmware` on a recording and return the records: a built-in one, "FILE.py:NAME" or "PACKAGE:NAME".
+) -> Run:
+    """Run `firmware` on a recording and return the records: a `Firmware`, or the name of one, as a built-in one's, "FILE.py:NAME" or "PACKAGE:NAME".
+
+    Of a `Firmware` the identity has the source files as they are now; values that were set otherwise, such as at a prompt,
+    are not in it.
 
     Without `recording` and `ldf` the built-in ones are taken; `ldf` may also be the name of a shipped one, `defines`
     are macros for it, and `include_dirs` folders that it may include files from; `frames` stops early. What the code of
@@ -72,7 +77,7 @@ def simulate(
     if frames is not None and frames < 1:
         raise ConfigError(f"frames must be at least 1, not {frames}")
     spec, compiler = board_named(board), profile_named(profile)
-    loaded = load_firmware(firmware)
+    loaded = given_firmware(firmware) if isinstance(firmware, Firmware) else load_firmware(firmware)
     require_cores(loaded.firmware, spec)
     with loaded.own.named():
         device, script_digest = _device(script, loaded)
@@ -298,8 +303,8 @@ def _record(
     assumptions: tuple[RunWarning, ...],
     loaded: LoadedFirmware,
     placement: LinkerScript,
-) -> RunRecord:
-    return RunRecord(
+) -> Run:
+    return Run(
         identity=identity,
         firmware_place="built in" if loaded.is_built_in else _written(loaded.path),
         ldf_place="shipped"

@@ -20,9 +20,9 @@ from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import FIRST_ARGUMENT
 from bfsim.kernel.jit import CompiledKernel, compile_kernel
 from bfsim.kernel.language import read_kernel
-from bfsim.kernel.profile import GCC_O0, VDSP_O2, CompilerProfile
+from bfsim.kernel.profile import GCC_O0, VDSP_O2, CompilerProfile, profile_named
 from bfsim.kernel.types import ArrayType, FloatType, IntType
-from bfsim.kernel.work import PreparedCall, is_single
+from bfsim.kernel.work import PreparedCall, Work, is_single
 
 AS_WRITTEN = GCC_O0
 """A profile that leaves every access and division in the code."""
@@ -30,7 +30,11 @@ AS_WRITTEN = GCC_O0
 
 @dataclass(frozen=True, eq=False)
 class Kernel:
-    """A kernel. Calling it runs the compiled code on numpy arrays; `python` is the function as it was written."""
+    """A kernel. Calling it runs the compiled code on numpy arrays, and `cost` says the cycles of a call.
+
+    `python` is the function as it was written, to be called with lists and ints: elements of numpy arrays would wrap at
+    their own width.
+    """
 
     function: tree.Function
     python: Callable[..., Any]
@@ -212,16 +216,32 @@ class Kernel:
                     array[:] = contents
 
     def __call__(self, *arguments: Any, **named: Any) -> Any:
-        """Run on numpy arrays and ints, as the firmware would, but without a machine around it."""
+        """Run on numpy arrays and ints, as the firmware would, but without a machine around it.
+
+        Returns what the kernel returns; arrays that it stores into are changed. Raises KernelError for arguments that do
+        not fit.
+        """
         if named:
             names = ", ".join(each.name for each in self.function.parameters)
             raise KernelError(
                 f"{self.name} must get {names} by their places, not {', '.join(named)} by name ({self.place})"
             )
+        return self._call(arguments, VDSP_O2).value
+
+    def cost(self, *arguments: Any, profile: str = VDSP_O2.name) -> int:
+        """Run as a call does, and return its CCLK cycles: those of its operations, callees included, and their interlocks.
+
+        It is what the call takes with code and arrays in L1, without waits for memory: for a unit test. `profile` names
+        the compiler. Raises KernelError for arguments that do not fit.
+        """
+        work = self._call(arguments, profile_named(profile))
+        return work.issue_cclk + work.stall_cclk
+
+    def _call(self, arguments: Sequence[Any], profile: CompilerProfile) -> Work:
         self.check(arguments)
         arrays = [arguments[each] for each in self.array_positions]
-        code = self.compile(VDSP_O2)
-        return self.prepare(code, arrays, code.new_totals()).run(arguments).value
+        code = self.compile(profile)
+        return self.prepare(code, arrays, code.new_totals()).run(arguments)
 
 
 def kernel(python: Callable[..., Any] | None = None, /, **options: object) -> Kernel:

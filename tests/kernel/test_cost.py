@@ -37,6 +37,19 @@ def test_an_empty_kernel_only_returns() -> None:
     assert cclk(cost_kernels.nothing) == 4 + RETURN
 
 
+def test_cost_is_that_of_one_call() -> None:
+    """Issue cycles and interlocks in the profile that is named, vDSP's without a name; the call is made."""
+    source, target = words(8) + 7, words(8)
+    for profile in (GCC_O2, VDSP_O2):
+        work = run(cost_kernels.copy_words, source, words(8), profile=profile)
+        cost = cost_kernels.copy_words.cost(source, target, profile=profile.name)
+        assert cost == work.issue_cclk + work.stall_cclk > 0
+    assert cost_kernels.copy_words.cost(source, target) == cost
+    assert target.tolist() == [7] * 8
+    with pytest.raises(KernelError, match="must get"):
+        cost_kernels.copy_words.cost(source)
+
+
 def test_a_copy_loop_costs_a_load_and_a_store_per_word() -> None:
     """A counted loop without branches is a hardware loop: two cycles a word, nothing per iteration."""
     cost = {n: cclk(cost_kernels.copy_words, words(n), words(n)) for n in (1, 2, 320)}

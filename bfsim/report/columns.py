@@ -1,0 +1,218 @@
+"""The records of a run as tables of plain columns, for pandas, Polars, Arrow or whoever takes lists.
+
+Cycles are CCLK cycles; a row has one unit per column, and it is in the column's name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import PurePath
+from typing import NamedTuple
+
+from bfsim.report.budget import latency_cclk, milliseconds
+from bfsim.spans import Span
+from bfsim.trace import RunRecord
+
+Columns = Mapping[str, list[object]]
+"""The columns of a table by their names, all of one length."""
+
+
+class FrameCells(NamedTuple):
+    """One stereo frame, from the end of the one before to the end of its last core."""
+
+    frame: int
+    begin_cclk: int
+    end_cclk: int
+    elapsed_ms: float
+    latency_ms: float
+    remarks: str
+
+
+class ResultCells(NamedTuple):
+    """A number that the firmware published for a frame."""
+
+    frame: int
+    result: str
+    value: int
+
+
+class StageCells(NamedTuple):
+    """What a stage cost a core in a frame: issue + stall + idle = elapsed."""
+
+    frame: int
+    core: str
+    stage: str
+    issue_cclk: int
+    stall_cclk: int
+    idle_cclk: int
+    elapsed_cclk: int
+    elapsed_ms: float
+
+
+class StallCells(NamedTuple):
+    """How long a core stalled in a stage of a frame, for one reason."""
+
+    frame: int
+    core: str
+    stage: str
+    reason: str
+    stall_cclk: int
+
+
+class KernelCells(NamedTuple):
+    """All calls of a kernel by a core in a stage, without the kernels that it calls."""
+
+    core: str
+    stage: str
+    kernel: str
+    file: str
+    first_line: int
+    calls: int
+    issue_cclk: int
+
+
+class LineCells(NamedTuple):
+    """A source line of a kernel; `stall_cclk` are its interlocks."""
+
+    core: str
+    stage: str
+    kernel: str
+    file: str
+    line: int
+    text: str
+    executions: int
+    issue_cclk: int
+    stall_cclk: int
+
+
+class TrafficCells(NamedTuple):
+    """What a master moved to and from a memory over the whole run."""
+
+    memory: str
+    master: str
+    read_bytes: int
+    written_bytes: int
+    page_hits: int
+    page_misses: int
+    page_conflicts: int
+    busy_cclk: int
+
+
+class SpanCells(NamedTuple):
+    """A span of the timeline (`bfsim.spans`), its stalls added up."""
+
+    kind: str
+    where: str
+    name: str
+    stage: str
+    begin_cclk: int
+    end_cclk: int
+    issue_cclk: int
+    stall_cclk: int
+    value: int
+    flow: int
+
+
+def tables_of(run: RunRecord, spans: Iterable[Span] = ()) -> dict[str, Columns]:
+    """Return the tables of a run by their names; `spans` are what `simulate(on_spans=...)` told of it."""
+    return {
+        "frames": _columns(FrameCells, _frames(run)),
+        "results": _columns(ResultCells, _results(run)),
+        "stages": _columns(StageCells, _stages(run)),
+        "stalls": _columns(StallCells, _stalls(run)),
+        "kernels": _columns(KernelCells, _kernels(run)),
+        "lines": _columns(LineCells, _lines(run)),
+        "traffic": _columns(TrafficCells, _traffic(run)),
+        "spans": _columns(SpanCells, map(_span, spans)),
+    }
+
+
+def _columns(kind: type[NamedTuple], rows: Iterable[tuple[object, ...]]) -> Columns:
+    """Turn rows into columns; a table without rows has its columns, too."""
+    columns: list[list[object]] = [[] for _ in kind._fields]
+    for row in rows:
+        for column, cell in zip(columns, row, strict=True):
+            column.append(cell)
+    return dict(zip(kind._fields, columns, strict=True))
+
+
+def _frames(run: RunRecord) -> Iterator[FrameCells]:
+    hz = run.identity.cclk_hz
+    for frame in run.frames:
+        begin = min(core.begin_cclk for core in frame.cores)
+        end = max(core.end_cclk for core in frame.cores)
+        latency_ms = milliseconds(latency_cclk(frame), hz)
+        yield FrameCells(
+            frame.index, begin, end, milliseconds(end - begin, hz), latency_ms, "; ".join(frame.remarks)
+        )
+
+
+def _results(run: RunRecord) -> Iterator[ResultCells]:
+    for frame in run.frames:
+        for name, value in frame.results.items():
+            yield ResultCells(frame.index, name, value)
+
+
+def _stages(run: RunRecord) -> Iterator[StageCells]:
+    for frame in run.frames:
+        for core in frame.cores:
+            for cost in core.stages:
+                stall_cclk, cclk = sum(cost.stall_cclk.values()), cost.elapsed_cclk
+                ms = milliseconds(cclk, run.identity.cclk_hz)
+                yield StageCells(
+                    frame.index, core.core, cost.stage, cost.issue_cclk, stall_cclk, cost.idle_cclk, cclk, ms
+                )
+
+
+def _stalls(run: RunRecord) -> Iterator[StallCells]:
+    for frame in run.frames:
+        for core in frame.cores:
+            for cost in core.stages:
+                for reason, cclk in cost.stall_cclk.items():
+                    yield StallCells(frame.index, core.core, cost.stage, reason.value, cclk)
+
+
+def _kernels(run: RunRecord) -> Iterator[KernelCells]:
+    for each in run.kernels:
+        file = PurePath(each.file).name
+        yield KernelCells(
+            each.core, each.stage, each.kernel, file, each.first_line, each.calls, each.issue_cclk
+        )
+
+
+def _lines(run: RunRecord) -> Iterator[LineCells]:
+    for each in run.kernels:
+        file, text = PurePath(each.file).name, dict(enumerate(each.text, start=each.first_line))
+        for line in each.lines:
+            yield LineCells(
+                each.core,
+                each.stage,
+                each.kernel,
+                file,
+                line.line,
+                text.get(line.line, "").strip(),
+                line.executions,
+                line.issue_cclk,
+                line.stall_cclk,
+            )
+
+
+def _traffic(run: RunRecord) -> Iterator[TrafficCells]:
+    for each in run.traffic:
+        yield TrafficCells(*(getattr(each, name) for name in TrafficCells._fields))
+
+
+def _span(span: Span) -> SpanCells:
+    stall_cclk = sum(span.stall_cclk.values())
+    return SpanCells(
+        span.kind.value,
+        span.where,
+        span.name,
+        span.stage,
+        span.begin_cclk,
+        span.end_cclk,
+        span.issue_cclk,
+        stall_cclk,
+        span.value,
+        span.flow,
+    )
