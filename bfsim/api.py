@@ -21,6 +21,7 @@ from bfsim.seen import (
     NamedColour,
     PictureColours,
     Seen,
+    SeenArrow,
     SeenBlob,
     SeenCircle,
     SeenEdges,
@@ -28,8 +29,11 @@ from bfsim.seen import (
     SeenGeometry,
     SeenLine,
     SeenLine3D,
+    SeenLoss,
+    SeenMap,
     SeenObject,
     SeenRectangle,
+    SeenText,
     Solid,
     no_edges_3d,
 )
@@ -37,7 +41,7 @@ from bfsim.trace import BudgetRow, Reference
 
 __all__ = [
     "BudgetRow", "Buffer", "Buffers", "Calibration", "CameraSettings", "Colour", "Core", "DmaConfig", "Firmware", "FirmwareError", "Flow", "Frame",
-    "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "NamedColour", "OutputRing", "PictureColours", "PpiStatusBit", "Readout", "Reference", "Row", "Script", "Seen", "SeenBlob",
-    "SeenCircle", "SeenEdges", "SeenEdges3D", "SeenGeometry", "SeenLine", "SeenLine3D", "SeenObject", "SeenRectangle", "Solid", "SourcePixels",
+    "FrameSize", "Geometry", "InputRing", "Kernel", "MemoryDma", "NamedColour", "OutputRing", "PictureColours", "PpiStatusBit", "Readout", "Reference", "Row", "Script", "Seen", "SeenArrow", "SeenBlob",
+    "SeenCircle", "SeenEdges", "SeenEdges3D", "SeenGeometry", "SeenLine", "SeenLine3D", "SeenLoss", "SeenMap", "SeenObject", "SeenRectangle", "SeenText", "Solid", "SourcePixels",
     "SpiDevice", "SpiMessage", "WdSize", "Work", "cut", "f32", "i8", "i16", "i32", "kernel", "no_edges_3d", "quotient", "remainder", "shown", "sqrt", "u8", "u16", "u32", "write_descriptor",
 ]  # fmt: skip

@@ -15,7 +15,7 @@ from bfsim.cli_boards import boards
 from bfsim.cli_colours import colours
 from bfsim.cli_ldf import PREPROCESSOR_OPTIONS, ldf
 from bfsim.cli_record import record
-from bfsim.cli_seen import Watchers, require_view, takes_views, watching
+from bfsim.cli_seen import Watchers, takes_views, watching
 from bfsim.endings import LIMIT_BROKEN, exit_code_of
 from bfsim.errors import ConfigError
 from bfsim.shipped import FIRMWARE, LDFS
@@ -163,6 +163,7 @@ def run(
     show: bool,
     overlay: Path | None,
     mcap: Path | None,
+    layers: tuple[str, ...] | None,
     **what: Any,
 ) -> None:
     """Run RECORDING through the firmware and print the frame timing budget on one screen.
@@ -176,23 +177,28 @@ def run(
       bfsim run --full
       bfsim run drive.mcap --feed recorded --json drive.json
       bfsim run drive.mcap --overlay drive-seen --mcap drive-seen.mcap
+      bfsim run drive.mcap --overlay lines.gif --layers lines,above
     """
     from bfsim.report.as_json import json_chunks
     from bfsim.report.save import require_apart, require_place, write_text
     from bfsim.report.screen import screen
     from bfsim.report.seen_json import SeenStore
     from bfsim.report.tables import run_report
+    from bfsim.run import has_view
 
     if json_path and json_path != STDOUT:
         require_place(json_path)
         require_apart(json_path, (what["recording"], what["ldf"], what["script"], mcap, overlay))
     if features and not json_path:
         raise ConfigError("--features must come with --json FILE, which it adds to")
-    if features or show or overlay or mcap:
-        require_view(what["firmware"])
+    is_telling = bool(json_path) and has_view(what["firmware"])
+    if features and not is_telling:
+        raise ConfigError(
+            f"--features must go with firmware that has a view to tell what it sees, and {what['firmware']} has none"
+        )
     with SeenStore(with_features=features) as seen:
-        with watching(show=show, overlay=overlay, mcap=mcap) as watchers:
-            if json_path:
+        with watching(show=show, overlay=overlay, mcap=mcap, layers=layers) as watchers:
+            if is_telling:
                 watchers.append(seen.add)
             done = _simulate(watchers=watchers, **what)
         if json_path == STDOUT:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from bfsim.errors import ConfigError
+from bfsim.errors import ConfigError, shown
 
 if TYPE_CHECKING:
     from bfsim.recording import SeenWriter
@@ -22,6 +22,24 @@ if TYPE_CHECKING:
 Command = TypeVar("Command", bound=Callable[..., Any])
 Watchers = list["Callable[[SeenFrame], None]"]
 
+
+class _Layers(click.ParamType[tuple[str, ...]]):
+    """Names of layers, such as edges,lines."""
+
+    name = "NAME,..."
+
+    def convert(
+        self, value: str, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, ...]:
+        """Return the names."""
+        from bfsim.report.overlay.layers import LAYERS
+
+        named = tuple(each.strip() for each in value.split(","))
+        if unknown := [each for each in named if each not in LAYERS]:
+            self.fail(f"must be some of {', '.join(LAYERS)}, not {shown(unknown[0])}", param, ctx)
+        return named
+
+
 _PARAMETERS = (
     click.option("--show", is_flag=True, help="Draw what was seen over the pictures, and open that."),
     click.option(
@@ -29,6 +47,13 @@ _PARAMETERS = (
         metavar="DIR|FILE",
         type=click.Path(path_type=Path),
         help="Draw what was seen: a PNG per frame in DIR, or all in FILE, a .gif, .webp, .apng or (for long runs) .mp4.",
+    ),
+    click.option(
+        "--layers",
+        metavar="NAME,...",
+        type=_Layers(),
+        help="What --overlay and --show draw: some of edges, blobs, lines, circles, objects, losses, arrows, texts, map, above "
+        "(the view from above).  [default: all]",
     ),
     click.option(
         "--mcap",
@@ -46,20 +71,16 @@ def takes_views(command: Command) -> Command:
     return command
 
 
-def require_view(firmware: str) -> None:
-    """Raise ConfigError if the firmware cannot tell what it sees."""
-    from bfsim.run import has_view
-
-    if not has_view(firmware):
-        raise ConfigError(f"{firmware} must have a view to tell what it sees, but has none")
-
-
 @contextmanager
-def watching(*, show: bool, overlay: Path | None, mcap: Path | None) -> Iterator[Watchers]:
+def watching(
+    *, show: bool, overlay: Path | None, mcap: Path | None, layers: tuple[str, ...] | None
+) -> Iterator[Watchers]:
     """Yield what is to be called with each frame that is seen; its files are there on a clean exit, or not at all.
 
-    Raises a BfsimError for a place that cannot be written.
+    Raises a BfsimError for a place that cannot be written, and for layers of which nothing is drawn.
     """
+    if layers and not (show or overlay):
+        raise ConfigError("--layers must come with --overlay DIR|FILE or --show, which draw them")
     with ExitStack() as stack:
         watchers: Watchers = []
         if mcap:
@@ -68,8 +89,9 @@ def watching(*, show: bool, overlay: Path | None, mcap: Path | None) -> Iterator
             overlay = stack.enter_context(_lasting_folder()) / "overlay.gif"
         if overlay:
             from bfsim.report.overlay.files import OverlayWriter
+            from bfsim.report.overlay.layers import LAYERS
 
-            watchers.append(stack.enter_context(OverlayWriter(overlay)).add)
+            watchers.append(stack.enter_context(OverlayWriter(overlay, layers or LAYERS)).add)
         yield watchers
     if show and overlay:
         _show(overlay)

@@ -106,16 +106,28 @@ def test_mistakes_are_told_before_the_run(tmp_path: Path) -> None:
     assert [each.name for each in tmp_path.iterdir()] == ["thesis.tex"]
 
 
-def test_firmware_without_a_view_has_nothing_to_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is refused where pictures are wanted; a plain JSON has no `seen` then."""
+def test_firmware_without_a_view_shows_pictures_and_numbers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What the camera saw, and what was published; a plain JSON has no `seen` then, and features are refused."""
     (tmp_path / "short_sighted.py").write_text(BLIND)
     monkeypatch.syspath_prepend(tmp_path)
     blind = "--firmware", "short_sighted:blind"
-    for option in ("--show", "--overlay", "--mcap", "--features"):
-        more = [tmp_path / "seen"] if option in ("--overlay", "--mcap") else []
-        message = refused(*blind, option, *more, "--json", tmp_path / "run.json")
-        assert "short_sighted:blind must have a view" in message
-    assert "seen" not in json.loads(run(*blind, "--json", "-").stdout)["frames"][0]
+    done = run(*blind, "--overlay", tmp_path / "seen", "--mcap", tmp_path / "seen.mcap", "--json", "-")
+    assert "seen" not in json.loads(done.stdout)["frames"][0]
+    assert (tmp_path / "seen.mcap").exists()
+    with Image.open(tmp_path / "seen" / "frame-0000.png") as sheet:
+        assert sheet.width > 320
+    message = refused(*blind, "--features", "--json", tmp_path / "run.json")
+    assert "--features must go with firmware that has a view to tell what it sees" in message
+
+
+def test_layers_are_some_of_what_is_drawn(tmp_path: Path) -> None:
+    """By their names; they need something to be drawn on."""
+    unknown = run("--overlay", tmp_path / "seen", "--layers", "edges,clouds")
+    assert unknown.exit_code == 2
+    assert "must be some of edges, blobs" in unknown.stderr
+    assert "--layers must come with --overlay" in refused("--layers", "edges")
 
 
 def test_a_view_that_fails_is_told_with_its_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

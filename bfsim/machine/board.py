@@ -31,6 +31,7 @@ from bfsim.machine.code import code_outside_l1, code_records, code_symbols
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.interrupts import Interrupts
 from bfsim.machine.core.layouts import Layouts
+from bfsim.machine.core.readout import plain_view
 from bfsim.machine.core.synchronised import SharedObjects
 from bfsim.machine.detailed.bus import DetailedBus
 from bfsim.machine.dma.checks import DmaSpace
@@ -362,7 +363,7 @@ class Board:
             shared=self._shared,
             stages=tuple(each.stage for each in self.firmware.rows),
             on_finished=on_finished,
-            view=self.firmware.view if self._on_seen else None,
+            view=(self.firmware.view or plain_view) if self._on_seen else None,
         )
 
     def _finish_frame(self, on_frame: Callable[[FrameRecord], None] | None) -> None:

@@ -139,11 +139,13 @@ class Firmware:
     `spi`: the script of the user, empty without one → the device at the other end of the SPI; raises a FirmwareError
     that names the key of the script and what it must be. Without it nobody listens there.
     `view`: what a core has in memory at the end of a frame → what it saw, for people and files, if there is anything to
-    show; it is not simulated.
+    show; it is not simulated. Without it, pictures show what the camera saw and the numbers that were published.
     `colours`: a UYVY picture of shape (height, 2 · width), the user's script and the number of a frame → what the firmware
     calls the colours of the picture in that frame, for `bfsim colours`; not simulated either.
     `losses`: what the firmware had to leave out, as published number → in words what it counts, such as {"edges_lost":
-    "edges without room in the store"}; a run that lost something ends with a warning.
+    "edges without room in the store"}; a run that lost something ends with a warning. Where the firmware also publishes
+    edges_lost_top, edges_lost_bottom and edges_lost_percent, the warning names these rows of the picture, and which part was
+    lost there.
     `assumed_geometry`: in words, where the firmware takes the cameras to be if the recording does not say, or not all; the
     run ends with a warning then. Empty for firmware that does not ask.
     `write_through`: memory segments of the LDF in SDRAM that the data caches write through; the rest is written back.

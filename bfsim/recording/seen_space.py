@@ -31,7 +31,7 @@ from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 
 from bfsim.recording.seen_pictures import color
 from bfsim.seen import PointMm, SeenEdges3D, SeenGeometry, SeenLine3D, SeenObject, Solid
-from bfsim.seen.colours import depth_colour
+from bfsim.seen.colours import ROOM
 
 LEFT, RIGHT, FLOOR = "left", "right", "floor"
 
@@ -126,7 +126,7 @@ def lines_message(lines: Iterable[SeenLine3D], time_ns: int) -> SceneUpdate:
             lines=[
                 _line(
                     [each.start_mm, each.end_mm],
-                    color(depth_colour((each.start_mm[2] + each.end_mm[2]) / 2)),
+                    color(ROOM.colour((each.start_mm[2] + each.end_mm[2]) / 2)),
                 )
             ],
         )
@@ -141,7 +141,7 @@ def edges_message(edges: Iterable[SeenEdges3D], time_ns: int) -> PointCloud:
     points = np.zeros(len(places), [("place", "<f4", 3), ("colour", "u1", 4)])
     if places:
         points["place"] = np.array(places) * MM
-        points["colour"] = [(*depth_colour(depth), 255) for _, _, depth in places]
+        points["colour"] = [(*ROOM.colour(depth), 255) for _, _, depth in places]
     fields = [("x", 0), ("y", 4), ("z", 8)]
     colours = [("red", 12), ("green", 13), ("blue", 14), ("alpha", 15)]
     message = PointCloud(

@@ -45,7 +45,16 @@ def _lost(run: RunRecord) -> Iterator[RunWarning]:
             yield RunWarning(
                 kind=WarningKind.LOST,
                 text=f"{what}: {total:,} on core {core.core}, in {len(lost):,} of {len(counts):,} frames; "
-                f"most in frame {at}: {worst:,}",
+                f"most in frame {at}: {worst:,}{_rows(run, f'{name}_{{}}_{core.core}', at)}",
                 numbers={"total": total, "frames": len(lost), "worst": worst, "worst_frame": at},
                 result=f"{name}_{core.core}",
             )
+
+
+def _rows(run: RunRecord, name: str, index: int) -> str:
+    """Return in which rows most was lost in a frame, and which part, if that is published as `name` of top, bottom and percent."""
+    results = next(each.results for each in run.frames if each.index == index)
+    top, bottom, percent = (results.get(name.format(each)) for each in ("top", "bottom", "percent"))
+    if top is None or bottom is None or percent is None:
+        return ""
+    return f", {percent} % of those in rows {top} to {bottom}"

@@ -45,6 +45,49 @@ class SeenEdges:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SeenLoss:
+    """Rows of a picture, the last one included, in which the firmware left out a `share`, 0 to 1, of what there was of `what`."""
+
+    what: str
+    top_px: int
+    bottom_px: int
+    share: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeenArrow:
+    """An arrow from a place to another, such as the way that something moved, with words at its end."""
+
+    start_px: Point
+    end_px: Point
+    colour: Colour
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeenText:
+    """Words at a place of the picture."""
+
+    place_px: Point
+    text: str
+    colour: Colour = (255, 255, 255)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeenMap:
+    """A number for places all over the picture, drawn as a heat map over it.
+
+    `values` has any shape (rows, columns), whose elements cover the picture evenly; NaN is nothing there. They are drawn from
+    `lowest` to `highest`, without these from the least to the greatest of them.
+    """
+
+    name: str
+    values: NDArray[np.float64]
+    lowest: float | None = None
+    highest: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SeenBlob:
     """A segment of one colour. Its rectangle includes the outermost pixels; `centre_px` is its centre of mass."""
 
@@ -192,6 +235,10 @@ class Seen:
     lines: tuple[SeenLine, ...] = ()
     circles: tuple[SeenCircle, ...] = ()
     rectangles: tuple[SeenRectangle, ...] = ()
+    losses: tuple[SeenLoss, ...] = ()
+    arrows: tuple[SeenArrow, ...] = ()
+    texts: tuple[SeenText, ...] = ()
+    map: SeenMap | None = None
     objects: tuple[SeenObject, ...] = ()
     lines_3d: tuple[SeenLine3D, ...] = ()
     edges_3d: SeenEdges3D = field(default_factory=no_edges_3d)

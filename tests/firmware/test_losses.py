@@ -53,5 +53,10 @@ def test_a_run_on_noise_ends_with_warnings(tmp_path: Path, geometry: StereoGeome
     assert (("geometry", None) in warnings) == (geometry is None)
     lost = run["frames"][0]["results"]["edges_lost_A"]
     assert warnings["lost", "edges_lost_A"]["total"] == lost > 0
+    results = run["frames"][0]["results"]
+    top, bottom, percent = (results[f"edges_lost_{each}_A"] for each in ("top", "bottom", "percent"))
+    assert 0 <= top < bottom < 96
+    told = warnings["lost", "edges_lost_A"]["text"]
+    assert told.endswith(f", {percent} % of those in rows {top} to {bottom}")
     told = [f"bfsim: warning: {each['kind']}: {each['text']}" for each in run["warnings"]]
     assert result.stderr.splitlines() == told

@@ -19,6 +19,7 @@ from tinyphoon.areas import Area
 from tinyphoon.fields import to_words
 from tinyphoon.stages.blob_detection import hues
 from tinyphoon.stages.colour_reduction import BLACK, WHITE
+from tinyphoon.stages.edge_thinning import BANDS, thinned_bands
 from tinyphoon.stores import objects as object_store
 from tinyphoon.stores.circles import CENTRE_PASSED, RADIUS_PASSED
 from tinyphoon.strategy import models
@@ -137,6 +138,7 @@ def readout(results: dict[str, int], mode: Mode = INDOOR_FIELD, **buffers: Any) 
     empty = {
         "edge_data": np.zeros(8, np.uint32),
         "edge_counts": np.zeros(4, np.uint16),
+        "band_edges": np.zeros(2 * BANDS, np.uint16),
         "blob_data": np.zeros(8, np.uint32),
         "mode": np.array(to_words(mode), np.int32),
         "models": models.model_words(mode.models),
@@ -258,3 +260,15 @@ def test_colours_are_drawn_as_they_are() -> None:
     assert len({colour_of(BLACK), colour_of(WHITE), colour_of(BLACK | WHITE)}) == 3
     for hue in range(28):
         assert max(colour_of(hues(hue, hue))) == 255
+
+
+def test_bands_of_rows_without_room_are_losses() -> None:
+    """With their part of the edges; rows as the thinning cuts them: of 100 rows the second band is 13 to 24."""
+    tally = np.zeros((BANDS, 2), np.uint16)
+    tally[0] = 50, 50
+    tally[1] = 200, 150
+    bands = thinned_bands(tally.ravel(), 100)
+    found = [(each.top, each.bottom, each.edges, each.lost, each.share) for each in bands]
+    assert found == [(13, 24, 200, 50, 0.25)]
+    rows = [y * BANDS // 100 for y in range(100)]
+    assert (rows.index(1), rows.index(2) - 1) == (13, 24)

@@ -9,12 +9,25 @@ import pytest
 from PIL import Image
 
 from bfsim.report.overlay import style
+from bfsim.report.overlay.layers import LAYERS
 from bfsim.report.overlay.overlay import overlay_of
 from bfsim.report.overlay.panel import panel_of, rgb_of
-from bfsim.seen import Colour, Seen, SeenEdges, SeenFrame, colours
+from bfsim.seen import (
+    Colour,
+    Seen,
+    SeenArrow,
+    SeenEdges,
+    SeenEdges3D,
+    SeenFrame,
+    SeenLoss,
+    SeenMap,
+    SeenText,
+    colours,
+)
 from tests import seen_frames as made
 
 SCALE = 12  # 960 by 80
+SCALE_OF_FRAME = colours.depths_of(made.frame())
 
 
 def shown(frame: SeenFrame, x_px: float, y_px: float, camera: int = 0) -> Colour:
@@ -35,7 +48,8 @@ def one(**seen: object) -> SeenFrame:
 def test_the_cameras_stand_side_by_side() -> None:
     """Both pictures, magnified by a whole number, a head above and a legend below."""
     sheet = overlay_of(made.frame())
-    assert sheet.size == (2 * 80 * SCALE + 3 * style.MARGIN, style.HEAD + 60 * SCALE + style.FOOT)
+    above = 60 * SCALE * 3 // 4 + style.MARGIN
+    assert sheet.size == (2 * 80 * SCALE + 3 * style.MARGIN + above, style.HEAD + 60 * SCALE + style.FOOT)
     assert sheet.getpixel((2, 2)) == style.PAPER
     legend = np.asarray(sheet)[-style.FOOT :]
     for colour in (colours.EDGE, colours.LINE, colours.CIRCLE):
@@ -45,7 +59,7 @@ def test_the_cameras_stand_side_by_side() -> None:
 def test_a_picture_is_darkened() -> None:
     """Marks stand out of it; grey stays grey."""
     red, green, blue = shown(one(), 40, 30)
-    assert red == green == blue < 128 * 0.85
+    assert red == green == blue < 128 * 0.92
 
 
 def test_marks_are_where_they_belong() -> None:
@@ -66,17 +80,28 @@ def test_weak_edges_are_fainter() -> None:
 def test_what_is_in_space_has_the_colour_of_its_depth() -> None:
     """Lines and edges of the left picture whose depth is known."""
     frame = made.frame()
-    assert shown(frame, 15, 5) == colours.depth_colour(400)
-    assert shown(frame, 7, 51) == colours.depth_colour(1500)
+    assert shown(frame, 15, 5) == SCALE_OF_FRAME.colour(400)
+    assert shown(frame, 7, 51) == SCALE_OF_FRAME.colour(1500)
 
 
 def test_near_is_red_and_far_is_blue() -> None:
     """The scale does not leave its ends."""
-    near, far = colours.depth_colour(-1), colours.depth_colour(1e9)
-    assert near == colours.depth_colour(colours.NEAR_MM)
-    assert far == colours.depth_colour(colours.FAR_MM)
+    near, far = colours.ROOM.colour(-1), colours.ROOM.colour(1e9)
+    assert near == colours.ROOM.colour(colours.ROOM.near_mm)
+    assert far == colours.ROOM.colour(colours.ROOM.far_mm)
     assert near[0] == max(near) > near[2]
     assert far[2] == max(far) > far[0]
+
+
+def test_the_scale_is_of_the_depths_that_occur() -> None:
+    """From round numbers around them; that of a room where no depth is known."""
+    assert (SCALE_OF_FRAME.near_mm, SCALE_OF_FRAME.far_mm) == (300, 2000)
+    assert colours.depths_of(one()) == colours.ROOM
+    far = SeenEdges3D(
+        places_mm=np.array([[0, 0, 7100]] * 30 + [[0, 0, 99]], np.int32), left_edges=np.zeros(31, np.int32)
+    )
+    scale = colours.depths_of(one(edges_3d=far))
+    assert (scale.near_mm, scale.far_mm) == (7100, 7500)
 
 
 def test_an_object_is_in_the_picture_that_shows_it() -> None:
@@ -102,19 +127,49 @@ def test_captions_say_how_far_and_how_sure() -> None:
 def test_labels_are_at_their_places() -> None:
     """The label of a 3-D line is in the middle of it, that of an object above it, in pixels of the panel."""
     seen = made.left()
-    _, labels = panel_of(seen, (made.BALL,), seen.lines_3d, (), 10)
+    _, labels = panel_of(seen, (made.BALL,), seen.lines_3d, (), 10, colours.ROOM)
     depth, ball = labels
     assert (depth.text, depth.x, depth.y) == ("400", 255, 55)
-    assert (ball.text, ball.x, ball.y) == (made.BALL.caption, 405, 205)
+    assert (ball.text, ball.x, ball.y) == (made.BALL.caption, 405, 305)
+    assert ball.named == (305, 205, 505, 405)
 
 
-def test_every_caption_can_be_read() -> None:
-    """Objects at one place get labels beside each other: as many boxes as objects."""
-    alone = overlay_of(one(objects=(made.BALL,)))
-    both = overlay_of(one(objects=(made.BALL, replace(made.BALL, name="other"))))
-    colour = style.faded(made.YELLOW, made.BALL.accuracy)
-    yellow = [(np.asarray(sheet) == colour).all(axis=2).sum() for sheet in (alone, both)]
-    assert yellow[1] > 1.3 * yellow[0]
+@pytest.mark.parametrize(
+    "layer", [each for each in LAYERS if each not in {"arrows", "texts", "map", "losses"}]
+)
+def test_a_layer_is_drawn_alone_or_left_out(layer: str) -> None:
+    """Each changes the sheet of a frame with everything."""
+    frame = made.frame()
+    bare = overlay_of(frame, ())
+    assert not np.array_equal(overlay_of(frame, (layer,)).resize(bare.size), bare)
+
+
+def test_where_something_had_no_room_is_marked() -> None:
+    """A bar beside the rows, half as long where half as much is missing, and words beside the worst."""
+    losses = (
+        SeenLoss(what="edges", top_px=0, bottom_px=29, share=1.0),
+        SeenLoss(what="edges", top_px=30, bottom_px=59, share=0.5),
+    )
+    frame = one(losses=losses)
+    assert [shown(frame, x, 2) == colours.LOSS for x in (0, 1.7, 2.5)] == [True, True, False]
+    assert [shown(frame, x, 40) == colours.LOSS for x in (0, 0.5, 1.7)] == [True, True, False]
+    _, labels = panel_of(frame.cameras[0], (), (), (), 1, colours.ROOM)
+    assert [each.text for each in labels] == ["no room for 100 % of the edges here"]
+
+
+def test_what_others_want_to_draw_is_drawn() -> None:
+    """An arrow, words, and a map: red for its greatest number, blue for its least, nothing for none."""
+    arrow = SeenArrow(start_px=(10, 10), end_px=(50, 10), colour=made.YELLOW, text="fast")
+    assert shown(one(arrows=(arrow,)), 30, 10) == shown(one(arrows=(arrow,)), 49, 10) == made.YELLOW
+    _, labels = panel_of(one(arrows=(arrow,)).cameras[0], (), (), (), 1, colours.ROOM)
+    assert [each.text for each in labels] == ["fast"]
+    words = one(texts=(SeenText(place_px=(40, 30), text="HELLO", colour=made.BLUE),))
+    assert (np.asarray(overlay_of(words)) == made.BLUE).all(axis=2).sum() > 50
+    heat = one(map=SeenMap(name="heat", values=np.array([[0.0, 1.0], [np.nan, 3.0]])))
+    low, high = shown(heat, 20, 15), shown(heat, 60, 45)
+    assert low[2] > low[0]
+    assert high[0] > high[2]
+    assert shown(heat, 20, 45) == shown(one(), 20, 45)
 
 
 @pytest.mark.parametrize("size", [(2, 2), (16, 8), (160, 120), (320, 240), (640, 480), (1600, 100)])

@@ -91,7 +91,7 @@ def test_a_video_shows_all_frames(tmp_path: Path) -> None:
     with av.open(str(path)) as video:
         decoded = [(each.width, each.height, each.time) for each in video.decode(video=0)]
     assert [time for _, _, time in decoded] == [0, FRAME_MS / 1000]
-    assert {size[:2] for size in decoded} == {(1980, 810)}
+    assert {size[:2] for size in decoded} == {(2540, 810)}
 
 
 def test_places_that_cannot_be_are_refused_before_the_run(tmp_path: Path) -> None:

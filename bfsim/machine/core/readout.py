@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.machine.memories import Row
+from bfsim.seen import Seen, SeenText
 
 if TYPE_CHECKING:
     from bfsim.machine.core.core import Core, Frame
@@ -53,6 +54,27 @@ class Readout:
     def published(self, name: str) -> int:
         """Return a number that the core has published for the frame; 0 if it has not."""
         return self._results.get(f"{name}_{self.core}", 0)
+
+    @property
+    def all_published(self) -> dict[str, int]:
+        """All numbers that the core has published for the frame, by name."""
+        end = f"_{self.core}"
+        return {name.removesuffix(end): each for name, each in self._results.items() if name.endswith(end)}
+
+
+LINE_PX = 12
+"""From one line of words to the next."""
+
+
+def plain_view(readout: Readout) -> Seen:
+    """Return what can be shown of any firmware: the picture, and the numbers that the core has published."""
+    picture = readout.picture()
+    words = [f"{name} {each:,}" for name, each in readout.all_published.items()]
+    texts = (
+        SeenText(place_px=(picture.shape[1] / 4, LINE_PX * (line + 0.5)), text=each)
+        for line, each in enumerate(words)
+    )
+    return Seen(camera="left" if readout.core == "A" else "right", picture=picture, texts=tuple(texts))
 
 
 def stacked(rows: Sequence[Row]) -> NDArray[Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
@@ -16,6 +16,7 @@ from PIL.PngImagePlugin import PngInfo
 
 from bfsim.drafts import draft_folder, sweep
 from bfsim.errors import ConfigError
+from bfsim.report.overlay.layers import LAYERS
 from bfsim.report.overlay.overlay import overlay_of
 from bfsim.report.overlay.style import PAPER
 from bfsim.report.save import require_place
@@ -34,12 +35,13 @@ class OverlayWriter:
     """Context manager that draws frames for a folder, or for a file *.gif, *.webp, *.apng or *.mp4.
 
     All is drawn beside `path` and put in its place on a clean exit of the `with` block; after an error or Ctrl-C nothing
-    is left. An earlier overlay is replaced, and anything else in the folder refused: ConfigError, as for a place that
+    is left. `layers` are what is drawn. An earlier overlay is replaced, and anything else in the folder refused: ConfigError, as for a place that
     cannot be written.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, layers: Collection[str] = LAYERS) -> None:
         self.path = path
+        self._layers = layers
         self._encode = None if path.is_dir() or not path.suffix else _encoder_of(path)
         if self._encode is None:
             _require_folder(path)
@@ -61,7 +63,7 @@ class OverlayWriter:
         """Draw a frame."""
         file = self._folder / f"frame-{frame.index:04d}.png"
         with _writing(self.path):
-            overlay_of(frame).save(file, "PNG", pnginfo=_remark())
+            overlay_of(frame, self._layers).save(file, "PNG", pnginfo=_remark())
         self._drawn.append(file)
 
     def __exit__(

@@ -10,6 +10,7 @@ from PIL import Image, ImageDraw
 from bfsim.report.overlay import style
 from bfsim.report.overlay.panel import Pen
 from bfsim.seen import SeenBlob, SeenCircle, SeenLine, SeenObject, Solid, colours
+from bfsim.seen.colours import DepthScale
 
 GLYPH = 26  # width of a mark
 GAP = 28
@@ -37,22 +38,32 @@ OBJECT = SeenObject(
 ENTRIES: tuple[tuple[str, Callable[[Pen], None]], ...] = (
     ("edges", lambda pen: pen.edges(EDGES)),
     ("blob and its centre", lambda pen: pen.blob(BLOB)),
-    ("line from its start", lambda pen: pen.line(LINE, None)),
+    ("line from its start", lambda pen: pen.line(LINE, colours.LINE)),
     ("circle", lambda pen: pen.circle(CIRCLE)),
     ("circle that failed", lambda pen: pen.circle(FAILED)),
     ("object", lambda pen: pen.object(OBJECT)),
 )
 
 
+TITLE = "3-D lines and edges by depth, mm"
+
+
+def _steps() -> list[int]:
+    """Return how wide each entry is."""
+    font = style.font(style.FONT)
+    return [GLYPH + round(font.getlength(text)) + GAP for text, _ in ENTRIES]
+
+
+LEGEND_WIDTH = sum(_steps()) + round(style.font(style.FONT).getlength(TITLE)) + BAR + 3 * GAP + 100
+
+
 @cache
-def legend() -> Image.Image:
+def legend(scale: DepthScale) -> Image.Image:
     """Return the legend as a strip."""
     font = style.font(style.FONT)
     middle = style.FOOT // 2
-    steps = [GLYPH + round(font.getlength(text)) + GAP for text, _ in ENTRIES]
-    title = "3-D lines and edges by depth, mm"
-    width = sum(steps) + round(font.getlength(title)) + BAR + 3 * GAP + 80
-    large = Image.new("RGB", (width * style.SMOOTH, style.FOOT * style.SMOOTH), style.PAPER)
+    steps = _steps()
+    large = Image.new("RGB", (LEGEND_WIDTH * style.SMOOTH, style.FOOT * style.SMOOTH), style.PAPER)
     x = 0
     for (_, draw), step in zip(ENTRIES, steps, strict=True):
         draw(Pen(large, style.SMOOTH, (x, middle)))
@@ -63,20 +74,20 @@ def legend() -> Image.Image:
     for (text, _), step in zip(ENTRIES, steps, strict=True):
         pen.text((x + GLYPH + 6, middle), text, style.FAINT, font, anchor="lm")
         x += step
-    _write_scale(pen, x, middle, title)
+    _write_scale(pen, x, middle, scale)
     return strip
 
 
-def _write_scale(pen: ImageDraw.ImageDraw, x: float, middle: int, title: str) -> None:
+def _write_scale(pen: ImageDraw.ImageDraw, x: float, middle: int, scale: DepthScale) -> None:
     """Write the scale of depths: its ends at either side of a bar of its colours."""
     font = style.font(style.FONT)
-    pen.text((x, middle), title, style.FAINT, font, anchor="lm")
-    x += font.getlength(title) + GAP / 2
-    near, far = f"{colours.NEAR_MM:.0f}", f"{colours.FAR_MM:.0f}"
+    pen.text((x, middle), TITLE, style.FAINT, font, anchor="lm")
+    x += font.getlength(TITLE) + GAP / 2
+    near, far = f"{scale.near_mm:.0f}", f"{scale.far_mm:.0f}"
     pen.text((x, middle), near, style.FAINT, font, anchor="lm")
     x += font.getlength(near) + 8
     for step in range(BAR):
-        depth_mm = colours.NEAR_MM + (colours.FAR_MM - colours.NEAR_MM) * step / (BAR - 1)
+        depth_mm = scale.near_mm + (scale.far_mm - scale.near_mm) * step / (BAR - 1)
         ends = (x + step, middle - BAR_HEIGHT / 2), (x + step, middle + BAR_HEIGHT / 2)
-        pen.line(ends, colours.depth_colour(depth_mm))
+        pen.line(ends, scale.colour(depth_mm))
     pen.text((x + BAR + 8, middle), far, style.FAINT, font, anchor="lm")

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from bfsim.report.overlay import style
+from bfsim.report.overlay.labels import Label
 from bfsim.seen import (
     Colour,
     Point,
     Seen,
+    SeenArrow,
     SeenBlob,
     SeenCircle,
     SeenEdges3D,
     SeenLine,
     SeenLine3D,
+    SeenLoss,
+    SeenMap,
     SeenObject,
     colours,
 )
+from bfsim.seen.colours import DepthScale
 
 FULL_GRADIENT = 96  # edges as strong as this are drawn at their brightest
 FAINTEST = 0.4
@@ -29,15 +35,9 @@ EDGE_SIDE = 0.6  # of the side of a pixel
 DASH_DEG = 12  # of a circle that failed
 
 
-@dataclass(frozen=True, slots=True)
-class Label:
-    """Words at a place of a panel, in its pixels: those of an object stand in a box above it."""
-
-    x: float
-    y: float
-    text: str
-    colour: Colour
-    is_boxed: bool
+LOSS_DEPTH = 0.03  # of the width of the picture: how far a band of which all was left out reaches into it
+LOSS_WEIGHT = 2  # more than that of any object
+MAP_SHARE = 0.45  # of the colour of a map over the picture
 
 
 def rgb_of(uyvy: NDArray[np.uint8]) -> Image.Image:
@@ -54,44 +54,69 @@ def panel_of(
     lines_3d: tuple[SeenLine3D, ...],
     edges_3d: tuple[SeenEdges3D, ...],
     scale: int,
+    depths: DepthScale,
 ) -> tuple[Image.Image, list[Label]]:
     """Return the picture of a camera with its marks, `scale` times larger, and the words to be put on it.
 
     `objects` are those that this camera shows; `lines_3d` and `edges_3d` those of the left picture, for the left one.
     """
-    under = Image.fromarray(_with_edges(seen, edges_3d, scale))
+    under = Image.fromarray(_with_edges(seen, edges_3d, scale, depths))
     image = under.resize((under.width * style.SMOOTH, under.height * style.SMOOTH), Image.Resampling.NEAREST)
     pen = Pen(image, scale * style.SMOOTH)
+    for loss in seen.losses:
+        pen.loss(loss, seen.width_px)
     for blob in seen.blobs:
         pen.blob(blob)
-    depths = {each.left_line: each for each in lines_3d}
-    labels = []
+    places = {each.left_line: each for each in lines_3d}
+    worst = sorted(seen.losses, key=lambda each: -each.share)[:1]
+    labels = [_loss_label(each, seen.width_px) for each in worst]
     for number, line in enumerate(seen.lines):
-        pen.line(line, depths.get(number))
-        if number in depths:
-            labels.append(_depth_label(line, depths[number]))
+        depth_mm = _depth_of(places[number]) if number in places else None
+        pen.line(line, colours.LINE if depth_mm is None else depths.colour(depth_mm))
+        if depth_mm is not None:
+            labels.append(_depth_label(line, depth_mm, depths))
     for circle in seen.circles:
         pen.circle(circle)
     for each in objects:
         pen.object(each)
-        x, y = each.image_px
-        colour = style.faded(each.colour, each.accuracy)
-        labels.append(Label(x, y - each.image_size_px[1] / 2, each.caption, colour, is_boxed=True))
-    placed = [replace(each, x=(each.x + 0.5) * scale, y=(each.y + 0.5) * scale) for each in labels]
-    return image.reduce(style.SMOOTH), placed
+        colour, weight = style.faded(each.colour, each.accuracy), each.accuracy - each.age_frames
+        width, height = each.image_size_px
+        box = {"width": width, "height": height, "weight": weight}
+        labels.append(Label(*each.image_px, each.caption, colour, is_boxed=True, **box))
+    for arrow in seen.arrows:
+        pen.arrow(arrow)
+        if arrow.text:
+            labels.append(Label(*arrow.end_px, arrow.text, arrow.colour, is_boxed=True))
+    labels += [Label(*each.place_px, each.text, each.colour, is_boxed=False) for each in seen.texts]
+    return image.reduce(style.SMOOTH), [_scaled(each, scale) for each in labels]
 
 
-def _with_edges(seen: Seen, edges_3d: tuple[SeenEdges3D, ...], scale: int) -> NDArray[np.uint8]:
-    """Return the picture, darkened and magnified, with a small square in each pixel that is an edge."""
+def _scaled(label: Label, scale: int) -> Label:
+    """Return a label in pixels of the panel."""
+    return replace(
+        label,
+        x=(label.x + 0.5) * scale,
+        y=(label.y + 0.5) * scale,
+        width=label.width * scale,
+        height=label.height * scale,
+    )
+
+
+def _with_edges(
+    seen: Seen, edges_3d: tuple[SeenEdges3D, ...], scale: int, depths: DepthScale
+) -> NDArray[np.uint8]:
+    """Return the picture, darkened and magnified, under its map, with a small square in each pixel that is an edge."""
     size = (seen.width_px * scale, seen.height_px * scale)
     large = rgb_of(seen.picture).resize(size, Image.Resampling.BICUBIC).point(style.dark_levels())
+    if seen.map:
+        large = _with_map(large, seen.map)
     paint = np.zeros((seen.height_px, seen.width_px, 4), np.float32)
     edges = seen.edges
     paint[edges.y_px, edges.x_px, :3] = colours.EDGE
     paint[edges.y_px, edges.x_px, 3] = np.clip(edges.gradients / FULL_GRADIENT, FAINTEST, 1)
     for each in edges_3d:
         places = edges.y_px[each.left_edges], edges.x_px[each.left_edges]
-        paint[(*places, slice(3))] = [colours.depth_colour(depth) for depth in each.places_mm[:, 2]]
+        paint[(*places, slice(3))] = [depths.colour(depth) for depth in each.places_mm[:, 2]]
         paint[(*places, 3)] = 1
     side = max(1, round(EDGE_SIDE * scale))
     square = np.zeros((scale, scale, 1), np.float32)
@@ -100,6 +125,22 @@ def _with_edges(seen: Seen, edges_3d: tuple[SeenEdges3D, ...], scale: int) -> ND
     picture = np.asarray(large, np.float32)
     colour = paint[..., :3].repeat(scale, axis=0).repeat(scale, axis=1)
     return np.asarray((picture + (colour - picture) * share).round(), np.uint8)
+
+
+def _with_map(image: Image.Image, heat: SeenMap) -> Image.Image:
+    """Return a picture under a map: blue for the least of its numbers, red for the greatest, nothing where there is none."""
+    values = np.asarray(heat.values, float)
+    known = values[np.isfinite(values)]
+    if not known.size:
+        return image
+    low = float(known.min()) if heat.lowest is None else heat.lowest
+    high = float(known.max()) if heat.highest is None else heat.highest
+    parts = np.clip((values - low) / ((high - low) or 1.0), 0, 1)
+    paint = np.zeros((*values.shape, 4), np.uint8)
+    for place in zip(*np.nonzero(np.isfinite(values)), strict=True):
+        paint[place] = (*colours.scale_colour(1 - parts[place]), round(255 * MAP_SHARE))
+    over = Image.fromarray(paint, "RGBA").resize(image.size, Image.Resampling.NEAREST)
+    return Image.alpha_composite(image.convert("RGBA"), over).convert("RGB")
 
 
 class Pen:
@@ -126,9 +167,8 @@ class Pen:
         self._draw.line((x - arm, y, x + arm, y), blob.colour, self._stroke)
         self._draw.line((x, y - arm, x, y + arm), blob.colour, self._stroke)
 
-    def line(self, line: SeenLine, place: SeenLine3D | None) -> None:
-        """Draw a line with a dot at its start; by its depth if its place in space is known."""
-        colour = colours.depth_colour((place.start_mm[2] + place.end_mm[2]) / 2) if place else colours.LINE
+    def line(self, line: SeenLine, colour: Colour) -> None:
+        """Draw a line with a dot at its start."""
         start, end = self._at(line.start_px), self._at(line.end_px)
         self._draw.line((start, end), colour, self._stroke)
         self._draw.circle(start, style.DOT * style.SMOOTH, fill=colour, outline=style.PAPER, width=2)
@@ -157,12 +197,47 @@ class Pen:
                 for end in inwards:
                     self._draw.line((corner, end), colour, self._stroke)
 
+    def arrow(self, arrow: SeenArrow) -> None:
+        """Draw an arrow, its head a sixth of it long at most."""
+        (x, y), (to_x, to_y) = self._at(arrow.start_px), self._at(arrow.end_px)
+        self._draw.line((x, y, to_x, to_y), arrow.colour, self._stroke)
+        length = math.hypot(to_x - x, to_y - y)
+        if not length:
+            return
+        head = min(6 * self._stroke, length / 2)
+        along = (x - to_x) / length * head, (y - to_y) / length * head
+        wings = [
+            (to_x + along[0] - side * along[1] / 2, to_y + along[1] + side * along[0] / 2) for side in (-1, 1)
+        ]
+        self._draw.polygon(((to_x, to_y), *wings), arrow.colour)
+
+    def loss(self, loss: SeenLoss, width_px: int) -> None:
+        """Draw a bar at the left border, beside the rows of which something was left out: the more, the longer."""
+        far = self._at((loss.share * LOSS_DEPTH * width_px - 0.5, loss.bottom_px + 0.5))
+        self._draw.rectangle((*self._at((-0.5, loss.top_px - 0.5)), *far), colours.LOSS)
+
     def _at(self, point: Point) -> Point:
         x, y = ((point[axis] + self._origin[axis] + 0.5) * self._scale for axis in (0, 1))
         return x, y
 
 
-def _depth_label(line: SeenLine, place: SeenLine3D) -> Label:
-    depth_mm = (place.start_mm[2] + place.end_mm[2]) / 2
+def _depth_of(line: SeenLine3D) -> float:
+    return (line.start_mm[2] + line.end_mm[2]) / 2
+
+
+def _loss_label(loss: SeenLoss, width_px: int) -> Label:
+    """Return what is missing in a band of rows, beside its bar."""
+    top, height = loss.top_px, loss.bottom_px + 1 - loss.top_px
+    place = (
+        LOSS_DEPTH * width_px / 2,
+        top + height / 2 - 0.5,
+        f"no room for {100 * loss.share:.0f} % of the {loss.what} here",
+    )
+    return Label(
+        *place, colours.LOSS, is_boxed=True, width=LOSS_DEPTH * width_px, height=height, weight=LOSS_WEIGHT
+    )
+
+
+def _depth_label(line: SeenLine, depth_mm: float, depths: DepthScale) -> Label:
     x, y = ((line.start_px[axis] + line.end_px[axis]) / 2 for axis in (0, 1))
-    return Label(x, y, f"{depth_mm:.0f}", colours.depth_colour(depth_mm), is_boxed=False)
+    return Label(x, y, f"{depth_mm:.0f}", depths.colour(depth_mm), is_boxed=False)

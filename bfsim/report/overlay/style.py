@@ -12,8 +12,11 @@ PAPER: Colour = (11, 14, 20)
 WORDS: Colour = (222, 228, 238)
 FAINT: Colour = (128, 140, 158)
 
-BRIGHTNESS, GAMMA = 0.6, 0.75
-"""Of the picture under the marks: darker than it was, but not where it was dark already."""
+GRID: Colour = (44, 52, 66)
+
+BRIGHTNESS, GAMMA = 0.8, 0.85
+"""Of the picture under the marks: a little darker than it was, so that an orange ball is still orange, and not where it was
+dark already."""
 
 PANEL_WIDTH = 960
 """About as wide is a picture drawn: small ones are magnified by a whole number."""

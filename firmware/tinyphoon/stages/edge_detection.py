@@ -16,7 +16,7 @@ from tinyphoon.arithmetic import angle8, isqrt32
 from tinyphoon.fields import allowed
 from tinyphoon.scan_lines import line_ring, window
 from tinyphoon.stages.colour_reduction import AS_IT_IS, balance_row, colour_row
-from tinyphoon.stages.edge_thinning import Candidates
+from tinyphoon.stages.edge_thinning import Candidates, thinned_bands
 from tinyphoon.stages.hysteresis import LABELS, EdgeGroups, hysteresis
 
 
@@ -182,8 +182,8 @@ def edge_detection(
     """Detect the edges of a picture, an area of a larger one, and reduce its colours, in one pass of DMA lines (T Figure 5.3).
 
     Leaves `edge_image` (gradients) and `colour_image` in SDRAM and the edge store; returns how many edges are stored and
-    publishes it as `edges`. Also publishes `edges_lost`, how many were left out because the store has no room for all, and
-    `edge_groups_shared`, how many groups had to share a label.
+    publishes it as `edges`. Also publishes `edges_lost`, how many were left out because the store has no room for all, with the
+    rows of the camera's picture in which most were, and `edge_groups_shared`, how many groups had to share a label.
     """
     candidates = Candidates.of(core, frame.height)
     yield from candidates.begin()
@@ -196,6 +196,11 @@ def edge_detection(
         given = yield from groups.add(y, given)
     kept = yield from hysteresis(groups, frame.height, thresholds.strong_threshold)
     core.publish(edges=kept, edges_lost=lost, edge_groups_shared=max(0, given - LABELS + 1))
+    bands = thinned_bands(core.array("band_edges").array, frame.height)
+    if bands:
+        worst = max(bands, key=lambda each: each.share)
+        core.publish(edges_lost_top=area.y + worst.top, edges_lost_bottom=area.y + worst.bottom)
+        core.publish(edges_lost_percent=round(100 * worst.share))
     return kept
 
 

@@ -12,12 +12,19 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from bfsim.api import Buffer, Core, FrameSize, InputRing, OutputRing, Row, i32, kernel, u8, u16, u32
 from tinyphoon.stores.edges import EDGE_CAPACITY, edge_store, store_edges_row
 
 BANDS = 8
 LEVELS = 256
 """Gradients are bytes."""
+
+# A band in `band_edges`: what is left out, for the report.
+CANDIDATES, KEPT = 0, 1
+TALLY_WORDS = 2
 
 
 def thinning_buffers(size: FrameSize, images: str) -> Sequence[Buffer]:
@@ -27,6 +34,7 @@ def thinning_buffers(size: FrameSize, images: str) -> Sequence[Buffer]:
         Buffer("edge_candidates", u32, width, images, rows=height),
         Buffer("candidate_ring", u32, width, "L1_data_b", rows=2),
         Buffer("least_gradients", u8, BANDS, "L1_data_b"),
+        Buffer("band_edges", u16, TALLY_WORDS * BANDS, "data1"),
     )
 
 
@@ -85,12 +93,13 @@ def take_candidates(
     edge_data: u32[:],
     edge_index: u32[:],
     edge_counts: u16[:],
+    band_edges: u16[:],
     y: i32,
     found: i32,
 ) -> i32:
     """Store the candidates of row `y`, `edge_counts[y]` of them, that reach the least gradient of their band.
 
-    `found` edges are stored before; returns how many are with this row.
+    `found` edges are stored before; returns how many are with this row. Both counts are added up in `band_edges`.
     """
     edge_index[y] = found
     before = found
@@ -99,6 +108,9 @@ def take_candidates(
         if i32(edge & 255) >= least[band] and found < len(edge_data):
             edge_data[found] = edge
             found = found + 1
+    tally = band * TALLY_WORDS
+    band_edges[tally + CANDIDATES] = band_edges[tally + CANDIDATES] + edge_counts[y]
+    band_edges[tally + KEPT] = band_edges[tally + KEPT] + found - before
     edge_counts[y] = found - before
     return found
 
@@ -128,6 +140,7 @@ class Candidates:
     def begin(self) -> Generator[Any, Any, None]:
         """Begin a picture."""
         yield self.core.run(clear_levels, self.levels)
+        yield self.core.run(clear_levels, self.core.array("band_edges"))
 
     def add(self, y: int, gradients: Row, directions: Row) -> Generator[Any, Any, None]:
         """Keep the edges of row `y` as candidates: its pixels with a gradient."""
@@ -147,6 +160,39 @@ class Candidates:
         """Store what row `y`, the next one, keeps; `found` edges are stored before, returns how many are with it."""
         row = yield from rows.line()
         stored: int = yield self.core.run(
-            take_candidates, row, self.least, self.band(y), *self.store, y, found
+            take_candidates,
+            row,
+            self.least,
+            self.band(y),
+            *self.store,
+            self.core.array("band_edges"),
+            y,
+            found,
         )
         return stored
+
+
+@dataclass(frozen=True, slots=True)
+class ThinnedBand:
+    """A band of rows, from `top` to `bottom`, and how many of its edges there was no room for."""
+
+    top: int
+    bottom: int
+    edges: int
+    lost: int
+
+    @property
+    def share(self) -> float:
+        """The part of its edges that was left out, 0 to 1."""
+        return self.lost / self.edges if self.edges else 0.0
+
+
+def thinned_bands(band_edges: NDArray[np.uint16], height: int) -> list[ThinnedBand]:
+    """Return the bands of a picture of `height` rows from which edges were left out: what `band_edges` says of them."""
+    tallies = band_edges.reshape(-1, TALLY_WORDS).astype(int).tolist()
+    firsts = [-(-band * height // BANDS) for band in range(BANDS + 1)]
+    bands = (
+        ThinnedBand(top, after - 1, tally[CANDIDATES], tally[CANDIDATES] - tally[KEPT])
+        for tally, top, after in zip(tallies, firsts[:-1], firsts[1:], strict=True)
+    )
+    return [each for each in bands if each.lost]

@@ -17,11 +17,13 @@ from bfsim.api import (
     SeenGeometry,
     SeenLine,
     SeenLine3D,
+    SeenLoss,
     SeenRectangle,
     no_edges_3d,
 )
 from tinyphoon import geometry as g
 from tinyphoon.areas import Area, area_in
+from tinyphoon.stages.edge_thinning import thinned_bands
 from tinyphoon.stores import blobs as b
 from tinyphoon.stores import circles as c
 from tinyphoon.stores import lines as n
@@ -54,6 +56,7 @@ def view(readout: Readout) -> Seen:
         corner_px=(area.x, area.y),
         geometry=_geometry(readout, picture),
         edges=_edges(readout),
+        losses=_losses(readout, picture),
         blobs=_blobs(readout),
         lines=_lines(readout),
         circles=_circles(readout),
@@ -95,6 +98,13 @@ def _edges(readout: Readout) -> SeenEdges:
         gradients=(words & 0xFF).astype(np.int32),
         directions=(words >> 8 & 0xFF).astype(np.int32),
         lost=readout.published("edges_lost"),
+    )
+
+
+def _losses(readout: Readout, picture: NDArray[np.uint8]) -> tuple[SeenLoss, ...]:
+    bands = thinned_bands(readout.values("band_edges"), picture.shape[0])
+    return tuple(
+        SeenLoss(what="edges", top_px=each.top, bottom_px=each.bottom, share=each.share) for each in bands
     )
 
 

@@ -1,0 +1,56 @@
+"""Words on a picture: which are written, and where."""
+
+from __future__ import annotations
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from bfsim.report.overlay.labels import Label, write_labels
+
+RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
+
+
+def written(*labels: Label) -> np.ndarray:
+    """The pixels of a black panel of 400x300 with labels."""
+    panel = Image.new("RGB", (400, 300))
+    write_labels(ImageDraw.Draw(panel), labels, (0, 0, 400, 300))
+    return np.asarray(panel)
+
+
+def label(x: float, y: float, colour: tuple[int, int, int], weight: float = 0, side: float = 40) -> Label:
+    """A label of a square thing."""
+    return Label(x, y, "thing", colour, is_boxed=True, width=side, height=side, weight=weight)
+
+
+def rows_of(panel: np.ndarray, colour: tuple[int, int, int]) -> np.ndarray:
+    """The rows that have some of a colour."""
+    return np.flatnonzero((panel == colour).all(axis=2).any(axis=1))
+
+
+def test_a_label_stands_above_what_it_names_and_below_where_there_is_no_room() -> None:
+    """And never on it."""
+    assert rows_of(written(label(200, 150, RED)), RED).max() < 130
+    assert rows_of(written(label(200, 15, RED)), RED).min() > 35
+    assert (written(label(200, 150, RED))[130:170, 180:220] == 0).all()
+
+
+def test_one_place_has_one_label_that_of_the_greatest_weight() -> None:
+    """Sixteen labels on one ball are one."""
+    many = [label(200 + number % 4, 150 + number // 4, GREEN, weight=number / 100) for number in range(16)]
+    panel = written(*many, label(201, 149, RED, weight=1))
+    assert len(rows_of(panel, RED))
+    assert not len(rows_of(panel, GREEN))
+
+
+def test_neighbours_keep_off_each_other() -> None:
+    """The label of the lower thing would cover the upper one: it goes below its own."""
+    panel = written(label(200, 100, RED, weight=1), label(200, 145, BLUE))
+    assert rows_of(panel, RED).max() < 80
+    assert rows_of(panel, BLUE).min() > 165
+
+
+def test_words_without_a_box_give_way() -> None:
+    """A depth in the middle of a line is left out where a box stands."""
+    box = label(200, 150, RED)
+    assert len(rows_of(written(Label(200, 115, "400", GREEN, is_boxed=False)), GREEN))
+    assert not len(rows_of(written(box, Label(200, 115, "400", GREEN, is_boxed=False)), GREEN))
