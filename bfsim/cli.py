@@ -13,6 +13,7 @@ import click
 from bfsim import __version__
 from bfsim.cli_boards import boards
 from bfsim.cli_colours import colours
+from bfsim.cli_hardware import BOARD_OPTIONS, PROFILE_OPTION
 from bfsim.cli_ldf import PREPROCESSOR_OPTIONS, ldf
 from bfsim.cli_record import record
 from bfsim.cli_seen import Watchers, takes_views, watching
@@ -78,13 +79,7 @@ _RUN_PARAMETERS = (
         show_default=True,
         help=f"Firmware to run: {' or '.join(FIRMWARE)}, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
     ),
-    click.option(
-        "--board",
-        metavar="NAME",
-        default="cm-bf561",
-        show_default=True,
-        help="Board to run on; `bfsim boards` lists them.",
-    ),
+    *BOARD_OPTIONS,
     click.option(
         "--ldf",
         metavar="FILE",
@@ -92,13 +87,7 @@ _RUN_PARAMETERS = (
         help=f"Linker description file that places buffers and code, or a shipped one: {', '.join(LDFS)}.  [default: the board's]",
     ),
     *PREPROCESSOR_OPTIONS,
-    click.option(
-        "--profile",
-        metavar="NAME",
-        default="vdsp-O2",
-        show_default=True,
-        help="Compiler whose code is costed: vdsp-O2, gcc-O2 or gcc-O0.",
-    ),
+    PROFILE_OPTION,
     click.option("--frames", metavar="N", type=click.IntRange(min=1), help="Stop after N frames."),
     click.option(
         "--feed",
@@ -174,6 +163,7 @@ def run(
     Examples:
       bfsim run
       bfsim run drive.mcap --frames 20 --ldf l2
+      bfsim run drive.mcap --set sdram.nRP=3 --set clocks.cclk_hz=500e6
       bfsim run --full
       bfsim run drive.mcap --feed recorded --json drive.json
       bfsim run drive.mcap --overlay drive-seen --mcap drive-seen.mcap

@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bfsim.chip.interrupts import SicInterrupt
+from bfsim.cli_hardware import SET_OPTION
+from bfsim.errors import ConfigError
+from bfsim.fields import leaves
 from bfsim.terminal import print_report
 
 if TYPE_CHECKING:
@@ -18,25 +21,49 @@ if TYPE_CHECKING:
 
 @click.command(short_help="List the boards, or print every number of one.")
 @click.argument("name", required=False)
-def boards(name: str | None) -> None:
+@SET_OPTION
+def boards(name: str | None, settings: dict[str, str]) -> None:
     """List the boards that --board takes; with NAME, print every number of that board.
 
-    Units are in the names: _cclk and _sclk are cycles of the core and of the bus, and nCL, nRAS, nRP, nRCD and nWR
-    are SCLK cycles, too.
+    Each number stands beside its path, which --set takes. Units are in the names: _cclk and _sclk are cycles of the core
+    and of the bus, and nCL, nRAS, nRP, nRCD and nWR are SCLK cycles, too. With --set, what changes comes first, with what
+    follows from it: the clocks from the PLL, or the PLL from the clocks, and the memory map from the SDRAM.
+
+    NAME may also be a board of yours: FILE.py:NAME, or PACKAGE:NAME.
 
     \b
     Examples:
       bfsim boards
       bfsim boards cm-bf561
+      bfsim boards cm-bf561 --set sdram.nRP=3 --set pll.ssel=6
     """
-    from bfsim.chip.boards import BOARDS, board_named
+    from bfsim.chip.boards import BOARDS
+    from bfsim.hardware import find_board
     from bfsim.report.board_tables import board_report, boards_report
 
     if name is None:
+        if settings:
+            raise ConfigError("--set must come with the NAME of a board")
         print_report(boards_report([_summary(each) for each in BOARDS.values()]))
-    else:
-        board = board_named(name)
-        print_report(board_report(f"{board.name}: {board.title}", _blocks("board", board)))
+        return
+    board = find_board(name, settings).value
+    blocks = _blocks("", board)
+    if settings:
+        blocks.insert(0, ("changed", _changes(find_board(name).value, board)))
+    print_report(board_report(f"{board.name}: {board.title}", blocks))
+
+
+def _changes(before: BoardSpec, after: BoardSpec) -> Rows:
+    """Return what differs, by path; what only one of the two has is none in the other."""
+    was, now = ({each.path: each for each in leaves(board)} for board in (before, after))
+    rows = []
+    for path in dict.fromkeys((*was, *now)):
+        old, new = (
+            _text(path.rpartition(".")[2], at[path].value) if path in at else "none" for at in (was, now)
+        )
+        if old != new and path != "name":
+            rows.append({"path": path, "was": old, "is": new})
+    return rows or [{"": "nothing: the board has these numbers"}]
 
 
 def _summary(board: BoardSpec) -> dict[str, str]:
@@ -61,16 +88,17 @@ def _blocks(path: str, record: Any) -> list[tuple[str, Rows]]:
     inner: list[tuple[str, Rows]] = []
     for field in fields(record):
         value = getattr(record, field.name)
-        where = f"{path}.{field.name}"
+        where = f"{path}.{field.name}" if path else field.name
         if is_dataclass(value):
             inner += _blocks(where, value)
         elif isinstance(value, tuple) and is_dataclass(value[0]):
-            inner.append((where, [_cells(each) for each in value]))
+            rows = [{"N": f"{number}"} | _cells(each) for number, each in enumerate(value)]
+            inner.append((f"{where}.N", rows))
         elif isinstance(value, type) and issubclass(value, SicInterrupt):
             inner.append((where, [_interrupt(each) for each in value]))
         else:
-            own.append({"": field.name, "value": _text(field.name, value)})
-    return [(path, own), *inner]
+            own.append({"": where, "value": _text(field.name, value)})
+    return [(path or "board", own), *inner]
 
 
 def _cells(record: Any) -> dict[str, str]:

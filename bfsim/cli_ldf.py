@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from bfsim.cli_hardware import BOARD_OPTIONS, PROFILE_OPTION
 from bfsim.cli_sizes import Size
 from bfsim.errors import shown
 from bfsim.shipped import FIRMWARE
@@ -52,6 +53,12 @@ def _takes_macros(command: Callable[..., None]) -> Callable[..., None]:
     return command
 
 
+def _takes_a_board(command: Callable[..., None]) -> Callable[..., None]:
+    for option in reversed(BOARD_OPTIONS):
+        command = option(command)
+    return command
+
+
 @click.command(short_help="Print where an LDF puts buffers and code.")
 @click.argument("file", required=False, type=click.Path(path_type=Path))
 @click.option(
@@ -61,16 +68,8 @@ def _takes_macros(command: Callable[..., None]) -> Callable[..., None]:
     show_default=True,
     help=f"Firmware to place: {' or '.join(FIRMWARE)}, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
 )
-@click.option(
-    "--board", metavar="NAME", default="cm-bf561", show_default=True, help="Board with the memories."
-)
-@click.option(
-    "--profile",
-    metavar="NAME",
-    default="vdsp-O2",
-    show_default=True,
-    help="Compiler whose code is placed: vdsp-O2, gcc-O2 or gcc-O0.",
-)
+@_takes_a_board
+@PROFILE_OPTION
 @click.option(
     "--size",
     type=Size(),
@@ -93,6 +92,7 @@ def ldf(
     *,
     firmware: str,
     board: str,
+    settings: dict[str, str],
     profile: str,
     size: tuple[int, int],
     defines: dict[str, str],
@@ -125,6 +125,7 @@ def ldf(
         file,
         firmware=firmware,
         board=board,
+        settings=settings,
         profile=profile,
         width_px=size[0],
         height_px=size[1],

@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from math import lcm
 
+from bfsim.errors import ConfigError
+
 
 @dataclass(frozen=True, slots=True)
 class Clocks:
@@ -26,6 +28,10 @@ class Clocks:
     sclk_ticks: int = field(init=False)
 
     def __post_init__(self) -> None:
+        if min(self.cclk_hz, self.sclk_hz) <= 0:
+            raise ConfigError(
+                f"a clock must be faster than 0 Hz, not {float(min(self.cclk_hz, self.sclk_hz)):g} Hz"
+            )
         common = lcm(self.cclk_hz.denominator, self.sclk_hz.denominator)
         tick_hz = Fraction(lcm(int(self.cclk_hz * common), int(self.sclk_hz * common)), common)
         object.__setattr__(self, "tick_hz", tick_hz)

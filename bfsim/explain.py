@@ -10,7 +10,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from bfsim.errors import ConfigError
-from bfsim.kernel import CompilerProfile, Kernel, profile_named, tree
+from bfsim.hardware import find_profile
+from bfsim.kernel import CompilerProfile, Kernel, tree
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.inlining import decisions
 from bfsim.kernel.isa import MNEMONICS, Op
@@ -30,7 +31,7 @@ BRANCHES = {Op.BRANCH_TAKEN, Op.BRANCH_NOT_TAKEN, Op.BRANCH_TAKEN_BP, Op.BRANCH_
 
 def explain_named(name: str, firmware: str, profile: str, run: RunRecord | None = None) -> Explanation:
     """Explain the kernel called `name`, FILE.py:NAME, PACKAGE:NAME or the name of a kernel of `firmware`; see `explain`."""
-    return explain(load_kernel(name, firmware), profile_named(profile), run.kernels if run else None)
+    return explain(load_kernel(name, firmware), find_profile(profile).value, run.kernels if run else None)
 
 
 def explain(

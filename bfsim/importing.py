@@ -69,6 +69,17 @@ class OwnModules(MetaPathFinder):
             yield
 
     @property
+    def files(self) -> tuple[str, ...]:
+        """The source files, as they lie in the folder that they were imported from."""
+        return tuple(sorted(each.relative for each in self.sources.values()))
+
+    @property
+    def digest(self) -> str:
+        """Digest of the source files and their relative names: the same wherever they lie."""
+        lines = sorted(f"{each.relative} {each.sha256}\n" for each in self.sources.values())
+        return hashlib.sha256("".join(lines).encode()).hexdigest()
+
+    @property
     def changed(self) -> bool:
         """Whether one of the files is not what it was when it was imported."""
         return any(not each.is_current() for each in self.sources.values())

@@ -1,12 +1,13 @@
-"""Finding firmware by its name. Firmware is code, so nothing is imported that the user did not name."""
+"""Finding firmware, and what else users write in Python, by its name. It is code: nothing is imported that the user did not name."""
 
 from __future__ import annotations
 
 import difflib
-import hashlib
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
+from typing import Generic, TypeVar
 
 from bfsim import shipped
 from bfsim.errors import BfsimError, FirmwareError, cut, shown
@@ -21,7 +22,45 @@ NEAREST_NAMES = 5
 
 SHIPPED = Root(shipped.FIRMWARE_FOLDER, shipped.FIRMWARE_PACKAGE)
 
+Wanted = TypeVar("Wanted")
+
 _imported: dict[tuple[str, Root], tuple[ModuleType, OwnModules]] = {}
+
+
+@dataclass(frozen=True, slots=True)
+class Kind(Generic[Wanted]):
+    """What an option takes by name: things of one type, which users import from `module`; some are `built_in`."""
+
+    noun: str
+    option: str
+    type: type[Wanted]
+    module: str
+    built_in: tuple[str, ...]
+
+    @property
+    def must_be(self) -> str:
+        """Say what names the option takes."""
+        return f"{self.option} must be one of {', '.join(self.built_in)}, FILE.py:NAME or PACKAGE:NAME"
+
+    def advice(self, attribute: str) -> str:
+        """Say how what is built in is written to who may have meant it."""
+        *names, last = self.built_in
+        if attribute in self.built_in:
+            return f"; the built-in {self.noun} is written {attribute}"
+        return f"; built in are {', '.join(names)} and {last}"
+
+
+FIRMWARE = Kind("firmware", "--firmware", Firmware, "bfsim.api", shipped.FIRMWARE)
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded(Generic[Wanted]):
+    """What was found under a name, the name as MODULE:NAME, its module, and all of its modules."""
+
+    name: str
+    value: Wanted
+    module: ModuleType
+    own: OwnModules
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,13 +79,12 @@ class LoadedFirmware:
     @property
     def files(self) -> tuple[str, ...]:
         """The source files, as they lie in the folder that they were imported from."""
-        return tuple(sorted(each.relative for each in self.own.sources.values()))
+        return self.own.files
 
     @property
     def digest(self) -> str:
         """Digest of the source files and their relative names: the same wherever they lie."""
-        lines = sorted(f"{each.relative} {each.sha256}\n" for each in self.own.sources.values())
-        return hashlib.sha256("".join(lines).encode()).hexdigest()
+        return self.own.digest
 
 
 def load_firmware(name: str) -> LoadedFirmware:
@@ -56,23 +94,33 @@ def load_firmware(name: str) -> LoadedFirmware:
     only one Firmware. What is as it was when it was imported before is not imported again. Raises FirmwareError when it
     cannot be imported or is no `Firmware`; refused kernels raise KernelError.
     """
-    is_built_in = name in shipped.FIRMWARE
-    if is_built_in:
+    if name in shipped.FIRMWARE:
         module, own = import_own(shipped.FIRMWARE_PACKAGE, SHIPPED)
-        attribute = name
-    else:
-        place, attribute = parted(name)
-        module, own = import_own(*located(place, _advice(attribute)))
-        attribute = attribute or _only_firmware(module, name)
-    firmware = getattr(module, attribute, None)
-    path = _path_of(module)
-    if not isinstance(firmware, Firmware):
-        found = f"a {type(firmware).__name__}" if hasattr(module, attribute) else "missing"
-        raise FirmwareError(
-            f"--firmware: {attribute} must be a bfsim.api.Firmware, but is {found} ({path}){_advice(attribute)}"
+        return LoadedFirmware(
+            name, _path_of(module), is_built_in=True, firmware=getattr(module, name), own=own
         )
-    full_name = name if is_built_in else f"{module.__name__}:{attribute}"
-    return LoadedFirmware(full_name, path, is_built_in, firmware, own)
+    found = load_named(name, FIRMWARE)
+    return LoadedFirmware(
+        found.name, _path_of(found.module), is_built_in=False, firmware=found.value, own=found.own
+    )
+
+
+def load_named(name: str, kind: Kind[Wanted], apart: Collection[Wanted] = ()) -> Loaded[Wanted]:
+    """Import what is called FILE.py:NAME or PACKAGE:NAME, as `load_firmware` does.
+
+    :NAME may be left out where the module has one thing of that kind; those in `apart` are not counted.
+    """
+    place, attribute = parted(name, kind.must_be)
+    module, own = import_own(*located(place, kind.advice(attribute)))
+    attribute = attribute or _only_one(module, name, kind, apart)
+    value = getattr(module, attribute, None)
+    if not isinstance(value, kind.type):
+        found = f"a {type(value).__name__}" if hasattr(module, attribute) else "missing"
+        raise FirmwareError(
+            f"{kind.option}: {attribute} must be a {kind.module}.{kind.type.__name__}, but is {found} "
+            f"({_path_of(module)}){kind.advice(attribute)}"
+        )
+    return Loaded(f"{module.__name__}:{attribute}", value, module, own)
 
 
 def load_kernel(name: str, firmware: str) -> Kernel:
@@ -87,7 +135,7 @@ def load_kernel(name: str, firmware: str) -> Kernel:
     else:
         module = own.modules.get(place)
         if module is None:
-            module, own = import_own(*located(parted(name)[0]))
+            module, own = import_own(*located(parted(name, FIRMWARE.must_be)[0]))
         found = [each for each in [getattr(module, attribute, None)] if isinstance(each, Kernel)]
     if len(found) != 1:
         advice = _apart(found) if found else _nearest(attribute, {each.name for each in _kernels_of(own)})
@@ -115,20 +163,18 @@ def _nearest(name: str, known: set[str]) -> str:
     return f"the nearest of {len(known)} are {', '.join(nearest)}"
 
 
-def _advice(attribute: str) -> str:
-    """Say how built-in firmware is written to who may have meant it."""
-    if attribute in shipped.FIRMWARE:
-        return f"; the built-in firmware is written {attribute}"
-    return f"; built in are {' and '.join(shipped.FIRMWARE)}"
-
-
-def _only_firmware(module: ModuleType, name: str) -> str:
-    names = [each for each, value in vars(module).items() if isinstance(value, Firmware)]
+def _only_one(module: ModuleType, name: str, kind: Kind[Wanted], apart: Collection[Wanted]) -> str:
+    names = [
+        each
+        for each, value in vars(module).items()
+        if isinstance(value, kind.type) and not any(value is other for other in apart)
+    ]
     if len(names) == 1:
         return names[0]
     has = f"has {' and '.join(names)}" if names else "has none"
     raise FirmwareError(
-        f"--firmware {cut(name)} must be followed by :NAME unless the module has one Firmware, but it {has} ({_path_of(module)})"
+        f"{kind.option} {cut(name)} must be followed by :NAME unless the module has one {kind.type.__name__}, but it {has} "
+        f"({_path_of(module)})"
     )
 
 

@@ -1,4 +1,4 @@
-"""Names of firmware and kernels as they are given, FILE.py:NAME or PACKAGE:NAME → a module, and where to import it from."""
+"""Names of firmware, kernels, boards and compilers as they are given, FILE.py:NAME or PACKAGE:NAME → a module, and where to import it from."""
 
 from __future__ import annotations
 
@@ -9,20 +9,21 @@ import sysconfig
 from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 
-from bfsim import shipped
 from bfsim.errors import FirmwareError, cut, shown
 from bfsim.importing import NEVER_OWN, Root
 
 
-def parted(name: str) -> tuple[str, str]:
-    """Split a name into the file or package and, if there is one, the name in it. Raises FirmwareError if it is neither."""
+def parted(name: str, must_be: str) -> tuple[str, str]:
+    """Split a name into the file or package and, if there is one, the name in it.
+
+    Raises FirmwareError, which begins with what it `must_be`, if it is neither.
+    """
     if name.endswith(".py"):
         return name, ""
     place, colon, attribute = name.rpartition(":") if ":" in name else (name, "", "")
     is_package = all(each.isidentifier() for each in place.split("."))
     if not (is_package or place.endswith(".py")) or not (attribute.isidentifier() or not colon):
-        names = " or ".join(shipped.FIRMWARE)
-        raise FirmwareError(f"--firmware must be FILE.py:NAME, PACKAGE:NAME, {names}, not {shown(name)}")
+        raise FirmwareError(f"{must_be}, not {shown(name)}")
     return place, attribute
 
 

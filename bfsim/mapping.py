@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
-from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
-from bfsim.kernel import profile_named
+from bfsim.hardware import find_board, find_profile
 from bfsim.linker import LinkerScript, link
 from bfsim.loading import load_firmware
 from bfsim.machine.board import PROCESSORS, symbols_of
@@ -23,6 +22,7 @@ def map_memory(
     *,
     firmware: str,
     board: str,
+    settings: Mapping[str, object] = MappingProxyType({}),
     profile: str,
     width_px: int,
     height_px: int,
@@ -34,7 +34,7 @@ def map_memory(
     Firmware for other cores than the LDF's is left out, and the map holds what the LDF says by itself. Raises a
     BfsimError for anything that is wrong with what was given, a firmware that does not fit included.
     """
-    spec, compiler = board_named(board), profile_named(profile)
+    spec, compiler = find_board(board, settings).value, find_profile(profile).value
     script = read_placement(ldf, spec, defines, include_dirs)
     loaded, size = load_firmware(firmware), FrameSize(width_px, height_px)
     program = loaded.firmware

@@ -12,12 +12,12 @@ from types import MappingProxyType
 import llvmlite.binding as llvm
 
 from bfsim import __version__, shipped
-from bfsim.chip.boards import board_named
 from bfsim.chip.spec import BoardSpec
 from bfsim.device_script import read_script
 from bfsim.errors import ConfigError, FirmwareError, LinkError, RecordingError, shown
 from bfsim.given import given_firmware
-from bfsim.kernel import VDSP_O2, CompilerProfile, profile_named
+from bfsim.hardware import Found, find_board, find_profile
+from bfsim.kernel import VDSP_O2, CompilerProfile
 from bfsim.linker import LinkerScript, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Fidelity, Outcome, require_cores
@@ -41,7 +41,8 @@ def simulate(
     recording: Path | None = None,
     *,
     firmware: Firmware | str = shipped.FIRMWARE[0],
-    board: str = "cm-bf561",
+    board: str | BoardSpec = "cm-bf561",
+    settings: Mapping[str, object] = MappingProxyType({}),
     ldf: Path | None = None,
     defines: Mapping[str, str] = MappingProxyType({}),
     include_dirs: Sequence[Path] = (),
@@ -62,12 +63,14 @@ def simulate(
     Of a `Firmware` the identity has the source files as they are now; values that were set otherwise, such as at a prompt,
     are not in it.
 
-    Without `recording` and `ldf` the built-in ones are taken; `ldf` may also be the name of a shipped one, `defines`
+    `board` is a shipped one's name, "FILE.py:NAME", "PACKAGE:NAME" or a BoardSpec, and `settings` are numbers to change in it
+    by their paths, such as {"sdram.nRP": 3}; see `bfsim.chip.settings`. `profile` names the compiler whose code is costed
+    in the same ways. Without `recording` and `ldf` the built-in ones are taken; `ldf` may also be the name of a shipped one, `defines`
     are macros for it, and `include_dirs` folders that it may include files from; `frames` stops early. What the code of
     kernels does is always checked; `sanitize` runs each kernel as it is written first, to find what is wrong even where the
     compiler would leave it out. `before` is called with what will run and how many frames of it, before the first one does,
     and may raise; the digest of the recording is not known then. `progress` is called with
-    (frames done, frames in all); `profile` names the compiler whose code is costed; `script` is a JSON or TOML file
+    (frames done, frames in all); `script` is a JSON or TOML file
     that tells the firmware's device on the SPI what to do; `on_seen` is called with what was seen in each frame, if
     the firmware has a view, which changes nothing in the records; `on_time` is called now and then with the simulated
     time in seconds; `on_spans` with what the cores and devices did since the last time. Ctrl-C ends the run with the frames done. Raises a
@@ -76,7 +79,8 @@ def simulate(
     """
     if frames is not None and frames < 1:
         raise ConfigError(f"frames must be at least 1, not {frames}")
-    spec, compiler = board_named(board), profile_named(profile)
+    found_board, found_compiler = find_board(board, settings), find_profile(profile)
+    spec, compiler = found_board.value, found_compiler.value
     loaded = given_firmware(firmware) if isinstance(firmware, Firmware) else load_firmware(firmware)
     require_cores(loaded.firmware, spec)
     with loaded.own.named():
@@ -108,7 +112,16 @@ def simulate(
             raise RecordingError(f"{reader.path}: a recording must have at least one stereo frame, not none")
         source = _DigestedFrames(reader, total)
         identity = _identity(
-            spec, loaded, placement, defines, feed, fidelity, size, source.name, compiler, script_digest
+            found_board,
+            loaded,
+            placement,
+            defines,
+            feed,
+            fidelity,
+            size,
+            source.name,
+            found_compiler,
+            script_digest,
         )
         if before:
             before(identity, total)
@@ -262,7 +275,7 @@ def _written(path: str | Path) -> str:
 
 
 def _identity(
-    spec: BoardSpec,
+    board: Found[BoardSpec],
     loaded: LoadedFirmware,
     placement: LinkerScript,
     defines: Mapping[str, str],
@@ -270,9 +283,10 @@ def _identity(
     fidelity: Fidelity,
     size: FrameSize,
     recording: str,
-    compiler: CompilerProfile,
+    compiler: Found[CompilerProfile],
     script_digest: str,
 ) -> Identity:
+    spec = board.value
     return Identity(
         recording=recording,
         recording_digest="",
@@ -280,10 +294,13 @@ def _identity(
         firmware_digest=loaded.digest,
         firmware_files=loaded.files,
         board=spec.name,
-        board_digest=hashlib.sha256(repr(spec).encode()).hexdigest(),
+        board_digest=board.digest,
+        board_files=board.files,
         ldf=" -D ".join([_name(placement.path), *(f"{name}={value}" for name, value in defines.items())]),
         ldf_digest=hashlib.sha256(placement.source.expanded.encode()).hexdigest(),
-        compiler=compiler.name,
+        compiler=compiler.value.name,
+        compiler_digest=compiler.digest,
+        compiler_files=compiler.files,
         feed=feed.value,
         script_digest=script_digest,
         fidelity=fidelity.value,

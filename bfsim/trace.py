@@ -155,7 +155,8 @@ class BudgetRow:
 class Identity:
     """All that a result depends on. Digests are sha256 in hex, or empty.
 
-    Paths are left out on purpose: `firmware_files` are relative to the folder that the firmware was imported from.
+    Paths are left out on purpose: `..._files` are relative to the folder that they were imported from; a shipped board or
+    compiler has none. `board` ends in --set PATH=VALUE for each number that was changed.
     """
 
     recording: str
@@ -177,6 +178,9 @@ class Identity:
     sclk_hz: float
     width_px: int
     height_px: int
+    compiler_digest: str = ""
+    board_files: tuple[str, ...] = ()
+    compiler_files: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -53,10 +53,10 @@ def test_one_board_shows_every_field(name: str) -> None:
 def test_values_are_readable() -> None:
     """Addresses in hexadecimal, sizes with their thousands apart, and what is not there has no number."""
     words = [line.split() for line in call("cm-bf533").output.splitlines()]
-    assert ["L1_CODE", "A", "0xFFA00000", "65,536", "0"] in words
-    assert ["l2", "none"] in words
-    assert ["sclk_hz", "110,000,000"] in words
-    assert ["max_sclk_hz", "133,333,333.333"] in words
+    assert ["0", "L1_CODE", "A", "0xFFA00000", "65,536", "0"] in words
+    assert ["chip.l2", "none"] in words
+    assert ["clocks.sclk_hz", "110,000,000"] in words
+    assert ["chip.max_sclk_hz", "133,333,333.333"] in words
     assert ["dma_over_core", "no"] in words
     assert ["PPI0_DMA", "8", "8"] in words
 

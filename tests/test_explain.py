@@ -116,7 +116,8 @@ def test_a_kernel_is_told_apart_by_its_module() -> None:
 def test_an_unknown_profile_is_told() -> None:
     """The message lists the profiles."""
     with pytest.raises(
-        ConfigError, match="the compiler profile must be one of gcc-O0, gcc-O2, vdsp-O2, not 'gcc-O3'"
+        ConfigError,
+        match="--profile must be one of gcc-O0, gcc-O2, vdsp-O2, FILE.py:NAME or PACKAGE:NAME, not 'gcc-O3'",
     ):
         explain_named("sobel_row", "tinyphoon", "gcc-O3")
 

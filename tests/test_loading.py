@@ -199,7 +199,8 @@ def test_built_in_firmware_can_be_built_on(write: Write) -> None:
 def test_what_is_no_package_and_name_is_refused(name: str) -> None:
     """Nothing is imported for it."""
     with pytest.raises(
-        FirmwareError, match="--firmware must be FILE.py:NAME, PACKAGE:NAME, tinyphoon or one_eye, not '"
+        FirmwareError,
+        match="--firmware must be one of tinyphoon, one_eye, FILE.py:NAME or PACKAGE:NAME, not '",
     ):
         load_firmware(name)
 

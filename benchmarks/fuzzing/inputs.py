@@ -20,6 +20,7 @@ from PIL import Image
 from benchmarks.fuzzing.values import NUMBERS, WORDS, any_value, changed_bytes, changed_text, changed_tree
 from bfsim import shipped
 from bfsim.chip.boards import BOARDS
+from bfsim.fields import leaves
 from tests.recording import attacks
 
 NO_RECORDING = "no-such-recording.mcap"
@@ -44,7 +45,7 @@ BASELINE = {
     "core": {"A": {"Frame": {"median_cclk": 1000, "max_cclk": 2000, "tolerance_percent": 1.0}}},
 }  # fmt: skip
 OPTIONS = (
-    "--firmware", "--board", "--ldf", "-D", "-I", "--profile", "--frames", "--feed", "--script", "--fidelity", "--sanitize",
+    "--firmware", "--board", "--set", "--ldf", "-D", "-I", "--profile", "--frames", "--feed", "--script", "--fidelity", "--sanitize",
     "--json", "--features", "--show", "--overlay", "--mcap", "--core", "--top", "--baseline", "--update", "--size", "--picture",
     "--corners", "--square", "--fps", "--geometry", "--resize", "--format", "--mono", "--help", "--nonsense",
 )  # fmt: skip
@@ -103,11 +104,22 @@ def command_line(random: Random, folder: Path) -> list[str]:
 
 
 def board(random: Random, _folder: Path) -> list[str]:
-    """Names of boards, and what goes with them."""
+    """Names of boards, numbers of them, and what goes with them."""
     name = random.choice((*BOARDS, *WORDS, changed_text(random, random.choice(list(BOARDS)))))
+    paths = [each.path for each in leaves(BOARDS["cm-bf561"])]
+    path = random.choice((*paths, *WORDS, changed_text(random, random.choice(paths))))
+    settings = (
+        [f"--set={path}={random.choice((*WORDS, *map(str, NUMBERS)))}"] if random.random() < 0.7 else []
+    )
     if random.random() < 0.5:
-        return ["boards", "--", name]
-    return ["run", NO_RECORDING, f"--board={name}", f"--profile={random.choice(('gcc-O2', *WORDS))}"]
+        return ["boards", *settings, "--", name]
+    return [
+        "run",
+        NO_RECORDING,
+        f"--board={name}",
+        *settings,
+        f"--profile={random.choice(('gcc-O2', *WORDS))}",
+    ]
 
 
 def ldf(random: Random, folder: Path) -> list[str]:

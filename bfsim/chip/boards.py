@@ -18,7 +18,7 @@ CM_CLKIN_HZ = Fraction(25 * MHZ)  # CONFIG_CLKIN_HZ of u-boot's cm-bf561.h and c
 EZKIT_CLKIN_HZ = Fraction(30 * MHZ)  # CONFIG_CLKIN_HZ of u-boot's bf561-ezkit.h
 
 
-def _board(
+def new_board(
     name: str,
     title: str,
     chip: ChipSpec,
@@ -28,7 +28,7 @@ def _board(
     dma_over_core: bool,
     deb_period_transfers: int = 0,
 ) -> BoardSpec:
-    """Put the SDRAM into the chip's memory map, a camera on every PPI, and take the clocks from the PLL."""
+    """Return a board: the SDRAM in the chip's memory map, a camera on every PPI, and the clocks that the PLL makes."""
     return BoardSpec(
         name=name,
         title=title,
@@ -44,7 +44,7 @@ def _board(
     )
 
 
-CM_BF561 = _board(
+CM_BF561 = new_board(
     "cm-bf561",
     "Bluetechnix CM-BF561",
     BF561,
@@ -63,7 +63,7 @@ CM_BF561_RATINGS = replace(
     clocks=Clocks(cclk_hz=BF561.max_vco_hz, sclk_hz=BF561.max_sclk_hz),
 )
 
-CM_BF561_525_131 = _board(
+CM_BF561_525_131 = new_board(
     "cm-bf561-525-131",
     "CM-BF561, SCLK nearest to its rating",
     BF561,
@@ -74,7 +74,7 @@ CM_BF561_525_131 = _board(
     dma_over_core=True,  # as cm-bf561
 )
 
-CM_BF561_500_125 = _board(
+CM_BF561_500_125 = new_board(
     "cm-bf561-500-125",
     "CM-BF561 as Linux set it up in 2006",
     BF561,
@@ -84,7 +84,7 @@ CM_BF561_500_125 = _board(
     deb_period_transfers=1,  # Linux writes 0x0111 to DMA_TC_PER
 )
 
-CM_BF561_550_110 = _board(
+CM_BF561_550_110 = new_board(
     "cm-bf561-550-110",
     "CM-BF561, 64 MB, u-boot of 2008",
     BF561,
@@ -93,7 +93,7 @@ CM_BF561_550_110 = _board(
     dma_over_core=True,  # the same: CDPRIO in EBIU_AMGCTL
 )
 
-CM_BF561_500_100 = _board(
+CM_BF561_500_100 = new_board(
     "cm-bf561-500-100",
     "CM-BF561, 64 MB, later u-boot",
     BF561,
@@ -102,7 +102,7 @@ CM_BF561_500_100 = _board(
     dma_over_core=True,  # the same: CDPRIO in EBIU_AMGCTL
 )
 
-BF561_EZKIT = _board(
+BF561_EZKIT = new_board(
     "bf561-ezkit",
     "ADSP-BF561 EZ-KIT Lite",  # [assumed] with two cameras in the place of its video decoder and encoder
     BF561,
@@ -112,7 +112,7 @@ BF561_EZKIT = _board(
     deb_period_transfers=7,  # DMA1_TC_PER 0x0770 of the project that sdram_parts.py names
 )
 
-CM_BF533 = _board(
+CM_BF533 = new_board(
     "cm-bf533",
     "Bluetechnix CM-BF533, one core, u-boot",
     BF533,

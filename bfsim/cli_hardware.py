@@ -1,0 +1,48 @@
+"""The options that say what a firmware runs on: the board, its numbers, and the compiler."""
+
+from __future__ import annotations
+
+import click
+
+from bfsim.errors import shown
+
+
+def _settings(_ctx: click.Context, _param: click.Parameter, given: tuple[str, ...]) -> dict[str, str]:
+    """Return the values by their paths."""
+    settings: dict[str, str] = {}
+    for each in given:
+        path, has_value, value = each.partition("=")
+        path = path.strip()
+        if not (path and has_value):
+            raise click.BadParameter(f"must be PATH=VALUE, such as sdram.nRP=3, not {shown(each)}")
+        if path in settings:
+            raise click.BadParameter(f"{shown(path)} must be set once, not twice")
+        settings[path] = value
+    return settings
+
+
+SET_OPTION = click.option(
+    "--set",
+    "settings",
+    metavar="PATH=VALUE",
+    multiple=True,
+    callback=_settings,
+    help="Change a number of the board, such as sdram.nRP=3 or clocks.cclk_hz=500e6; `bfsim boards NAME` has the paths.",
+)
+BOARD_OPTIONS = (
+    click.option(
+        "--board",
+        metavar="NAME",
+        default="cm-bf561",
+        show_default=True,
+        help="Board to run on: `bfsim boards` lists them; or one of yours, FILE.py:NAME or PACKAGE:NAME.",
+    ),
+    SET_OPTION,
+)
+PROFILE_OPTION = click.option(
+    "--profile",
+    metavar="NAME",
+    default="vdsp-O2",
+    show_default=True,
+    help="Compiler whose code is costed: vdsp-O2, gcc-O2, gcc-O0, or one of yours, FILE.py:NAME or PACKAGE:NAME.",
+)

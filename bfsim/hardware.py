@@ -1,0 +1,100 @@
+"""Boards and compilers by their names: shipped ones, FILE.py:NAME, or PACKAGE:NAME; and whether they can be."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Generic
+
+from bfsim.chip.boards import BOARDS, board_named
+from bfsim.chip.checks import require_sound
+from bfsim.chip.settings import with_settings
+from bfsim.chip.spec import BoardSpec
+from bfsim.errors import ConfigError, FirmwareError
+from bfsim.fields import leaves, require_types
+from bfsim.importing import OwnModules
+from bfsim.kernel import CompilerProfile, profile_named
+from bfsim.kernel.profile import PROFILES
+from bfsim.loading import Kind, Loaded, Wanted, load_named
+
+BOARD = Kind("board", "--board", BoardSpec, "bfsim.chip.spec", tuple(BOARDS))
+PROFILE = Kind("compiler profile", "--profile", CompilerProfile, "bfsim.kernel", tuple(PROFILES))
+
+MOST_CCLK = 1_000_000
+"""As many cycles may a routine of a compiler's library take. [assumed] far beyond any."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found(Generic[Wanted]):
+    """A board or a compiler profile, called as the identity of a run calls it.
+
+    `files` are those that it was imported from, none for a shipped one; `digest` is of all its values and these files.
+    """
+
+    value: Wanted
+    files: tuple[str, ...]
+    digest: str
+
+
+def find_board(
+    board: str | BoardSpec, settings: Mapping[str, object] = MappingProxyType({})
+) -> Found[BoardSpec]:
+    """Return a board that can be built, with other numbers by their paths as `with_settings` has it.
+
+    It is called NAME, or MODULE:NAME, and --set PATH=VALUE for each setting. Raises ConfigError, with the field, for a
+    board that cannot be, and for a BoardSpec that has the name of a shipped one and other numbers.
+    """
+    own = None
+    if isinstance(board, BoardSpec):
+        if BOARDS.get(board.name, board) != board:
+            raise ConfigError(
+                f"a board must have a name of its own, not {board.name}, which is a shipped one's"
+            )
+        spec = board
+    elif board in BOARDS:
+        spec = board_named(board)
+    else:
+        found = _load(board, BOARD, BOARDS)
+        spec, own = _named(found), found.own
+    try:
+        require_sound(spec)
+    except ConfigError as error:
+        raise ConfigError(f"--board {spec.name}: {error}") from error
+    spec, names = with_settings(spec, settings)
+    return _found(replace(spec, name=" --set ".join([spec.name, *names])), own)
+
+
+def find_profile(name: str) -> Found[CompilerProfile]:
+    """Return a compiler profile, called NAME or MODULE:NAME. Raises ConfigError, with the field, for one that cannot be."""
+    if name in PROFILES:
+        return _found(profile_named(name), None)
+    found = _load(name, PROFILE, PROFILES)
+    profile = _named(found)
+    require_types(profile, f"--profile {profile.name}: profile")
+    for leaf in leaves(profile):
+        if isinstance(leaf.value, int) and not 0 <= leaf.value <= MOST_CCLK:
+            raise ConfigError(
+                f"--profile {profile.name}: profile.{leaf.path} must be 0 to {MOST_CCLK:,} cycles, not {leaf.value:,}"
+            )
+    return _found(profile, found.own)
+
+
+def _load(name: str, kind: Kind[Wanted], shipped: Mapping[str, Wanted]) -> Loaded[Wanted]:
+    try:
+        return load_named(name, kind, shipped.values())
+    except FirmwareError as error:
+        raise ConfigError(str(error)) from error
+
+
+def _named(found: Loaded[Wanted]) -> Wanted:
+    """Return what was found with its name in the user's files, which is nobody else's."""
+    return replace(found.value, name=found.name)  # type: ignore[type-var]
+
+
+def _found(value: Wanted, own: OwnModules | None) -> Found[Wanted]:
+    """Note what a board or compiler is made of."""
+    of_files = own.digest if own else ""
+    digest = hashlib.sha256((repr(value) + of_files).encode()).hexdigest()
+    return Found(value, own.files if own else (), digest)
