@@ -139,7 +139,7 @@ def test_an_ldf_of_other_cores_is_shown_without_the_firmware(text: str, tmp_path
         (["--size", "wide"], "must be width x height, such as 320x240, not 'wide'"),
         (["--size", "0x240"], "must be width x height"),
         (["--size", "9" * 5000 + "x1"], "must be width x height"),
-        (["--board", "arduino"], "--board must be one of"),
+        (["--board", "arduino"], "but there is none; built in are cm-bf561, "),
         (["--firmware", "nowhere:at_all"], "'nowhere' must be installed"),
         (["--picture", "map.jpg"], "--picture must be a file *.png or *.svg, not map.jpg"),
         (["--picture", "/no/such/folder/map.png"], "the folder /no/such/folder must exist"),
