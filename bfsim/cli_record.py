@@ -99,7 +99,8 @@ def import_command(
 
     A SOURCE is a folder of images, a quoted pattern such as "seq/left_*.png", one image, a raw file
     (.uyvy, .yuv or .i420), a .y4m file or a video. Two sources are the left and the right camera.
-    Images that cannot be read, and other files in a folder, are skipped and listed.
+    Images that cannot be read, those without a picture of the other camera by their names (left_07 goes with
+    right_07), and other files in a folder are skipped and listed.
 
     \b
     Examples:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
 from bfsim.recording.images import image_paths, load_image
+from bfsim.recording.pairs import pairs_of
 from bfsim.recording.planes import Plane, YuvPlanes
 from bfsim.recording.sources import Skipped
 
@@ -63,22 +64,8 @@ def _together(folder: Path, *, mono: bool) -> tuple[list[tuple[Path, ...]], list
     if mono:
         return [(path,) for path in image_paths(str(folder))], []
     lefts, rights = (_pictures_of(folder, side) for side in SIDES)
-    by_key = [
-        {path.stem.removeprefix(side): path for path in paths}
-        for side, paths in zip(SIDES, (lefts, rights), strict=True)
-    ]
-    common = [key for key in by_key[0] if key in by_key[1]]
-    if common:
-        alone = [path for paths in by_key for key, path in paths.items() if key not in common]
-        return [(by_key[0][key], by_key[1][key]) for key in common], [
-            Skipped(path.name, "has no picture of the other camera") for path in alone
-        ]
-    if len(lefts) != len(rights):
-        raise RecordingError(
-            f"{folder}: chessboard pictures must have names that tell the pairs, such as left_01.png and right_01.png, "
-            f"or be in pairs by order, not {len(lefts)} left* and {len(rights)} right*"
-        )
-    return list(zip(lefts, rights, strict=True)), []
+    pairs, alone = pairs_of(lefts, rights, f"{folder}: chessboard pictures")
+    return list(pairs), alone
 
 
 def _pictures_of(folder: Path, side: str) -> list[Path]:

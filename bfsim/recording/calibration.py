@@ -184,8 +184,8 @@ def _fit_without_outliers(
     """
     used, outliers = list(views), list[ViewError]()
     while True:
-        sides = list(zip(*(view.points for view in used), strict=True))
-        fit = model.fit(board, sides, size)
+        fit, used, misfits = _fit_what_can_be(model, board, used, size)
+        outliers += misfits
         errors_px = np.sqrt(np.square(fit.errors_px).mean(axis=0))
         is_out = errors_px > max(OUTLIER_MEDIANS * float(np.median(errors_px)), LEAST_OUTLIER_PX)
         all_errors = [
@@ -200,6 +200,27 @@ def _fit_without_outliers(
             if out
         ]
         used = [view for view, out in zip(used, is_out, strict=True) if not out]
+
+
+def _fit_what_can_be(
+    model: CameraModel, board: Floats, views: Sequence[BoardView], size: tuple[int, int]
+) -> tuple[Fit, list[BoardView], list[ViewError]]:
+    """Fit the cameras to the views; where that fails, without those that fit ordinary lenses worst.
+
+    The model of fisheyes fails as a whole where a single view is grossly wrong, that of ordinary lenses hardly ever. The
+    errors of what is left out are by the latter. Raises RecordingError where too few views are left.
+    """
+    sides = list(zip(*(view.points for view in views), strict=True))
+    try:
+        return model.fit(board, sides, size), list(views), []
+    except RecordingError:
+        if len(views) <= FEWEST_VIEWS:
+            raise
+    errors_px = Pinhole().fit(board, sides, size).errors_px
+    worst = int(np.square(errors_px).mean(axis=0).argmax())
+    fit, used, outliers = _fit_what_can_be(model, board, [*views[:worst], *views[worst + 1 :]], size)
+    errors = tuple(map(float, errors_px[:, worst]))
+    return fit, used, [*outliers, ViewError(names=views[worst].names, errors_px=errors, is_outlier=True)]
 
 
 def _turns(fit: Fit, folder: Path) -> list[Floats]:

@@ -11,10 +11,22 @@ from PIL import Image, ImageOps, UnidentifiedImageError
 
 from bfsim.errors import RecordingError
 from bfsim.recording.frames import UyvyImage
+from bfsim.recording.pairs import pairs_of
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.sources import IMAGE_SUFFIXES, PictureSource, Skipped, is_pattern
 
 _EIGHT_BIT_MODES = frozenset({"1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", "CMYK", "YCbCr"})
+
+
+def open_image_pair(left: str, right: str, *, mixed: bool) -> list[PictureSource]:
+    """Images of both cameras as `open_images` has them, those that belong together: as many of either."""
+    lefts, rights = (_images_and_others(source) for source in (left, right))
+    pairs, alone = pairs_of(lefts[0], rights[0], f"{left} and {right}: images")
+    sides = list(zip(*pairs, strict=True))
+    return [
+        _source(left, list(sides[0]), lefts[1], tuple(alone), mixed=mixed),
+        _source(right, list(sides[1]), rights[1], (), mixed=mixed),
+    ]
 
 
 def open_images(source: str, *, mixed: bool) -> PictureSource:
@@ -23,7 +35,12 @@ def open_images(source: str, *, mixed: bool) -> PictureSource:
     Images that cannot be read are skipped, if one can; others that are of another size than the first are refused,
     unless they may be `mixed`.
     """
-    paths, others = _images_and_others(source)
+    return _source(source, *_images_and_others(source), (), mixed=mixed)
+
+
+def _source(
+    source: str, paths: list[Path], others: list[Path], alone: tuple[Skipped, ...], *, mixed: bool
+) -> PictureSource:
     first = _first_readable(paths)
     return PictureSource(
         name=source,
@@ -31,7 +48,7 @@ def open_images(source: str, *, mixed: bool) -> PictureSource:
         count=len(paths),
         fps=None,
         pictures=lambda: _pictures(paths, None if mixed else first),
-        skipped=tuple(Skipped(path.name, "no image by its name") for path in others),
+        skipped=(*(Skipped(path.name, "no image by its name") for path in others), *alone),
     )
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from bfsim.errors import RecordingError
 from bfsim.recording.frames import RectificationTables, StereoGeometry
-from bfsim.recording.images import open_images
+from bfsim.recording.images import open_image_pair, open_images
 from bfsim.recording.layout import table_from_npy
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.raw import open_i420, open_uyvy, open_y4m
@@ -70,7 +70,7 @@ def import_recording(
     `mono` (one camera feeds both sides). `format` is guessed from the names. `size` is the (width, height) of
     raw frames; `resize` scales every picture by a triangle filter as wide as the scale, cutting off what sticks out of
     its aspect ratio; `crop` keeps the middle of every picture, and skips smaller ones. A stereo frame of which one
-    picture cannot be read is skipped. The k-th stereo frame is stamped k / `fps` seconds; without `fps` the source's own rate counts, or 30. An existing
+    picture cannot be read, or is not there, is skipped: images of two cameras go together by their names (`pairs_of`). The k-th stereo frame is stamped k / `fps` seconds; without `fps` the source's own rate counts, or 30. An existing
     `output` needs `force`. Raises RecordingError, with the file and the frame.
     """
     names = [os.fspath(source) for source in sources]
@@ -78,7 +78,7 @@ def import_recording(
         names, Path(output), resize=resize, crop=crop, side_by_side=side_by_side, mono=mono, force=force
     )
     is_fitted = resize is not None or crop is not None
-    opened = [_open_source(name, format, size, mixed=is_fitted) for name in names]
+    opened = _open_sources(names, format, size, mixed=is_fitted)
     rate = _frame_rate(fps, opened)
     count = _check_pair(opened, side_by_side=side_by_side, is_fitted=is_fitted)
     picture_size = resize or crop or _camera_size(opened[0], side_by_side)
@@ -187,6 +187,14 @@ def _check_call(
             raise RecordingError(
                 f"`{option}` must be above 0 and of even width, not {wanted_size[0]}x{wanted_size[1]}"
             )
+
+
+def _open_sources(
+    names: list[str], format: SourceFormat | None, size: tuple[int, int] | None, *, mixed: bool
+) -> list[PictureSource]:
+    if len(names) == 2 and all((format or guess_format(name)) == "images" for name in names):
+        return open_image_pair(*names, mixed=mixed)
+    return [_open_source(name, format, size, mixed=mixed) for name in names]
 
 
 def _open_source(

@@ -21,13 +21,16 @@ from bfsim.recording import (
     StereoGeometry,
     calibrate_recording,
 )
-from bfsim.recording.calibration import StereoCalibration, calibrate
+from bfsim.recording.boards import BoardView
+from bfsim.recording.calibration import StereoCalibration, _fit_without_outliers, calibrate
 from bfsim.recording.calibration_report import CalibrationReport, ViewError
+from bfsim.recording.camera_models import Fisheye
 from bfsim.recording.residual_plot import draw_residuals
 from bfsim.recording.scenes.chessboard import write_chessboards
 from bfsim.recording.scenes.drive import Pose
 from bfsim.recording.scenes.lens import Lens, Misfit, rectified
 from bfsim.recording.scenes.pinhole import Pinhole, Vector
+from tests.recording.test_camera_models import BOARD, corners_of
 
 GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
 MISFIT = Misfit(Lens(-0.25, 0.08, 0.001, -0.0008), (0.8, -1.2, 0.6), (0.3, 0.5, -0.4))
@@ -176,6 +179,26 @@ def test_pairs_that_fit_no_other_are_left_out(
     assert report.baseline_mm == pytest.approx(found.report.baseline_mm, rel=0.005)
 
 
+def test_a_grossly_wrong_pair_does_not_end_a_fisheye_calibration() -> None:
+    """OpenCV fits no fisheyes at all then: such pairs are left out, those that are a little off as with ordinary lenses."""
+    pytest.importorskip("cv2", reason="calibration needs OpenCV")
+    model = Fisheye()
+    lefts, rights = corners_of(model)
+    rights[3] = rights[9]  # a picture of another board
+    lefts[5] = lefts[5].reshape(6, 9, 2)[:, ::-1].reshape(-1, 2)  # corners counted from the other end
+    rights[11] = rights[11] + [0, 6]  # a board that moved
+    views = [
+        BoardView((f"left_{number}", f"right_{number}"), each)
+        for number, each in enumerate(zip(lefts, rights, strict=True))
+    ]
+    fit, used, errors = _fit_without_outliers(model, BOARD, views, (640, 480))
+    assert {each.names[0] for each in errors if each.is_outlier} == {"left_3", "left_5", "left_11"}
+    assert len(used) == 12
+    assert fit.errors_px.max() < 0.02
+    with pytest.raises(RecordingError, match="nothing fits these"):
+        _fit_without_outliers(model, BOARD, [views[3], *views[:4]], (640, 480))
+
+
 def test_recording_without_geometry_gets_the_measured_one(chessboards: Path, tmp_path: Path) -> None:
     """Focal length and baseline are kept, what nobody measured is unknown, and options say it."""
     pytest.importorskip("cv2")
@@ -285,7 +308,7 @@ class TestBadPictures:
                 "left_02.png",
                 "picture must be 320x240 like the recording, not 640x480; `--resize` scales it as `bfsim record import --resize` does",
             ),
-            ("left_26.png", "has no picture of the other camera"),
+            ("spoilt/left_26.png", "has no picture of the other camera"),
             ("left_07.png", "file must be an image that Pillow reads, not something else"),
         }
         assert len(report.used) == 23
@@ -310,7 +333,9 @@ class TestBadPictures:
         for k in range(27):
             (pictures / f"right_{k:02}.png").rename(pictures / f"right_{k + 100}.png")
         (pictures / "right_126.png").unlink()
-        assert "or be in pairs by order, not 27 left* and 26 right*" in self.refusal(pictures)
+        assert "or be as many of either camera, to be paired by their order, not 27 and 26" in self.refusal(
+            pictures
+        )
 
     def test_swapped_cameras(self, pictures: Path) -> None:
         for k in range(6, 27):

@@ -50,6 +50,18 @@ def noise(shape: tuple[int, ...], seed: int = 0) -> np.ndarray:
     return np.random.default_rng(seed).integers(0, 256, shape, dtype=np.uint8)
 
 
+def test_pictures_of_one_camera_alone_are_skipped_and_listed(tmp_path: Path) -> None:
+    """Frames that either camera missed: the others go together by their numbers."""
+    for side, numbers in (("left", (1, 2, 3, 5)), ("right", (2, 4, 5))):
+        for number in numbers:
+            save_grey(tmp_path / side / f"{side}_{number}.png", 10 * number + (side == "right"))
+    made = import_recording([tmp_path / "left", tmp_path / "right"], tmp_path / "a.mcap")
+    levels = [(each.left[0, 1], each.right[0, 1]) for each in frames_of(tmp_path / "a.mcap")]
+    assert levels == [(20, 21), (50, 51)]
+    assert [each.name for each in made.skipped] == ["left/left_1.png", "left/left_3.png", "right/right_4.png"]
+    assert {each.reason for each in made.skipped} == {"has no picture of the other camera"}
+
+
 def test_two_folders_in_natural_order(tmp_path: Path) -> None:
     """Image 2 comes before image 10, other files are no images, and grey has no colour."""
     for k in (1, 2, 10):
@@ -318,6 +330,7 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         save_grey(Path("three") / f"{k}.png", k)
     for k in range(2):
         save_grey(Path("two") / f"{k}.png", k)
+        save_grey(Path("stamped") / f"{1000 + k}.png", k)
         save_grey(Path("large") / f"{k}.png", k, (10, 4))
         save_grey(Path("odd") / f"{k}.png", k, (7, 4))
         save_grey(Path("mixed") / f"{k}.png", k, (8, 4 + k))
@@ -349,7 +362,11 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("names", "options", "message"),
     [
-        (["three", "two"], {}, r"same number of images, not 3 \(three\) and 2 \(two\)"),
+        (
+            ["three", "stamped"],
+            {},
+            r"three and stamped: images must have names that tell the pairs.* not 3 and 2",
+        ),
         (["two", "large"], {}, r"one size, not 8x4 \(two\) and 10x4 \(large\)"),
         (["one.y4m", "two.y4m"], {}, r"but one\.y4m ends after 1 and two\.y4m has more"),
         (["two.y4m", "one.y4m"], {}, r"but one\.y4m ends after 1 and two\.y4m has more"),
