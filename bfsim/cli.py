@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -16,7 +16,7 @@ from bfsim.cli_colours import colours
 from bfsim.cli_hardware import BOARD_OPTIONS, PROFILE_OPTION
 from bfsim.cli_ldf import PREPROCESSOR_OPTIONS, ldf
 from bfsim.cli_record import record
-from bfsim.cli_seen import Watchers, takes_views, watching
+from bfsim.cli_seen import takes_views, watching
 from bfsim.endings import LIMIT_BROKEN, exit_code_of
 from bfsim.errors import ConfigError
 from bfsim.shipped import FIRMWARE, LDFS
@@ -189,8 +189,10 @@ def run(
     with SeenStore(with_features=features) as seen:
         with watching(show=show, overlay=overlay, mcap=mcap, layers=layers) as watchers:
             if is_telling:
-                watchers.append(seen.add)
-            done = _simulate(watchers=watchers, **what)
+                watchers.seen.append(seen.add)
+            done = _simulate(watchers=watchers.seen, **what)
+            for tell in watchers.done:
+                tell(done)
         if json_path == STDOUT:
             for chunk in json_chunks(done, seen):
                 click.echo(chunk, nl=False)
@@ -318,12 +320,14 @@ def check(path: Path, update: bool, **what: Any) -> None:
         raise SystemExit(LIMIT_BROKEN)
 
 
-def _simulate(*, feed: str, fidelity: str, watchers: Watchers | None = None, **what: Any) -> RunRecord:
+def _simulate(
+    *, feed: str, fidelity: str, watchers: Sequence[Callable[[SeenFrame], None]] = (), **what: Any
+) -> RunRecord:
     """Run the simulation behind a progress bar and return at least one frame; `watchers` get what is seen."""
     from bfsim.run import Feed, Fidelity, simulate
 
     def tell(frame: SeenFrame) -> None:
-        for each in watchers or ():
+        for each in watchers:
             each(frame)
 
     with progress_bar("Simulating frames", unit="ms simulated") as bar, ending_deaf_kernels():

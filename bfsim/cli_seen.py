@@ -8,6 +8,8 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -18,9 +20,17 @@ from bfsim.errors import ConfigError, shown
 if TYPE_CHECKING:
     from bfsim.recording import SeenWriter
     from bfsim.seen import SeenFrame
+    from bfsim.trace import RunRecord
 
 Command = TypeVar("Command", bound=Callable[..., Any])
-Watchers = list["Callable[[SeenFrame], None]"]
+
+
+@dataclass(frozen=True, slots=True)
+class Watchers:
+    """What is to be called with each frame that is `seen`, and with the records when the run is `done`."""
+
+    seen: list[Callable[[SeenFrame], None]] = field(default_factory=list)
+    done: list[Callable[[RunRecord], None]] = field(default_factory=list)
 
 
 class _Layers(click.ParamType[tuple[str, ...]]):
@@ -59,7 +69,7 @@ _PARAMETERS = (
         "--mcap",
         metavar="FILE",
         type=click.Path(path_type=Path),
-        help="Write pictures, features, objects, 3-D lines and 3-D edges as an MCAP file that Foxglove draws.",
+        help="Write pictures, features, objects, 3-D lines, 3-D edges, costs, stalls and warnings as an MCAP file for Foxglove and rerun.",
     ),
 )
 
@@ -75,23 +85,25 @@ def takes_views(command: Command) -> Command:
 def watching(
     *, show: bool, overlay: Path | None, mcap: Path | None, layers: tuple[str, ...] | None
 ) -> Iterator[Watchers]:
-    """Yield what is to be called with each frame that is seen; its files are there on a clean exit, or not at all.
+    """Yield what is to be called with each frame that is seen, and at the end; its files are there on a clean exit, or not at all.
 
     Raises a BfsimError for a place that cannot be written, and for layers of which nothing is drawn.
     """
     if layers and not (show or overlay):
         raise ConfigError("--layers must come with --overlay DIR|FILE or --show, which draw them")
     with ExitStack() as stack:
-        watchers: Watchers = []
+        watchers = Watchers()
         if mcap:
-            watchers.append(stack.enter_context(_seen_writer(mcap)).add)
+            writer = stack.enter_context(_seen_writer(mcap))
+            watchers.seen.append(writer.add)
+            watchers.done.append(partial(_add_series, writer))
         if show and not overlay:
             overlay = stack.enter_context(_lasting_folder()) / "overlay.gif"
         if overlay:
             from bfsim.report.overlay.files import OverlayWriter
             from bfsim.report.overlay.layers import LAYERS
 
-            watchers.append(stack.enter_context(OverlayWriter(overlay, layers or LAYERS)).add)
+            watchers.seen.append(stack.enter_context(OverlayWriter(overlay, layers or LAYERS)).add)
         yield watchers
     if show and overlay:
         _show(overlay)
@@ -103,6 +115,16 @@ def _seen_writer(path: Path) -> SeenWriter:
 
     require_place(path)
     return SeenWriter(path)
+
+
+def _add_series(writer: SeenWriter, run: RunRecord) -> None:
+    """Add what each frame cost and warned of to its pictures."""
+    from bfsim.report.frame_series import notes_of, samples_of
+
+    for sample in samples_of(run):
+        writer.add_numbers(*sample)
+    for note in notes_of(run):
+        writer.add_note(note.frame, note.text, is_warning=note.is_warning)
 
 
 @contextmanager

@@ -78,7 +78,7 @@ MAY_IMPORT = {
     "cli_ldf": {"cli_hardware", "cli_sizes", "errors", "mapping", "report", "shipped", "terminal"},
     "cli_recorded": {"recording"},
     "cli_record": {"cli_recorded", "cli_sizes", "errors", "recording", "scenery", "shipped", "terminal"},
-    "cli_seen": {"errors", "recording", "report", "run", "seen"},
+    "cli_seen": {"errors", "recording", "report", "run", "seen", "trace"},
     "cli": {
         "endings",
         "errors",

@@ -12,8 +12,8 @@ from foxglove_schemas_protobuf.PointsAnnotation_pb2 import PointsAnnotation
 from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
 from foxglove_schemas_protobuf.TextAnnotation_pb2 import TextAnnotation
 
-from bfsim.recording import layout
 from bfsim.seen import Colour, Point, Seen, SeenBlob, SeenObject, colours
+from bfsim.seen.pictures import rgb_of
 
 THICKNESS_PX = 1.0
 POINT_PX = 0.6
@@ -21,14 +21,14 @@ FONT_PX = 9.0
 
 
 def image_message(seen: Seen, time_ns: int) -> RawImage:
-    """Return the picture that a core looked at."""
+    """Return the picture that a core looked at, in colours that every viewer takes."""
     image = RawImage(
         frame_id=seen.camera,
         width=seen.width_px,
         height=seen.height_px,
-        encoding=layout.IMAGE_ENCODINGS[0],
-        step=seen.picture.shape[1],
-        data=seen.picture.tobytes(),
+        encoding="rgb8",
+        step=3 * seen.width_px,
+        data=rgb_of(seen.picture).tobytes(),
     )
     image.timestamp.FromNanoseconds(time_ns)
     return image

@@ -1,16 +1,18 @@
-"""Writes what was seen to an MCAP file that Foxglove draws: pictures with marks, and objects, lines and edges in space.
+"""Writes what was seen to an MCAP file for Foxglove and rerun: pictures with marks, and objects, lines and edges in space.
 
-All messages are of Foxglove's own schemas and carry the time at which their picture was taken.
+These messages are of Foxglove's own schemas. Beside them are numbers of each frame, to be plotted, in protobuf schemas of
+their names. All carry the time at which the picture was taken.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self
 
+from foxglove_schemas_protobuf.Log_pb2 import Log
 from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
 
@@ -19,6 +21,7 @@ from bfsim.errors import RecordingError
 from bfsim.recording import layout
 from bfsim.recording.container import McapContainer
 from bfsim.recording.growing_file import growing_file, writing
+from bfsim.recording.number_messages import NumberMessages
 from bfsim.recording.seen_pictures import features_message, image_message
 from bfsim.recording.seen_space import (
     calibration_message,
@@ -36,6 +39,7 @@ TRANSFORMS_TOPIC = "/transforms"
 OBJECTS_TOPIC = "/seen/objects"
 LINES_TOPIC = "/seen/lines_3d"
 EDGES_TOPIC = "/seen/edges_3d"
+WARNINGS_TOPIC = "/warnings"
 
 
 class SeenWriter:
@@ -47,6 +51,8 @@ class SeenWriter:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._channels: dict[str, int] = {}
+        self._times_ns: dict[int, int] = {}
+        self._numbers = NumberMessages()
         if not path.name or path.is_dir():
             raise RecordingError(f"{path}: --mcap must be a file, not a folder")
         if path.exists() and not _is_ours(path):
@@ -65,12 +71,26 @@ class SeenWriter:
 
     def add(self, frame: SeenFrame) -> None:
         """Append what was seen in a frame, in the order of time."""
-        messages = sorted(self._messages(frame), key=lambda each: each[1])
-        for topic, time_ns, message in messages:
-            data = message.SerializeToString(deterministic=True)
-            with writing(self.path):
-                channel = self._channel(topic, message)
-                self._mcap.add_message(channel, time_ns, data, time_ns, sequence=frame.index)
+        self._times_ns[frame.index] = frame.time_ns
+        for topic, time_ns, message in sorted(self._messages(frame), key=lambda each: each[1]):
+            self._write(topic, time_ns, message, frame.index)
+
+    def add_numbers(self, frame: int, topic: str, kind: str, numbers: Mapping[str, float]) -> None:
+        """Append numbers of a frame that was added; all of a kind have the same names."""
+        self._write(topic, self._times_ns[frame], self._numbers.message(kind, frame, numbers), frame)
+
+    def add_note(self, frame: int, text: str, *, is_warning: bool) -> None:
+        """Append a sentence about a frame that was added."""
+        time_ns = self._times_ns[frame]
+        message = Log(level=Log.WARNING if is_warning else Log.INFO, message=text, name="bfsim")
+        message.timestamp.FromNanoseconds(time_ns)
+        self._write(WARNINGS_TOPIC, time_ns, message, frame)
+
+    def _write(self, topic: str, time_ns: int, message: Any, frame: int) -> None:
+        data = message.SerializeToString(deterministic=True)
+        with writing(self.path):
+            channel = self._channel(topic, message)
+            self._mcap.add_message(channel, time_ns, data, time_ns, sequence=frame)
 
     def _messages(self, frame: SeenFrame) -> Iterator[tuple[str, int, Any]]:
         """Yield topic, time and message of all there is to say of a frame."""

@@ -14,9 +14,9 @@ from rich.style import Style
 from rich.text import Text
 
 from bfsim.report.overlay import style
-from bfsim.report.overlay.panel import rgb_of
 from bfsim.report.tables import new_table, percent, stacked
 from bfsim.seen import NamedColour, PictureColours
+from bfsim.seen.pictures import rgb_of
 
 LEAST_SHARE = 0.005
 """Colours with less of the picture are not in the legend."""

@@ -11,7 +11,7 @@ from PIL import Image
 from bfsim.report.overlay import style
 from bfsim.report.overlay.layers import LAYERS
 from bfsim.report.overlay.overlay import overlay_of
-from bfsim.report.overlay.panel import panel_of, rgb_of
+from bfsim.report.overlay.panel import panel_of
 from bfsim.seen import (
     Colour,
     Seen,
@@ -24,6 +24,7 @@ from bfsim.seen import (
     SeenText,
     colours,
 )
+from bfsim.seen.pictures import rgb_of
 from tests import seen_frames as made
 
 SCALE = 12  # 960 by 80

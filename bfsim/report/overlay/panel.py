@@ -28,6 +28,7 @@ from bfsim.seen import (
     colours,
 )
 from bfsim.seen.colours import DepthScale
+from bfsim.seen.pictures import rgb_of
 
 FULL_GRADIENT = 96  # edges as strong as this are drawn at their brightest
 FAINTEST = 0.4
@@ -38,14 +39,6 @@ DASH_DEG = 12  # of a circle that failed
 LOSS_DEPTH = 0.03  # of the width of the picture: how far a band of which all was left out reaches into it
 LOSS_WEIGHT = 2  # more than that of any object
 MAP_SHARE = 0.45  # of the colour of a map over the picture
-
-
-def rgb_of(uyvy: NDArray[np.uint8]) -> Image.Image:
-    """Return a UYVY picture, full range BT.601, as Pillow's image."""
-    height, width = uyvy.shape[0], uyvy.shape[1] // 2
-    planes = uyvy[:, 1::2], uyvy[:, 0::4].repeat(2, axis=1), uyvy[:, 2::4].repeat(2, axis=1)
-    image = Image.frombytes("YCbCr", (width, height), np.stack(planes, axis=2).tobytes())
-    return image.convert("RGB")
 
 
 def panel_of(
