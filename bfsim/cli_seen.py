@@ -122,9 +122,11 @@ def _add_series(writer: SeenWriter, run: RunRecord) -> None:
     from bfsim.report.frame_series import notes_of, samples_of
 
     for sample in samples_of(run):
-        writer.add_numbers(*sample)
+        if writer.has(sample.frame):
+            writer.add_numbers(*sample)
     for note in notes_of(run):
-        writer.add_note(note.frame, note.text, is_warning=note.is_warning)
+        if writer.has(note.frame):
+            writer.add_note(note.frame, note.text, is_warning=note.is_warning)
 
 
 @contextmanager

@@ -10,6 +10,7 @@ import click
 import pytest
 from click.testing import CliRunner, Result
 from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
 from PIL import Image
 
 from bfsim import cli_seen
@@ -21,6 +22,7 @@ from dataclasses import replace
 from tinyphoon import tinyphoon
 
 blind = replace(tinyphoon, view=None)
+rare = replace(tinyphoon, view=lambda readout: tinyphoon.view(readout) if readout.frame.index else None)
 dazed = replace(tinyphoon, view=lambda readout: readout.values("no such buffer"))
 """
 
@@ -52,6 +54,18 @@ def test_all_at_once(tmp_path: Path) -> None:
         summary = make_reader(stream).get_summary()
     assert summary
     assert {"foxglove.SceneUpdate", "foxglove.PointCloud"} < {each.name for each in summary.schemas.values()}
+    frame = json.loads(report.read_text())["frames"][0]
+    with mcap.open("rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        told = {channel.topic: decoded for _, channel, _, decoded in reader.iter_decoded_messages()}
+    for number, core in enumerate("AB"):
+        cycles = frame["cores"][number]
+        assert told[f"/cost/{core}/frame"].elapsed_ms == (cycles["end_cclk"] - cycles["begin_cclk"]) / 600e3
+        edges = next(each for each in cycles["stages"] if each["stage"] == "Edge detection")
+        assert told[f"/cost/{core}/edge_detection"].stall_ms == sum(edges["stall_cclk"].values()) / 600e3
+        empty = sum(each["stall_cclk"].get("ring empty", 0) for each in cycles["stages"])
+        assert told[f"/stalls/{core}"].ring_empty_ms == empty / 600e3 > 0
+    assert told["/camera/left/image_rect"].encoding == "rgb8"
     seen = json.loads(report.read_text())["frames"][0]["seen"]
     assert {"times_ns", "objects", "lines_3d", "edges_3d_mm"} == set(seen)
 
@@ -120,6 +134,22 @@ def test_firmware_without_a_view_shows_pictures_and_numbers(
         assert sheet.width > 320
     message = refused(*blind, "--features", "--json", tmp_path / "run.json")
     assert "--features must go with firmware that has a view to tell what it sees" in message
+
+
+def test_a_frame_in_which_nothing_was_seen_has_no_costs_either(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nobody knows when it was."""
+    (tmp_path / "rare_views.py").write_text(BLIND)
+    monkeypatch.syspath_prepend(tmp_path)
+    command = ["run", "--frames", "2", "--firmware", "rare_views:rare", "--mcap", str(tmp_path / "seen.mcap")]
+    assert CliRunner().invoke(main, command, catch_exceptions=False).exit_code == 0
+    with (tmp_path / "seen.mcap").open("rb") as stream:
+        told = {
+            (channel.topic, message.sequence) for _, channel, message in make_reader(stream).iter_messages()
+        }
+    assert {frame for _, frame in told} == {1}
+    assert ("/cost/frame", 1) in told
 
 
 def test_layers_are_some_of_what_is_drawn(tmp_path: Path) -> None:

@@ -75,12 +75,16 @@ class SeenWriter:
         for topic, time_ns, message in sorted(self._messages(frame), key=lambda each: each[1]):
             self._write(topic, time_ns, message, frame.index)
 
+    def has(self, frame: int) -> bool:
+        """Whether something was seen in a frame: of others there is no picture, and no time is known."""
+        return frame in self._times_ns
+
     def add_numbers(self, frame: int, topic: str, kind: str, numbers: Mapping[str, float]) -> None:
-        """Append numbers of a frame that was added; all of a kind have the same names."""
+        """Append numbers of a frame, in which something must have been seen; all of a kind have the same names."""
         self._write(topic, self._times_ns[frame], self._numbers.message(kind, frame, numbers), frame)
 
     def add_note(self, frame: int, text: str, *, is_warning: bool) -> None:
-        """Append a sentence about a frame that was added."""
+        """Append a sentence about a frame, in which something must have been seen."""
         time_ns = self._times_ns[frame]
         message = Log(level=Log.WARNING if is_warning else Log.INFO, message=text, name="bfsim")
         message.timestamp.FromNanoseconds(time_ns)

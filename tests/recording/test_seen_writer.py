@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from foxglove_schemas_protobuf.Log_pb2 import Log
 from foxglove_schemas_protobuf.PointsAnnotation_pb2 import PointsAnnotation
 from foxglove_schemas_protobuf.SceneEntityDeletion_pb2 import SceneEntityDeletion
 from mcap.reader import make_reader
@@ -81,10 +82,11 @@ def test_times_are_those_of_the_pictures_and_never_go_back(path: Path) -> None:
 
 
 def test_the_picture_is_what_the_core_looked_at(path: Path) -> None:
-    """Byte by byte."""
+    """In the colours that Foxglove and rerun take: grey stays grey."""
     image = first(path)["/camera/left/image_rect"]
-    assert (image.width, image.height, image.encoding, image.step) == (80, 60, "uyvy", 160)
-    assert image.data == made.grey().tobytes()
+    assert (image.width, image.height, image.encoding, image.step) == (80, 60, "rgb8", 240)
+    luma = made.grey()[:, 1::2]
+    assert image.data == np.repeat(luma[..., None], 3, axis=2).tobytes()
     assert image.frame_id == "left"
 
 
@@ -212,6 +214,42 @@ def test_only_what_an_earlier_run_saw_is_replaced(tmp_path: Path, path: Path) ->
     for other in (recording, tmp_path / "notes.mcap"):
         with pytest.raises(RecordingError, match="must be a new file or what an earlier run saw"):
             SeenWriter(other)
+
+
+def test_numbers_of_a_frame_are_messages_with_a_schema_of_their_names(tmp_path: Path) -> None:
+    """A reader that knows nothing of bfsim decodes them by the schemas in the file; zeros are numbers, too."""
+    path = tmp_path / "seen.mcap"
+    with SeenWriter(path) as writer:
+        for index in (4, 7):
+            writer.add(made.frame(index, time_ns=1_000 * index))
+        for index in (4, 7):
+            writer.add_numbers(index, "/cost/A/frame", "StageCost", {"elapsed_ms": index / 2, "idle_ms": 0.0})
+            writer.add_numbers(index, "/cost/B/frame", "StageCost", {"elapsed_ms": 1.25, "idle_ms": 1e-6})
+            writer.add_numbers(index, "/cost/frame", "FrameCost", {"latency_ms": 3.5})
+    costs = [each for each in messages(path) if each[1].topic.startswith("/cost")]
+    assert {(channel.topic, schema.name, schema.encoding) for schema, channel, _, _ in costs} == {
+        ("/cost/A/frame", "bfsim.StageCost", "protobuf"),
+        ("/cost/B/frame", "bfsim.StageCost", "protobuf"),
+        ("/cost/frame", "bfsim.FrameCost", "protobuf"),
+    }
+    mine = [(message.log_time, decoded.frame, decoded.elapsed_ms, decoded.idle_ms)
+            for _, channel, message, decoded in costs if channel.topic == "/cost/A/frame"]  # fmt: skip
+    assert mine == [(4_000, 4, 2.0, 0.0), (7_000, 7, 3.5, 0.0)]
+
+
+def test_warnings_are_lines_of_a_log(tmp_path: Path) -> None:
+    """Of Foxglove's schema, at the time of their frame; remarks are information."""
+    path = tmp_path / "seen.mcap"
+    with SeenWriter(path) as writer:
+        writer.add(made.frame(0, time_ns=5_000))
+        writer.add_note(0, "lost: edges", is_warning=True)
+        writer.add_note(0, "an order was taken", is_warning=False)
+    notes = [each for each in messages(path) if each[1].topic == "/warnings"]
+    assert [(schema.name, decoded.level, decoded.message) for schema, _, _, decoded in notes] == [
+        ("foxglove.Log", Log.WARNING, "lost: edges"),
+        ("foxglove.Log", Log.INFO, "an order was taken"),
+    ]
+    assert {decoded.timestamp.ToNanoseconds() for *_, decoded in notes} == {5_000}
 
 
 def vector(message: Any) -> list[float]:
