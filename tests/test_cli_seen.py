@@ -22,8 +22,8 @@ from dataclasses import replace
 from tinyphoon import tinyphoon
 
 blind = replace(tinyphoon, view=None)
-rare = replace(tinyphoon, view=lambda readout: tinyphoon.view(readout) if readout.frame.index else None)
 dazed = replace(tinyphoon, view=lambda readout: readout.values("no such buffer"))
+rare = replace(tinyphoon, view=lambda readout: tinyphoon.view(readout) if readout.frame.index else None)
 """
 
 
