@@ -2,34 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from bfsim import __version__
 from bfsim.cli_boards import boards
 from bfsim.cli_colours import colours
-from bfsim.cli_hardware import BOARD_OPTIONS, PROFILE_OPTION
-from bfsim.cli_ldf import PREPROCESSOR_OPTIONS, ldf
+from bfsim.cli_ldf import ldf
 from bfsim.cli_record import record
+from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run, warn
 from bfsim.cli_seen import takes_views, watching
 from bfsim.endings import LIMIT_BROKEN, exit_code_of
 from bfsim.errors import ConfigError
-from bfsim.shipped import FIRMWARE, LDFS
-from bfsim.signals import ending_deaf_kernels, interrupted_code
-from bfsim.terminal import print_report, progress_bar
+from bfsim.terminal import print_report
 
 if TYPE_CHECKING:
-    from bfsim.seen import SeenFrame
-    from bfsim.trace import Identity, RunRecord
+    from bfsim.trace import Identity
 
 STDOUT = Path("-")
-
-Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class _Bfsim(click.Group):
@@ -70,63 +64,9 @@ main.add_command(boards)
 main.add_command(colours)
 main.add_command(ldf)
 
-_RUN_PARAMETERS = (
-    click.argument("recording", required=False, type=click.Path(path_type=Path)),
-    click.option(
-        "--firmware",
-        metavar="NAME",
-        default=FIRMWARE[0],
-        show_default=True,
-        help=f"Firmware to run: {' or '.join(FIRMWARE)}, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
-    ),
-    *BOARD_OPTIONS,
-    click.option(
-        "--ldf",
-        metavar="FILE",
-        type=click.Path(path_type=Path),
-        help=f"Linker description file that places buffers and code, or a shipped one: {', '.join(LDFS)}.  [default: the board's]",
-    ),
-    *PREPROCESSOR_OPTIONS,
-    PROFILE_OPTION,
-    click.option("--frames", metavar="N", type=click.IntRange(min=1), help="Stop after N frames."),
-    click.option(
-        "--feed",
-        type=click.Choice(["demand", "recorded", "cameras"]),
-        default="demand",
-        show_default=True,
-        help="When pictures come: as fast as the firmware asks, at the recorded time stamps, or at the free-running cameras' pace.",
-    ),
-    click.option(
-        "--script",
-        metavar="FILE",
-        type=click.Path(path_type=Path),
-        help="What the firmware's device on the SPI is told, JSON or TOML; the firmware says what it understands.",
-    ),
-    click.option(
-        "--fidelity",
-        type=click.Choice(["fast", "detailed"]),
-        default="fast",
-        show_default=True,
-        help="How the buses are simulated: fast, or with every transaction an event, to judge the fast way. Slow.",
-    ),
-    click.option(
-        "--sanitize",
-        is_flag=True,
-        help="Run every kernel twice, first as it is written: an index outside an array or a division by zero is then an "
-        "error even where the compiler would leave it out. Without it, what the compiled code does is checked. Slower.",
-    ),
-)
-
-
-def _takes_a_run(command: Command) -> Command:
-    """Give a command the argument and the options that say what to run."""
-    for parameter in reversed(_RUN_PARAMETERS):
-        command = parameter(command)
-    return command
-
 
 @main.command(short_help="Print what each frame costs: the timing budget.")
-@_takes_a_run
+@takes_a_run
 @click.option(
     "--json",
     "json_path",
@@ -190,22 +130,22 @@ def run(
         with watching(show=show, overlay=overlay, mcap=mcap, layers=layers) as watchers:
             if is_telling:
                 watchers.seen.append(seen.add)
-            done = _simulate(watchers=watchers.seen, **what)
+            done = simulated(watchers=watchers.seen, **what)
             for tell in watchers.done:
                 tell(done)
         if json_path == STDOUT:
             for chunk in json_chunks(done, seen):
                 click.echo(chunk, nl=False)
-            _warn(done)
+            warn(done)
         else:
             print_report(run_report(done) if full else screen(done))
             if json_path:
                 write_text(json_path, json_chunks(done, seen))
-    _exit_if_interrupted(done)
+    exit_if_interrupted(done)
 
 
 @main.command(short_help="Print where the cycles go, down to source lines.")
-@_takes_a_run
+@takes_a_run
 @click.option("--core", type=click.Choice(["A", "B"]), help="Show one core only.  [default: both together]")
 @click.option(
     "--top",
@@ -227,14 +167,14 @@ def profile(core: str | None, top: int, **what: Any) -> None:
     """
     from bfsim.report.profile_tables import profile_report
 
-    done = _simulate(**what)
+    done = simulated(**what)
     print_report(profile_report(done, core, top))
-    _exit_if_interrupted(done)
+    exit_if_interrupted(done)
 
 
 @main.command(short_help="Print a kernel line by line: operations and cycles.")
 @click.argument("kernel")
-@_takes_a_run
+@takes_a_run
 @click.option("--run", "runs", is_flag=True, help="Run the firmware first, and add how often each line ran.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON instead of the table.")
 def explain(kernel: str, runs: bool, as_json: bool, **what: Any) -> None:
@@ -254,7 +194,7 @@ def explain(kernel: str, runs: bool, as_json: bool, **what: Any) -> None:
 
     named = kernel, what["firmware"], what["profile"]
     explanation = explain_named(*named)  # a slip in a name is told before the run
-    done = _simulate(**what) if runs or what["recording"] else None
+    done = simulated(**what) if runs or what["recording"] else None
     if done:
         explanation = explain_named(*named, done)
     if as_json:
@@ -262,11 +202,11 @@ def explain(kernel: str, runs: bool, as_json: bool, **what: Any) -> None:
     else:
         print_report(explain_report(explanation))
     if done:
-        _warn(done)
+        warn(done)
 
 
 @main.command(short_help="Fail if a frame costs more than a baseline allows.")
-@_takes_a_run
+@takes_a_run
 @click.option(
     "--baseline",
     "path",
@@ -306,55 +246,15 @@ def check(path: Path, update: bool, **what: Any) -> None:
             ours = baseline.measured_on(replace(identity, recording_digest=digest), frames)
             require_comparable(theirs, ours, path)
 
-    done = _simulate(before=compare, **what)
-    _exit_if_interrupted(done)
+    done = simulated(before=compare, **what)
+    exit_if_interrupted(done)
     budget = budget_of(done)
     if limits is None:
         baseline.write_baseline(path, done, budget)
         click.echo(f"{path} holds the limits now: {budget.frame_rate_hz:.2f} frames/s.")
-        _warn(done)
+        warn(done)
         return
     outcome = judge(done, budget, limits, path)
     print_report(check_report(outcome, done))
     if not outcome.passed:
         raise SystemExit(LIMIT_BROKEN)
-
-
-def _simulate(
-    *, feed: str, fidelity: str, watchers: Sequence[Callable[[SeenFrame], None]] = (), **what: Any
-) -> RunRecord:
-    """Run the simulation behind a progress bar and return at least one frame; `watchers` get what is seen."""
-    from bfsim.run import Feed, Fidelity, simulate
-
-    def tell(frame: SeenFrame) -> None:
-        for each in watchers:
-            each(frame)
-
-    with progress_bar("Simulating frames", unit="ms simulated") as bar, ending_deaf_kernels():
-        done = simulate(
-            feed=Feed(feed),
-            fidelity=Fidelity(fidelity),
-            progress=bar,
-            on_seen=tell if watchers else None,
-            on_time=lambda seconds: bar.reached(1000 * seconds),
-            **what,
-        )
-    if done.interrupted and not done.frames:
-        raise KeyboardInterrupt
-    if not done.frames:
-        raise ConfigError("a run must have at least one frame to report on, and this one finished none")
-    return done
-
-
-def _warn(done: RunRecord) -> None:
-    """Tell the warnings of a run beside an output that has no place for them."""
-    from bfsim.report.warnings import warnings_of
-
-    for each in warnings_of(done):
-        click.secho(f"bfsim: warning: {each.kind}: {each.text}", fg="yellow", err=True)
-
-
-def _exit_if_interrupted(done: RunRecord) -> None:
-    if done.interrupted:
-        click.echo(f"bfsim: interrupted after {len(done.frames)} frames", err=True)
-        raise SystemExit(interrupted_code())

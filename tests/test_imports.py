@@ -79,19 +79,20 @@ MAY_IMPORT = {
     "cli_recorded": {"recording"},
     "cli_record": {"cli_recorded", "cli_sizes", "errors", "recording", "scenery", "shipped", "terminal"},
     "cli_seen": {"errors", "recording", "report", "run", "seen", "trace"},
-    "cli": {
-        "endings",
+    "cli_running": {
+        "cli_hardware",
+        "cli_ldf",
         "errors",
-        "seen",
-        "signals",
-        "trace",
         "report",
         "run",
-        "explain",
+        "seen",
         "shipped",
+        "signals",
         "terminal",
-    }
-    | {"cli_boards", "cli_colours", "cli_hardware", "cli_ldf", "cli_record", "cli_seen"},
+        "trace",
+    },
+    "cli": {"endings", "errors", "explain", "report", "run", "shipped", "terminal", "trace"}
+    | {"cli_boards", "cli_colours", "cli_ldf", "cli_record", "cli_running", "cli_seen"},
     "__main__": {"cli", "endings", "signals"},
 }
 MACHINE = {

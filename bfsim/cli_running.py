@@ -1,0 +1,117 @@
+"""What the commands that run firmware share: the options that say what to run, and the run behind its progress bar."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from bfsim.cli_hardware import BOARD_OPTIONS, PROFILE_OPTION
+from bfsim.cli_ldf import PREPROCESSOR_OPTIONS
+from bfsim.errors import ConfigError
+from bfsim.shipped import FIRMWARE, LDFS
+from bfsim.signals import ending_deaf_kernels, interrupted_code
+from bfsim.terminal import progress_bar
+
+if TYPE_CHECKING:
+    from bfsim.seen import SeenFrame
+    from bfsim.trace import RunRecord
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+_RUN_PARAMETERS = (
+    click.argument("recording", required=False, type=click.Path(path_type=Path)),
+    click.option(
+        "--firmware",
+        metavar="NAME",
+        default=FIRMWARE[0],
+        show_default=True,
+        help=f"Firmware to run: {' or '.join(FIRMWARE)}, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
+    ),
+    *BOARD_OPTIONS,
+    click.option(
+        "--ldf",
+        metavar="FILE",
+        type=click.Path(path_type=Path),
+        help=f"Linker description file that places buffers and code, or a shipped one: {', '.join(LDFS)}.  [default: the board's]",
+    ),
+    *PREPROCESSOR_OPTIONS,
+    PROFILE_OPTION,
+    click.option("--frames", metavar="N", type=click.IntRange(min=1), help="Stop after N frames."),
+    click.option(
+        "--feed",
+        type=click.Choice(["demand", "recorded", "cameras"]),
+        default="demand",
+        show_default=True,
+        help="When pictures come: as fast as the firmware asks, at the recorded time stamps, or at the free-running cameras' pace.",
+    ),
+    click.option(
+        "--script",
+        metavar="FILE",
+        type=click.Path(path_type=Path),
+        help="What the firmware's device on the SPI is told, JSON or TOML; the firmware says what it understands.",
+    ),
+    click.option(
+        "--fidelity",
+        type=click.Choice(["fast", "detailed"]),
+        default="fast",
+        show_default=True,
+        help="How the buses are simulated: fast, or with every transaction an event, to judge the fast way. Slow.",
+    ),
+    click.option(
+        "--sanitize",
+        is_flag=True,
+        help="Run every kernel twice, first as it is written: an index outside an array or a division by zero is then an "
+        "error even where the compiler would leave it out. Without it, what the compiled code does is checked. Slower.",
+    ),
+)
+
+
+def takes_a_run(command: Command) -> Command:
+    """Give a command the argument and the options that say what to run."""
+    for parameter in reversed(_RUN_PARAMETERS):
+        command = parameter(command)
+    return command
+
+
+def simulated(
+    *, feed: str, fidelity: str, watchers: Sequence[Callable[[SeenFrame], None]] = (), **what: Any
+) -> RunRecord:
+    """Run the simulation behind a progress bar and return at least one frame; `watchers` get what is seen."""
+    from bfsim.run import Feed, Fidelity, simulate
+
+    def tell(frame: SeenFrame) -> None:
+        for each in watchers:
+            each(frame)
+
+    with progress_bar("Simulating frames", unit="ms simulated") as bar, ending_deaf_kernels():
+        done = simulate(
+            feed=Feed(feed),
+            fidelity=Fidelity(fidelity),
+            progress=bar,
+            on_seen=tell if watchers else None,
+            on_time=lambda seconds: bar.reached(1000 * seconds),
+            **what,
+        )
+    if done.interrupted and not done.frames:
+        raise KeyboardInterrupt
+    if not done.frames:
+        raise ConfigError("a run must have at least one frame to report on, and this one finished none")
+    return done
+
+
+def warn(done: RunRecord) -> None:
+    """Tell the warnings of a run beside an output that has no place for them."""
+    from bfsim.report.warnings import warnings_of
+
+    for each in warnings_of(done):
+        click.secho(f"bfsim: warning: {each.kind}: {each.text}", fg="yellow", err=True)
+
+
+def exit_if_interrupted(done: RunRecord) -> None:
+    """End the command with the exit code of what interrupted the run, if something did."""
+    if done.interrupted:
+        click.echo(f"bfsim: interrupted after {len(done.frames)} frames", err=True)
+        raise SystemExit(interrupted_code())
