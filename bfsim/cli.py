@@ -12,6 +12,7 @@ import click
 from bfsim import __version__
 from bfsim.cli_boards import boards
 from bfsim.cli_colours import colours
+from bfsim.cli_html import paging, takes_html
 from bfsim.cli_ldf import ldf
 from bfsim.cli_record import record
 from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run, warn
@@ -19,8 +20,10 @@ from bfsim.cli_seen import takes_views, watching
 from bfsim.endings import LIMIT_BROKEN, exit_code_of
 from bfsim.errors import ConfigError
 from bfsim.terminal import print_report
+from bfsim.watchers import Watchers
 
 if TYPE_CHECKING:
+    from bfsim.report.target import Target
     from bfsim.trace import Identity
 
 STDOUT = Path("-")
@@ -85,6 +88,7 @@ main.add_command(ldf)
     help="Print every table: stalls by reason, cycles, frames, results, configuration, digests.",
 )
 @takes_views
+@takes_html
 def run(
     json_path: Path | None,
     features: bool,
@@ -93,6 +97,8 @@ def run(
     overlay: Path | None,
     mcap: Path | None,
     layers: tuple[str, ...] | None,
+    html: Path | None,
+    target: Target | None,
     **what: Any,
 ) -> None:
     """Run RECORDING through the firmware and print the frame timing budget on one screen.
@@ -108,6 +114,7 @@ def run(
       bfsim run drive.mcap --feed recorded --json drive.json
       bfsim run drive.mcap --overlay drive-seen --mcap drive-seen.mcap
       bfsim run drive.mcap --overlay lines.gif --layers lines,above
+      bfsim run drive.mcap --html drive.html --target 15Hz
     """
     from bfsim.report.as_json import json_chunks
     from bfsim.report.save import require_apart, require_place, write_text
@@ -126,13 +133,15 @@ def run(
         raise ConfigError(
             f"--features must go with firmware that has a view to tell what it sees, and {what['firmware']} has none"
         )
+    watchers = Watchers()
     with SeenStore(with_features=features) as seen:
-        with watching(show=show, overlay=overlay, mcap=mcap, layers=layers) as watchers:
+        with (
+            watching(watchers, show=show, overlay=overlay, mcap=mcap, layers=layers),
+            paging(watchers, html, target, what, (json_path, mcap, overlay)),
+        ):
             if is_telling:
                 watchers.seen.append(seen.add)
-            done = simulated(watchers=watchers.seen, **what)
-            for tell in watchers.done:
-                tell(done)
+            done = simulated(watchers=watchers, **what)
         if json_path == STDOUT:
             for chunk in json_chunks(done, seen):
                 click.echo(chunk, nl=False)
@@ -155,7 +164,8 @@ def run(
     show_default=True,
     help="Show the N source lines that cost most.",
 )
-def profile(core: str | None, top: int, **what: Any) -> None:
+@takes_html
+def profile(core: str | None, top: int, html: Path | None, target: Target | None, **what: Any) -> None:
     """Run RECORDING and print where the cycles go: stage, kernel, source line, memory.
 
     The cycles here are issue cycles; `bfsim run` has the stalls beside them.
@@ -167,7 +177,9 @@ def profile(core: str | None, top: int, **what: Any) -> None:
     """
     from bfsim.report.profile_tables import profile_report
 
-    done = simulated(**what)
+    watchers = Watchers()
+    with paging(watchers, html, target, what):
+        done = simulated(watchers=watchers, **what)
     print_report(profile_report(done, core, top))
     exit_if_interrupted(done)
 
@@ -246,7 +258,7 @@ def check(path: Path, update: bool, **what: Any) -> None:
             ours = baseline.measured_on(replace(identity, recording_digest=digest), frames)
             require_comparable(theirs, ours, path)
 
-    done = simulated(before=compare, **what)
+    done = simulated(watchers=Watchers(before=[compare]), **what)
     exit_if_interrupted(done)
     budget = budget_of(done)
     if limits is None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -14,9 +14,9 @@ from bfsim.errors import ConfigError
 from bfsim.shipped import FIRMWARE, LDFS
 from bfsim.signals import ending_deaf_kernels, interrupted_code
 from bfsim.terminal import progress_bar
+from bfsim.watchers import Watchers, calling
 
 if TYPE_CHECKING:
-    from bfsim.seen import SeenFrame
     from bfsim.trace import RunRecord
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -76,22 +76,19 @@ def takes_a_run(command: Command) -> Command:
     return command
 
 
-def simulated(
-    *, feed: str, fidelity: str, watchers: Sequence[Callable[[SeenFrame], None]] = (), **what: Any
-) -> RunRecord:
-    """Run the simulation behind a progress bar and return at least one frame; `watchers` get what is seen."""
+def simulated(*, feed: str, fidelity: str, watchers: Watchers | None = None, **what: Any) -> RunRecord:
+    """Run the simulation behind a progress bar and return at least one frame."""
     from bfsim.run import Feed, Fidelity, simulate
 
-    def tell(frame: SeenFrame) -> None:
-        for each in watchers:
-            each(frame)
-
+    watchers = watchers or Watchers()
     with progress_bar("Simulating frames", unit="ms simulated") as bar, ending_deaf_kernels():
         done = simulate(
             feed=Feed(feed),
             fidelity=Fidelity(fidelity),
             progress=bar,
-            on_seen=tell if watchers else None,
+            before=calling(watchers.before),
+            on_seen=calling(watchers.seen),
+            on_spans=calling(watchers.spans),
             on_time=lambda seconds: bar.reached(1000 * seconds),
             **what,
         )
@@ -99,6 +96,8 @@ def simulated(
         raise KeyboardInterrupt
     if not done.frames:
         raise ConfigError("a run must have at least one frame to report on, and this one finished none")
+    for each in watchers.done:
+        each(done)
     return done
 
 

@@ -8,7 +8,6 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -16,21 +15,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from bfsim.errors import ConfigError, shown
+from bfsim.watchers import Watchers
 
 if TYPE_CHECKING:
     from bfsim.recording import SeenWriter
-    from bfsim.seen import SeenFrame
     from bfsim.trace import RunRecord
 
 Command = TypeVar("Command", bound=Callable[..., Any])
-
-
-@dataclass(frozen=True, slots=True)
-class Watchers:
-    """What is to be called with each frame that is `seen`, and with the records when the run is `done`."""
-
-    seen: list[Callable[[SeenFrame], None]] = field(default_factory=list)
-    done: list[Callable[[RunRecord], None]] = field(default_factory=list)
 
 
 class _Layers(click.ParamType[tuple[str, ...]]):
@@ -83,16 +74,20 @@ def takes_views(command: Command) -> Command:
 
 @contextmanager
 def watching(
-    *, show: bool, overlay: Path | None, mcap: Path | None, layers: tuple[str, ...] | None
-) -> Iterator[Watchers]:
-    """Yield what is to be called with each frame that is seen, and at the end; its files are there on a clean exit, or not at all.
+    watchers: Watchers,
+    *,
+    show: bool,
+    overlay: Path | None,
+    mcap: Path | None,
+    layers: tuple[str, ...] | None,
+) -> Iterator[None]:
+    """Have `watchers` write the files; these are there on a clean exit, or not at all.
 
     Raises a BfsimError for a place that cannot be written, and for layers of which nothing is drawn.
     """
     if layers and not (show or overlay):
         raise ConfigError("--layers must come with --overlay DIR|FILE or --show, which draw them")
     with ExitStack() as stack:
-        watchers = Watchers()
         if mcap:
             writer = stack.enter_context(_seen_writer(mcap))
             watchers.seen.append(writer.add)
@@ -104,7 +99,7 @@ def watching(
             from bfsim.report.overlay.layers import LAYERS
 
             watchers.seen.append(stack.enter_context(OverlayWriter(overlay, layers or LAYERS)).add)
-        yield watchers
+        yield
     if show and overlay:
         _show(overlay)
 

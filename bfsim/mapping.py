@@ -11,7 +11,7 @@ from bfsim.hardware import find_board, find_profile
 from bfsim.linker import LinkerScript, link
 from bfsim.loading import load_firmware
 from bfsim.machine.board import PROCESSORS, symbols_of
-from bfsim.machine.program import Buffer, Firmware, FrameSize
+from bfsim.machine.program import Buffer, Calibration, Firmware, FrameSize
 from bfsim.report.ldf.map import Kind, MemoryMap
 from bfsim.report.ldf.map_builder import BoardMemories, memory_map
 from bfsim.run import read_placement
@@ -28,8 +28,9 @@ def map_memory(
     height_px: int,
     defines: Mapping[str, str] = MappingProxyType({}),
     include_dirs: Sequence[Path] = (),
+    calibration: Calibration | None = None,
 ) -> MemoryMap:
-    """Return where the LDF (the board's own without one) puts `firmware` for pictures of that size.
+    """Return where the LDF (the board's own without one) puts `firmware` for pictures of that size, of cameras that a `calibration` knows.
 
     Firmware for other cores than the LDF's is left out, and the map holds what the LDF says by itself. Raises a
     BfsimError for anything that is wrong with what was given, a firmware that does not fit included.
@@ -37,7 +38,7 @@ def map_memory(
     spec, compiler = find_board(board, settings).value, find_profile(profile).value
     script = read_placement(ldf, spec, defines, include_dirs)
     loaded, size = load_firmware(firmware), FrameSize(width_px, height_px)
-    program = loaded.firmware
+    program = loaded.firmware if calibration is None else loaded.firmware.calibrated(calibration)
     fits = _fits(program, script, spec)
     link_map, kinds = None, {}
     if fits:

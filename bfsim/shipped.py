@@ -16,6 +16,9 @@ FIRMWARE_PACKAGE = "tinyphoon"
 FIRMWARE = ("tinyphoon", "one_eye")
 """Names in that package that `--firmware` takes alone. The first one is the default."""
 
+ACCURACY = _PACKAGE / "accuracy.md" if _IS_INSTALLED else _PACKAGE.parent / "docs" / "accuracy.md"
+"""How far to trust the numbers: the page of the documentation."""
+
 DEFAULT_LDFS = {"ADSP-BF561": LDF_FOLDER / "thesis.ldf", "ADSP-BF533": LDF_FOLDER / "cm-bf533.ldf"}
 """The placement of each chip."""
 
@@ -28,6 +31,12 @@ SCENES = (
     "ball-with-seam", "ball-too-close", "goal-sharp-angle", "thesis", "box-distances", "ball-distances",
 )  # fmt: skip
 """Names in that module that `bfsim record render` takes alone. The first one is the scene of RECORDING."""
+
+
+def accuracy_on(section: str) -> str:
+    """Return a section of ACCURACY, without its heading."""
+    _, _, rest = ACCURACY.read_text(encoding="utf-8").partition(f"\n## {section}\n")
+    return rest.partition("\n## ")[0].strip()
 
 
 def ldf_at(path: Path) -> Path | None:

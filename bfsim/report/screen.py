@@ -22,7 +22,8 @@ from bfsim.report.budget import (
 )
 from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.report.start_up import start_up_cclk, without_start_up
-from bfsim.report.tables import mhz, missed, named, new_table, percent, stacked
+from bfsim.report.tables import missed, named, new_table, percent, stacked
+from bfsim.report.units import mhz
 from bfsim.report.warnings import warnings_of
 from bfsim.trace import REST, FrameRecord, RunRecord
 

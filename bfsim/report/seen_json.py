@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
@@ -12,7 +10,7 @@ from typing import Any, Self
 
 from pydantic_core import to_jsonable_python
 
-from bfsim.errors import ConfigError
+from bfsim.report.spool import Spool
 from bfsim.seen import Seen, SeenFrame
 
 RECORDS = ("blobs", "lines", "circles", "rectangles")
@@ -27,44 +25,35 @@ Pixels = tuple[int, int]
 
 
 class SeenStore(Mapping[int, dict[str, Any]]):
-    """What was seen in each frame (`seen_json`) by the frame's index, in a file that has no name and ends with the process.
+    """What was seen in each frame (`seen_json`) by the frame's index; in memory there is one frame at a time.
 
-    In memory there is one frame at a time. A context manager; raises ConfigError where there is no room for the file.
+    A context manager; raises ConfigError where there is no room for its file.
     """
 
     def __init__(self, *, with_features: bool) -> None:
         self._with_features = with_features
-        self._file = tempfile.TemporaryFile()  # noqa: SIM115 - closed at the end of the `with` block
-        self._places: dict[int, tuple[int, int]] = {}  # offset and bytes
+        self._spool = Spool()
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_error: object) -> None:
-        self._file.close()
+        self._spool.__exit__()
 
     def add(self, frame: SeenFrame) -> None:
         """Keep what was seen in a frame."""
         text = json.dumps(seen_json(frame, with_features=self._with_features), separators=(",", ":"))
-        packed = zlib.compress(text.encode(), level=1)
-        try:
-            self._places[frame.index] = self._file.seek(0, os.SEEK_END), self._file.write(packed)
-            self._file.flush()
-        except OSError as error:
-            where = tempfile.gettempdir()
-            raise ConfigError(f"{where} must have room for what was seen: {error.strerror}") from error
+        self._spool.put(frame.index, zlib.compress(text.encode(), level=1))
 
     def __getitem__(self, index: int) -> dict[str, Any]:
-        offset, nbytes = self._places[index]
-        self._file.seek(offset)
-        found: dict[str, Any] = json.loads(zlib.decompress(self._file.read(nbytes)))
+        found: dict[str, Any] = json.loads(zlib.decompress(self._spool[index]))
         return found
 
     def __iter__(self) -> Iterator[int]:
-        return iter(self._places)
+        return iter(self._spool)
 
     def __len__(self) -> int:
-        return len(self._places)
+        return len(self._spool)
 
 
 def seen_json(frame: SeenFrame, *, with_features: bool) -> dict[str, Any]:

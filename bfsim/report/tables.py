@@ -24,10 +24,10 @@ from bfsim.report.budget import (
     latency_cclk,
     milliseconds,
 )
-from bfsim.report.digest import cycle_digest, identity_digest
+from bfsim.report.configuration import configuration_of
 from bfsim.report.split_table import SplitTable
 from bfsim.report.warnings import MISSED_LISTED, warnings_of
-from bfsim.trace import REST, BudgetRow, CodeRecord, FrameRecord, RunRecord, StallReason
+from bfsim.trace import REST, BudgetRow, FrameRecord, RunRecord, StallReason
 
 SHOWN_AT_EACH_END = 4
 """Frames listed at the beginning and at the end of a long run."""
@@ -278,60 +278,10 @@ def warning_table(run: RunRecord) -> Iterator[Table]:
 
 def configuration(run: RunRecord) -> Table:
     """Return what was run on what, and the digests of it and of its cycles."""
-    identity = run.identity
     table = Table.grid(padding=(0, 2))
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
     table.title, table.title_style, table.title_justify = "Configuration", "bold not italic", "left"
-    table.add_row("Recording", f"{identity.recording}, {identity.width_px}x{identity.height_px} px")
-    if run.geometry:
-        table.add_row("Geometry", run.geometry)
-    table.add_row("Firmware", _firmware(run))
-    table.add_row("Board", f"{identity.board}, CCLK {mhz(identity.cclk_hz)}, SCLK {mhz(identity.sclk_hz)}")
-    table.add_row("LDF", f"{identity.ldf} ({run.ldf_place})")
-    table.add_row("Compiler", f"{identity.compiler}, LLVM {identity.llvm_version}")
-    for each in run.code:
-        table.add_row(f"Code of {each.core}", _code(each))
-    table.add_row("Feed", identity.feed)
-    table.add_row("Fidelity", identity.fidelity)
-    if run.messages:
-        table.add_row("SPI messages", _messages(run))
-    if run.interrupts:
-        table.add_row(
-            "Interrupts", ", ".join(f"{source} {count:,}" for source, count in run.interrupts.items())
-        )
-    table.add_row("bfsim", f"{identity.bfsim_version}, {run.events:,} events simulated")
-    table.add_row("Identity", identity_digest(identity))
-    table.add_row("Cycles", cycle_digest(run.frames))
+    for name, text in configuration_of(run):
+        table.add_row(name, text)
     return table
-
-
-def _firmware(run: RunRecord) -> str:
-    """Say which files ran."""
-    files = len(run.identity.firmware_files)
-    return f"{run.identity.firmware} ({run.firmware_place}, {files} {'file' if files == 1 else 'files'})"
-
-
-def _messages(run: RunRecord) -> str:
-    """Say what went over SPI in each direction, and how long the longest message took."""
-    parts = []
-    for direction in ("out", "in"):
-        mine = [each for each in run.messages if each.direction == direction]
-        if mine:
-            longest = max(each.end_cclk - each.begin_cclk for each in mine)
-            nbytes = sum(each.nbytes for each in mine)
-            microseconds = 1000 * milliseconds(longest, run.identity.cclk_hz)
-            parts.append(f"{len(mine):,} {direction} ({nbytes:,} bytes, at most {microseconds:.1f} µs each)")
-    return "; ".join(parts)
-
-
-def _code(code: CodeRecord) -> str:
-    outside = "" if code.in_l1 else "; outside L1"
-    return (
-        f"{code.kernels} kernels, {code.nbytes:,} bytes in {code.segment}, {code.free_bytes:,} free{outside}"
-    )
-
-
-def mhz(hz: float) -> str:
-    """Return a rate in MHz."""
-    return f"{hz / 1e6:.6g} MHz"

@@ -1,4 +1,4 @@
-"""Sizes of memory for people."""
+"""Sizes of memory and rates of clocks for people."""
 
 from __future__ import annotations
 
@@ -11,3 +11,8 @@ def size(nbytes: int) -> str:
     if nbytes < KIB:
         return f"{nbytes} B"
     return f"{nbytes / KIB:.1f} KB" if nbytes < MIB else f"{nbytes / MIB:.2f} MB"
+
+
+def mhz(hz: float) -> str:
+    """Return a rate in MHz."""
+    return f"{hz / 1e6:.6g} MHz"

@@ -1,0 +1,96 @@
+"""Which frames of a run a page tells in full, and what it tells of each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from bfsim.report.budget import Budget, budget_rows, costs_of, elapsed_cclk, latency_cclk, milliseconds
+from bfsim.report.target import Target, used_cclk
+from bfsim.trace import FrameRecord, RunRecord
+
+MOST = 100
+"""So many frames are told in full: of more, the worst, first and last, and others evenly spaced."""
+WORST = 5
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrameCell:
+    """What a row of the budget took of a frame on one core, and how much more than in the median frame."""
+
+    ms: float
+    more_ms: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrameRow:
+    """A row of the budget in one frame, a cell a core."""
+
+    name: str
+    is_part: bool
+    cells: tuple[FrameCell, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrameFacts:
+    """One frame: what each core used of it, its slack against a target, its latency, its rows and what it published."""
+
+    frame: FrameRecord
+    used_ms: dict[str, float]
+    slack_ms: float | None
+    latency_ms: float
+    rows: tuple[FrameRow, ...]
+
+    @property
+    def most_ms(self) -> float:
+        """What the core used that used most."""
+        return max(self.used_ms.values())
+
+
+def worst_of(run: RunRecord, count: int = WORST) -> tuple[FrameRecord, ...]:
+    """Return the frames that used most time of a core, the worst first."""
+    return tuple(sorted(run.frames, key=lambda frame: -_used_cclk(frame))[:count])
+
+
+def told_of(run: RunRecord, most: int = MOST) -> tuple[FrameRecord, ...]:
+    """Return the frames that are told in full, in their order."""
+    if len(run.frames) <= most:
+        return run.frames
+    told = {each.index for each in (*worst_of(run), run.frames[0], run.frames[-1])}
+    others = [frame.index for frame in run.frames if frame.index not in told]
+    room = most - len(told)
+    told |= {others[number * len(others) // room] for number in range(room)}
+    return tuple(frame for frame in run.frames if frame.index in told)
+
+
+def facts_of(
+    run: RunRecord, budget: Budget, frames: tuple[FrameRecord, ...], target: Target | None
+) -> Iterator[FrameFacts]:
+    """Yield what there is to tell of each of the `frames` of a run."""
+    hz = run.identity.cclk_hz
+    for frame in frames:
+        used_ms = {core.core: milliseconds(used_cclk(core), hz) for core in frame.cores}
+        yield FrameFacts(
+            frame=frame,
+            used_ms=used_ms,
+            slack_ms=None if target is None else target.frame_ms - max(used_ms.values()),
+            latency_ms=milliseconds(latency_cclk(frame), hz),
+            rows=tuple(_rows(run, budget, frame)),
+        )
+
+
+def _used_cclk(frame: FrameRecord) -> int:
+    return max(used_cclk(core) for core in frame.cores)
+
+
+def _rows(run: RunRecord, budget: Budget, frame: FrameRecord) -> Iterator[FrameRow]:
+    hz, rows = run.identity.cclk_hz, budget_rows(run)
+    for number, row in enumerate(rows):
+        cclk = [elapsed_cclk(costs_of(core, row, rows)) for core in frame.cores]
+        medians = [core.rows[number].elapsed_cclk.median for core in budget.cores]
+        if any(cclk) or any(medians):
+            cells = (
+                FrameCell(ms=milliseconds(own, hz), more_ms=milliseconds(own - median, hz))
+                for own, median in zip(cclk, medians, strict=True)
+            )
+            yield FrameRow(name=row.stage, is_part=row.within is not None, cells=tuple(cells))

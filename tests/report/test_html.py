@@ -1,0 +1,214 @@
+"""What a page of a run holds: the run's numbers, its worst frames, pictures that fit, and nobody's markup but its own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from html.parser import HTMLParser
+from io import BytesIO
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from PIL import Image
+
+from bfsim.report.budget import budget_of
+from bfsim.report.html import charts, frames
+from bfsim.report.html.frames import facts_of, told_of, worst_of
+from bfsim.report.html.pictures import PAGE_BYTES, Pictures, webp_of
+from bfsim.report.html.sources import dearest_sources
+from bfsim.report.target import Target
+from bfsim.trace import REST, LineCost, RunRecord, RunWarning, StallReason, WarningKind
+from tests.report.pages_by_hand import page_of
+from tests.report.records import core_frame, cost, edge_run, frame, kernel, run_of, runs, traffic
+from tests.seen_frames import frame as seen_frame
+
+EVIL = "<script>pwned=1</script><img src=x onerror=pwned=1>'\"&{{7*7}}"
+
+
+def values_of(spec: charts.Spec) -> list[dict[str, float]]:
+    """The data of a chart."""
+    found: list[dict[str, float]] = (
+        spec["layer"][0]["data"]["values"] if "layer" in spec else spec["data"]["values"]
+    )
+    return found
+
+
+def test_all_frames_are_told_up_to_the_limit() -> None:
+    """From one more on some are left out."""
+    run = edge_run(*range(1, 11))
+    assert told_of(run, 10) == run.frames
+    assert len(told_of(run, 9)) == 9
+
+
+@given(st.lists(st.integers(1, 1000), min_size=1, max_size=200), st.integers(8, 40))
+def test_of_many_frames_the_worst_the_first_and_the_last_are_told(used: list[int], most: int) -> None:
+    """In their order, and no one twice."""
+    run = edge_run(*used)
+    told = [each.index for each in told_of(run, most)]
+    assert told == sorted(set(told))
+    assert len(told) <= most
+    assert {0, len(used) - 1, *(each.index for each in worst_of(run))} <= set(told)
+
+
+def test_the_worst_frame_is_the_one_that_used_most_of_a_core() -> None:
+    """Idling is no use: a frame that waited long for its picture is not the worst."""
+    waited = frame(0, core_frame("A", 0, cost("Edge detection", 10, idle_cclk=900)))
+    worked = frame(1, core_frame("A", 910, cost("Edge detection", 20)))
+    assert [each.index for each in worst_of(run_of([waited, worked]))] == [1, 0]
+
+
+def test_a_frame_is_compared_with_the_median() -> None:
+    """Stage by stage on each core; its slack is that of the core that used most."""
+    run = edge_run(10_000, 20_000, 50_000)
+    (worst,) = facts_of(run, budget_of(run), run.frames[2:], Target(40))
+    edges = worst.rows[0]
+    assert (edges.name, [(cell.ms, cell.more_ms) for cell in edges.cells]) == (
+        "Edge detection", [(50.0, 30.0), (25.0, 15.0)],
+    )  # fmt: skip
+    assert (worst.used_ms, worst.slack_ms) == ({"A": 50.0, "B": 25.0}, -10.0)
+
+
+def test_a_time_series_has_all_that_was_used() -> None:
+    """And nothing of what was idled."""
+    run = edge_run(10_000, 20_000)
+    assert [(each["frame"], each["ms"]) for each in values_of(charts.time_series(run, 1, Target(9)))] == [
+        (0, 5.0),
+        (1, 10.0),
+    ]
+
+
+def test_a_long_time_series_shows_the_worst_of_neighbours(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two frames a bar from the first one on for which there is no bar."""
+    monkeypatch.setattr(charts, "MOST_BARS", 3)
+    assert charts.frames_a_bar(edge_run(1, 2, 3)) == 1
+    run = edge_run(1000, 3000, 2000, 500)
+    assert charts.frames_a_bar(run) == 2
+    assert [(each["frame"], each["ms"]) for each in values_of(charts.time_series(run, 0, None))] == [
+        (1, 3.0),
+        (2, 2.0),
+    ]
+
+
+@given(runs())
+@settings(max_examples=30)
+def test_a_cycle_stack_sums_to_the_mean_frame(run: RunRecord) -> None:
+    """Work, every reason and idling, of the rows that are no part of another."""
+    budget = budget_of(run)
+    for core in budget.cores:
+        mean_ms = core.frame.elapsed_cclk.total / len(run.frames) / 1000
+        values = values_of(charts.cycle_stack(run, budget, core))
+        assert sum(each["ms"] for each in values) == pytest.approx(mean_ms, abs=1e-4 * len(values))
+
+
+def test_sources_add_up_over_the_cores() -> None:
+    """Lines without a cost stand where they are; the dearest kernel comes first."""
+    line = LineCost(line=11, executions=5, issue_cclk=30, stall_cclk=10)
+    run = replace(
+        run_of([frame(0, core_frame("A", 0, cost(REST, 1)))]),
+        kernels=(
+            kernel("Edge detection", "cheap", replace(line, issue_cclk=20)),
+            kernel("Edge detection", "dear", line),
+            kernel("Edge detection", "dear", line, core="B"),
+        ),
+    )
+    dear, cheap = dearest_sources(run)
+    assert (dear.kernel, dear.place, dear.calls, dear.issue_cclk, dear.share) == (
+        "dear",
+        "edges.py:10",
+        2,
+        60,
+        0.75,
+    )
+    assert [(each.line, each.executions, each.issue_cclk, each.stall_cclk, each.share) for each in dear.lines] == [
+        (10, 0, 0, 0, 0.0),
+        (11, 10, 60, 20, 1.0),
+    ]  # fmt: skip
+    assert dearest_sources(run, 1) == (dear,)
+    assert cheap.share == 0.25
+
+
+def noise(width: int = 1980, height: int = 810) -> Image.Image:
+    """The worst that can be asked of a codec."""
+    return Image.fromarray(np.random.default_rng(1).integers(0, 255, (height, width, 3), np.uint8))
+
+
+def test_a_picture_is_as_small_as_is_asked() -> None:
+    """At its full size where there is room."""
+    plain = Image.new("RGB", (1980, 810))
+    with Image.open(BytesIO(webp_of(plain, 40_000))) as image:
+        assert image.size == (1980, 810)
+    assert len(webp_of(noise(), 60_000)) <= 60_000
+
+
+def test_a_page_of_a_hundred_noisy_frames_has_at_most_8_mb(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures that nothing compresses: every one is as large as it may be."""
+    content = webp_of(noise(), PAGE_BYTES * 3 // 4 // frames.MOST)
+    assert len(content) > 20_000
+    monkeypatch.setattr("bfsim.report.html.pictures.webp_of", lambda _image, _nbytes: content)
+    with Pictures() as pictures:
+        pictures.frames = frames.MOST
+        run = edge_run(*range(1000, 1000 + frames.MOST))
+        for each in run.frames:
+            pictures.add(seen_frame(each.index))
+        text = page_of(run, pictures, Target(1))
+    assert len(text.encode()) < 8_000_000
+    assert text.count("data:image/webp") == frames.MOST
+
+
+class Elements(HTMLParser):
+    """Counts the elements of a page, and keeps its words."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.names: list[str] = []
+        self.addresses: list[str] = []
+        self.words = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.names.append(tag)
+        self.addresses += [value or "" for name, value in attrs if name in {"src", "href", "srcset", "data"}]
+
+    def handle_data(self, data: str) -> None:
+        self.words += data
+
+
+def evil_run() -> RunRecord:
+    """A run in which everything that has a name has an evil one."""
+    run = run_of(
+        [
+            replace(
+                frame(0, core_frame("A", 0, cost(EVIL, 5, {StallReason.SEMAPHORE: 3}), cost(REST, 1))),
+                results={EVIL: 3},
+                remarks=(EVIL,),
+            )
+        ],
+        missed=(3,),
+    )
+    names = dict.fromkeys(("recording", "firmware", "board", "ldf", "compiler", "bfsim_version"), EVIL)
+    return replace(
+        run,
+        identity=replace(run.identity, **names),
+        firmware_place=EVIL,
+        ldf_place=EVIL,
+        geometry=EVIL,
+        device_notes=(EVIL,),
+        assumptions=(RunWarning(kind=WarningKind.GEOMETRY, text=EVIL),),
+        reference=replace(run.reference, name=EVIL, about=EVIL),
+        kernels=(kernel(EVIL, EVIL, LineCost(line=10, executions=1, issue_cclk=1, stall_cclk=0), text=(EVIL,), file=EVIL),),
+        traffic=(traffic(EVIL, EVIL, 5),),
+        interrupts={EVIL: 2},
+    )  # fmt: skip
+
+
+def test_names_are_words_and_no_markup() -> None:
+    """Whatever firmware, kernels, recordings and results are called: there are the page's three scripts, and all addresses are its own."""
+    with Pictures() as pictures:
+        pictures.add(seen_frame(0))
+        plain = Elements(page_of(edge_run(1000), pictures))
+        evil = Elements(page_of(evil_run(), pictures))
+    assert evil.names.count("script") == plain.names.count("script") == 3
+    assert evil.names.count("img") == 1
+    assert evil.words.count(EVIL) >= 10
+    assert all(each.startswith(("#", "data:")) for each in plain.addresses + evil.addresses)

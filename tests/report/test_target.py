@@ -1,0 +1,61 @@
+"""What a target is, and what is left over of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from bfsim.errors import ConfigError
+from bfsim.report.target import Target, kept_frames, slacks_of, target_of, used_cclk
+from bfsim.trace import StallReason
+from tests.report.records import core_frame, cost, edge_run, frame, run_of
+
+
+@pytest.mark.parametrize(
+    ("text", "frame_ms"),
+    [("15Hz", 1000 / 15), ("15 hz", 1000 / 15), ("66ms", 66), ("66.5 MS", 66.5), (" 0.5Hz ", 2000)],
+)
+def test_a_rate_and_a_time_are_targets(text: str, frame_ms: float) -> None:
+    """In whatever case."""
+    assert target_of(text).frame_ms == pytest.approx(frame_ms)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "15", "Hz", "0Hz", "0.0ms", "-3ms", "nanms", "1e3Hz", "15 fps", "9" * 400 + "Hz", "१५Hz"]
+)
+def test_anything_else_is_refused(text: str) -> None:
+    """And said what it must be."""
+    with pytest.raises(
+        ConfigError, match="must be a frame rate such as 15Hz or a frame time such as 66ms, not "
+    ):
+        target_of(text)
+
+
+def test_what_counts_is_all_but_idling() -> None:
+    """Waiting for the other core counts: the frame is not done before."""
+    core = core_frame("A", 0, cost("Edge detection", 30, {StallReason.SEMAPHORE: 12}, idle_cclk=1000))
+    assert used_cclk(core) == 42
+
+
+def test_a_frame_keeps_a_target_up_to_its_last_cycle() -> None:
+    """100 ms are 100,000 cycles; core B uses half of what core A does."""
+    run = edge_run(100_000, 100_001, 99_000)
+    assert kept_frames(run, Target(100)) == 2
+    a, b = slacks_of(run, Target(100))
+    assert (a.core, a.used_ms, a.most_ms, a.worst_frame, a.kept) == ("A", 100.0, 100.001, 1, 2)
+    assert (b.core, b.used_ms, b.kept) == ("B", 50.0, 3)
+    assert [each.kept for each in slacks_of(run, None)] == [3, 3]
+
+
+def test_a_frame_keeps_a_target_only_if_both_cores_do() -> None:
+    """Each core is late in another frame."""
+    late, early = cost("Edge detection", 20), cost("Edge detection", 5)
+    frames = [
+        frame(index, core_frame("A", 0, a), core_frame("B", 0, b))
+        for index, (a, b) in enumerate([(late, early), (early, late), (early, early)])
+    ]
+    run = run_of(frames)
+    run = replace(run, identity=replace(run.identity, cclk_hz=1000.0))
+    assert [each.kept for each in slacks_of(run, Target(10))] == [2, 2]
+    assert kept_frames(run, Target(10)) == 1
