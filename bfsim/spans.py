@@ -39,6 +39,9 @@ TRACKS = {
 """The track of a core or device that a span of each kind lies on. Each LEVEL has one of its own."""
 
 
+NO_STALLS: Mapping[StallReason, int] = MappingProxyType({})
+
+
 class Span(NamedTuple):
     """Something that went on from `begin_cclk` to `end_cclk` at `where`: a core, a DMA channel, a camera, a semaphore.
 
@@ -54,7 +57,7 @@ class Span(NamedTuple):
     end_cclk: int
     stage: str = ""
     issue_cclk: int = 0
-    stall_cclk: Mapping[StallReason, int] = MappingProxyType({})
+    stall_cclk: Mapping[StallReason, int] = NO_STALLS
     value: int = 0
     flow: int = 0
 

@@ -67,8 +67,8 @@ OnTime = Callable[[float], None]
 STEPS_TOLD = 2048  # events between two times that are told
 OnSeen = Callable[[int, tuple[Seen, ...]], None]
 OnSpans = Callable[[Sequence[Span]], None]
-SPANS_TOLD = 4096
-"""Spans are told so many at a time, or some more."""
+SPANS_TOLD = 256
+"""Spans are told so many at a time, or some more: few enough to be gone before Python's garbage collector looks at them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -238,11 +238,13 @@ class Board:
         except KeyboardInterrupt:
             interrupted = True
             self._tell_seen()
-        self._tell_spans(is_over=True)
+        if timeline := self._env.timeline:
+            self._tell_spans(timeline, is_over=True)
         return self._outcome(capture, interrupted)
 
     def _run_until(self, event: simpy.Event) -> None:
         """Let time pass until `event`, or until nothing can happen any more that lets a core go on."""
+        timeline = self._env.timeline
         with suppress(simpy.core.EmptySchedule):
             for steps in count(1):
                 if event.processed or (self._shared.turns and self._is_deadlock()):
@@ -251,7 +253,8 @@ class Board:
                 if self._on_time and steps % STEPS_TOLD == 0:
                     self._on_time(float(self._env.tick / self.spec.clocks.tick_hz))
                 self._tell_seen()  # here, outside of the firmware: what fails is no fault of it
-                self._tell_spans()
+                if timeline and len(timeline.spans) >= SPANS_TOLD:
+                    self._tell_spans(timeline)
 
     def _tell_seen(self) -> None:
         """Tell what was seen in each frame that is done, as a whole: a frame with a record has been told, too."""
@@ -259,11 +262,10 @@ class Board:
             with uninterrupted():
                 self._on_seen(*self._seen.pop(0))
 
-    def _tell_spans(self, *, is_over: bool = False) -> None:
-        """Tell what happened since the last time, if that is enough or the run is over."""
-        timeline, now = self._env.timeline, self._env.tick
-        if not timeline or not self._on_spans or (len(timeline.spans) < SPANS_TOLD and not is_over):
-            return
+    def _tell_spans(self, timeline: Timeline, *, is_over: bool = False) -> None:
+        """Tell what happened since the last time, or the last of it when the run is over."""
+        assert self._on_spans, "there is no timeline without it"
+        now = self._env.tick
         with uninterrupted():
             self._bus.tell(now + is_over)
             if is_over:

@@ -4,8 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from bfsim.spans import Span, SpanKind
+from bfsim.spans import NO_STALLS, Span, SpanKind
 from bfsim.trace import REST, StallReason
+
+_span = Span._make  # half the time of a call of Span, and there are many
+_CALL = SpanKind.CALL
+_WAITS: dict[StallReason | None, tuple[SpanKind, str]] = {None: (SpanKind.IDLE, "idle")} | {
+    reason: (SpanKind.STALL, reason.value) for reason in StallReason
+}
 
 
 class Timeline:
@@ -22,10 +28,17 @@ class Timeline:
         return spans
 
     def span(
-        self, kind: SpanKind, where: str, name: str, begin_cclk: int, end_cclk: int, value: int = 0
+        self,
+        kind: SpanKind,
+        where: str,
+        name: str,
+        begin_cclk: int,
+        end_cclk: int,
+        value: int = 0,
+        flow: int = 0,
     ) -> None:
-        """Tell what a device did; `value` is as in `Span`."""
-        self.spans.append(Span(kind, where, name, begin_cclk, end_cclk, value=value))
+        """Tell what a device did; `value` and `flow` are as in `Span`."""
+        self.spans.append(_span((kind, where, name, begin_cclk, end_cclk, "", 0, NO_STALLS, value, flow)))
 
     def level(self, where: str, name: str, value: int, at_cclk: int) -> None:
         """Note how high a level is from a cycle on, and tell how high it was until then; all levels begin at 0."""
@@ -62,31 +75,26 @@ class CoreTimeline:
     ) -> None:
         """Tell a call of a kernel, or of an instruction, that began at a cycle."""
         end_cclk = begin_cclk + issue_cclk + sum(stall_cclk.values())
-        self._timeline.spans.append(
-            Span(
-                SpanKind.CALL, self._where, kernel, begin_cclk, end_cclk, self._stage, issue_cclk, stall_cclk
-            )
-        )
+        self._tell(_CALL, kernel, begin_cclk, end_cclk, issue_cclk, stall_cclk)
 
     def work(self, begin_cclk: int, cclk: int) -> None:
         """Tell work that is no kernel's."""
         if cclk:
-            self._timeline.spans.append(
-                Span(
-                    SpanKind.WORK, self._where, "other work", begin_cclk, begin_cclk + cclk, self._stage, cclk
-                )
-            )
+            self._tell(SpanKind.WORK, "other work", begin_cclk, begin_cclk + cclk, cclk, NO_STALLS)
 
     def wait(self, reason: StallReason | None, begin_cclk: int, cclk: int, flow: int = 0) -> None:
         """Tell a stall, or a wait of a core that has nothing to do without a `reason`; `flow`: of the transfer that ended it."""
-        if not cclk:
-            return
-        kind, name, stalls = SpanKind.IDLE, "idle", {}
-        if reason is not None:
-            kind, name, stalls = SpanKind.STALL, reason.value, {reason: cclk}
-        self._timeline.spans.append(
-            Span(kind, self._where, name, begin_cclk, begin_cclk + cclk, self._stage, 0, stalls, 0, flow)
-        )
+        if cclk:
+            kind, name = _WAITS[reason]
+            stalls = {reason: cclk} if reason else NO_STALLS
+            self._tell(kind, name, begin_cclk, begin_cclk + cclk, 0, stalls, flow)
+
+    def _tell(
+        self, kind: SpanKind, name: str, begin_cclk: int, end_cclk: int,
+        issue_cclk: int, stall_cclk: Mapping[StallReason, int], flow: int = 0,
+    ) -> None:  # fmt: skip
+        span = kind, self._where, name, begin_cclk, end_cclk, self._stage, issue_cclk, stall_cclk, 0, flow
+        self._timeline.spans.append(_span(span))
 
     def level(self, name: str, value: int, at_cclk: int) -> None:
         """Note how high a level of the core's own is from a cycle on."""

@@ -210,12 +210,12 @@ def test_spans_are_told_while_the_run_goes_on() -> None:
     """A timeline is handed out in parts, and nobody keeps it."""
 
     def work(core: Core, frame: Frame) -> Play:
-        for _ in range(400):
+        for _ in range(100):
             yield core.run(spin, 1)
             yield from core.post("token")
 
     parts: list[int] = []
     board = made_board(every_frame(work), see_all)
     board.run(noise(20, board.size), on_spans=lambda spans: parts.append(len(spans)))
-    assert len(parts) >= 4
-    assert max(parts) < 5000
+    assert len(parts) > 10
+    assert max(parts) < 1000

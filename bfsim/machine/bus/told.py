@@ -13,7 +13,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.traffic import MASTERS
 from bfsim.machine.timeline import Timeline
-from bfsim.spans import Span, SpanKind
+from bfsim.spans import SpanKind
 
 NAMES = {master: name for name, masters in MASTERS.items() for master in masters}
 MOST_PENDING = 1024
@@ -50,6 +50,7 @@ class ToldBus:
         self._pending: dict[int, bool] = {}  # by number: whether a core waited for its end
         self._free_at: dict[int, int] = {}
         self._sampled_cclk = 0
+        self._next_sample = SAMPLE_CCLK * self._cclk_ticks
         self._busy = dict.fromkeys(_BUSY, 0)
         self._l2_bytes = 0
 
@@ -77,18 +78,17 @@ class ToldBus:
                 begin, self._free_at[master] = max(at, self._free_at.get(master, 0)), end
                 flow = number + 1 if self._pending.pop(number) else 0
                 edges = self._timeline.cclk(begin), self._timeline.cclk(end)
-                self._timeline.spans.append(
-                    Span(SpanKind.TRANSFER, NAMES[master], name, *edges, value=nbytes, flow=flow)
-                )
+                self._timeline.span(SpanKind.TRANSFER, NAMES[master], name, *edges, nbytes, flow)
 
     # ---- load
 
     def sample(self, now: int) -> None:
         """Tell how busy the bus was since the last time, if that is long enough ago; it has come up to tick `now`."""
+        if now < self._next_sample:
+            return
         now_cclk = now // self._cclk_ticks
         elapsed_cclk = now_cclk - self._sampled_cclk
-        if elapsed_cclk < SAMPLE_CCLK:
-            return
+        self._next_sample = now + SAMPLE_CCLK * self._cclk_ticks
         for who, masters in _BUSY.items():
             before, self._busy[who] = self._busy[who], self._sum(masters, w.IN_SDRAM, (w.BUSY,))
             percent = 100 * (self._busy[who] - before) // (elapsed_cclk * self._cclk_ticks)

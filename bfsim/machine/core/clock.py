@@ -91,6 +91,11 @@ class CoreClock:
         self._cclk += cclk
         self._account.issue_cclk += cclk
 
+    @property
+    def is_told(self) -> bool:
+        """Whether a timeline is told what this core does."""
+        return self._timeline is not None
+
     def tell_level(self, name: str, value: int) -> None:
         """Tell the timeline, if there is one, how high a level of this core's is from now on."""
         if self._timeline:

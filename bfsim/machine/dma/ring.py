@@ -45,6 +45,7 @@ class InputRing:
         self._image = image
         self._rows = rows
         self._height, self._depth = len(image), len(rows)
+        self._level = f"ring {rows[0].buffer}"
         self._taken = 0
         self._coming: Transfer | None = None
         """The next line's transfer."""
@@ -65,7 +66,7 @@ class InputRing:
         self._coming = self._fetch(number + 1) if number + 1 < self._height else None
         core.settle()
         is_there = core.has(transfer)
-        core.tell_level(f"ring {self._rows[0].buffer}", int(is_there))
+        core.tell_level(self._level, int(is_there))
         if not is_there:
             yield from core.wait_transfer(transfer, StallReason.RING_EMPTY)
         return self._rows[number % self._depth]
@@ -93,6 +94,7 @@ class OutputRing:
         self._image = image
         self._rows = rows
         self._height, self._depth = len(image), len(rows)
+        self._level = f"ring {rows[0].buffer}"
         self._transfers: list[Transfer] = []
 
     def row(self) -> Generator[Any, Any, Row]:
@@ -112,12 +114,13 @@ class OutputRing:
         self._core.program_device(writes=COPY_WRITES, reads=COPY_READS)
         row = self._rows[number % self._depth]
         self._transfers.append(self._stream.copy(row, self._image[number], self._core.now_ticks))
-        self._tell_fill()
+        if self._core.is_told:
+            self._tell_fill()
 
     def _tell_fill(self) -> None:
         """Tell how many rows wait for their DMA."""
         on_their_way = [each for each in self._transfers[-self._depth :] if not self._core.has(each)]
-        self._core.tell_level(f"ring {self._rows[0].buffer}", len(on_their_way))
+        self._core.tell_level(self._level, len(on_their_way))
 
     @property
     def waits(self) -> Waits:
