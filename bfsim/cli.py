@@ -17,6 +17,7 @@ from bfsim.cli_ldf import ldf
 from bfsim.cli_record import record
 from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run, warn
 from bfsim.cli_seen import takes_views, watching
+from bfsim.cli_timeline import takes_timelines, timelines
 from bfsim.endings import LIMIT_BROKEN, exit_code_of
 from bfsim.errors import ConfigError
 from bfsim.terminal import print_report
@@ -89,6 +90,7 @@ main.add_command(ldf)
 )
 @takes_views
 @takes_html
+@takes_timelines
 def run(
     json_path: Path | None,
     features: bool,
@@ -99,6 +101,8 @@ def run(
     layers: tuple[str, ...] | None,
     html: Path | None,
     target: Target | None,
+    trace: Path | None,
+    flame: Path | None,
     **what: Any,
 ) -> None:
     """Run RECORDING through the firmware and print the frame timing budget on one screen.
@@ -115,6 +119,7 @@ def run(
       bfsim run drive.mcap --overlay drive-seen --mcap drive-seen.mcap
       bfsim run drive.mcap --overlay lines.gif --layers lines,above
       bfsim run drive.mcap --html drive.html --target 15Hz
+      bfsim run drive.mcap --trace drive.pftrace
     """
     from bfsim.report.as_json import json_chunks
     from bfsim.report.save import require_apart, require_place, write_text
@@ -123,9 +128,10 @@ def run(
     from bfsim.report.tables import run_report
     from bfsim.run import has_view
 
+    read = what["recording"], what["ldf"], what["script"]
     if json_path and json_path != STDOUT:
         require_place(json_path)
-        require_apart(json_path, (what["recording"], what["ldf"], what["script"], mcap, overlay))
+        require_apart(json_path, (*read, mcap, overlay))
     if features and not json_path:
         raise ConfigError("--features must come with --json FILE, which it adds to")
     is_telling = bool(json_path) and has_view(what["firmware"])
@@ -138,6 +144,7 @@ def run(
         with (
             watching(watchers, show=show, overlay=overlay, mcap=mcap, layers=layers),
             paging(watchers, html, target, what, (json_path, mcap, overlay)),
+            timelines(watchers, trace, flame, (*read, json_path, mcap, overlay, html)),
         ):
             if is_telling:
                 watchers.seen.append(seen.add)
@@ -165,7 +172,16 @@ def run(
     help="Show the N source lines that cost most.",
 )
 @takes_html
-def profile(core: str | None, top: int, html: Path | None, target: Target | None, **what: Any) -> None:
+@takes_timelines
+def profile(
+    core: str | None,
+    top: int,
+    html: Path | None,
+    target: Target | None,
+    trace: Path | None,
+    flame: Path | None,
+    **what: Any,
+) -> None:
     """Run RECORDING and print where the cycles go: stage, kernel, source line, memory.
 
     The cycles here are issue cycles; `bfsim run` has the stalls beside them.
@@ -174,11 +190,13 @@ def profile(core: str | None, top: int, html: Path | None, target: Target | None
     Examples:
       bfsim profile
       bfsim profile drive.mcap --core A --top 40
+      bfsim profile drive.mcap --trace drive.pftrace --flame drive.speedscope.json
     """
     from bfsim.report.profile_tables import profile_report
 
     watchers = Watchers()
-    with paging(watchers, html, target, what):
+    read = what["recording"], what["ldf"], what["script"]
+    with paging(watchers, html, target, what), timelines(watchers, trace, flame, (*read, html)):
         done = simulated(watchers=watchers, **what)
     print_report(profile_report(done, core, top))
     exit_if_interrupted(done)

@@ -81,6 +81,7 @@ MAY_IMPORT = {
     "cli_recorded": {"recording"},
     "cli_record": {"cli_recorded", "cli_sizes", "errors", "recording", "scenery", "shipped", "terminal"},
     "cli_seen": {"errors", "recording", "report", "run", "seen", "trace", "watchers"},
+    "cli_timeline": {"report", "spans", "trace", "watchers"},
     "cli_running": {
         "cli_hardware",
         "cli_ldf",
@@ -94,7 +95,16 @@ MAY_IMPORT = {
         "watchers",
     },
     "cli": {"endings", "errors", "explain", "report", "run", "shipped", "terminal", "trace", "watchers"}
-    | {"cli_boards", "cli_colours", "cli_html", "cli_ldf", "cli_record", "cli_running", "cli_seen"},
+    | {
+        "cli_boards",
+        "cli_colours",
+        "cli_html",
+        "cli_ldf",
+        "cli_record",
+        "cli_running",
+        "cli_seen",
+        "cli_timeline",
+    },
     "__main__": {"cli", "endings", "signals"},
 }
 MACHINE = {
@@ -130,7 +140,7 @@ MACHINE = {
     },
 }
 """Each block of the machine and what it may import of the others. The board wires them: it imports them all."""
-READ_VERSION = {"recording", "run", "cli"}  # these also read `bfsim.__version__`
+READ_VERSION = {"recording", "report", "run", "cli"}  # these also read `bfsim.__version__`
 
 
 def imported_modules(path: Path) -> Iterator[str]:

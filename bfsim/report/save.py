@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from typing import IO
 
 from bfsim.drafts import draft_folder
 from bfsim.errors import ConfigError
@@ -39,16 +41,38 @@ def write_bytes(path: Path, content: Iterable[bytes]) -> None:
 
     Raises ConfigError where the system refuses.
     """
+    with growing_file(path) as stream, writing(path):
+        stream.writelines(content)
+
+
+@contextmanager
+def growing_file(path: Path) -> Iterator[IO[bytes]]:
+    """Yield a stream whose content takes its place at `path` on a clean exit of the `with` block, as that of `write_bytes`."""
     require_place(path)
     target = _resolved(path)
+    with ExitStack() as stack:
+        with writing(path):
+            draft = stack.enter_context(draft_folder(target.parent)) / target.name
+            stream = draft.open("wb")
+        try:
+            yield stream
+            with writing(path):
+                stream.close()
+                if target.exists():
+                    shutil.copymode(target, draft)
+                draft.replace(target)
+        finally:
+            with suppress(
+                OSError
+            ):  # a full disk refuses what is still buffered; the draft goes away all the same
+                stream.close()
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Turn what the system says against writing into a ConfigError."""
     try:
-        with draft_folder(target.parent) as folder:
-            draft = folder / target.name
-            with draft.open("wb") as stream:
-                stream.writelines(content)
-            if target.exists():
-                shutil.copymode(target, draft)
-            draft.replace(target)
+        yield
     except OSError as error:
         raise ConfigError(f"{path} must be writable: {error.strerror}") from error
 
