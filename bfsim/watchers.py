@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from bfsim.seen import SeenFrame
-from bfsim.spans import Span
-from bfsim.trace import Identity, RunRecord
+if TYPE_CHECKING:  # they take time to import
+    from bfsim.seen import SeenFrame
+    from bfsim.spans import Span
+    from bfsim.trace import Identity, RunRecord
 
 
 @dataclass(frozen=True, slots=True)
