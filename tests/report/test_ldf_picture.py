@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import colorsys
 from io import BytesIO
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -10,8 +11,8 @@ import pytest
 from PIL import Image
 
 from bfsim.errors import ConfigError
-from bfsim.report.ldf.colours import colours_of
-from bfsim.report.ldf.drawing import BAR_HEIGHT, PANEL_WIDTH, drawing_of
+from bfsim.report.ldf.colours import HUES, colours_of
+from bfsim.report.ldf.drawing import BAR_HEIGHT, LETTER_WIDTH, PANEL_WIDTH, drawing_of
 from bfsim.report.ldf.map import Kind
 from bfsim.report.ldf.picture import PIXELS, picture_bytes, png_of, svg_of
 from tests.report.ldf_maps import BANK_BYTES, a_map, a_segment, a_symbol
@@ -30,6 +31,36 @@ def test_names_have_colours_of_their_own() -> None:
     again = [a_symbol(f"b{number}", Kind.LINES, "B", number * 1000) for number in range(40)]
     colours = colours_of(a_map(a_segment("SDRAM", *buffers), a_segment("SDRAM", *again)))
     assert len(colours) == len(set(colours.values())) == 40
+
+
+def test_a_kind_has_a_hue() -> None:
+    """Forty buffers of a kind are nearer to its own hue than to that of any other kind, and light enough for black letters."""
+    for kind, hue in HUES.items():
+        made = [a_symbol(f"b{number}", kind, "A", number * 1000) for number in range(40)]
+        for colour in colours_of(a_map(a_segment("SDRAM", *made))).values():
+            red, green, blue = (int(colour[at : at + 2], 16) / 255 for at in (1, 3, 5))
+            found, lightness, _ = colorsys.rgb_to_hls(red, green, blue)
+            off = {each: abs((found - HUES[each] + 0.5) % 1 - 0.5) for each in HUES}
+            assert min(off, key=lambda each: off[each]) is kind, (colour, hue)
+            assert lightness > 0.59
+
+
+def test_labels_do_not_overprint() -> None:
+    """No two texts of the sheet meet, by the width that is taken for each letter; long names have fewer columns."""
+    long = [
+        a_symbol(f"a_name_of_more_than_thirty_letters_{number}", Kind.ROW, "A", 1000 * number, 900)
+        for number in range(5)
+    ]
+    for made in (MAP, a_map(a_segment("SDRAM", *long))):
+        boxes = [
+            (x, x + width, each.y)
+            for each in drawing_of(made).words
+            for width in [len(each.text) * each.font_px * LETTER_WIDTH]
+            for x in [each.x - width * each.is_right]
+        ]
+        for number, (left, right, y) in enumerate(boxes):
+            for other in boxes[:number]:
+                assert right <= other[0] or other[1] <= left or abs(y - other[2]) >= 12
 
 
 def test_bars_are_to_scale() -> None:

@@ -1,32 +1,54 @@
-"""One colour for each name in a memory map: the same buffer looks the same in every memory and on both cores."""
+"""A hue for each kind of buffer, and in it a shade for each name: the same buffer looks the same in every memory and on both cores."""
 
 from __future__ import annotations
 
 import colorsys
+from collections import Counter
+from collections.abc import Mapping
 
 from bfsim.report.ldf.map import Kind, MemoryMap
 
 CODE_COLOUR = "#8c96a8"
-GOLDEN_TURN = 0.618034
-"""Steps of this part of a turn spread hues evenly, however many there are."""
 
-SHADES = ((0.60, 0.65), (0.52, 0.80), (0.72, 0.45))  # lightness and saturation, in turns
-FIRST_HUE = 0.58
+HUES: Mapping[Kind, float] = {Kind.CAMERA: 0.36, Kind.LINES: 0.58, Kind.ROW: 0.10, Kind.TABLE: 0.83}
+"""Of a turn: green, blue, orange, magenta."""
+
+HUE_RANGE = 0.10
+"""So far apart are the hues of a kind: less than half of what lies between two kinds."""
+
+LIGHTNESS, SATURATION = (0.60, 0.86), (0.40, 0.85)
+"""Light enough for black letters."""
+
+STEPS = 0.618034, 0.754878, 0.569840
+"""Steps of such parts of a range spread evenly over it, however many there are, and neighbours far apart: the golden section,
+and its like for two [Roberts 2018, the R2 sequence]."""
 
 
 def colours_of(memory_map: MemoryMap) -> dict[str, str]:
     """Return a colour, #rrggbb, for the name of every piece that is not free or reserved."""
     colours: dict[str, str] = {}
+    known: Counter[Kind] = Counter()
     for segment in memory_map.segments:
         for piece in segment.pieces:
             if piece.kind is Kind.CODE:
                 colours[piece.name] = CODE_COLOUR
             elif piece.is_named and piece.name not in colours:
-                colours[piece.name] = _colour(len(colours))
+                colours[piece.name] = _shade(piece.kind, known[piece.kind])
+                known[piece.kind] += 1
     return colours
 
 
-def _colour(number: int) -> str:
-    lightness, saturation = SHADES[number % len(SHADES)]
-    rgb = colorsys.hls_to_rgb((FIRST_HUE + number * GOLDEN_TURN) % 1, lightness, saturation)
+def kind_colour(kind: Kind) -> str:
+    """Return the colour that stands for a kind: that of its first buffer, or the one of all code."""
+    return CODE_COLOUR if kind is Kind.CODE else _shade(kind, 0)
+
+
+def _shade(kind: Kind, number: int) -> str:
+    """Return the colour of the buffer `number` of its kind."""
+    light, full, turn = ((0.5 + number * step) % 1 for step in STEPS)
+    lightness, saturation = (
+        low + part * (high - low) for part, (low, high) in ((light, LIGHTNESS), (full, SATURATION))
+    )
+    hue = (HUES[kind] + (turn - 0.5) * HUE_RANGE) % 1
+    rgb = colorsys.hls_to_rgb(hue, lightness, saturation)
     return "#" + "".join(f"{round(255 * part):02x}" for part in rgb)

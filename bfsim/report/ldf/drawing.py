@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
 
-from bfsim.report.ldf.colours import colours_of
+from bfsim.report.ldf.colours import colours_of, kind_colour
 from bfsim.report.ldf.map import SHARED, Kind, MapPiece, MapSegment, MemoryMap
 from bfsim.report.units import size
 
@@ -21,7 +21,17 @@ BAR_HEIGHT, TITLE_HEIGHT, LINE_HEIGHT, PANEL_GAP = 44, 24, 20, 22
 FONT, SMALL_FONT, TITLE_FONT = 14, 12, 20
 LETTER_WIDTH = 0.6  # of the font's size: the widest sans-serif digits
 SWATCH = 12
-LEGEND_COLUMNS = 3
+MOST_LEGEND_COLUMNS = 3
+SEAM_WIDTH = 4  # of a piece that is wide enough for one
+
+KINDS = {
+    Kind.CODE: "code",
+    Kind.CAMERA: "filled by a camera",
+    Kind.LINES: "images and rings",
+    Kind.ROW: "rows",
+    Kind.TABLE: "tables",
+}
+"""What the hues stand for."""
 
 INK, FAINT, PAPER = "#1c2430", "#6b7585", "#ffffff"
 FREE_COLOUR, RESERVED_COLOUR = "#eef1f5", "#c3cad6"
@@ -85,14 +95,15 @@ class _Pen:
     colours: dict[str, str]
 
     def heading(self, memory_map: MemoryMap) -> None:
-        """Draw what the map is of, and what its two greys mean."""
+        """Draw what the map is of, and what its hues and its greys mean."""
         y = MARGIN + TITLE_FONT / 2
         what = f" with {memory_map.firmware} at {memory_map.width_px}x{memory_map.height_px}"
         title = f"{memory_map.ldf} on {memory_map.board}{what if memory_map.firmware else ''}"
         self._write(MARGIN, y, title, font_px=TITLE_FONT)
         y += 30
         x: float = MARGIN
-        for fill, name in ((FREE_COLOUR, "free"), (RESERVED_COLOUR, "reserved, or a gap")):
+        kinds = [(kind_colour(kind), name) for kind, name in KINDS.items()]
+        for fill, name in (*kinds, (FREE_COLOUR, "free"), (RESERVED_COLOUR, "reserved, or a gap")):
             x = self._entry(x, y, fill, name)
         caches = ", ".join(f"{size(each.nbytes)} of {each.memory}" for each in memory_map.caches)
         if caches:
@@ -122,23 +133,24 @@ class _Pen:
         self._write(x, y, f"0x{segment.start:08X}", font_px=SMALL_FONT, colour=FAINT)
         self._write(x + PANEL_WIDTH, y, end, font_px=SMALL_FONT, colour=FAINT, is_right=True)
         y += LINE_HEIGHT
-        entries = [each for each in segment.pieces if each.is_named]
-        for number, piece in enumerate(entries):
-            column, line = number % LEGEND_COLUMNS, number // LEGEND_COLUMNS
-            place = x + column * PANEL_WIDTH / LEGEND_COLUMNS
-            self._entry(
-                place,
-                y + line * LINE_HEIGHT,
-                self._fill(piece),
-                f"{segment.label(piece)}  {size(piece.nbytes)}",
-            )
-        return y + -(-len(entries) // LEGEND_COLUMNS) * LINE_HEIGHT + PANEL_GAP
+        entries = [
+            (self._fill(each), f"{segment.label(each)}  {size(each.nbytes)}")
+            for each in segment.pieces
+            if each.is_named
+        ]
+        columns = _columns([label for _, label in entries])
+        for number, (fill, label) in enumerate(entries):
+            line, column = divmod(number, columns)
+            self._entry(x + column * PANEL_WIDTH / columns, y + line * LINE_HEIGHT, fill, label)
+        return y + -(-len(entries) // columns) * LINE_HEIGHT + PANEL_GAP
 
     def _bar(self, x: float, y: float, segment: MapSegment) -> None:
         scale = PANEL_WIDTH / segment.nbytes
         for piece in segment.pieces:
             left, width = x + (piece.start - segment.start) * scale, piece.nbytes * scale
-            self._box(left, y, width, BAR_HEIGHT, self._fill(piece))
+            # a seam tells neighbours of one kind apart
+            seam = PAPER if piece.is_named and width > SEAM_WIDTH else ""
+            self._box(left, y, width, BAR_HEIGHT, self._fill(piece), seam)
             if piece.is_named and _width(segment.label(piece), SMALL_FONT) < width - 6:
                 middle = y + BAR_HEIGHT / 2
                 self._write(left + 3, middle - 8, segment.label(piece), font_px=SMALL_FONT)
@@ -165,6 +177,12 @@ class _Pen:
         self, x: float, y: float, text: str, *, font_px: int = FONT, colour: str = INK, is_right: bool = False
     ) -> None:
         self.sheet.words.append(Words(x=x, y=y, text=text, font_px=font_px, colour=colour, is_right=is_right))
+
+
+def _columns(labels: Sequence[str]) -> int:
+    """Return how many columns a legend may have without one label over the next."""
+    widest = SWATCH + 6 + max((_width(each, SMALL_FONT) for each in labels), default=0) + 6
+    return max(1, min(MOST_LEGEND_COLUMNS, int(PANEL_WIDTH // widest)))
 
 
 def _width(text: str, font_px: int) -> float:
