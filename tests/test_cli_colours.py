@@ -95,7 +95,7 @@ def test_the_picture_stands_beside_its_colours(thirds: Path, tmp_path: Path) -> 
 def test_a_mode_changes_what_colours_are_called(thirds: Path, tmp_path: Path) -> None:
     """With the thesis's rule the grey third is yellow, from the frame on in which the order holds."""
     script = tmp_path / "thesis.json"
-    edges = {"least_chroma": 0, "shade_chroma": 0}
+    edges = {"least_chroma": 0}
     script.write_text(json.dumps({"send": [{"mode": {"edges": edges}}]}))
     assert seen(thirds) == {"orange": 0.33, "blue": 0.33, "no colour": 0.33}
     assert seen(thirds, "--script", script) == {"orange": 0.33, "yellow": 0.33, "black": 0.33}

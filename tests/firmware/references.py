@@ -89,18 +89,14 @@ def suppress(gradient: Picture, direction: Picture, threshold: int) -> Picture:
     return with_border(kept, 0)
 
 
-def colours(
-    uyvy: Picture, eps_black: int, eps_white: int, least_chroma: int, shade_chroma: int
-) -> NDArray[np.uint32]:
-    """Reduce to one bit of 32 per pixel, or none (T Eq. 5.1-5.4, and the least chroma by the luma of the pair)."""
+def colours(uyvy: Picture, eps_black: int, eps_white: int, least_chroma: int) -> NDArray[np.uint32]:
+    """Reduce to one bit of 32 per pixel, or none (T Eq. 5.1-5.4, and the least chroma), each pixel by itself."""
     u = np.repeat(uyvy[:, 0::4], 2, axis=1).astype(np.int64) - 128
     v = np.repeat(uyvy[:, 2::4], 2, axis=1).astype(np.int64) - 128
     chroma = np.floor(np.sqrt(v**2 + u**2)).astype(np.int64)
     brightness = luma(uyvy) - chroma
-    lumas = np.repeat(luma(uyvy)[:, 0::2].astype(np.int64) + luma(uyvy)[:, 1::2], 2, axis=1)
-    least = shade_chroma + np.floor((least_chroma - shade_chroma) * np.minimum(lumas / 256, 1))
-    black = (brightness < eps_black) & ((chroma < least) | (least_chroma == 0))
-    hue = np.where(chroma < least, 0, 1 << 3 + 28 * angle(v, u) // 256)
+    black = (brightness < eps_black) & ((chroma < least_chroma) | (least_chroma == 0))
+    hue = np.where(chroma < least_chroma, 0, 1 << 3 + 28 * angle(v, u) // 256)
     return np.select([black, brightness > eps_white], [1 << 1, 1 << 2], hue).astype(np.uint32)
 
 

@@ -18,21 +18,18 @@ HELPER uint32_t colour_word(int32_t brightness, uint32_t hue, int32_t eps_black,
 }
 
 KERNEL void colour_row(const uint8_t uyvy[], const uint8_t atan[], uint32_t colours[], int32_t eps_black,
-                       int32_t eps_white, int32_t least_chroma, int32_t shade_chroma, int32_t colours_length)
+                       int32_t eps_white, int32_t least_chroma, int32_t colours_length)
 {
-    int32_t never_black = least_chroma != 0 ? 0 : MOST_CHROMA + 1;
-    int32_t slope = least_chroma - shade_chroma;
+    int32_t never_black = least_chroma != 0 ? least_chroma : MOST_CHROMA + 1;
     for (int32_t pair = 0; pair < colours_length >> 1; pair++) {
         int32_t u = uyvy[4 * pair] - 128;
         int32_t v = uyvy[4 * pair + 2] - 128;
         int32_t chroma = (int32_t)isqrt32((uint32_t)(v * v + u * u));
         int32_t left = uyvy[4 * pair + 1] - chroma;
         int32_t right = uyvy[4 * pair + 3] - chroma;
-        int32_t shade = slope * (uyvy[4 * pair + 1] + uyvy[4 * pair + 3]) >> 8;
-        int32_t least = min(shade_chroma + shade, least_chroma);
-        int32_t darkest = chroma < max(least, never_black) ? eps_black : DARKEST;
+        int32_t darkest = chroma < never_black ? eps_black : DARKEST;
         uint32_t hue = 0;
-        if (chroma >= least && max(left, right) >= darkest && min(left, right) <= eps_white)
+        if (chroma >= least_chroma && max(left, right) >= darkest && min(left, right) <= eps_white)
             hue = 1u << (FIRST_HUE + (angle8(v, u, atan) * HUES >> 8));
         colours[2 * pair] = colour_word(left, hue, darkest, eps_white);
         colours[2 * pair + 1] = colour_word(right, hue, darkest, eps_white);

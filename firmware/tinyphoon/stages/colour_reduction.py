@@ -6,9 +6,9 @@ By Eq. 5.2 alone grey gets a hue, that of its noise, and what has more chroma th
 least chroma mends both [ours]: a pixel with less has no hue, so that it is black, white or of no colour; one with as much
 is never black, however dark. A least chroma of 0 is the thesis's rule.
 
-What lies in the shade has less chroma by as much as it has less luma; a red half as bright has half the chroma. So the least
-chroma of dark pixels may be a lower one, down to what the noise leaves of a hue. Light of another colour than the camera's
-white balance takes it for is balanced before, by the gains of red and blue that cameras have.
+Light of another colour than the camera's white balance takes it for is balanced before, by the gains of red and blue that
+cameras have. What lies in the shade has less chroma by as much as it has less luma: a red half as bright has half the chroma. So the
+chroma of dark pixels may get a gain, too, as far as the noise leaves a hue [ours].
 """
 
 from __future__ import annotations
@@ -29,11 +29,12 @@ AS_IT_IS = 64
 
 
 @kernel
-def balance_row(uyvy: u8[:], red_gain: i32, blue_gain: i32) -> None:
-    """Multiply red and blue of one row, in place, by gains in 64ths; the luma stays.
+def balance_row(uyvy: u8[:], red_gain: i32, blue_gain: i32, shade_gain: i32) -> None:
+    """Multiply red, blue and the chroma of what is dark of one row, in place, by gains in 64ths; the luma stays.
 
     With U = 0.564 (B - Y) and V = 0.713 (R - Y) [BT.601], a gain of g on blue makes g U + 0.564 (g - 1) Y of U. The two
-    pixels of a pair share U and V, and give the mean of their lumas.
+    pixels of a pair share U and V, and give the mean of their lumas. The gain in the shade is that of pixels without luma, and
+    falls to 1 at a luma of 128.
     """
     lift_u = (blue_gain - 64) * 72  # half of 0.564, in 256ths
     lift_v = (red_gain - 64) * 91  # half of 0.713
@@ -43,8 +44,9 @@ def balance_row(uyvy: u8[:], red_gain: i32, blue_gain: i32) -> None:
         luma = uyvy[4 * pair + 1] + uyvy[4 * pair + 3]
         u = (uyvy[4 * pair] - 128) * gain_u + lift_u * luma >> 14
         v = (uyvy[4 * pair + 2] - 128) * gain_v + lift_v * luma >> 14
-        uyvy[4 * pair] = max(min(u, 127), -128) + 128
-        uyvy[4 * pair + 2] = max(min(v, 127), -128) + 128
+        shade = 64 + ((shade_gain - 64) * max(256 - luma, 0) >> 8)
+        uyvy[4 * pair] = max(min(u * shade >> 6, 127), -128) + 128
+        uyvy[4 * pair + 2] = max(min(v * shade >> 6, 127), -128) + 128
 
 
 @kernel
@@ -59,34 +61,24 @@ def colour_word(brightness: i32, hue: u32, eps_black: i32, eps_white: i32) -> u3
 
 @kernel
 def colour_row(
-    uyvy: u8[:],
-    atan: u8[:],
-    colours: u32[:],
-    eps_black: i32,
-    eps_white: i32,
-    least_chroma: i32,
-    shade_chroma: i32,
+    uyvy: u8[:], atan: u8[:], colours: u32[:], eps_black: i32, eps_white: i32, least_chroma: i32
 ) -> None:
     """Reduce the colours of one row: `2 * width` bytes to `width` words.
 
     The two pixels of a pair share U and V, and with them root and hue. The hue is looked up only if one of
     the two may have a colour. It is the 8-bit angle of (V, U) cut into 28 equal parts: dividing it by 10, as
-    T Eq. 5.2 is printed, would make 26 hues and not the 28 of its text. A pixel of no colour is 0. The least chroma falls
-    with the luma of the pair from `least_chroma` at 128 to `shade_chroma` at 0.
+    T Eq. 5.2 is printed, would make 26 hues and not the 28 of its text. A pixel of no colour is 0.
     """
-    never_black = 0 if least_chroma != 0 else MOST_CHROMA + 1
-    slope = least_chroma - shade_chroma
+    never_black = least_chroma if least_chroma != 0 else MOST_CHROMA + 1
     for pair in range(len(colours) >> 1):
         u = uyvy[4 * pair] - 128
         v = uyvy[4 * pair + 2] - 128
         chroma = i32(isqrt32(u32(v * v + u * u)))
         left = uyvy[4 * pair + 1] - chroma
         right = uyvy[4 * pair + 3] - chroma
-        shade = slope * (uyvy[4 * pair + 1] + uyvy[4 * pair + 3]) >> 8
-        least = min(shade_chroma + shade, least_chroma)
-        darkest = eps_black if chroma < max(least, never_black) else DARKEST
+        darkest = eps_black if chroma < never_black else DARKEST
         hue: u32 = 0
-        if chroma >= least and max(left, right) >= darkest and min(left, right) <= eps_white:
+        if chroma >= least_chroma and max(left, right) >= darkest and min(left, right) <= eps_white:
             hue = u32(1) << (FIRST_HUE + (angle8(v, u, atan) * HUES >> 8))
         colours[2 * pair] = colour_word(left, hue, darkest, eps_white)
         colours[2 * pair + 1] = colour_word(right, hue, darkest, eps_white)

@@ -29,9 +29,9 @@ class EdgeThresholds:
     units, a quarter of a Sobel gradient; 1..255.
     `eps_black`, `eps_white`: limits of luma minus chroma in grey levels (T Eq. 5.2); -182..255. A pixel
     below the first is black, above the second white, and has a hue between them. `least_chroma`: a pixel with less has
-    no hue, and one with as much is never black; in the units of U and V, 0..181; 0: T Eq. 5.2 alone. `shade_chroma`: the
-    least chroma of a pixel without luma, from which it rises with the luma to `least_chroma` at 128.
-    `red_gain`, `blue_gain`: the white balance, by which red and blue are multiplied before; in 64ths, 16..255.
+    no hue, and one with as much is never black; in the units of U and V, 0..181; 0: T Eq. 5.2 alone.
+    `red_gain`, `blue_gain`: the white balance, by which red and blue are multiplied before; in 64ths, 16..255. `shade_gain`: by
+    what the chroma of a pixel without luma is; it falls to 64 at a luma of 128; 64..255.
     """
 
     gauss_px: Literal[3, 5]
@@ -40,19 +40,24 @@ class EdgeThresholds:
     eps_black: int = allowed(-182, 255, at_most="eps_white")
     eps_white: int = allowed(-182, 255)
     least_chroma: int = allowed(0, 181)
-    shade_chroma: int = allowed(0, 181, at_most="least_chroma")
     red_gain: int = allowed(16, 255)
     blue_gain: int = allowed(16, 255)
+    shade_gain: int = allowed(AS_IT_IS, 255)
 
     @property
-    def colour_limits(self) -> tuple[int, int, int, int]:
+    def colour_limits(self) -> tuple[int, int, int]:
         """The last arguments of `colour_row`."""
-        return self.eps_black, self.eps_white, self.least_chroma, self.shade_chroma
+        return self.eps_black, self.eps_white, self.least_chroma
 
     @property
-    def gains(self) -> tuple[int, int]:
+    def gains(self) -> tuple[int, int, int]:
         """The last arguments of `balance_row`."""
-        return self.red_gain, self.blue_gain
+        return self.red_gain, self.blue_gain, self.shade_gain
+
+    @property
+    def is_balanced(self) -> bool:
+        """Whether all gains leave the colours as the camera has them."""
+        return set(self.gains) == {AS_IT_IS}
 
 
 @kernel
@@ -223,7 +228,7 @@ def scan(
         if y < height:
             line = yield from camera.line()
             yield core.run(grey_row, line, grey[y])
-            if thresholds.gains != (AS_IT_IS, AS_IT_IS):
+            if not thresholds.is_balanced:
                 yield core.run(balance_row, line, *thresholds.gains)
             row = yield from colours.row()
             yield core.run(colour_row, line, atan, row, *thresholds.colour_limits)

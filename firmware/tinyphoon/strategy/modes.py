@@ -108,11 +108,12 @@ INDOOR_FIELD = Mode(
         # Half a hue is 6.4 degrees: at this chroma a noise of three levels in U or V turns a colour by as much. And light
         # that is a tenth too warm or too cold for the camera's white balance gives a bright grey, of 255 levels, no more.
         least_chroma=28,
-        # There a noise of three levels turns a colour by two thirds of a hue: less than what models allow on either side.
-        shade_chroma=20,
         # Cameras balance themselves; pictures that are not are measured by `bfsim colours`.
         red_gain=AS_IT_IS,
         blue_gain=AS_IT_IS,
+        # Twice the chroma in the shade keeps more than twice as many hues there (`docs/tinyphoon.md`), but finds no more
+        # balls in a real hall, and four times as many false ones: wood and clothes are pale and dim.
+        shade_gain=AS_IT_IS,
     ),
     blobs=BlobThresholds(
         colour_groups=colour_groups(MODELS),

@@ -35,7 +35,7 @@ def picture_colours(picture: NDArray[np.uint8], script: Script, frame: int) -> P
     thresholds = mode_at(script, frame).edges
     atan, words = arctangent_table(), np.zeros((picture.shape[0], picture.shape[1] // 2), np.uint32)
     for line, found in zip(picture.copy(), words, strict=True):
-        if thresholds.gains != (AS_IT_IS, AS_IT_IS):
+        if not thresholds.is_balanced:
             balance_row(line, *thresholds.gains)
         colour_row(line, atan, found, *thresholds.colour_limits)
     known = dict(_colours())
