@@ -20,7 +20,7 @@ from bfsim.terminal import print_report, progress_bar
 if TYPE_CHECKING:
     from bfsim import recording
 
-SOURCE_FORMATS = ("images", "uyvy", "i420", "y4m", "video")
+SOURCE_FORMATS = ("images", "uyvy", "i420", "y4m", "video", "rosbag")
 """Those of bfsim.recording, which takes its time to import."""
 
 _SKIPPED_LISTED = 10
@@ -65,6 +65,18 @@ def record() -> None:
 @click.option("--crop", type=Size(), metavar="WxH", help="Keep the middle of every picture, unscaled.")
 @click.option("--fps", type=float, help="Frames per second.  [default: the source's own, or 30]")
 @click.option(
+    "--topics",
+    nargs=2,
+    metavar="LEFT RIGHT",
+    help="Image topics of a bag.  [default: the two whose names differ by left and right]",
+)
+@click.option(
+    "--slop",
+    type=click.FloatRange(min=0),
+    metavar="MS",
+    help="How far the time stamps of two pictures of a bag may be apart.  [default: half a frame]",
+)
+@click.option(
     "--geometry",
     type=float,
     nargs=4,
@@ -90,6 +102,8 @@ def import_command(
     resize: tuple[int, int] | None,
     crop: tuple[int, int] | None,
     fps: float | None,
+    topics: tuple[str, str] | None,
+    slop: float | None,
     geometry: tuple[float, float, float, float] | None,
     rectification: tuple[str, str] | None,
     description: str,
@@ -98,7 +112,9 @@ def import_command(
     """Make the recording OUTPUT from pictures.
 
     A SOURCE is a folder of images, a quoted pattern such as "seq/left_*.png", one image, a raw file
-    (.uyvy, .yuv or .i420), a .y4m file or a video. Two sources are the left and the right camera.
+    (.uyvy, .yuv or .i420), a .y4m file or a video. Two sources are the left and the right camera. A bag of ROS (.bag of
+    ROS 1, .mcap, .db3 or the folder of ROS 2) is one source with both: pictures are paired by their time stamps, and
+    camera_info becomes geometry and rectification. Needs rosbags: pip install "bfsim[ros]".
     Images that cannot be read, those without a picture of the other camera by their names (left_07 goes with
     right_07), and other files in a folder are skipped and listed.
 
@@ -108,6 +124,7 @@ def import_command(
       bfsim record import run.mcap frames/ --side-by-side
       bfsim record import run.mcap left/ right/ --geometry 386 30.47 120 10
       bfsim record import run.mcap left.uyvy right.uyvy --size 320x240
+      bfsim record import run.mcap drive.bag --topics /left/image_raw /right/image_raw
       bfsim record import run.mcap phone.mp4 --mono --resize 320x240
       bfsim record import run.mcap "match/*.jpg" --mono --resize 320x240 --geometry 260 0 480 12
     """
@@ -124,6 +141,8 @@ def import_command(
             side_by_side=side_by_side,
             mono=mono,
             fps=fps,
+            topics=topics,
+            slop_s=None if slop is None else slop / 1000,
             geometry=recording.StereoGeometry(*geometry) if geometry else None,
             rectification=recording.load_rectification(*rectification) if rectification else None,
             description=description,
@@ -137,6 +156,8 @@ def import_command(
     if resize or crop:
         sizes = ", ".join(f"{width}x{height}" for width, height in summary.source_sizes)
         click.echo(f"{'Scaled by a triangle filter, and cut to shape,' if resize else 'Cut'} from {sizes}")
+    for note in summary.notes:
+        click.echo(note)
     for reason, found in groupby(summary.skipped, key=lambda each: each.reason):
         skipped = [each.name for each in found]
         more = f" and {len(skipped) - _SKIPPED_LISTED} more" if len(skipped) > _SKIPPED_LISTED else ""

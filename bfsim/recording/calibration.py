@@ -20,7 +20,7 @@ from bfsim.recording.calibration_report import CalibrationReport, LensFit, LensN
 from bfsim.recording.camera_models import CameraModel, Fisheye, Fit, FittedCamera, Floats, Pinhole
 from bfsim.recording.frames import RectificationTables, StereoGeometry
 from bfsim.recording.reader import RecordingReader
-from bfsim.recording.rectifying import rectified_rotation
+from bfsim.recording.rectifying import nearest_table, rectified_rotation
 from bfsim.recording.residual_plot import draw_residuals
 from bfsim.recording.sources import Skipped
 from bfsim.recording.writer import RecordingWriter
@@ -143,7 +143,7 @@ def calibrate(
     focal = focal_px or float(np.trace(fit.cameras[0].matrix[:2, :2]) / 2)
     target = np.array([[focal, 0, (size[0] - 1) / 2], [0, focal, (size[1] - 1) / 2], [0, 0, 1]])
     pairs = list(zip(fit.cameras, turns, strict=True))
-    tables = [_table(model, camera, turn, target, size) for camera, turn in pairs]
+    tables = [nearest_table(model, camera, turn, target, size) for camera, turn in pairs]
     before, after = _row_differences(model, pairs, used, target, size)
     report = CalibrationReport(
         lens=lens,
@@ -260,18 +260,6 @@ def _row_differences(
     if not shown.any():
         shown[:] = True
     return (recorded[0] - recorded[1])[shown, 1], (left - right)[shown, 1]
-
-
-def _table(
-    model: CameraModel, camera: FittedCamera, turn: Floats, target: Floats, size: tuple[int, int]
-) -> NDArray[np.int32]:
-    """Return the nearest source row and column of each rectified pixel (2, height, width), -1 outside."""
-    columns, rows = model.sources(camera, turn, target, size)
-    # What a lens cannot see may be anywhere, even at infinity.
-    nearest = np.rint(np.nan_to_num(np.stack([rows, columns]), nan=-1, posinf=-1, neginf=-1))
-    bounds = np.array(size[::-1])[:, None, None]
-    inside = ((nearest >= 0) & (nearest < bounds)).all(axis=0)
-    return np.where(inside, nearest, -1).astype(np.int32)
 
 
 def _lens_fit(camera: FittedCamera) -> LensFit:

@@ -232,14 +232,12 @@ class Fisheye(CameraModel):
         return columns, rows
 
 
-def load_opencv() -> Any:
-    """Return OpenCV, which only calibration needs. Raises RecordingError where it is not installed."""
+def load_opencv(purpose: str = "to calibrate and rectify cameras") -> Any:
+    """Return OpenCV, which little needs. Raises RecordingError, with the purpose, where it is not installed."""
     try:
         cv2 = importlib.import_module("cv2")
     except ImportError as error:
-        raise RecordingError(
-            'OpenCV must be installed to calibrate cameras: pip install "bfsim[opencv]"'
-        ) from error
+        raise RecordingError(f'OpenCV must be installed {purpose}: pip install "bfsim[opencv]"') from error
     # Threads would add up in another order every time.
     cv2.setNumThreads(1)
     return cv2

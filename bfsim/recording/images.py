@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import warnings
 from collections.abc import Iterator
+from io import BytesIO
 from pathlib import Path
 
 from PIL import Image, ImageOps, UnidentifiedImageError
@@ -124,17 +125,26 @@ def _natural_key(path: Path) -> list[tuple[int, str]]:
 def load_image(path: Path) -> Image.Image:
     """Return the decoded image, turned upright as its EXIF orientation says."""
     try:
+        return decoded(path)
+    except RecordingError as error:
+        raise RecordingError(f"{path}: {error}") from None
+
+
+def decoded(file: Path | BytesIO, formats: tuple[str, ...] | None = None) -> Image.Image:
+    """Return the image in a file, of all formats or of these, as `load_image`. RecordingError does not name the file."""
+    try:
         with warnings.catch_warnings():
             warnings.simplefilter("error", Image.DecompressionBombWarning)
-            with Image.open(path) as image:
+            with Image.open(file, formats=formats) as image:
                 image.load()
                 mode = image.mode
                 upright = ImageOps.exif_transpose(image)
     except UnidentifiedImageError:
-        raise RecordingError(f"{path}: file must be an image that Pillow reads, not something else") from None
+        kinds = " or ".join(formats) if formats else "an image that Pillow reads"
+        raise RecordingError(f"file must be {kinds}, not something else") from None
     # Pillow's decoders report damage with any of these.
     except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError, Warning) as error:
-        raise RecordingError(f"{path}: image must be readable: {error}") from None
+        raise RecordingError(f"image must be readable: {error}") from None
     if mode not in _EIGHT_BIT_MODES:
-        raise RecordingError(f"{path}: image must have 8 bits a channel, not the pixel format {mode}")
+        raise RecordingError(f"image must have 8 bits a channel, not the pixel format {mode}")
     return upright

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 
 from bfsim.errors import RecordingError
+from bfsim.recording.camera_info import Rig, rig_of
 from bfsim.recording.frames import RectificationTables, StereoGeometry
 from bfsim.recording.images import open_image_pair, open_images
+from bfsim.recording.import_checks import camera_size, check_call, check_halves, check_pair
 from bfsim.recording.layout import table_from_npy
-from bfsim.recording.planes import YuvPlanes
+from bfsim.recording.planes import YuvPlanes, fit_matrix
 from bfsim.recording.raw import open_i420, open_uyvy, open_y4m
+from bfsim.recording.rosbag import BagPictures, open_bag
 from bfsim.recording.sources import SOURCE_FORMATS, PictureSource, Skipped, SourceFormat, guess_format
 from bfsim.recording.video import open_video
 from bfsim.recording.writer import RecordingWriter
@@ -35,7 +38,7 @@ _RAW_OPENERS = {"uyvy": open_uyvy, "i420": open_i420}
 
 @dataclass(frozen=True, slots=True)
 class ImportSummary:
-    """What an import has written, of pictures of which sizes, and what it has skipped."""
+    """What an import has written, of pictures of which sizes, what it has skipped, and `notes` on what it decided."""
 
     path: Path
     width: int
@@ -45,6 +48,7 @@ class ImportSummary:
     size_bytes: int
     source_sizes: tuple[tuple[int, int], ...]
     skipped: tuple[Skipped, ...]
+    notes: tuple[str, ...] = ()
 
 
 def import_recording(
@@ -58,6 +62,8 @@ def import_recording(
     side_by_side: bool = False,
     mono: bool = False,
     fps: Fraction | float | None = None,
+    topics: tuple[str, str] | None = None,
+    slop_s: float | None = None,
     geometry: StereoGeometry | None = None,
     rectification: RectificationTables | None = None,
     description: str = "",
@@ -70,26 +76,44 @@ def import_recording(
     `mono` (one camera feeds both sides). `format` is guessed from the names. `size` is the (width, height) of
     raw frames; `resize` scales every picture by a triangle filter as wide as the scale, cutting off what sticks out of
     its aspect ratio; `crop` keeps the middle of every picture, and skips smaller ones. A stereo frame of which one
-    picture cannot be read, or is not there, is skipped: images of two cameras go together by their names (`pairs_of`). The k-th stereo frame is stamped k / `fps` seconds; without `fps` the source's own rate counts, or 30. An existing
+    picture cannot be read, or is not there, is skipped: images of two cameras go together by their names (`pairs_of`). A bag of ROS is one source with both cameras' topics, which `topics` names and
+    `slop_s` pairs (see `open_bag`); its time stamps are kept, from the first picture on, and geometry and rectification are
+    those of its camera_info unless they are given. Of other sources the k-th stereo frame is stamped k / `fps` seconds; without `fps` the source's own rate counts, or 30. An existing
     `output` needs `force`. Raises RecordingError, with the file and the frame.
     """
     names = [os.fspath(source) for source in sources]
-    _check_call(
-        names, Path(output), resize=resize, crop=crop, side_by_side=side_by_side, mono=mono, force=force
+    is_bag = any((format or guess_format(name)) == "rosbag" for name in names)
+    check_call(
+        names,
+        Path(output),
+        resize=resize,
+        crop=crop,
+        side_by_side=side_by_side,
+        mono=mono,
+        is_bag=is_bag,
+        force=force,
     )
     is_fitted = resize is not None or crop is not None
-    opened = _open_sources(names, format, size, mixed=is_fitted)
+    if is_bag and fps is not None:
+        raise RecordingError(f"{names[0]}: `--fps` must not be given, for a bag has time stamps")
+    if not is_bag and (topics is not None or slop_s is not None):
+        raise RecordingError(f"{names[0]}: `--topics` and `--slop` must go with a bag of ROS")
+    bag = open_bag(names[0], topics, slop_s, single=side_by_side or mono, mixed=is_fitted) if is_bag else None
+    opened = [*bag.sources] if bag else _open_sources(names, format, size, mixed=is_fitted)
     rate = _frame_rate(fps, opened)
-    count = _check_pair(opened, side_by_side=side_by_side, is_fitted=is_fitted)
-    picture_size = resize or crop or _camera_size(opened[0], side_by_side)
+    count = check_pair(opened, side_by_side=side_by_side, is_fitted=is_fitted)
+    picture_size = resize or crop or camera_size(opened[0], side_by_side)
+    rig = Rig(geometry, rectification, ())
+    if bag and (geometry is None or rectification is None):
+        rig = _rig(bag, rig, picture_size, resize, crop, side_by_side=side_by_side)
     skipped = [each for source in opened for each in source.skipped]
     sizes = set()
     with RecordingWriter(
         output,
         width=picture_size[0],
         height=picture_size[1],
-        geometry=geometry,
-        rectification=rectification,
+        geometry=rig.geometry,
+        rectification=rig.tables,
         description=description,
     ) as writer:
         for index, sides in enumerate(_stereo_pairs(opened, side_by_side)):
@@ -99,8 +123,11 @@ def import_recording(
                 skipped += dict.fromkeys(each for each in fitted if isinstance(each, Skipped))
                 continue
             sizes |= {side.size for side in sides if isinstance(side, YuvPlanes)}
-            time_ns = round(writer.frame_count * 1_000_000_000 / rate)
-            writer.add(left.to_uyvy(), right.to_uyvy(), time_ns, time_ns)
+            even_ns = round(writer.frame_count * 1_000_000_000 / rate)
+            left_ns, right_ns = (
+                even_ns if each.times_ns is None else each.times_ns[index] for each in (opened[0], opened[-1])
+            )
+            writer.add(left.to_uyvy(), right.to_uyvy(), left_ns, right_ns)
             if progress is not None:
                 progress(index + 1, count)
         if not writer.frame_count and skipped:
@@ -116,7 +143,27 @@ def import_recording(
         size_bytes=writer.path.stat().st_size,
         source_sizes=tuple(sorted(sizes)),
         skipped=tuple(skipped),
+        notes=(*(bag.notes if bag else ()), *rig.notes),
     )
+
+
+def _rig(
+    bag: BagPictures,
+    given: Rig,
+    size: tuple[int, int],
+    resize: tuple[int, int] | None,
+    crop: tuple[int, int] | None,
+    *,
+    side_by_side: bool,
+) -> Rig:
+    """Return what is `given`, and for the rest what the camera_info of a bag says of pictures of that size."""
+    if side_by_side:
+        return replace(
+            given, notes=("A camera_info for both cameras' picture says nothing of each: it is not read.",)
+        )
+    sizes = tuple(each.size for each in bag.sources)
+    fits = tuple(fit_matrix(each, resize, crop) for each in sizes)
+    return rig_of(bag.cameras, sizes, fits, size, given)
 
 
 def _fitted(
@@ -158,37 +205,6 @@ def load_rectification(left: str | os.PathLike[str], right: str | os.PathLike[st
     return RectificationTables(*tables)
 
 
-def _check_call(
-    names: list[str],
-    output: Path,
-    *,
-    resize: tuple[int, int] | None,
-    crop: tuple[int, int] | None,
-    side_by_side: bool,
-    mono: bool,
-    force: bool,
-) -> None:
-    if guess_format(os.fspath(output)):
-        raise RecordingError(f"{output}: recording must have a name like run.mcap, not one of pictures")
-    if output.exists() and not force:
-        raise RecordingError(f"{output}: recording must not exist yet; `--force` overwrites it")
-    if side_by_side and mono:
-        raise RecordingError("a recording must be made with `--side-by-side` or `--mono`, not both")
-    wanted = 1 if side_by_side or mono else 2
-    if len(names) != wanted:
-        raise RecordingError(
-            f"sources must be {wanted}, not {len(names)}: two (left, right), "
-            "or one with `--side-by-side` or `--mono`"
-        )
-    if resize is not None and crop is not None:
-        raise RecordingError("pictures must be fitted with `--resize` or `--crop`, not both")
-    for option, wanted_size in (("--resize", resize), ("--crop", crop)):
-        if wanted_size is not None and (min(wanted_size) <= 0 or wanted_size[0] % 2):
-            raise RecordingError(
-                f"`{option}` must be above 0 and of even width, not {wanted_size[0]}x{wanted_size[1]}"
-            )
-
-
 def _open_sources(
     names: list[str], format: SourceFormat | None, size: tuple[int, int] | None, *, mixed: bool
 ) -> list[PictureSource]:
@@ -228,40 +244,6 @@ def _frame_rate(fps: Fraction | float | None, sources: list[PictureSource]) -> F
     return Fraction(fps).limit_denominator(FPS_PARTS) if fps is not None else next(iter(rates), DEFAULT_FPS)
 
 
-def _check_pair(sources: list[PictureSource], *, side_by_side: bool, is_fitted: bool) -> int | None:
-    """Return how many pictures both sources have, if they know; raise where they do not fit each other."""
-    left, right = sources[0], sources[-1]
-    if side_by_side:
-        _check_halves(left.name, left.size)
-    if left.size != right.size and not is_fitted:
-        raise RecordingError(
-            f"left and right images must have one size, not {left.size[0]}x{left.size[1]} ({left.name}) and "
-            f"{right.size[0]}x{right.size[1]} ({right.name}); `--resize` or `--crop` brings both to one"
-        )
-    if left.count is not None and right.count is not None and left.count != right.count:
-        raise RecordingError(
-            f"both cameras must have the same number of images, not {left.count} ({left.name}) "
-            f"and {right.count} ({right.name})"
-        )
-    return left.count
-
-
-def _camera_size(source: PictureSource, side_by_side: bool) -> tuple[int, int]:
-    """Return the size of one camera's picture, checked, so that the message can name the source."""
-    width, height = source.size
-    if width % 2:
-        raise RecordingError(
-            f"{source.name}: image width must be even (UYVY pixels come in pairs), not {width}; "
-            "`--resize` scales, `--crop` cuts"
-        )
-    return width // 2 if side_by_side else width, height
-
-
-def _check_halves(name: str, size: tuple[int, int]) -> None:
-    if size[0] % 4:
-        raise RecordingError(f"{name}: side-by-side image must have a width of 4 x n pixels, not {size[0]}")
-
-
 def _stereo_pairs(
     sources: list[PictureSource], side_by_side: bool
 ) -> Iterator[tuple[YuvPlanes | Skipped, YuvPlanes | Skipped]]:
@@ -269,7 +251,7 @@ def _stereo_pairs(
     if len(sources) == 1:
         for picture in sources[0].pictures():
             if side_by_side and isinstance(picture, YuvPlanes):
-                _check_halves(sources[0].name, picture.size)
+                check_halves(sources[0].name, picture.size)
                 yield picture.halves()
             else:
                 yield picture, picture

@@ -96,6 +96,26 @@ class YuvPlanes:
         return YuvPlanes(y_levels[self.y], chroma_levels[self.u], chroma_levels[self.v])
 
 
+def fit_matrix(
+    size: tuple[int, int], resize: tuple[int, int] | None, crop: tuple[int, int] | None
+) -> NDArray[np.float64]:
+    """Return the matrix (3, 3) from pixels of a picture to those of `resized(*resize)`, `cropped(*crop)` or the same one.
+
+    Pixels are counted at their centres.
+    """
+    if resize:
+        parts = zip(size, resize, _centred_cut(size, resize), strict=True)
+        axes = [(have * (1 - cut) / 2, want / (have * cut)) for have, want, cut in parts]
+    elif crop:
+        axes = [((have - want) // 4 * 2, 1.0) for have, want in zip(size, crop, strict=True)]
+    else:
+        return np.eye(3)
+    (left, across), (top, down) = axes
+    return np.array(
+        [[across, 0, (0.5 - left) * across - 0.5], [0, down, (0.5 - top) * down - 0.5], [0, 0, 1]]
+    )
+
+
 def _chroma_422(plane: Plane, width: int, height: int) -> Plane:
     """Return a colour plane as (height, width / 2): pairs of columns averaged, missing rows repeated."""
     if plane.shape[0] != height:

@@ -200,7 +200,7 @@ class RecordingReader:
             if found is None:
                 raise RecordingError(
                     f"{self.path}: recording must have the topics {layout.LEFT_TOPIC} and "
-                    f"{layout.RIGHT_TOPIC}, not {cut(', '.join(topics)) if topics else 'none'}"
+                    f"{layout.RIGHT_TOPIC}, not {cut(', '.join(topics)) if topics else 'none'}{self._advice()}"
                 )
             channel, schema = found
             name = schema.name if schema else "no schema"
@@ -208,7 +208,13 @@ class RecordingReader:
                 raise RecordingError(
                     f"{self.path}: topic {topic} must hold {layout.IMAGE_SCHEMA} messages in protobuf, "
                     f"not {cut(name)} in {cut(channel.message_encoding) if channel.message_encoding else 'no encoding'}"
+                    f"{self._advice()}"
                 )
+
+    def _advice(self) -> str:
+        """Say how a recording is made of a ROS 2 bag, if the file is one."""
+        is_bag = any(each.name.startswith("sensor_msgs/") for each in self._file.summary.schemas.values())
+        return "; `bfsim record import` makes a recording of a bag of ROS" if is_bag else ""
 
     def _count_frames(self) -> int:
         left, right = (self._file.message_count(topic) for topic in (layout.LEFT_TOPIC, layout.RIGHT_TOPIC))

@@ -1,9 +1,11 @@
-"""The ideal pair behind a real one: which way both cameras look after rectification."""
+"""The ideal pair behind a real one: which way both cameras look after rectification, and where its pixels come from."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+
+from bfsim.recording.camera_models import CameraModel, FittedCamera, Floats
 
 
 def rectified_rotation(baseline: NDArray[np.float64], forward: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -18,3 +20,15 @@ def rectified_rotation(baseline: NDArray[np.float64], forward: NDArray[np.float6
     down = np.cross(forward, right)
     down /= np.linalg.norm(down)
     return np.stack([right, down, np.cross(right, down)])
+
+
+def nearest_table(
+    model: CameraModel, camera: FittedCamera, turn: Floats, target: Floats, size: tuple[int, int]
+) -> NDArray[np.int32]:
+    """Return the nearest source row and column of each rectified pixel (2, height, width), -1 outside."""
+    columns, rows = model.sources(camera, turn, target, size)
+    # What a lens cannot see may be anywhere, even at infinity.
+    nearest = np.rint(np.nan_to_num(np.stack([rows, columns]), nan=-1, posinf=-1, neginf=-1))
+    bounds = np.array(size[::-1])[:, None, None]
+    inside = ((nearest >= 0) & (nearest < bounds)).all(axis=0)
+    return np.where(inside, nearest, -1).astype(np.int32)

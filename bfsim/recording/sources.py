@@ -10,7 +10,7 @@ from typing import Literal, get_args
 
 from bfsim.recording.planes import YuvPlanes
 
-SourceFormat = Literal["images", "uyvy", "i420", "y4m", "video"]
+SourceFormat = Literal["images", "uyvy", "i420", "y4m", "video", "rosbag"]
 SOURCE_FORMATS: tuple[SourceFormat, ...] = get_args(SourceFormat)
 
 IMAGE_SUFFIXES = frozenset({".bmp", ".jpeg", ".jpg", ".pgm", ".png", ".ppm", ".tif", ".tiff", ".webp"})
@@ -21,6 +21,7 @@ _FILE_SUFFIXES: dict[str, SourceFormat] = {
     ".y4m": "y4m",
     ".avi": "video", ".m4v": "video", ".mkv": "video", ".mov": "video", ".mp4": "video", ".mpg": "video",
     ".mpeg": "video", ".ogv": "video", ".ts": "video", ".webm": "video", ".wmv": "video",
+    ".bag": "rosbag", ".db3": "rosbag", ".mcap": "rosbag",
 }  # fmt: skip
 
 
@@ -38,7 +39,8 @@ class PictureSource:
 
     count is None when only reading to the end tells; fps is None when the source does not say. `pictures`
     opens the source and yields from the first picture on, one in memory at a time; in the place of one that cannot be
-    read, why not. `skipped` are files beside them that are no pictures.
+    read, why not. `skipped` are files beside them that are no pictures. `times_ns` says when each was taken, if the
+    source knows.
     """
 
     name: str
@@ -47,11 +49,14 @@ class PictureSource:
     fps: Fraction | None
     pictures: Callable[[], Iterator[YuvPlanes | Skipped]]
     skipped: tuple[Skipped, ...] = ()
+    times_ns: tuple[int, ...] | None = None
 
 
 def guess_format(source: str) -> SourceFormat | None:
     """Format of a source by its name; None if the name does not tell."""
     path = Path(source)
+    if (path / "metadata.yaml").is_file():
+        return "rosbag"
     if path.is_dir() or is_pattern(source) or path.suffix.lower() in IMAGE_SUFFIXES:
         return "images"
     return _FILE_SUFFIXES.get(path.suffix.lower())

@@ -1,0 +1,79 @@
+"""What must be true of sources and options before a recording is made of them."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from bfsim.errors import RecordingError
+from bfsim.recording.sources import PictureSource, guess_format
+
+
+def check_call(
+    names: list[str],
+    output: Path,
+    *,
+    resize: tuple[int, int] | None,
+    crop: tuple[int, int] | None,
+    side_by_side: bool,
+    mono: bool,
+    is_bag: bool,
+    force: bool,
+) -> None:
+    """Raise RecordingError unless the options fit each other and the number of sources, and `output` may be written."""
+    if output.suffix.lower() != ".mcap" and guess_format(os.fspath(output)):
+        raise RecordingError(f"{output}: recording must have a name like run.mcap, not one of pictures")
+    if output.exists() and not force:
+        raise RecordingError(f"{output}: recording must not exist yet; `--force` overwrites it")
+    if side_by_side and mono:
+        raise RecordingError("a recording must be made with `--side-by-side` or `--mono`, not both")
+    if is_bag and len(names) > 1:
+        raise RecordingError(f"sources must be one bag with the topics of both cameras, not {len(names)}")
+    wanted = 1 if side_by_side or mono or is_bag else 2
+    if len(names) != wanted:
+        raise RecordingError(
+            f"sources must be {wanted}, not {len(names)}: two (left, right), "
+            "or one with `--side-by-side` or `--mono`, or a bag of ROS"
+        )
+    if resize is not None and crop is not None:
+        raise RecordingError("pictures must be fitted with `--resize` or `--crop`, not both")
+    for option, wanted_size in (("--resize", resize), ("--crop", crop)):
+        if wanted_size is not None and (min(wanted_size) <= 0 or wanted_size[0] % 2):
+            raise RecordingError(
+                f"`{option}` must be above 0 and of even width, not {wanted_size[0]}x{wanted_size[1]}"
+            )
+
+
+def check_pair(sources: list[PictureSource], *, side_by_side: bool, is_fitted: bool) -> int | None:
+    """Return how many pictures both sources have, if they know; raise where they do not fit each other."""
+    left, right = sources[0], sources[-1]
+    if side_by_side:
+        check_halves(left.name, left.size)
+    if left.size != right.size and not is_fitted:
+        raise RecordingError(
+            f"left and right images must have one size, not {left.size[0]}x{left.size[1]} ({left.name}) and "
+            f"{right.size[0]}x{right.size[1]} ({right.name}); `--resize` or `--crop` brings both to one"
+        )
+    if left.count is not None and right.count is not None and left.count != right.count:
+        raise RecordingError(
+            f"both cameras must have the same number of images, not {left.count} ({left.name}) "
+            f"and {right.count} ({right.name})"
+        )
+    return left.count
+
+
+def camera_size(source: PictureSource, side_by_side: bool) -> tuple[int, int]:
+    """Return the size of one camera's picture, checked, so that the message can name the source."""
+    width, height = source.size
+    if width % 2:
+        raise RecordingError(
+            f"{source.name}: image width must be even (UYVY pixels come in pairs), not {width}; "
+            "`--resize` scales, `--crop` cuts"
+        )
+    return width // 2 if side_by_side else width, height
+
+
+def check_halves(name: str, size: tuple[int, int]) -> None:
+    """Raise RecordingError unless a picture of two cameras side by side has two halves of even width."""
+    if size[0] % 4:
+        raise RecordingError(f"{name}: side-by-side image must have a width of 4 x n pixels, not {size[0]}")

@@ -1,0 +1,75 @@
+"""Pictures of ROS: the messages sensor_msgs/Image and sensor_msgs/CompressedImage → planes."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from bfsim.errors import RecordingError, shown
+from bfsim.recording.camera_models import load_opencv
+from bfsim.recording.images import decoded
+from bfsim.recording.layout import LARGEST_PICTURE_BYTES
+from bfsim.recording.planes import YuvPlanes
+
+IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
+IMAGE_TYPES = (IMAGE, COMPRESSED)
+
+_COLOURS = {"rgb8": "RGB", "bgr8": "BGR", "rgba8": "RGBA", "bgra8": "BGRA"}
+"""Order of the bytes of a pixel."""
+_YUV = {"yuv422": "UYVY", "uyvy": "UYVY", "yuv422_yuy2": "YUYV", "yuyv": "YUYV"}
+"""Order of the bytes of two pixels: sensor_msgs/image_encodings."""
+_GREY = ("mono8", "8UC1")
+_BAYER = {"bayer_rggb8": "BG", "bayer_bggr8": "RG", "bayer_gbrg8": "GR", "bayer_grbg8": "GB"}
+"""OpenCV's names: the second row's second and third pixel, where ROS has the first row's first two."""
+ENCODINGS = (*_GREY, *_COLOURS, *_YUV, *_BAYER)
+_PIXEL_BYTES = {**dict.fromkeys(_GREY, 1), **{each: len(order) for each, order in _COLOURS.items()},
+                **dict.fromkeys(_YUV, 2), **dict.fromkeys(_BAYER, 1)}  # fmt: skip
+
+
+def planes_of(message: Any, kind: str) -> YuvPlanes:
+    """Return the picture in a message of one of IMAGE_TYPES. YUV is taken as it is, in full range.
+
+    Raises RecordingError for other encodings, and where the bytes are no such picture.
+    """
+    if kind == COMPRESSED:
+        return YuvPlanes.from_image(decoded(BytesIO(message.data), ("JPEG", "PNG")))
+    encoding, width, height = message.encoding, message.width, message.height
+    if encoding not in ENCODINGS:
+        raise RecordingError(f"encoding must be one of {', '.join(ENCODINGS)}, not {shown(encoding)}")
+    pixels = _pixels(message, _PIXEL_BYTES[encoding])
+    if encoding in _GREY:
+        grey = np.full((height, width), 128, np.uint8)
+        return YuvPlanes(pixels, grey, grey)
+    if encoding in _COLOURS:
+        places = [_COLOURS[encoding].index(each) for each in "RGB"]
+        colours = pixels.reshape(height, width, -1)[..., places]
+        return YuvPlanes.from_image(Image.fromarray(np.ascontiguousarray(colours)))
+    if encoding in _BAYER:
+        cv2 = load_opencv("to take the colours of a Bayer pattern apart")
+        code = getattr(cv2, f"COLOR_Bayer{_BAYER[encoding]}2RGB")
+        return YuvPlanes.from_image(Image.fromarray(cv2.cvtColor(np.ascontiguousarray(pixels), code)))
+    if width % 2:
+        raise RecordingError(f"{encoding} must have an even width, not {width}")
+    if _YUV[encoding] == "YUYV":
+        pixels = pixels.reshape(height, width, 2)[..., ::-1].reshape(height, 2 * width)
+    return YuvPlanes.from_uyvy(pixels)
+
+
+def _pixels(message: Any, pixel_bytes: int) -> NDArray[np.uint8]:
+    """Return the rows (height, width x bytes of a pixel) without what pads them."""
+    width, height, step = message.width, message.height, message.step
+    if min(width, height) < 1 or width * height * pixel_bytes > LARGEST_PICTURE_BYTES:
+        raise RecordingError(
+            f"picture must have 1 pixel at least and {LARGEST_PICTURE_BYTES:,} bytes at most, not be {width}x{height}"
+        )
+    if step < width * pixel_bytes or len(message.data) < step * height:
+        raise RecordingError(
+            f"picture of {width}x{height} must have rows of {width * pixel_bytes} bytes or more and {height} of them, not "
+            f"{len(message.data):,} bytes in rows of {step:,}"
+        )
+    rows = np.asarray(message.data, np.uint8)[: step * height].reshape(height, step)
+    return rows[:, : width * pixel_bytes]

@@ -1,0 +1,252 @@
+"""Pictures from bags of ROS 1 and ROS 2: which topics, which pictures belong together, and what camera_info says."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bfsim.errors import RecordingError, cut
+from bfsim.recording.bag_file import BagFile, Topic
+from bfsim.recording.camera_info import CAMERA_INFO, CameraInfo
+from bfsim.recording.pairing import Times, nearest_pairs, period_ns, rising
+from bfsim.recording.planes import YuvPlanes
+from bfsim.recording.ros_images import IMAGE_TYPES, planes_of
+from bfsim.recording.sources import PictureSource, Skipped
+
+DEFAULT_PERIOD_NS = 1e9 / 30
+"""Of bags with a single picture: the rate of the sensors that bfsim knows."""
+_FPS_PARTS = 1_000
+_SIDES = re.compile(r"(?<![a-z])(left|right)(?![a-z])", re.IGNORECASE)
+_OTHER_SIDE = {"left": "right", "right": "left"}
+
+
+@dataclass(frozen=True, slots=True)
+class BagPictures:
+    """The pictures of one camera or of two, what each camera's camera_info says or None, and what was decided for the user."""
+
+    sources: tuple[PictureSource, ...]
+    cameras: tuple[CameraInfo | None, ...]
+    notes: tuple[str, ...]
+
+
+def open_bag(
+    name: str,
+    topics: tuple[str, str] | None = None,
+    slop_s: float | None = None,
+    *,
+    single: bool,
+    mixed: bool,
+) -> BagPictures:
+    """Open a .bag, .db3 or .mcap file, or the folder of a ROS 2 bag.
+
+    Of `topics`, left and right, pictures are paired that are each other's nearest within `slop_s`, or half a frame
+    period; the others are skipped. Without `topics` there must be one pair of image topics whose names differ by left
+    and right. `single`: there must be one image topic, or `topics` name it twice. Without `mixed` all pictures of a topic must be of
+    one size. Raises RecordingError.
+    """
+    bag = BagFile(Path(name))
+    found = {each.name: each for each in bag.topics()}
+    chosen = _single(name, found, topics) if single else _pair(name, found, topics)
+    times, clock = _times(bag, chosen)
+    usable = [rising(each) for each in times]
+    rising_ns = [each[numbers] for each, numbers in zip(times, usable, strict=True)]
+    slop_ns = slop_s * 1e9 if slop_s is not None else (period_ns(rising_ns[0]) or DEFAULT_PERIOD_NS) / 2
+    pairs = nearest_pairs(rising_ns[0], rising_ns[-1], slop_ns)
+    if not pairs[0].size:
+        raise RecordingError(f"{name}: {_apart(chosen, rising_ns, slop_ns)}")
+    start_ns = min(int(each[numbers[0]]) for each, numbers in zip(rising_ns, pairs, strict=False))
+    rate = period_ns(rising_ns[0][pairs[0]])
+    sources = tuple(
+        _source(
+            bag,
+            topic,
+            own[numbers],
+            tuple(int(each) - start_ns for each in own_ns[numbers]),
+            (
+                *_late(topic, own, all_ns),
+                *_alone(topic, chosen[-1 - side], own, numbers, slop_ns),
+            ),
+            Fraction(1e9 / rate).limit_denominator(_FPS_PARTS) if rate else None,
+            mixed=mixed,
+        )
+        for side, (topic, own, own_ns, all_ns, numbers) in enumerate(
+            zip(chosen, usable, rising_ns, times, pairs, strict=False)
+        )
+    )
+    infos = [_camera_info(bag, topic, found) for topic in chosen]
+    notes = (clock, *(note for _, note in infos))
+    return BagPictures(sources, tuple(info for info, _ in infos), tuple(dict.fromkeys(filter(None, notes))))
+
+
+# ---- which topics
+
+
+def _single(name: str, found: dict[str, Topic], topics: tuple[str, str] | None) -> tuple[Topic, ...]:
+    if topics is not None:
+        if topics[0] != topics[1]:
+            raise RecordingError(
+                f"{name}: `--topics` must name the one topic twice, not {' and '.join(topics)}"
+            )
+        return (_picture_topic(name, found, topics[0]),)
+    images = [each for each in found.values() if each.kind in IMAGE_TYPES]
+    if len(images) != 1:
+        raise RecordingError(f"{name}: `--topics` must name the camera's topic, twice, of {_listed(found)}")
+    return (_picture_topic(name, found, images[0].name),)
+
+
+def _pair(name: str, found: dict[str, Topic], topics: tuple[str, str] | None) -> tuple[Topic, ...]:
+    if topics is None:
+        lefts = [
+            each for each in found.values() if each.kind in IMAGE_TYPES and _other_side(each.name, "left")
+        ]
+        pairs = [(each.name, other) for each in lefts if (other := _other_side(each.name, "left")) in found]
+        pairs = [each for each in pairs if found[each[1]].kind in IMAGE_TYPES]
+        if len(pairs) != 1:
+            raise RecordingError(
+                f"{name}: `--topics LEFT RIGHT` must name two image topics, of {_listed(found)}"
+            )
+        topics = pairs[0]
+    return tuple(_picture_topic(name, found, each) for each in topics)
+
+
+def _other_side(topic: str, side: str) -> str:
+    """Return the name of the other camera's topic, or nothing if the name does not say that it is that side's."""
+    sides = {each.lower() for each in _SIDES.findall(topic)}
+    return _SIDES.sub(lambda found: _like(found[0], _OTHER_SIDE[side]), topic) if sides == {side} else ""
+
+
+def _like(model: str, word: str) -> str:
+    return word.upper() if model.isupper() else word.capitalize() if model[0].isupper() else word
+
+
+def _picture_topic(name: str, found: dict[str, Topic], wanted: str) -> Topic:
+    topic = found.get(wanted)
+    if topic is None:
+        raise RecordingError(f"{name}: topic {cut(wanted)} must be in the bag, which has {_listed(found)}")
+    if topic.kind not in IMAGE_TYPES:
+        raise RecordingError(
+            f"{name}: topic {topic.name} must have sensor_msgs/Image or sensor_msgs/CompressedImage, not "
+            f"{topic.kind.replace('/msg/', '/')}"
+        )
+    if not topic.count:
+        raise RecordingError(f"{name}: topic {topic.name} must have pictures, but has none")
+    return topic
+
+
+def _listed(found: dict[str, Topic]) -> str:
+    images = [each for each in found.values() if each.kind in IMAGE_TYPES]
+    others = [each for each in found.values() if each.kind not in IMAGE_TYPES]
+    return "; ".join(cut(str(each)) for each in (*images, *others)) or "none"
+
+
+# ---- when
+
+
+def _times(bag: BagFile, topics: Sequence[Topic]) -> tuple[list[Times], str]:
+    """Return when the pictures of each topic were taken, and what is to be said about it."""
+    stamps: list[Times] = []
+    logged: list[Times] = []
+    for topic in topics:
+        pairs = [(bag.stamp_ns(raw), log_ns) for log_ns, raw in bag.messages(topic.name)]
+        if len(pairs) != topic.count:
+            raise RecordingError(
+                f"{bag.path}: topic {topic.name} must have the {topic.count:,} pictures that the bag's index says, not {len(pairs):,}"
+            )
+        own = np.array(pairs, np.int64).reshape(-1, 2)
+        stamps.append(own[:, 0])
+        logged.append(own[:, 1])
+    if all(each.any() for each in stamps):
+        return stamps, ""
+    return logged, "The pictures have no time stamps: they are paired by the times at which the bag got them."
+
+
+def _late(topic: Topic, usable: Any, times_ns: Times) -> Iterator[Skipped]:
+    for number in sorted({*range(times_ns.size)} - {*usable}):
+        yield Skipped(f"{topic.name} {number}", "its time stamp is not later than those before")
+
+
+def _alone(topic: Topic, other: Topic, usable: Any, paired: Any, slop_ns: float) -> Iterator[Skipped]:
+    for number in np.delete(usable, paired):
+        yield Skipped(f"{topic.name} {number}", f"no picture of {other.name} within {slop_ns / 1e6:.4g} ms")
+
+
+def _apart(topics: Sequence[Topic], times_ns: Sequence[Times], slop_ns: float) -> str:
+    near = min(int(np.abs(times_ns[-1] - each).min()) for each in times_ns[0])
+    return (
+        f"pictures of {topics[0].name} and {topics[-1].name} must be within {slop_ns / 1e6:.4g} ms of each other, but the "
+        f"nearest two are {near / 1e6:.4g} ms apart; `--slop` sets the limit"
+    )
+
+
+# ---- pictures
+
+
+def _source(
+    bag: BagFile,
+    topic: Topic,
+    numbers: Any,
+    times_ns: tuple[int, ...],
+    skipped: tuple[Skipped, ...],
+    fps: Fraction | None,
+    *,
+    mixed: bool,
+) -> PictureSource:
+    wanted = {int(each) for each in numbers}
+
+    def pictures(model: tuple[int, int] | None = None) -> Iterator[YuvPlanes | Skipped]:
+        for number, (_, raw) in enumerate(bag.messages(topic.name)):
+            if number not in wanted:
+                continue
+            try:
+                picture = planes_of(bag.decode(raw, topic.kind), topic.kind)
+            except RecordingError as error:
+                yield Skipped(f"{topic.name} {number}", str(error))
+                continue
+            if model and picture.size != model:
+                raise RecordingError(
+                    f"{bag.path}: {topic.name} {number}: picture must be {model[0]}x{model[1]} like the first, not "
+                    f"{picture.size[0]}x{picture.size[1]}; `--resize` or `--crop` brings all to one size"
+                )
+            yield picture
+
+    first, reason = None, ""
+    for each in pictures():
+        if isinstance(each, YuvPlanes):
+            first = each.size
+            break
+        reason = reason or each.reason
+    if first is None:
+        raise RecordingError(f"{bag.path}: {topic.name}: {reason}, and no picture is left")
+    return PictureSource(
+        name=topic.name,
+        size=first,
+        count=len(wanted),
+        fps=fps,
+        pictures=lambda: pictures(None if mixed else first),
+        skipped=skipped,
+        times_ns=times_ns,
+    )
+
+
+def _camera_info(bag: BagFile, topic: Topic, found: dict[str, Topic]) -> tuple[CameraInfo | None, str]:
+    """Return what the camera_info beside a topic says first, and a note where it says more than one thing, or nothing."""
+    parts = topic.name.split("/")
+    base = parts[:-1] if topic.kind == IMAGE_TYPES[0] else parts[:-2]
+    name = "/".join([*base, "camera_info"])
+    if name not in found or found[name].kind != CAMERA_INFO or not found[name].count:
+        return None, f"There is no {name}: neither geometry nor rectification is known."
+    is_rectified = parts[len(base)].startswith("image_rect")
+    said = [
+        CameraInfo.of(bag.decode(raw, CAMERA_INFO), name, is_rectified=is_rectified)
+        for _, raw in bag.messages(name)
+    ]
+    changes = any(each != said[0] for each in said)
+    return said[
+        0
+    ], f"{name} changes in the bag: what it says first is taken for all pictures." if changes else ""
