@@ -15,6 +15,7 @@ from bfsim.errors import ConfigError
 from bfsim.watchers import Watchers
 
 if TYPE_CHECKING:
+    from bfsim.report.html.gantt import Gantts
     from bfsim.report.html.pictures import Pictures
     from bfsim.report.ldf.map import MemoryMap
     from bfsim.report.target import Target
@@ -90,29 +91,38 @@ def paging(
     require_apart(path, (what["recording"], what["ldf"], what["script"], *others))
     _require_packages()
     from bfsim.report.html.frames import MOST
+    from bfsim.report.html.gantt import Gantts
     from bfsim.report.html.pictures import Pictures
 
-    with Pictures() as pictures:
+    with Pictures() as pictures, Gantts() as gantts:
 
         def make_room(_identity: Identity, frames: int) -> None:
             pictures.frames = min(frames, MOST)
 
-        watchers.before.append(make_room)
+        watchers.before.extend((make_room, gantts.begin))
         watchers.seen.append(pictures.add)
-        watchers.done.append(partial(_write, path, target, pictures, what))
+        watchers.spans.append(gantts.add)
+        watchers.done.append(partial(_write, path, target, pictures, gantts, what))
         yield
 
 
 def _write(
-    path: Path, target: Target | None, pictures: Pictures, what: Mapping[str, Any], run: RunRecord
+    path: Path,
+    target: Target | None,
+    pictures: Pictures,
+    gantts: Gantts,
+    what: Mapping[str, Any],
+    run: RunRecord,
 ) -> None:
     from bfsim.report.html.page import Page
     from bfsim.report.save import write_text
     from bfsim.shipped import accuracy_on
 
+    gantts.finish()
     page = Page(
         run=run,
         pictures=pictures,
+        gantts=gantts,
         accuracy=accuracy_on("In short"),
         unmodelled=accuracy_on("What is not modelled"),
         memory_map=_map_of(run, what),

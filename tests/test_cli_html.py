@@ -11,12 +11,13 @@ import pytest
 from click.testing import CliRunner, Result
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.ui import WebDriverWait
 
 from bfsim import cli_html
 from bfsim.cli import main
 from bfsim.report.html.pictures import Pictures
 from bfsim.shipped import accuracy_on
-from tests.browser import Browser, browsing, needs_chromium
+from tests.browser import PATIENCE_S, Browser, browsing, needs_chromium
 from tests.pages import ROOT
 from tests.report.pages_by_hand import page_of
 from tests.report.test_html import evil_run
@@ -173,10 +174,13 @@ def test_choosing_a_frame_changes_the_picture(opened: Browser) -> None:
     assert shown_frame(opened)[0] == worst
     opened.driver.find_element(By.ID, "choose").send_keys(Keys.HOME)
     first, picture = shown_frame(opened)
+    gantt = opened.ask("document.getElementById('gantt').innerHTML")
     opened.driver.find_element(By.ID, "choose").send_keys(Keys.ARROW_RIGHT)
     second, other = shown_frame(opened)
     assert (first, second) == ("frame-0", "frame-1")
     assert picture != other
+    redrawn = "return document.getElementById('gantt').innerHTML !== arguments[0]"
+    WebDriverWait(opened.driver, PATIENCE_S).until(lambda driver: driver.execute_script(redrawn, gantt))
     opened.driver.find_element(By.ID, "after").click()
     assert shown_frame(opened)[0] == "frame-2"
     opened.driver.find_elements(By.CSS_SELECTOR, "#series-A .mark-rect path")[0].click()

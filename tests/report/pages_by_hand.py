@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bfsim.report.html.gantt import Gantts
 from bfsim.report.html.page import Page
 from bfsim.report.html.pictures import Pictures
 from bfsim.report.target import Target
@@ -9,14 +10,18 @@ from bfsim.trace import RunRecord
 from tests.report.ldf_maps import a_map, a_segment
 
 
-def page_of(run: RunRecord, pictures: Pictures, target: Target | None = None) -> str:
+def page_of(
+    run: RunRecord, pictures: Pictures, target: Target | None = None, gantts: Gantts | None = None
+) -> str:
     """The page of a run with an empty memory."""
-    page = Page(
-        run=run,
-        pictures=pictures,
-        accuracy="- **Good**: as far as it goes.",
-        unmodelled="- The rest.",
-        memory_map=a_map(a_segment("L2")),
-        target=target,
-    )
-    return "".join(page.chunks())
+    with gantts or Gantts() as drawn:
+        page = Page(
+            run=run,
+            pictures=pictures,
+            gantts=drawn,
+            accuracy="- **Good**: as far as it goes.",
+            unmodelled="- The rest.",
+            memory_map=a_map(a_segment("L2")),
+            target=target,
+        )
+        return "".join(page.chunks())

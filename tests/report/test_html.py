@@ -15,10 +15,12 @@ from PIL import Image
 from bfsim.report.budget import budget_of
 from bfsim.report.html import charts, frames
 from bfsim.report.html.frames import facts_of, told_of, worst_of
+from bfsim.report.html.gantt import SLICES, Gantts
 from bfsim.report.html.pictures import PAGE_BYTES, Pictures, webp_of
 from bfsim.report.html.sources import dearest_sources
 from bfsim.report.target import Target
-from bfsim.trace import REST, LineCost, RunRecord, RunWarning, StallReason, WarningKind
+from bfsim.spans import Span, SpanKind
+from bfsim.trace import REST, FrameRecord, LineCost, RunRecord, RunWarning, StallReason, WarningKind
 from tests.report.pages_by_hand import page_of
 from tests.report.records import core_frame, cost, edge_run, frame, kernel, run_of, runs, traffic
 from tests.seen_frames import frame as seen_frame
@@ -141,18 +143,32 @@ def test_a_picture_is_as_small_as_is_asked() -> None:
     assert len(webp_of(noise(), 60_000)) <= 60_000
 
 
+def restless(record: FrameRecord) -> list[Span]:
+    """What makes the largest charts: all of six tracks changes in every slice."""
+    begin, end = record.cores[0].begin_cclk, record.cores[0].end_cclk
+    cuts = [begin + (end - begin) * number // SLICES for number in range(SLICES + 1)]
+    spans = [
+        Span(SpanKind.CALL, where, f"kernel_{number % 20}", *cuts[number : number + 2])
+        for where in ("core A", "core B", "MDMA1", "MDMA2", "MDMA3", "MDMA4")
+        for number in range(SLICES)
+    ]
+    return [*spans, Span(SpanKind.FRAME, "core A", f"frame {record.index}", begin, end)]
+
+
 def test_a_page_of_a_hundred_noisy_frames_has_at_most_8_mb(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Pictures that nothing compresses: every one is as large as it may be."""
+    """Pictures that nothing compresses: every one is as large as it may be; and no slice of time is like the one before."""
     content = webp_of(noise(), PAGE_BYTES * 3 // 4 // frames.MOST)
     assert len(content) > 20_000
     monkeypatch.setattr("bfsim.report.html.pictures.webp_of", lambda _image, _nbytes: content)
-    with Pictures() as pictures:
+    with Pictures() as pictures, Gantts() as gantts:
         pictures.frames = frames.MOST
         run = edge_run(*range(1000, 1000 + frames.MOST))
         for each in run.frames:
             pictures.add(seen_frame(each.index))
-        text = page_of(run, pictures, Target(1))
-    assert len(text.encode()) < 8_000_000
+            gantts.add(restless(each))
+        gantts.finish()
+        text = page_of(run, pictures, Target(1), gantts)
+    assert len(text.encode()) < 8_000_000, len(text.encode())
     assert text.count("data:image/webp") == frames.MOST
 
 

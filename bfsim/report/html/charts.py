@@ -8,7 +8,7 @@ from typing import Any
 import altair as alt
 
 from bfsim.report.budget import Budget, CoreBudget, StageRow, budget_rows, costs_of, milliseconds
-from bfsim.report.html.colours import IDLE, ISSUE, STALLS, stage_colours
+from bfsim.report.html.colours import IDLE, ISSUE, MEANINGS, STALLS, stage_colours
 from bfsim.report.target import Target, used_cclk
 from bfsim.trace import RunRecord
 
@@ -20,7 +20,11 @@ CHOSEN = "chosen"
 MOST_BARS = 300
 """So many bars can be told apart: of more frames, a bar stands for the worst of some that follow each other."""
 
+BARS = "bars"
+"""The name of the data of a Gantt chart."""
+
 _BAR_HEIGHT = 26  # px
+_TRACK_HEIGHT = 20  # px
 _FRAMES_HEIGHT = 150  # px
 _INK, _GRID = "var(--ink)", "var(--line)"  # the page has one for light and one for dark
 
@@ -99,6 +103,27 @@ def cycle_stack(run: RunRecord, budget: Budget, core: CoreBudget) -> Spec:
         )
     )
     return _spec(bars, _BAR_HEIGHT * len({each["stage"] for each in values}))
+
+
+def gantt(run: RunRecord, tracks: list[str]) -> Spec:
+    """Return what each core and device did in a frame; its bars, `BARS`, are filled in when a frame is chosen."""
+    colours = {**stage_colours(row.stage for row in budget_rows(run)), **MEANINGS}
+    bars = (
+        alt.Chart(alt.NamedData(BARS))
+        .mark_bar(height=0.8 * _TRACK_HEIGHT)
+        .encode(
+            y=alt.Y("track:N", title=None, scale=alt.Scale(domain=tracks), axis=alt.Axis(labelLimit=120)),
+            x=alt.X("begin:Q", title="ms from the beginning of the frame", scale=alt.Scale(nice=False)),
+            x2="end:Q",
+            color=alt.Color("means:N", legend=None, scale=_scale(colours)),
+            opacity=alt.Opacity("busy:Q", legend=None, scale=alt.Scale(domain=[0, 1], range=[0.15, 1])),
+            tooltip=[
+                "track:N", "means:N", "name:N", alt.Tooltip("begin:Q", format=".2f"), alt.Tooltip("end:Q", format=".2f"),
+                alt.Tooltip("busy:Q", format=".0%"),
+            ],
+        )
+    )  # fmt: skip
+    return _spec(bars, _TRACK_HEIGHT * len(tracks))
 
 
 def part_colours() -> dict[str, str]:

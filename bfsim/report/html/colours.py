@@ -32,6 +32,9 @@ STALLS = {
 }
 """SDRAM is red, L1 and L2 violet, what caches and code wait for pink, DMA yellow, the other core green."""
 
+MEANINGS = {"work": ISSUE, "stall": "#d0503a", "idle": IDLE, "busy": "#c9a227"}
+"""What a bar of a core, or of a device, means."""
+
 
 def stage_colours(names: Iterable[str]) -> dict[str, str]:
     """Return a colour for each stage: the same one again only after all have been used."""

@@ -13,9 +13,10 @@ from markupsafe import Markup
 
 from bfsim.report.budget import budget_of, milliseconds
 from bfsim.report.configuration import configuration_of
-from bfsim.report.html.charts import cycle_stack, frames_a_bar, part_colours, time_series
-from bfsim.report.html.colours import stage_colours
+from bfsim.report.html.charts import cycle_stack, frames_a_bar, gantt, part_colours, time_series
+from bfsim.report.html.colours import MEANINGS, stage_colours
 from bfsim.report.html.frames import facts_of, told_of, worst_of
+from bfsim.report.html.gantt import Gantts
 from bfsim.report.html.pictures import Pictures
 from bfsim.report.html.sources import dearest_sources
 from bfsim.report.ldf.drawing import drawing_of
@@ -40,6 +41,7 @@ class Page:
 
     run: RunRecord
     pictures: Pictures
+    gantts: Gantts
     accuracy: str
     unmodelled: str
     memory_map: MemoryMap
@@ -69,10 +71,13 @@ class Page:
                 ("stack", cycle_stack(without_start_up(run), budget, core)),
             )
         }
+        if self.gantts.tracks:
+            charts["gantt"] = gantt(run, list(self.gantts.tracks))
         stages = [row.name for row in budget.cores[0].rows if row.within is None]
         worst = worst_of(run)
         return {
             "run": run,
+            "charts": charts,
             "budget": budget,
             "rate_hz": budget_of(run).frame_rate_hz,
             "verdict": verdict(run).plain,
@@ -94,9 +99,15 @@ class Page:
             "configuration": list(configuration_of(run)),
             "accuracy": Markup(_markdown(self.accuracy)),  # noqa: S704 - ours
             "unmodelled": Markup(_markdown(self.unmodelled)),  # noqa: S704 - ours
+            "meanings": MEANINGS,
             "ms": lambda cclk: milliseconds(cclk, hz),
             "data": _json(
-                {"charts": charts, "frames": [frame.index for frame in told], "first": worst[0].index}
+                {
+                    "charts": charts,
+                    "frames": [frame.index for frame in told],
+                    "first": worst[0].index,
+                    "gantts": {frame.index: self.gantts.chart(frame.index) for frame in told},
+                }
             ),
             "library": _script_of(_library()),
             "style": _file(environment, "page.css"),

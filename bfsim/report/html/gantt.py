@@ -1,0 +1,168 @@
+"""What each core and device did in each frame, coarse enough for a page: what took most of each slice of time."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Self
+
+from bfsim.report.spool import Spool
+from bfsim.spans import Span, SpanKind
+from bfsim.trace import Identity
+
+SLICES = 400
+"""Of a frame: about as many as a screen can show."""
+
+WORK, STALL, IDLE, BUSY = "work", "stall", "idle", "busy"
+"""What a bar can mean, beside the name of a stage."""
+
+_MEANING = {
+    SpanKind.CALL: WORK, SpanKind.WORK: WORK, SpanKind.STALL: STALL, SpanKind.IDLE: IDLE, SpanKind.INTERRUPT: BUSY,
+    SpanKind.TRANSFER: BUSY, SpanKind.LINE: BUSY, SpanKind.MESSAGE: BUSY, SpanKind.LOCK: BUSY,
+}  # fmt: skip
+_QUARTERS = 4
+_LEFT_OUT = {SpanKind.FRAME, SpanKind.LEVEL}
+
+Key = tuple[str, str]
+"""What a bar means, and its name: of a kernel, a reason, a stage, what is moved."""
+
+Bar = tuple[int, int, int, int, int]
+"""Track, key, first slice, last slice, and quarters of their time that were busy."""
+
+
+@dataclass(slots=True)
+class _Window:
+    """The time of a frame on all cores that told its end, in cycles."""
+
+    begin_cclk: int
+    end_cclk: int
+    cores: set[str] = field(default_factory=set)
+
+
+class Gantts:
+    """The Gantt chart of each frame, by its index. A context manager.
+
+    In memory are the spans of some two frames. Raises ConfigError where there is no room for its file.
+    """
+
+    def __init__(self) -> None:
+        self.tracks: tuple[str, ...] = ()
+        self._cclk_hz = 1.0
+        self._cores: set[str] = set()
+        self._spans: list[Span] = []
+        self._windows: dict[int, _Window] = {}
+        self._spool = Spool()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self._spool.__exit__()
+
+    def begin(self, identity: Identity, _frames: int) -> None:
+        """Take over how long a cycle is."""
+        self._cclk_hz = identity.cclk_hz
+
+    def add(self, spans: Sequence[Span]) -> None:
+        """Take spans as they come."""
+        for span in spans:
+            if span.kind is SpanKind.FRAME:
+                self._end(span)
+            elif span.kind is SpanKind.STAGE:
+                self._cores.add(span.where)
+        self._spans += (span for span in spans if span.kind not in _LEFT_OUT)
+        # the end of a frame is told by each core; a frame that is behind another one's is complete for sure
+        while len(self._windows) > 1 and self._windows[min(self._windows)].cores >= self._cores:
+            self._draw(min(self._windows))
+
+    def finish(self) -> None:
+        """Draw what has not been drawn yet."""
+        for index in sorted(self._windows):
+            self._draw(index)
+
+    def chart(self, index: int) -> dict[str, Any] | None:
+        """Return the chart of a frame as `chart_of` has it; None if nothing was told of it."""
+        found: dict[str, Any] | None = json.loads(self._spool[index]) if index in self._spool else None
+        return found
+
+    def _end(self, span: Span) -> None:
+        index = int(span.name.removeprefix("frame "))
+        window = self._windows.setdefault(index, _Window(span.begin_cclk, span.end_cclk))
+        window.begin_cclk = min(window.begin_cclk, span.begin_cclk)
+        window.end_cclk = max(window.end_cclk, span.end_cclk)
+        window.cores.add(span.where)
+
+    def _draw(self, index: int) -> None:
+        window = self._windows.pop(index)
+        inside = [span for span in self._spans if span.begin_cclk < window.end_cclk]
+        chart = chart_of(inside, window.begin_cclk, window.end_cclk, self._cclk_hz)
+        self.tracks = tuple(sorted({*self.tracks, *chart["tracks"]}, key=_order))
+        self._spool.put(index, json.dumps(chart, separators=(",", ":")).encode())
+        following = min((each.begin_cclk for each in self._windows.values()), default=window.end_cclk)
+        self._spans = [span for span in self._spans if span.end_cclk > following]
+
+
+def chart_of(spans: Iterable[Span], begin_cclk: int, end_cclk: int, cclk_hz: float) -> dict[str, Any]:
+    """Return the bars of what went on between two cycles, and the names of their tracks and keys.
+
+    `slice_ms` is how long a slice is.
+    """
+    length_cclk = max(SLICES, end_cclk - begin_cclk)
+    sliced: dict[str, dict[int, Counter[Key]]] = defaultdict(lambda: defaultdict(Counter))
+    for span in spans:
+        # in parts of a cycle, of which a cycle has SLICES and a slice `length_cclk`, nothing is rounded
+        begin = (max(span.begin_cclk, begin_cclk) - begin_cclk) * SLICES
+        end = (min(span.end_cclk, end_cclk) - begin_cclk) * SLICES
+        if end <= begin:
+            continue
+        track = sliced[_track(span)]
+        key = (_MEANING.get(span.kind, span.name), span.name)
+        for number in range(begin // length_cclk, -(-end // length_cclk)):
+            overlap = min(end, (number + 1) * length_cclk) - max(begin, number * length_cclk)
+            track[number][key] += overlap
+    tracks, keys = sorted(sliced, key=_order), dict[Key, int]()
+    bars: list[Bar] = []
+    for place, name in enumerate(tracks):
+        bars += _bars(place, sliced[name], keys, length_cclk)
+    return {
+        "tracks": tracks,
+        "keys": [list(key) for key in keys],
+        "slice_ms": 1000 * length_cclk / SLICES / cclk_hz,
+        "bars": bars,
+    }
+
+
+def _bars(place: int, slices: dict[int, Counter[Key]], keys: dict[Key, int], slice_parts: int) -> list[Bar]:
+    """Return the bars of a track: neighbours that are alike become one."""
+    bars: list[Bar] = []
+    for number in sorted(slices):
+        key = _most(slices[number])
+        busy = sum(slices[number].values()) / slice_parts
+        quarters = min(_QUARTERS, max(1, round(busy * _QUARTERS)))
+        name = keys.setdefault(key, len(keys))
+        if bars and (bars[-1][1], *bars[-1][3:]) == (name, number - 1, quarters):
+            bars[-1] = (place, name, bars[-1][2], number, quarters)
+        else:
+            bars.append((place, name, number, number, quarters))
+    return bars
+
+
+def _most(counts: Counter[Key]) -> Key:
+    """Return what took most: first of what it can mean, then of the names of that."""
+    meanings = Counter[str]()
+    for (meaning, _), parts in counts.items():
+        meanings[meaning] += parts
+    (most, _), *_ = meanings.most_common(1)
+    return max((key for key in counts if key[0] == most), key=lambda key: counts[key])
+
+
+def _track(span: Span) -> str:
+    where, track = span.track
+    return where if track == "transfers" else f"{where} {track}"
+
+
+def _order(track: str) -> tuple[bool, str]:
+    """Cores come first."""
+    return not track.startswith("core "), track
