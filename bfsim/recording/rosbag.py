@@ -14,10 +14,10 @@ import numpy as np
 from bfsim.errors import RecordingError, cut
 from bfsim.recording.bag_file import BagFile, Topic
 from bfsim.recording.camera_info import CAMERA_INFO, CameraInfo
-from bfsim.recording.pairing import Times, nearest_pairs, period_ns, rising
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.ros_images import IMAGE_TYPES, planes_of
 from bfsim.recording.sources import PictureSource, Skipped
+from bfsim.recording.time_pairs import Times, nearest_pairs, period_ns, rising
 
 DEFAULT_PERIOD_NS = 1e9 / 30
 """Of bags with a single picture: the rate of the sensors that bfsim knows."""

@@ -19,9 +19,9 @@ from PIL import Image
 from bfsim.cli_record import record
 from bfsim.errors import RecordingError
 from bfsim.recording import RecordingReader, RecordingWriter, StereoFrame, import_recording
-from bfsim.recording.pairing import nearest_pairs, rising
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.ros_images import ENCODINGS
+from bfsim.recording.time_pairs import nearest_pairs, rising
 from tests.recording.bags import (
     EPOCH_NS,
     KINDS,
