@@ -364,7 +364,7 @@ def test_the_strategy_unit_orders_modes_and_models(tmp_path: Path) -> None:
     assert result.returncode == 0, result.stderr
     said = " ".join(result.stdout.split())
     for words in (
-        "1 core A refused MODE 1: area must be 16x16 px at least and lie in the 320x240 of the pictures",
+        "frame 1: core A refused MODE 1: area must be 16x16 px at least and lie in the 320x240 of the pictures",
         "core A refused MODELS 2: model 1 must have a number of its own",
         "core A refused a message: it must have 10 bytes at least, but is cut short after 4",
     ):

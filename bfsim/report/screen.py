@@ -33,6 +33,7 @@ WORK, STALL, IDLE = ("█", "cyan"), ("▓", "red"), ("░", "bright_black")
 """How they are drawn, and in which colour where there are colours."""
 SLIVER = "▏"
 REASONS_TOLD = 3
+REMARKS_TOLD = 3
 DIGITS_TOLD = 12
 """As much of a digest is enough to see that two runs are the same."""
 MUCH_STALL = 0.1
@@ -142,17 +143,24 @@ def _facts(run: RunRecord, budget: Budget, bound: Bound) -> Iterator[tuple[str, 
         )
     if run.reference is not None:
         yield run.reference.name, run.reference.about
-    remarks = [(frame.index, text) for frame in run.frames for text in frame.remarks]
-    if remarks:
-        yield (
-            "Remarks",
-            f"{len(remarks):,} of the firmware; the first, in frame {remarks[0][0]}: {remarks[0][1]}",
-        )
+    yield from _remarks(run)
     yield "Run", _what_ran(run)
     yield (
         "Digests",
         f"identity {identity_digest(run.identity)[:DIGITS_TOLD]}, cycles {cycle_digest(run.frames)[:DIGITS_TOLD]}",
     )
+
+
+def _remarks(run: RunRecord) -> Iterator[tuple[str, str]]:
+    """Yield the first sentences that the firmware said about frames, each once."""
+    firsts: dict[str, int] = {}
+    for frame in run.frames:
+        for text in frame.remarks:
+            firsts.setdefault(text, frame.index)
+    for text, index in list(firsts.items())[:REMARKS_TOLD]:
+        yield "Remark", f"frame {index}: {text}"
+    if len(firsts) > REMARKS_TOLD:
+        yield "", f"{len(firsts) - REMARKS_TOLD:,} others: bfsim run --full"
 
 
 def _frames(run: RunRecord, core: CoreBudget) -> str:

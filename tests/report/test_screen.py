@@ -181,7 +181,7 @@ def test_what_must_not_be_overlooked_stands_below_the_table() -> None:
         "Warning lost: edges without room: 5 on core A",
         "2 done, 1 (2) missed",
         "Interrupted: these are the frames done until then.",
-        "1 of the firmware; the first, in frame 1: an order was refused",
+        "frame 1: an order was refused",
     ):
         assert text in words
     assert "Warning" not in words_of(run)
