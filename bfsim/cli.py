@@ -16,7 +16,7 @@ from bfsim.cli_html import paging, takes_html
 from bfsim.cli_ldf import ldf
 from bfsim.cli_record import record
 from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run, warn
-from bfsim.cli_seen import takes_views, watching
+from bfsim.cli_seen import stages_named, takes_views, watching
 from bfsim.cli_timeline import takes_timelines, timelines
 from bfsim.endings import LIMIT_BROKEN, exit_code_of
 from bfsim.errors import ConfigError
@@ -99,6 +99,7 @@ def run(
     overlay: Path | None,
     mcap: Path | None,
     layers: tuple[str, ...] | None,
+    heat: str | None,
     html: Path | None,
     target: Target | None,
     trace: Path | None,
@@ -118,6 +119,7 @@ def run(
       bfsim run drive.mcap --feed recorded --json drive.json
       bfsim run drive.mcap --overlay drive-seen --mcap drive-seen.mcap
       bfsim run drive.mcap --overlay lines.gif --layers lines,above
+      bfsim run drive.mcap --overlay heat.gif --heat
       bfsim run drive.mcap --html drive.html --target 15Hz
       bfsim run drive.mcap --trace drive.pftrace
     """
@@ -142,7 +144,14 @@ def run(
     watchers = Watchers()
     with SeenStore(with_features=features) as seen:
         with (
-            watching(watchers, show=show, overlay=overlay, mcap=mcap, layers=layers),
+            watching(
+                watchers,
+                show=show,
+                overlay=overlay,
+                mcap=mcap,
+                layers=layers,
+                heat=stages_named(heat, what["firmware"]),
+            ),
             paging(watchers, html, target, what, (json_path, mcap, overlay)),
             timelines(watchers, trace, flame, (*read, json_path, mcap, overlay, html)),
         ):

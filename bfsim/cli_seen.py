@@ -6,7 +6,7 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
@@ -19,9 +19,14 @@ from bfsim.watchers import Watchers
 
 if TYPE_CHECKING:
     from bfsim.recording import SeenWriter
+    from bfsim.seen import SeenFrame
     from bfsim.trace import RunRecord
 
 Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+ALL_STAGES = ""
+"""What `--heat` stands for without a stage."""
 
 
 class _Layers(click.ParamType[tuple[str, ...]]):
@@ -57,6 +62,14 @@ _PARAMETERS = (
         "(the view from above).  [default: all]",
     ),
     click.option(
+        "--heat",
+        metavar="[STAGE]",
+        is_flag=False,
+        flag_value=ALL_STAGES,
+        help="Draw where in the picture the time of STAGE went, or of all: a heat map, and the cost of each row by stage. "
+        "Of --layers only objects are drawn then, unless it says more.",
+    ),
+    click.option(
         "--mcap",
         metavar="FILE",
         type=click.Path(path_type=Path),
@@ -80,6 +93,7 @@ def watching(
     overlay: Path | None,
     mcap: Path | None,
     layers: tuple[str, ...] | None,
+    heat: tuple[str, ...] | None,
 ) -> Iterator[None]:
     """Have `watchers` write the files; these are there on a clean exit, or not at all.
 
@@ -87,21 +101,60 @@ def watching(
     """
     if layers and not (show or overlay):
         raise ConfigError("--layers must come with --overlay DIR|FILE or --show, which draw them")
+    if heat and not (show or overlay or mcap):
+        raise ConfigError("--heat must come with --overlay DIR|FILE, --show or --mcap FILE, which show it")
     with ExitStack() as stack:
+        tell: list[Callable[[SeenFrame], None]] = []
         if mcap:
             writer = stack.enter_context(_seen_writer(mcap))
-            watchers.seen.append(writer.add)
+            tell.append(writer.add)
             watchers.done.append(partial(_add_series, writer))
         if show and not overlay:
             overlay = stack.enter_context(_lasting_folder()) / "overlay.gif"
         if overlay:
             from bfsim.report.overlay.files import OverlayWriter
-            from bfsim.report.overlay.layers import LAYERS
+            from bfsim.report.overlay.layers import LAYERS, UNDER_HEAT
 
-            watchers.seen.append(stack.enter_context(OverlayWriter(overlay, layers or LAYERS)).add)
+            drawn = layers or (UNDER_HEAT if heat else LAYERS)
+            tell.append(stack.enter_context(OverlayWriter(overlay, drawn)).add)
+        if heat:
+            _heat_up(watchers, heat, tell)
+        else:
+            watchers.seen.extend(tell)
         yield
     if show and overlay:
         _show(overlay)
+
+
+def _heat_up(watchers: Watchers, stages: Sequence[str], tell: Sequence[Callable[[SeenFrame], None]]) -> None:
+    """Have `watchers` tell of each frame with its heat."""
+    from bfsim.report.heat import HeatedFrames
+
+    frames = HeatedFrames(stages, tell)
+    watchers.before.append(frames.begin)
+    watchers.seen.append(frames.add)
+    watchers.spans.append(frames.add_spans)
+
+
+def stages_named(heat: str | None, firmware: str) -> tuple[str, ...] | None:
+    """Return the stages that `--heat` asks for, all with ALL_STAGES; None without the option.
+
+    Raises ConfigError where the firmware has no such stage.
+    """
+    if heat is None:
+        return None
+    from bfsim.report.heat import stages_of
+    from bfsim.run import rows_of
+
+    rows = rows_of(firmware)
+    try:
+        return stages_of(rows, None if heat == ALL_STAGES else heat)
+    except KeyError:
+        known = ", ".join(each.stage for each in rows)
+        raise ConfigError(
+            f"--heat must be alone, for all stages, or name one of {known}, not {shown(heat)}; "
+            "a RECORDING goes before it"
+        ) from None
 
 
 def _seen_writer(path: Path) -> SeenWriter:

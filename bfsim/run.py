@@ -30,7 +30,7 @@ from bfsim.result import Run
 from bfsim.room import place
 from bfsim.seen import Seen, SeenFrame
 from bfsim.spans import Span
-from bfsim.trace import Identity, RunWarning, WarningKind
+from bfsim.trace import BudgetRow, Identity, RunWarning, WarningKind
 
 BUILT_IN_RECORDING = shipped.RECORDING
 PLACEMENTS = shipped.LDF_FOLDER
@@ -187,6 +187,11 @@ def _assumed_clocks(spec: BoardSpec) -> Iterator[RunWarning]:
 def has_view(firmware: str) -> bool:
     """Whether `firmware` can tell what it sees. Raises FirmwareError as `simulate`."""
     return load_firmware(firmware).firmware.view is not None
+
+
+def rows_of(firmware: str) -> tuple[BudgetRow, ...]:
+    """Return the rows of the budget of `firmware`. Raises FirmwareError as `simulate`."""
+    return load_firmware(firmware).firmware.rows
 
 
 def read_placement(

@@ -42,12 +42,20 @@ TRACKS = {
 NO_STALLS: Mapping[StallReason, int] = MappingProxyType({})
 
 
+class Place(NamedTuple):
+    """A part of a picture: its rows and its columns, counted from 0, or all columns."""
+
+    rows: range
+    columns: range | None = None
+
+
 class Span(NamedTuple):
     """Something that went on from `begin_cclk` to `end_cclk` at `where`: a core, a DMA channel, a camera, a semaphore.
 
     Spans of one track come in the order of time and never overlap. Of a core, issue + stall + idle = elapsed, and `stage`
     is the row of the budget that it counts to; where in a call its stalls were is not known. `value` is the bytes of what was
-    moved, or the level. `flow` is the same number in a transfer and in the wait that it ended, else 0.
+    moved, the level, or the index of the frame. `flow` is the same number in a transfer and in the wait that it ended, else 0. `place` is where in the
+    picture that the core looked at it was about, if that is known.
     """
 
     kind: SpanKind
@@ -60,6 +68,7 @@ class Span(NamedTuple):
     stall_cclk: Mapping[StallReason, int] = NO_STALLS
     value: int = 0
     flow: int = 0
+    place: Place | None = None
 
     @property
     def elapsed_cclk(self) -> int:

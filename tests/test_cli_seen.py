@@ -177,3 +177,34 @@ def test_ctrl_c_before_the_first_frame_is_seen(tmp_path: Path, monkeypatch: pyte
     result = run("--overlay", tmp_path / "seen.gif", "--mcap", tmp_path / "seen.mcap")
     assert (result.exit_code, result.stderr) == (130, "bfsim: interrupted\n")
     assert not list(tmp_path.iterdir())
+
+
+def test_heat_is_drawn_and_told_and_changes_nothing(tmp_path: Path) -> None:
+    """A picture with it is larger by its bars and legend; the MCAP file has it; the numbers are those without."""
+    plain, heat, mcap = tmp_path / "plain", tmp_path / "heat", tmp_path / "seen.mcap"
+    before = run("--overlay", plain, "--layers", "objects")
+    after = run("--overlay", heat, "--mcap", mcap, "--heat")
+    assert after.exit_code == 0, after.output
+    assert after.stdout == before.stdout
+    with Image.open(plain / "frame-0000.png") as one, Image.open(heat / "frame-0000.png") as other:
+        assert one.width < other.width
+        assert one.height < other.height
+    with mcap.open("rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        told = {channel.topic: decoded for _, channel, _, decoded in reader.iter_decoded_messages()}
+    for camera in ("left", "right"):
+        picture, heated = told[f"/camera/{camera}/image_rect"], told[f"/camera/{camera}/heat"]
+        assert (picture.width, picture.height, picture.encoding) == (
+            heated.width,
+            heated.height,
+            heated.encoding,
+        )
+        assert picture.data != heated.data
+
+
+def test_heat_of_a_stage_that_is_not_there(tmp_path: Path) -> None:
+    """It says which there are, and what may have been meant; and heat that nobody sees is a mistake."""
+    told = refused("--overlay", tmp_path / "heat", "--heat", "drive.mcap")
+    assert "Edge detection, Rectification" in told
+    assert "a RECORDING goes before it" in told
+    assert "--heat must come with --overlay" in refused("--heat")

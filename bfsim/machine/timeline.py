@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from bfsim.spans import NO_STALLS, Span, SpanKind
+from bfsim.spans import NO_STALLS, Place, Span, SpanKind
 from bfsim.trace import REST, StallReason
 
 _span = Span._make  # half the time of a call of Span, and there are many
@@ -38,7 +38,7 @@ class Timeline:
         flow: int = 0,
     ) -> None:
         """Tell what a device did; `value` and `flow` are as in `Span`."""
-        self.spans.append(_span((kind, where, name, begin_cclk, end_cclk, "", 0, NO_STALLS, value, flow)))
+        self.spans.append(_span((kind, where, name, begin_cclk, end_cclk, "", 0, NO_STALLS, value, flow, None)))
 
     def level(self, where: str, name: str, value: int, at_cclk: int) -> None:
         """Note how high a level is from a cycle on, and tell how high it was until then; all levels begin at 0."""
@@ -69,6 +69,8 @@ class CoreTimeline:
         self._stage = REST
         self._entered_cclk = 0
         self._frame_cclk = 0
+        self.place: Place | None = None
+        """What the core's work is about from now on."""
 
     def call(
         self, kernel: str, begin_cclk: int, issue_cclk: int, stall_cclk: Mapping[StallReason, int]
@@ -93,8 +95,10 @@ class CoreTimeline:
         self, kind: SpanKind, name: str, begin_cclk: int, end_cclk: int,
         issue_cclk: int, stall_cclk: Mapping[StallReason, int], flow: int = 0,
     ) -> None:  # fmt: skip
-        span = kind, self._where, name, begin_cclk, end_cclk, self._stage, issue_cclk, stall_cclk, 0, flow
-        self._timeline.spans.append(_span(span))
+        stage, place = self._stage, self.place
+        self._timeline.spans.append(
+            _span((kind, self._where, name, begin_cclk, end_cclk, stage, issue_cclk, stall_cclk, 0, flow, place))
+        )
 
     def level(self, name: str, value: int, at_cclk: int) -> None:
         """Note how high a level of the core's own is from a cycle on."""
@@ -118,6 +122,6 @@ class CoreTimeline:
         """Tell the frame that ends at a cycle, and the part of its last stage."""
         self.enter(self._stage, at_cclk)
         self._timeline.spans.append(
-            Span(SpanKind.FRAME, self._where, f"frame {index}", self._frame_cclk, at_cclk)
+            Span(SpanKind.FRAME, self._where, f"frame {index}", self._frame_cclk, at_cclk, value=index)
         )
         self._frame_cclk = at_cclk

@@ -11,8 +11,10 @@ from foxglove_schemas_protobuf.Point2_pb2 import Point2
 from foxglove_schemas_protobuf.PointsAnnotation_pb2 import PointsAnnotation
 from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
 from foxglove_schemas_protobuf.TextAnnotation_pb2 import TextAnnotation
+from PIL import Image
 
-from bfsim.seen import Colour, Point, Seen, SeenBlob, SeenObject, colours
+from bfsim.seen import Colour, Point, Seen, SeenBlob, SeenHeat, SeenObject, colours
+from bfsim.seen.heat import heated
 from bfsim.seen.pictures import rgb_of
 
 THICKNESS_PX = 1.0
@@ -22,13 +24,22 @@ FONT_PX = 9.0
 
 def image_message(seen: Seen, time_ns: int) -> RawImage:
     """Return the picture that a core looked at, in colours that every viewer takes."""
+    return _image(seen, rgb_of(seen.picture), time_ns)
+
+
+def heat_message(seen: Seen, heat: SeenHeat, hottest_us: float, time_ns: int) -> RawImage:
+    """Return the same picture under its heat; `hottest_us` a row is the end of the scale."""
+    return _image(seen, heated(rgb_of(seen.picture), heat, hottest_us), time_ns)
+
+
+def _image(seen: Seen, picture: Image.Image, time_ns: int) -> RawImage:
     image = RawImage(
         frame_id=seen.camera,
         width=seen.width_px,
         height=seen.height_px,
         encoding="rgb8",
         step=3 * seen.width_px,
-        data=rgb_of(seen.picture).tobytes(),
+        data=picture.tobytes(),
     )
     image.timestamp.FromNanoseconds(time_ns)
     return image

@@ -22,7 +22,7 @@ from bfsim.recording import layout
 from bfsim.recording.container import McapContainer
 from bfsim.recording.growing_file import growing_file, writing
 from bfsim.recording.number_messages import NumberMessages
-from bfsim.recording.seen_pictures import features_message, image_message
+from bfsim.recording.seen_pictures import features_message, heat_message, image_message
 from bfsim.recording.seen_space import (
     calibration_message,
     edges_message,
@@ -31,8 +31,10 @@ from bfsim.recording.seen_space import (
     transforms_message,
 )
 from bfsim.seen import SeenFrame
+from bfsim.seen.heat import hottest_row_us
 
 IMAGE_TOPIC = "/camera/{}/image_rect"
+HEAT_TOPIC = "/camera/{}/heat"
 CALIBRATION_TOPIC = "/camera/{}/calibration"
 FEATURES_TOPIC = "/camera/{}/features"
 TRANSFORMS_TOPIC = "/transforms"
@@ -102,9 +104,13 @@ class SeenWriter:
         for geometry in list(frame.geometries.values())[:1]:  # the cameras are parallel, and one rig
             tilt_deg = geometry.tilt_deg
             yield TRANSFORMS_TOPIC, time_ns, transforms_message(geometry, time_ns)
+        hottest_us = hottest_row_us(each.heat for each in frame.cameras if each.heat)
         for seen in frame.cameras:
             camera, taken_ns = seen.camera, frame.times_ns[seen.camera]
             yield IMAGE_TOPIC.format(camera), taken_ns, image_message(seen, taken_ns)
+            if seen.heat:
+                message = heat_message(seen, seen.heat, hottest_us, taken_ns)
+                yield HEAT_TOPIC.format(camera), taken_ns, message
             yield FEATURES_TOPIC.format(camera), taken_ns, features_message(seen, frame.objects, taken_ns)
             if seen.geometry:
                 size_px = seen.width_px, seen.height_px

@@ -111,6 +111,10 @@ class SpanCells(NamedTuple):
     stall_cclk: int
     value: int
     flow: int
+    first_row: int | None
+    last_row: int | None
+    first_column: int | None
+    last_column: int | None
 
 
 def tables_of(run: RunRecord, spans: Iterable[Span] = ()) -> dict[str, Columns]:
@@ -204,6 +208,7 @@ def _traffic(run: RunRecord) -> Iterator[TrafficCells]:
 
 def _span(span: Span) -> SpanCells:
     stall_cclk = sum(span.stall_cclk.values())
+    rows, columns = span.place or (None, None)
     return SpanCells(
         span.kind.value,
         span.where,
@@ -215,4 +220,8 @@ def _span(span: Span) -> SpanCells:
         stall_cclk,
         span.value,
         span.flow,
+        rows[0] if rows else None,
+        rows[-1] if rows else None,
+        columns[0] if columns else None,
+        columns[-1] if columns else None,
     )

@@ -88,6 +88,22 @@ class SeenMap:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SeenHeat:
+    """Where in the picture the time of a frame went, by stage, in µs of the core that looked at it.
+
+    `stages_us`: arrays of the shape of the picture, what each pixel cost. `elsewhere_us`: what was about no place of it.
+    """
+
+    stages_us: dict[str, NDArray[np.float64]]
+    elsewhere_us: dict[str, float]
+
+    def total_us(self) -> NDArray[np.float64]:
+        """Return what each pixel cost all stages together."""
+        total: NDArray[np.float64] = np.add.reduce(list(self.stages_us.values()))
+        return total
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SeenBlob:
     """A segment of one colour. Its rectangle includes the outermost pixels; `centre_px` is its centre of mass."""
 
@@ -239,6 +255,7 @@ class Seen:
     arrows: tuple[SeenArrow, ...] = ()
     texts: tuple[SeenText, ...] = ()
     map: SeenMap | None = None
+    heat: SeenHeat | None = None
     objects: tuple[SeenObject, ...] = ()
     lines_3d: tuple[SeenLine3D, ...] = ()
     edges_3d: SeenEdges3D = field(default_factory=no_edges_3d)

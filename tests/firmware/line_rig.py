@@ -44,6 +44,9 @@ class BareCore:
         """Run a kernel; what it returns is to be yielded."""
         return kernel(*arguments)
 
+    def at(self, *place: int | range) -> None:
+        """Take no note of the place of the work."""
+
     def publish(self, **results: int) -> None:
         """Keep results."""
         self.published |= results

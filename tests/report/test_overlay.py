@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from bfsim.report.overlay import style
+from bfsim.report.overlay.heat import BARS, GAP, LINE, STAGES
 from bfsim.report.overlay.layers import LAYERS
 from bfsim.report.overlay.overlay import overlay_of
 from bfsim.report.overlay.panel import panel_of
@@ -19,11 +20,13 @@ from bfsim.seen import (
     SeenEdges,
     SeenEdges3D,
     SeenFrame,
+    SeenHeat,
     SeenLoss,
     SeenMap,
     SeenText,
     colours,
 )
+from bfsim.seen.heat import COLOURS, SHARE
 from bfsim.seen.pictures import rgb_of
 from tests import seen_frames as made
 
@@ -202,3 +205,45 @@ def test_colours_of_the_camera_are_kept() -> None:
     uyvy = np.tile(np.array([cb, y, cr, y], np.uint8), (2, 2))
     found = np.asarray(rgb_of(uyvy)).reshape(-1, 3).astype(int)
     assert np.abs(found - (255, 0, 0)).max() <= 2
+
+
+def hot(us: float) -> SeenHeat:
+    """Heat of two stages in row 30: the first one costs a pixel `us`, the second one half of that in its left half."""
+    first, second = np.zeros((2, 60, 80))
+    first[30], second[30, :40] = us, us / 2
+    return SeenHeat(stages_us={"Edges": first, "Blobs": second}, elsewhere_us={"Edges": 1.0, "Blobs": 0.0})
+
+
+def test_heat_lies_over_the_picture_by_what_a_place_cost() -> None:
+    """The dearest place of both pictures has the end of the scale, two thirds of it two thirds, no time its beginning."""
+    right = Seen(camera="right", picture=made.grey(), heat=hot(2))
+    frame = made.frame(0, Seen(camera="left", picture=made.grey(), heat=hot(4)), right)
+    grey = np.array(shown(one(), 40, 10))
+    for x, y, level in ((10, 30, 255), (70, 30, 170), (10, 10, 0)):
+        assert np.abs(grey + SHARE * (COLOURS[level] - grey) - shown(frame, x, y)).max() <= 1
+    sheet, width = np.asarray(overlay_of(frame)), 80 * SCALE
+    after = style.MARGIN + width + GAP + BARS + style.MARGIN
+    assert tuple(sheet[style.HEAD + 30 * SCALE, after + 10]) != tuple(
+        sheet[style.HEAD + 10 * SCALE, after + 10]
+    )
+
+
+def test_bars_say_what_each_row_cost_by_stage() -> None:
+    """The dearest row of both pictures is the longest bar: four fifths of it the first stage's here; other rows have none."""
+    frame = made.frame(
+        0, *(Seen(camera=each, picture=made.grey(), heat=hot(4)) for each in ("left", "right"))
+    )
+    sheet = np.asarray(overlay_of(frame))
+    left = style.MARGIN + 80 * SCALE + GAP
+    bar = sheet[style.HEAD + 30 * SCALE + 1, left : left + BARS]
+    assert [(bar == colour).all(axis=1).sum() for colour in STAGES[:2]] == [BARS * 4 // 5, BARS // 5]
+    assert (sheet[style.HEAD + 10 * SCALE, left : left + BARS] == style.GRID).all()
+    assert sheet.shape[0] >= style.HEAD + 60 * SCALE + style.FOOT + 2 * LINE
+
+
+def test_colours_of_heat_become_lighter_evenly() -> None:
+    """So that what looks twice as light is twice as dear: by the luminance of sRGB, never darker on the way up."""
+    linear = (COLOURS / 255.0) ** 2.2 @ np.array([0.2126, 0.7152, 0.0722])
+    assert (np.diff(linear) >= -0.002).all()
+    assert linear[0] < 0.02
+    assert linear[-1] > 0.7

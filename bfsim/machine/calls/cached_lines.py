@@ -5,7 +5,7 @@ They answer firmware as line rings do, so that the LDF alone decides between rin
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from typing import Any
 
 from bfsim.errors import FirmwareError
@@ -15,7 +15,9 @@ from bfsim.machine.memories import Row
 class CachedInput:
     """The lines of a picture, first to last."""
 
-    def __init__(self, image: Sequence[Row]) -> None:
+    def __init__(self, image: Sequence[Row], on_line: Callable[[int, int], None]) -> None:
+        """`on_line`: called with the number of each line that is taken, and how many there are."""
+        self._on_line = on_line
         self._image = image
         self._taken = 0
 
@@ -27,6 +29,7 @@ class CachedInput:
                 f"{self._image[0].buffer} has no line {number}: the picture has {len(self._image)}"
             )
         self._taken = number + 1
+        self._on_line(number, len(self._image))
         return self._image[number]
         yield  # a generator, as the line of a ring is
 

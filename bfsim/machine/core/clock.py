@@ -7,7 +7,8 @@ issue + stall + idle = elapsed holds by construction.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import simpy
@@ -100,6 +101,16 @@ class CoreClock:
         """Tell the timeline, if there is one, how high a level of this core's is from now on."""
         if self._timeline:
             self._timeline.level(name, value, self._cclk)
+
+    @contextmanager
+    def _elsewhere(self) -> Iterator[None]:
+        """Have what is inside be about no place of the picture until it says so, and what comes after about the one before."""
+        if not self._timeline:
+            yield
+            return
+        before, self._timeline.place = self._timeline.place, None
+        yield
+        self._timeline.place = before
 
     def program_device(self, writes: int, reads: int = 0) -> None:
         """Write and read registers of a device: that is DMA set-up."""

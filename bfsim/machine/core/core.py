@@ -30,7 +30,12 @@ from bfsim.machine.program import FrameSize, Main
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi.spi import Spi
 from bfsim.seen import Seen
+from bfsim.spans import Place
 from bfsim.trace import REST, CoreFrame, StallReason
+
+
+def _range(places: int | range) -> range:
+    return places if isinstance(places, range) else range(index(places), index(places) + 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +154,7 @@ class Core(SynchronisedCore):
         Where the LDF has the image cached, its own rows take the place of the ring's.
         """
         if self._is_cached(image):
-            return CachedInput(image)
+            return CachedInput(image, self.take_line)
         return self.window_ring(image, self.rows(ring) if isinstance(ring, str) else ring)
 
     def window_ring(self, image: Sequence[Row], rows: Sequence[Row]) -> InputRing:
@@ -168,9 +173,23 @@ class Core(SynchronisedCore):
         if name not in self._stages:
             raise FirmwareError(f"stage must be one of {', '.join(self._stages)}, not {name!r}")
         before = self._calls.stage
-        self._enter(name)
-        yield
-        self._enter(before)
+        with self._elsewhere():
+            self._enter(name)
+            yield
+            self.at()
+            self._enter(before)
+
+    def at(self, rows: int | range | None = None, columns: int | range | None = None) -> None:
+        """Say what the work from here on is about, for the heat map: rows and columns of the picture that is looked at.
+
+        Without columns it is the whole rows, without anything no place. That holds until the next `at` or the end of the
+        stage; rows without columns, or no place, also until the next line of a ring over a picture as high as the camera's,
+        which is the place then. It takes no cycle.
+        """
+        if self._timeline:
+            self._timeline.place = (
+                None if rows is None else Place(_range(rows), None if columns is None else _range(columns))
+            )
 
     @awaited
     def next_frame(self) -> Generator[Any, Any, Frame | None]:
@@ -181,6 +200,7 @@ class Core(SynchronisedCore):
             raise FirmwareError("next_frame must not be called again after None, for the recording is over")
         self._check_claimed()
         yield from self._sync()
+        self.at()
         self._close_frame()
         pair = yield from self._blocked(self._capture.claim(self.name), "the next picture", None)
         self._wake(None, ended_by=pair.last if pair else None)
@@ -279,6 +299,13 @@ class Core(SynchronisedCore):
         self._calls.enter(stage)
 
     # What the board uses
+
+    def take_line(self, number: int, lines: int) -> None:
+        """Note that the core took a line of a picture of so many `lines`, and works on it unless it says more exactly where."""
+        if self._timeline and self._frame and lines == self._frame.height:
+            place = self._timeline.place
+            if place is None or place.columns is None:
+                self.at(number)
 
     def play(self, main: Main) -> Generator[Any, Any, None]:
         """Run the firmware's main loop: the process of this core."""

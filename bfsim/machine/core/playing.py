@@ -258,11 +258,12 @@ class PlayingCore(CoreClock):
         while self._interrupts.is_waiting:
             source, handler = self._interrupts.take()
             begin_cclk = self._cclk
-            self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk)
-            task = handler(self)
-            if isinstance(task, Generator):
-                yield from self._perform(task)
-            self.stall(StallReason.INTERRUPT, events.interrupt_exit_cclk)
+            with self._elsewhere():
+                self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk)
+                task = handler(self)
+                if isinstance(task, Generator):
+                    yield from self._perform(task)
+                self.stall(StallReason.INTERRUPT, events.interrupt_exit_cclk)
             if self._timeline:
                 self._timeline.interrupt(source, begin_cclk, self._cclk)
         self._in_handler = before

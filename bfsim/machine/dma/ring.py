@@ -60,6 +60,7 @@ class InputRing:
                 f"the ring of {self._rows[0].buffer} has no line {number}: the picture has {self._height}"
             )
         self._taken = number + 1
+        core.take_line(number, self._height)
         core.program_device(writes=COPY_WRITES, reads=COPY_READS)
         transfer = self._coming or self._fetch(number)
         # one line ahead: its row is the one that the core gave up with this call

@@ -26,6 +26,9 @@ ABOVE = "above"
 LAYERS = (*_WITHOUT, ABOVE)
 """All that can be drawn over the pictures, and beside them."""
 
+UNDER_HEAT = ("objects",)
+"""What is drawn over heat if nobody says more: it is to be seen."""
+
 
 def only(frame: SeenFrame, layers: Collection[str]) -> SeenFrame:
     """Return a frame in which nothing was seen but what is in `layers`."""

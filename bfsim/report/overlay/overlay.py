@@ -8,28 +8,34 @@ from PIL import Image, ImageDraw
 
 from bfsim.report.overlay import style
 from bfsim.report.overlay.above import above_of
+from bfsim.report.overlay.heat import BARS, GAP, bars_of, heat_legend, longest_row_us
 from bfsim.report.overlay.labels import Label, write_labels
 from bfsim.report.overlay.layers import ABOVE, LAYERS, only
 from bfsim.report.overlay.legend import LEGEND_WIDTH, legend
 from bfsim.report.overlay.panel import panel_of
 from bfsim.seen import Seen, SeenFrame
 from bfsim.seen.colours import DepthScale, depths_of
+from bfsim.seen.heat import hottest_row_us
 
 
 def overlay_of(frame: SeenFrame, layers: Collection[str] = LAYERS) -> Image.Image:
     """Return the sheet of a frame, RGB, with some `layers` drawn: the same size for frames of pictures of one size.
 
-    Cameras that see depth have a view from above beside them.
+    Cameras that see depth have a view from above beside them, and pictures with their heat what each row cost.
     """
     frame, scale = only(frame, layers), depths_of(frame)
     wanted_px = style.PANEL_WIDTH if len(frame.cameras) > 1 else LEGEND_WIDTH
-    panels = [_panel(frame, each, wanted_px, scale) for each in frame.cameras]
+    heats = [each.heat for each in frame.cameras if each.heat]
+    hottest_us, longest_us = hottest_row_us(heats), longest_row_us(heats)
+    panels = [_panel(frame, each, wanted_px, scale, hottest_us) for each in frame.cameras]
     highest = max(image.height for image, _ in panels)
     above = above_of(frame, scale, highest) if ABOVE in layers and _sees_depth(frame) else None
     inside = sum(image.width for image, _ in panels) + style.MARGIN * (len(panels) - 1)
     inside += above.width + style.MARGIN if above else 0
+    inside += (BARS + GAP) * len(heats)
     width = 2 * style.MARGIN + max(inside, LEGEND_WIDTH)
-    height = style.HEAD + highest + style.FOOT
+    below = heat_legend(heats, width - 2 * style.MARGIN, hottest_us, longest_us) if heats else None
+    height = style.HEAD + highest + style.FOOT + (below.height if below else 0)
     sheet = Image.new("RGB", (width, height), style.PAPER)
     pen = ImageDraw.Draw(sheet)
     left = style.MARGIN
@@ -37,11 +43,17 @@ def overlay_of(frame: SeenFrame, layers: Collection[str] = LAYERS) -> Image.Imag
         sheet.paste(image, (left, style.HEAD))
         _write_head(pen, frame, seen, left, image.width)
         write_labels(pen, labels, (left, style.HEAD, left + image.width, style.HEAD + image.height))
-        left += image.width + style.MARGIN
+        left += image.width
+        if seen.heat:
+            sheet.paste(bars_of(seen.heat, image.height, longest_us), (left + GAP, style.HEAD))
+            left += GAP + BARS
+        left += style.MARGIN
     if above:
         sheet.paste(above, (left, style.HEAD))
         pen.text((left, style.HEAD // 2), "from above, mm", style.WORDS, style.font(style.FONT), anchor="lm")
-    sheet.paste(legend(scale), (style.MARGIN, height - style.FOOT))
+    sheet.paste(legend(scale), (style.MARGIN, style.HEAD + highest))
+    if below:
+        sheet.paste(below, (style.MARGIN, height - below.height))
     return sheet
 
 
@@ -51,13 +63,13 @@ def _sees_depth(frame: SeenFrame) -> bool:
 
 
 def _panel(
-    frame: SeenFrame, seen: Seen, wanted_px: int, depths: DepthScale
+    frame: SeenFrame, seen: Seen, wanted_px: int, depths: DepthScale, hottest_us: float
 ) -> tuple[Image.Image, list[Label]]:
     scale = max(1, round(wanted_px / seen.width_px))
     objects = tuple(each for each in frame.objects if each.camera == seen.camera)
     if seen.camera != "left":
-        return panel_of(seen, objects, (), (), scale, depths)
-    return panel_of(seen, objects, frame.lines_3d, tuple(frame.edges_3d()), scale, depths)
+        return panel_of(seen, objects, (), (), scale, depths, hottest_us)
+    return panel_of(seen, objects, frame.lines_3d, tuple(frame.edges_3d()), scale, depths, hottest_us)
 
 
 def _write_head(pen: ImageDraw.ImageDraw, frame: SeenFrame, seen: Seen, left: int, width: int) -> None:

@@ -28,6 +28,7 @@ from bfsim.seen import (
     colours,
 )
 from bfsim.seen.colours import DepthScale
+from bfsim.seen.heat import heated
 from bfsim.seen.pictures import rgb_of
 
 FULL_GRADIENT = 96  # edges as strong as this are drawn at their brightest
@@ -48,12 +49,14 @@ def panel_of(
     edges_3d: tuple[SeenEdges3D, ...],
     scale: int,
     depths: DepthScale,
+    hottest_us: float = 0.0,
 ) -> tuple[Image.Image, list[Label]]:
     """Return the picture of a camera with its marks, `scale` times larger, and the words to be put on it.
 
     `objects` are those that this camera shows; `lines_3d` and `edges_3d` those of the left picture, for the left one.
+    `hottest_us`: the end of the scale of its heat.
     """
-    under = Image.fromarray(_with_edges(seen, edges_3d, scale, depths))
+    under = Image.fromarray(_with_edges(seen, edges_3d, scale, depths, hottest_us))
     image = under.resize((under.width * style.SMOOTH, under.height * style.SMOOTH), Image.Resampling.NEAREST)
     pen = Pen(image, scale * style.SMOOTH)
     for loss in seen.losses:
@@ -96,13 +99,15 @@ def _scaled(label: Label, scale: int) -> Label:
 
 
 def _with_edges(
-    seen: Seen, edges_3d: tuple[SeenEdges3D, ...], scale: int, depths: DepthScale
+    seen: Seen, edges_3d: tuple[SeenEdges3D, ...], scale: int, depths: DepthScale, hottest_us: float
 ) -> NDArray[np.uint8]:
-    """Return the picture, darkened and magnified, under its map, with a small square in each pixel that is an edge."""
+    """Return the picture, darkened and magnified, under its map and its heat, with a small square in each pixel that is an edge."""
     size = (seen.width_px * scale, seen.height_px * scale)
     large = rgb_of(seen.picture).resize(size, Image.Resampling.BICUBIC).point(style.dark_levels())
     if seen.map:
         large = _with_map(large, seen.map)
+    if seen.heat and hottest_us:
+        large = heated(large, seen.heat, hottest_us)
     paint = np.zeros((seen.height_px, seen.width_px, 4), np.float32)
     edges = seen.edges
     paint[edges.y_px, edges.x_px, :3] = colours.EDGE

@@ -263,6 +263,7 @@ def blob_detection(core: Core, frame: Frame, thresholds: BlobThresholds) -> Gene
     yield core.run(clear_labels, labels)
     used = lost = 0
     for y in range(frame.height):
+        core.at(y)
         line = yield from opened.line()
         row = line, labels, parents, blobs, groups, thresholds.colours, y
         wanted = yield core.run(segment_row, *row, used)
@@ -270,6 +271,7 @@ def blob_detection(core: Core, frame: Frame, thresholds: BlobThresholds) -> Gene
         lost += wanted - used
         if used >= RECYCLE_AT:
             used = yield core.run(recycle_labels, labels, parents, blobs, used, thresholds.min_pixels)
+    core.at()
     yield core.run(unite_segments, parents, blobs, used)
     sizes = thresholds.min_pixels, thresholds.max_pixels, thresholds.max_blobs
     found = yield core.run(select_blobs, parents, blobs, used, *sizes)

@@ -29,7 +29,7 @@ from tinyphoon.stages.circle_fit import CENTRE_X, CENTRE_Y, FIT_WORDS, RADIUS, a
 from tinyphoon.stages.circle_outline import LUMA_LINES, REACH_LINES, clear_points, luma_row, refine_row
 from tinyphoon.stages.circle_radius import edges_round, fill_histogram, find_radius, mean_radius
 from tinyphoon.stages.circle_votes import clear_votes, draw_lines, find_peak, mean_offset, votes_round
-from tinyphoon.stores.blobs import BLOB_WORDS, PIXELS, SUM_X, SUM_Y
+from tinyphoon.stores.blobs import BLOB_WORDS, PIXELS, SUM_X, SUM_Y, box_of
 from tinyphoon.stores.circles import (
     CENTRE_PASSED,
     CIRCLE_ARC,
@@ -219,6 +219,7 @@ def circle_detection(
     number = lost = edges_lost = 0
     blob = yield core.run(next_blob, blob_data, 0, blobs, colours)
     while blob != NONE:
+        core.at(*box_of(blob_data, blob))
         if number < CIRCLE_CAPACITY:
             found = yield from _select_edges(core, frame, blob, colours, thresholds, selected)
             count = min(found, room)
@@ -229,6 +230,7 @@ def circle_detection(
             number += 1
         else:
             lost += 1
+        core.at()
         blob = yield core.run(next_blob, blob_data, blob + 1, blobs, colours)
     core.publish(circles=number, circles_lost=lost, circle_edges_lost=edges_lost)
     return number

@@ -197,6 +197,7 @@ def edge_detection(
     groups = EdgeGroups.of(core, frame.width)
     found = given = 0
     for y in range(frame.height):
+        core.at(y)
         found = yield from candidates.take(rows, y, found)
         given = yield from groups.add(y, given)
     kept = yield from hysteresis(groups, frame.height, thresholds.strong_threshold)
@@ -226,6 +227,7 @@ def scan(
     rim = [core.array(f"sighted_{end}") for end in ("first", "last") if core.has_buffer(f"sighted_{end}")]
     for y in range(height + reach + 2):
         if y < height:
+            core.at(y)
             line = yield from camera.line()
             yield core.run(grey_row, line, grey[y])
             if not thresholds.is_balanced:
@@ -236,16 +238,20 @@ def scan(
         # Gauss, Sobel and suppression each need lines below theirs
         smoothed, sloped, done = y - reach, y - reach - 1, y - reach - 2
         if 0 <= smoothed < height:
+            core.at(smoothed)
             gauss_row = gauss3_row if reach == 1 else gauss5_row
             yield core.run(gauss_row, *window(grey, smoothed, height, reach), smooth[smoothed])
         if 0 <= sloped < height:
+            core.at(sloped)
             yield core.run(sobel_row, *window(smooth, sloped, height), gx, gy)
             yield core.run(magnitude_row, gx, gy, magnitude[sloped])
             yield core.run(direction_row, gx, gy, atan, direction[sloped])
         if done >= 0:
+            core.at(done)
             near = window(magnitude, done, height)
             yield core.run(suppress_row, *near, direction[done], edges, thresholds.edge_threshold)
             if rim:
                 yield core.run(clear_rim, edges, *rim, area.y + done, area.x)
             yield from candidates.add(done, edges, direction[done])
+    core.at()
     yield from colours.flush()

@@ -224,8 +224,10 @@ def hysteresis(groups: EdgeGroups, height: int, strong_threshold: int) -> Genera
     edges = groups.core.output_ring("edge_ring", groups.core.rows("edge_image"))
     given = kept = 0
     for y in range(height):
+        groups.core.at(y)
         row = yield from edges.row()
         given, kept = yield from groups.keep(y, given, kept, strong_threshold, row)
         edges.send()
+    groups.core.at()
     yield from edges.flush()
     return kept

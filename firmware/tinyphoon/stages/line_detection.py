@@ -79,8 +79,10 @@ def line_detection(core: Core, frame: Frame, thresholds: LineThresholds) -> Gene
     yield core.run(clear_segments, segments, scan, *labels)
     limits = thresholds.angle_range, thresholds.mean_edges, thresholds.min_length
     for y in range(frame.height):
+        core.at(y)
         near = labels[y + 1 & 1], labels[y & 1]
         yield core.run(segments_row, *store, y, *near, segments, scan, *limits)
+    core.at()
     count = yield core.run(keep_segments, segments, thresholds.min_length, thresholds.mean_edges)
     count = yield core.run(connect_near, segments, count, thresholds.near_gap, thresholds.near_angle)
     size = frame.width, frame.height

@@ -180,8 +180,10 @@ def line_refinement(
     if crossed:
         camera = core.input_ring(frame.rows[crossed.start : crossed.stop], "camera_ring")
         for y in crossed:
+            core.at(y)
             line = yield from camera.line()
             limits = thresholds.reach, thresholds.min_step
             yield core.run(look_at_row, line, y, lines, count, sums, *limits)
+    core.at()
     refined = yield core.run(refine_lines, lines, count, sums, core.array("atan"), frame.width, frame.height)
     core.publish(lines_refined=refined)

@@ -49,11 +49,15 @@ def open_closing(core: Core, frame: Frame) -> Generator[Any, Any, None]:
     eroded = line_ring(core.rows("eroded_ring"), height)
     for y in range(height + LAG_LINES):
         if y < height:
+            core.at(y)
             yield from colours.line()
         if 1 <= y <= height:
+            core.at(y - 1)
             yield core.run(erode_row, *window(colours, y - 1, height), eroded[y - 1])
         if y >= LAG_LINES:
+            core.at(y - LAG_LINES)
             row = yield from opened.row()
             yield core.run(dilate_row, *window(eroded, y - LAG_LINES, height), row)
             opened.send()
+    core.at()
     yield from opened.flush()

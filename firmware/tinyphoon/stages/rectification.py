@@ -129,6 +129,7 @@ def rectification(core: Core, frame: Frame, area: Area = WHOLE_PICTURE) -> Gener
     camera = core.window_ring(frame.rows[above:], core.overlay("camera_window", u8, 2 * frame.width)[:depth])
     taken = above
     for y in range(area.y, area.y + area.height):
+        core.at(y - area.y)
         lines = yield core.run(load_lines, reached, y)
         for _ in range(taken, lines):
             yield from camera.line()
@@ -137,5 +138,6 @@ def rectification(core: Core, frame: Frame, area: Area = WHOLE_PICTURE) -> Gener
         row = yield from rectified.row()
         yield core.run(rectify_row, window, table, row)
         rectified.send()
+    core.at()
     yield from rectified.flush()
     return Frame(frame.index, image, area.width, area.height)

@@ -120,6 +120,7 @@ def stereo_edges(
             yield from rows.spread(y)
     found = 0
     for y in range(frame.height - 1, -1, -1):
+        core.at(y)
         row = yield from rows.take(y)
         if is_mutual:
             yield from rows.spread(y - REACH)
@@ -133,6 +134,7 @@ def stereo_edges(
         store = core.array("edge_data"), core.array("edge_index"), y
         size = frame.width, frame.height
         found = yield core.run(store_edges3d_row, *store, *pairs, geometry, *size, edges_3d, found)
+    core.at()
     kept = min(found, EDGE3D_CAPACITY)
     core.publish(edges_3d=kept, edges_3d_lost=found - kept)
     return kept

@@ -16,7 +16,7 @@ the blobs are the first records. Coordinates are pixels from the top left one.
 
 from __future__ import annotations
 
-from bfsim.api import i32, kernel, u32
+from bfsim.api import Row, i32, kernel, u32
 
 BLOB_WORDS = 8
 COLOURS = 0
@@ -130,3 +130,9 @@ def close_blob(blob_data: u32[:], blob: i32) -> None:
     x = (blob_data[at + SUM_X] + (pixels >> 1)) // pixels
     y = (blob_data[at + SUM_Y] + (pixels >> 1)) // pixels
     blob_data[at + CENTRE] = x | y << 16
+
+
+def box_of(blob_data: Row, blob: int) -> tuple[range, range]:
+    """Return the rows and the columns of a blob, for `core.at`: nothing on the chip reads them here."""
+    down, across = (int(blob_data.array[blob * BLOB_WORDS + word]) for word in (DOWN, ACROSS))
+    return range(down & 0xFFFF, (down >> 16) + 1), range(across & 0xFFFF, (across >> 16) + 1)

@@ -1,0 +1,115 @@
+"""What work is about: places of the picture in the timeline, and that they add up to the budget by stage."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from bfsim.api import Core, Frame
+from bfsim.machine.board import Fidelity
+from bfsim.report.heat import Heats
+from bfsim.spans import Place, Span, SpanKind
+from tests.machine.kernels import copy, spin
+from tests.machine.made_boards import made_board
+from tests.machine.rig import SIZE, STAGES, Play, cycles_of, every_frame
+from tests.machine.test_timeline import EVERYTHING, LDFS, handler, main_of
+from tests.machine.timelines import told
+
+HEIGHT = SIZE.height_px
+
+
+def calls(spans: list[Span]) -> list[Place | None]:
+    """The places of core A's calls."""
+    return [each.place for each in spans if (each.kind, each.where) == (SpanKind.CALL, "core A")]
+
+
+def row(number: int) -> Place:
+    """All of one row."""
+    return Place(range(number, number + 1))
+
+
+def places_of(body: Any, **how: Any) -> list[Place | None]:
+    """Return where the calls of a body are, one frame long."""
+    _, spans = told(made_board(every_frame(body), **how), frames=1)
+    return calls(spans)
+
+
+@pytest.mark.parametrize("ldf", LDFS)
+@pytest.mark.parametrize("fidelity", Fidelity)
+def test_all_places_of_a_stage_together_are_its_budget(ldf: str, fidelity: Fidelity) -> None:
+    """To the cycle, under every placement: stalls and waits included, with interrupts between."""
+    mains = main_of(EVERYTHING, handles=True), main_of(EVERYTHING[::-1], handles=True)
+    outcome, spans = told(made_board(*mains, ldf=LDFS[ldf], fidelity=fidelity))
+    heats = Heats()
+    heats.add(spans)
+    for frame in outcome.frames:
+        for core in frame.cores:
+            cycles = heats.of(frame.index, f"core {core.core}")
+            assert any(place for _, place in cycles)
+            for stage in core.stages:
+                placed = sum(cclk for (name, _), cclk in cycles.items() if name == stage.stage)
+                assert placed == stage.elapsed_cclk
+
+
+@pytest.mark.parametrize("ldf", ["thesis", "cache"])
+def test_work_is_about_the_line_that_a_ring_gave_last(ldf: str) -> None:
+    """With DMA or out of a cache, and what a wait for the line costs, too; until the stage ends."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        with core.stage(STAGES[0]):
+            yield core.run(spin, 1)
+            lines = core.input_ring(frame.rows, "in_ring")
+            for _ in range(frame.height):
+                yield core.run(copy, (yield from lines.line()), core.rows("out_ring")[0])
+        yield core.run(spin, 1)
+
+    assert places_of(work, ldf=LDFS[ldf]) == [None, *map(row, range(HEIGHT)), None]
+
+
+def test_lines_of_a_part_of_the_picture_say_nothing() -> None:
+    """Which rows these are only the firmware knows."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        lines = core.input_ring(frame.rows[2:], "in_ring")
+        yield core.run(copy, (yield from lines.line()), core.rows("out_ring")[0])
+        core.at(2)
+        yield core.run(spin, 1)
+
+    assert places_of(work) == [None, row(2)]
+
+
+def test_firmware_says_where_it_is() -> None:
+    """Rows, and columns; lines of a ring do not make that less exact; a stage within has its own, and none at first."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        lines = core.input_ring(frame.rows, "in_ring")
+        core.at(range(1, 3), range(4, 8))
+        yield from lines.line()
+        yield core.run(spin, 1)
+        with core.stage(STAGES[0]):
+            yield core.run(spin, 1)
+            core.at(5, 6)
+            yield core.run(spin, 1)
+        yield core.run(spin, 1)
+        core.at()
+        yield core.run(spin, 1)
+
+    box, point = Place(range(1, 3), range(4, 8)), Place(range(5, 6), range(6, 7))
+    assert places_of(work) == [box, None, point, box, None]
+
+
+def test_a_handler_is_elsewhere() -> None:
+    """What comes between work on a row is not about that row, which goes on behind it."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        core.on_interrupt("SUPPLEMENTAL_0", handler)
+        core.at(3)
+        yield core.run(spin, 20)
+        core.request_interrupt("SUPPLEMENTAL_0")
+        yield core.run(spin, 21)
+        yield core.run(spin, 22)
+
+    _, spans = told(made_board(every_frame(work)), frames=1)
+    found = {each.issue_cclk: each.place for each in spans if each.kind is SpanKind.CALL}
+    assert found == {cycles_of(spin, 50): None} | {cycles_of(spin, n): row(3) for n in (20, 21, 22)}
