@@ -38,7 +38,9 @@ class Timeline:
         flow: int = 0,
     ) -> None:
         """Tell what a device did; `value` and `flow` are as in `Span`."""
-        self.spans.append(_span((kind, where, name, begin_cclk, end_cclk, "", 0, NO_STALLS, value, flow, None)))
+        self.spans.append(
+            _span((kind, where, name, begin_cclk, end_cclk, "", 0, NO_STALLS, value, flow, None))
+        )
 
     def level(self, where: str, name: str, value: int, at_cclk: int) -> None:
         """Note how high a level is from a cycle on, and tell how high it was until then; all levels begin at 0."""
@@ -97,7 +99,9 @@ class CoreTimeline:
     ) -> None:  # fmt: skip
         stage, place = self._stage, self.place
         self._timeline.spans.append(
-            _span((kind, self._where, name, begin_cclk, end_cclk, stage, issue_cclk, stall_cclk, 0, flow, place))
+            _span(
+                (kind, self._where, name, begin_cclk, end_cclk, stage, issue_cclk, stall_cclk, 0, flow, place)
+            )
         )
 
     def level(self, name: str, value: int, at_cclk: int) -> None:

@@ -100,8 +100,21 @@ class CircleFrame:
     rows: Sequence[NDArray[np.uint8]]
 
 
+class StandInRow(np.ndarray):
+    """A row whose elements are in `array`, as on the machine."""
+
+    @property
+    def array(self) -> NDArray[Any]:
+        """The elements."""
+        return np.asarray(self)
+
+
 class CircleCore(BareCore):
     """A core with overlays and rings."""
+
+    def array(self, name: str) -> np.ndarray:
+        """The only row of a buffer."""
+        return super().array(name).view(StandInRow)
 
     def overlay(self, name: str, element: Any, columns: int) -> tuple[NDArray[Any], ...]:
         """The memory of a buffer as rows of another kind."""
