@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +10,7 @@ import click
 
 from bfsim import __version__
 from bfsim.cli_boards import boards
+from bfsim.cli_check import check
 from bfsim.cli_colours import colours
 from bfsim.cli_html import paging, takes_html
 from bfsim.cli_ldf import ldf
@@ -18,14 +18,13 @@ from bfsim.cli_record import record
 from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run, warn
 from bfsim.cli_seen import stages_named, takes_views, watching
 from bfsim.cli_timeline import takes_timelines, timelines
-from bfsim.endings import LIMIT_BROKEN, exit_code_of
+from bfsim.endings import exit_code_of
 from bfsim.errors import ConfigError
 from bfsim.terminal import print_report
 from bfsim.watchers import Watchers
 
 if TYPE_CHECKING:
     from bfsim.report.target import Target
-    from bfsim.trace import Identity
 
 STDOUT = Path("-")
 
@@ -65,6 +64,7 @@ def main() -> None:
 
 main.add_command(record)
 main.add_command(boards)
+main.add_command(check)
 main.add_command(colours)
 main.add_command(ldf)
 
@@ -242,58 +242,3 @@ def explain(kernel: str, runs: bool, as_json: bool, **what: Any) -> None:
         print_report(explain_report(explanation))
     if done:
         warn(done)
-
-
-@main.command(short_help="Fail if a frame costs more than a baseline allows.")
-@takes_a_run
-@click.option(
-    "--baseline",
-    "path",
-    metavar="FILE",
-    required=True,
-    type=click.Path(path_type=Path),
-    help="TOML file with the limits, kept in your repository.",
-)
-@click.option("--update", is_flag=True, help="Make the numbers of this run the limits.")
-def check(path: Path, update: bool, **what: Any) -> None:
-    """Run RECORDING and exit with 1 if a frame costs more than the baseline allows.
-
-    Limits are on the frame rate, on missed frames, and on the median and the maximum cycles of every row on
-    either core. Any excess breaks a limit unless the file has a tolerance_percent, for all or for a row.
-
-    \b
-    Examples:
-      bfsim check --baseline bfsim.toml --update     once, then commit the file
-      bfsim check --baseline bfsim.toml              after every change
-      bfsim check drive.mcap --baseline drive.toml --feed recorded
-    """
-    from bfsim.report import baseline
-    from bfsim.report.budget import budget_of
-    from bfsim.report.check import check as judge
-    from bfsim.report.check import require_comparable
-    from bfsim.report.check_tables import check_report
-    from bfsim.report.save import require_place
-    from bfsim.run import recording_digest
-
-    limits = None if update else baseline.read_baseline(path)
-    require_place(path)
-
-    def compare(identity: Identity, frames: int) -> None:
-        if limits:
-            theirs = limits.measured_on
-            digest = recording_digest(what["recording"], theirs.frames)
-            ours = baseline.measured_on(replace(identity, recording_digest=digest), frames)
-            require_comparable(theirs, ours, path)
-
-    done = simulated(watchers=Watchers(before=[compare]), **what)
-    exit_if_interrupted(done)
-    budget = budget_of(done)
-    if limits is None:
-        baseline.write_baseline(path, done, budget)
-        click.echo(f"{path} holds the limits now: {budget.frame_rate_hz:.2f} frames/s.")
-        warn(done)
-        return
-    outcome = judge(done, budget, limits, path)
-    print_report(check_report(outcome, done))
-    if not outcome.passed:
-        raise SystemExit(LIMIT_BROKEN)

@@ -5,9 +5,11 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 import llvmlite.binding as llvm
 
@@ -18,7 +20,7 @@ from bfsim.errors import ConfigError, FirmwareError, LinkError, RecordingError, 
 from bfsim.given import given_firmware
 from bfsim.hardware import Found, find_board, find_profile
 from bfsim.kernel import VDSP_O2, CompilerProfile
-from bfsim.linker import LinkerScript, parse_ldf
+from bfsim.linker import LinkerScript, LinkMap, parse_ldf
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Fidelity, Outcome, require_cores
 from bfsim.machine.bus.ahead import compiled_ahead
@@ -30,7 +32,7 @@ from bfsim.result import Run
 from bfsim.room import place
 from bfsim.seen import Seen, SeenFrame
 from bfsim.spans import Span
-from bfsim.trace import BudgetRow, Identity, RunWarning, WarningKind
+from bfsim.trace import BudgetRow, Identity, MemoryRecord, RunWarning, WarningKind
 
 BUILT_IN_RECORDING = shipped.RECORDING
 PLACEMENTS = shipped.LDF_FOLDER
@@ -143,7 +145,37 @@ def simulate(
     )
     assumptions = (*assumed_geometry(program, calibration), *_assumed_clocks(spec))
     geometry = geometry_in_words(program, calibration)
-    return _record(outcome, identity, geometry, assumptions, loaded, placement)
+    memories = tuple(_memories(link_map, spec))
+    return _record(outcome, identity, geometry, assumptions, loaded, placement, memories)
+
+
+class _KnownError(Exception):
+    """Ends a run before its first frame, when all is known about it."""
+
+
+def identified(**what: Any) -> tuple[Identity, int]:
+    """Return what `simulate` would run, with the digest of the recording, and how many frames of it. Nothing runs.
+
+    All that is given is read and checked; raises what `simulate` would before the first frame.
+    """
+    known = list[tuple[Identity, int]]()
+
+    def stop(identity: Identity, frames: int) -> None:
+        known.append((identity, frames))
+        raise _KnownError
+
+    with suppress(_KnownError):
+        simulate(before=stop, **what)
+    identity, frames = known[0]
+    return replace(identity, recording_digest=recording_digest(what.get("recording"), frames)), frames
+
+
+def _memories(link_map: LinkMap, spec: BoardSpec) -> Iterator[MemoryRecord]:
+    for region in spec.chip.regions:
+        segments = [each for each in link_map.segments if region.holds(each.start, 1)]
+        if segments:
+            used_bytes = sum(each.used_bytes for each in segments)
+            yield MemoryRecord(memory=region.name, nbytes=region.nbytes, used_bytes=used_bytes)
 
 
 def geometry_in_words(program: Firmware, calibration: Calibration) -> str:
@@ -325,6 +357,7 @@ def _record(
     assumptions: tuple[RunWarning, ...],
     loaded: LoadedFirmware,
     placement: LinkerScript,
+    memories: tuple[MemoryRecord, ...],
 ) -> Run:
     return Run(
         identity=identity,
@@ -347,6 +380,7 @@ def _record(
         losses=loaded.firmware.losses,
         interrupts=outcome.interrupts,
         events=outcome.events,
+        memories=memories,
     )
 
 

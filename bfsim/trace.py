@@ -199,6 +199,15 @@ class CodeRecord:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class MemoryRecord:
+    """One memory of the chip, such as L2 or COREA_L1_DATA_A: its size, and what code, buffers and reserves take of it."""
+
+    memory: str
+    nbytes: int
+    used_bytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class MessageRecord:
     """One message over SPI: `direction` is out or in, seen from the board; the cycles are of core A's clock.
 
@@ -263,6 +272,7 @@ class RunRecord:
     losses: Mapping[str, str]
     interrupts: Mapping[str, int]
     events: int
+    memories: tuple[MemoryRecord, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,10 +13,6 @@ from click.testing import CliRunner, Result
 from bfsim import __version__, recording
 from bfsim.cli import main
 from bfsim.cli_record import SOURCE_FORMATS
-from bfsim.report.baseline import write_baseline
-from bfsim.report.budget import budget_of
-from bfsim.run import recording_digest
-from tests.report.records import edge_run
 
 
 def call(*arguments: str) -> Result:
@@ -105,42 +100,6 @@ def test_error_is_one_paragraph_on_stderr(tmp_path: Path) -> None:
     assert result.stdout == ""
     assert result.stderr == (
         f"bfsim: error: {path} must be a baseline file, but there is none: make it with --update\n"
-    )
-
-
-@pytest.mark.parametrize(
-    ("arguments", "differences"),
-    [
-        (["--frames", "2"], "frames must be 8, not 2"),
-        (["--ldf", "l2"], "ldf must be thesis.ldf, not l2.ldf"),
-        (
-            ["--board", "bf561-ezkit", "--feed", "cameras"],
-            "board must be cm-bf561, not bf561-ezkit; feed must be demand, not cameras",
-        ),
-    ],
-)
-def test_check_says_what_differs_before_it_simulates(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], differences: str
-) -> None:
-    """All that differs from where the limits were measured, and nothing that does not, such as the recording."""
-    monkeypatch.setattr("bfsim.machine.board.Board.run", None)
-    path = tmp_path / "bfsim.toml"
-    measured = edge_run(100)
-    identity = replace(
-        measured.identity,
-        recording="soccer.mcap",
-        recording_digest=recording_digest(None, 8),
-        script_digest="",
-        ldf="thesis.ldf",
-        compiler="vdsp-O2",
-    )
-    measured = replace(measured, identity=identity, missed=(1, 2, 3, 4, 5, 6, 7))
-    write_baseline(path, measured, budget_of(measured))
-    result = call("check", "--baseline", str(path), *arguments)
-    assert result.exit_code == 2
-    assert result.stderr == (
-        f"bfsim: error: {path}: {differences}: the limits were measured so; give another baseline file, or replace this "
-        "one with --update\n"
     )
 
 

@@ -160,24 +160,6 @@ def test_profile_shows_stage_kernel_and_line() -> None:
         assert words in result.stdout
 
 
-def test_check_guards_a_baseline(tmp_path: Path) -> None:
-    """--update writes limits that the same run meets; a tighter limit breaks and names its row."""
-    baseline = tmp_path / "bfsim.toml"
-    assert bfsim("check", "--frames", 2, "--baseline", baseline, "--update").returncode == 0
-    assert bfsim("check", "--frames", 2, "--baseline", baseline).returncode == 0
-    lines = baseline.read_text().splitlines()
-    number = next(
-        i
-        for i, line in enumerate(lines)
-        if line.startswith("median_cclk") and "Edge" in "".join(lines[:i][-3:])
-    )
-    lines[number] = "median_cclk = 1000"
-    baseline.write_text("\n".join(lines))
-    broken = bfsim("check", "--frames", 2, "--baseline", baseline)
-    assert broken.returncode == 1
-    assert "Edge detection" in broken.stdout
-
-
 def test_ctrl_c_ends_with_the_report_of_the_frames_done(tmp_path: Path) -> None:
     """An interrupted run prints what it has and exits with 130."""
     recording = tmp_path / "long.mcap"

@@ -67,6 +67,7 @@ MAY_IMPORT = {
         "room",
         "shipped",
     },
+    "checking": {"errors", "report", "run", "shipped"},
     "mapping": {"chip", "hardware", "linker", "loading", "machine", "report", "run"},
     "endings": {"errors", "signals"},
     "watchers": {"seen", "spans", "trace"},
@@ -94,9 +95,11 @@ MAY_IMPORT = {
         "trace",
         "watchers",
     },
+    "cli_check": {"checking", "cli_running", "endings", "errors", "report", "terminal", "trace"},
     "cli": {"endings", "errors", "explain", "report", "run", "shipped", "terminal", "trace", "watchers"}
     | {
         "cli_boards",
+        "cli_check",
         "cli_colours",
         "cli_html",
         "cli_ldf",

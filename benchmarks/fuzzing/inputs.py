@@ -35,14 +35,19 @@ SCRIPT = {
     ]
 }
 BASELINE = {
-    "tolerance_percent": 0.5,
-    "measured_on": {
-        "recording": "soccer.mcap", "recording_digest": "0" * 64, "frames": 8, "firmware": "tinyphoon", "board": "cm-bf561",
-        "ldf": "thesis.ldf", "compiler": "vdsp-O2", "feed": "demand", "fidelity": "fast",
-    },
-    "measured_by": {"bfsim_version": "0.1.0", "llvm_version": "20.1.8"},
-    "run": {"frame_rate_hz": 10.98, "missed_frames": 0},
-    "core": {"A": {"Frame": {"median_cclk": 1000, "max_cclk": 2000, "tolerance_percent": 1.0}}},
+    "run": [
+        {
+            "name": "soccer", "recording": "soccer.mcap", "frames": 8, "ldf": "l2", "feed": "demand", "set": {"sdram.nRP": "3"},
+            "tolerance_percent": 0.5, "results_tolerance_percent": 1,
+            "require": ["frame_rate >= 15 Hz", '"Edge detection".A.max <= 80 ms', "memory.L2 <= 90 %"],
+            "limits": ["frame_rate >= 10.98 Hz", "results.balls == 1*3 0 1*4"],
+            "kernels": {"Edge detection": {"A": {"sobel_row": 1000}}},
+            "measured_on": {
+                "recording": "0" * 64, "frames": 8, "board": "0", "compiler": "0", "script": "", "firmware": "0", "ldf": "0",
+                "bfsim_version": "0.1.0", "llvm_version": "20.1.8",
+            },
+        }
+    ]
 }  # fmt: skip
 OPTIONS = (
     "--firmware", "--board", "--set", "--ldf", "-D", "-I", "--profile", "--frames", "--feed", "--script", "--fidelity", "--sanitize",

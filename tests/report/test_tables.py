@@ -11,14 +11,12 @@ from pathlib import Path
 import pytest
 from rich.console import Console, RenderableType
 
-from bfsim.report.baseline import read_baseline, write_baseline
-from bfsim.report.budget import budget_of
-from bfsim.report.check import check
-from bfsim.report.check_tables import check_report
+from bfsim.report.check.tables import check_report
 from bfsim.report.digest import cycle_digest
 from bfsim.report.profile_tables import profile_report
 from bfsim.report.tables import run_report
 from bfsim.trace import REST, BudgetRow, LineCost, RunRecord, RunWarning, StallReason, WarningKind
+from tests.report.check_rig import hold, measured
 from tests.report.records import core_frame, cost, edge_run, frame, kernel, run_of, traffic
 
 
@@ -231,8 +229,8 @@ def test_warnings_end_every_report(tmp_path: Path) -> None:
     assumed = RunWarning(kind=WarningKind.GEOMETRY, text="there was none")
     run = replace(kept, frames=tuple(frames), missed=(3,), assumptions=(assumed,))
     path = tmp_path / "bfsim.toml"
-    write_baseline(path, run, budget_of(run))
-    checked = check_report(check(run, budget_of(run), read_baseline(path), path), run)
+    measured(path, run)
+    checked = check_report(hold(run, path), path)
     for report in (run_report(run), profile_report(run), checked):
         lines = [*map(squeezed, printed(report, 130))]
         assert [each for each in lines[lines.index("Warnings") :] if each][3:] == [
@@ -253,20 +251,22 @@ def test_what_the_device_says_at_the_end_is_in_the_report() -> None:
 
 
 def test_check_report_lists_broken_limits_and_gains(tmp_path: Path) -> None:
-    """Limit, measured, by how much; what became better stands apart."""
+    """Limit, measured, by how much, a row for each figure; what became better stands apart, with what keeps it."""
     path = tmp_path / "bfsim.toml"
-    write_baseline(path, edge_run(950, 1050), budget_of(edge_run(950, 1050)))
-    run = edge_run(900, 1155)
-    lines = printed(check_report(check(run, budget_of(run), read_baseline(path), path), run))
-    assert lines[0].startswith("FAILED: ")
-    assert "better than the baseline; --update makes them the new limits." in lines[1]
-    assert "A Edge detection max 1,050 1,155 +105 +10.00" in map(squeezed, lines)
-    assert "A Edge detection median 950 900 -50 -5.26" in map(squeezed, lines)
+    measured(path, edge_run(950, 1050))
+    lines = [*map(squeezed, printed(check_report(hold(edge_run(900, 1155), path), path)))]
+    assert lines[0].startswith("FAILED: drive: ")
+    broken, better = lines.index("Broken limit Limit Measured %"), lines.index("Better than Limit Measured %")
+    assert '"Edge detection".A.max <= 1.050 ms 1.155 ms +10.00' in lines[broken:better]
+    assert '"Edge detection".A.median <= 0.950 ms 0.900 ms -5.26' in lines[better:]
+    assert any(each.endswith('--case "drive" --update') for each in lines)
 
 
-def test_check_report_of_a_pass_is_one_line(tmp_path: Path) -> None:
-    """Silence is what a passing check owes its reader."""
+def test_check_report_of_a_pass_is_short(tmp_path: Path) -> None:
+    """The outcome, and which firmware it is of."""
     path, run = tmp_path / "bfsim.toml", edge_run(950)
-    write_baseline(path, run, budget_of(run))
-    lines = printed(check_report(check(run, budget_of(run), read_baseline(path), path), run))
-    assert [line for line in lines if line] == ["Passed: all 18 limits kept."]
+    measured(path, run)
+    assert [line for line in printed(check_report(hold(run, path), path)) if line] == [
+        "Passed: drive: all 10 limits kept, 1000.00 frames/s.",
+        "Firmware tinyphoon (built in) is the same as when the limits were measured.",
+    ]

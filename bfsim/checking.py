@@ -1,0 +1,118 @@
+"""What `bfsim check` runs: the runs of a baseline file as arguments of `simulate`, and whether they are what they were."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from bfsim import shipped
+from bfsim.errors import ConfigError, shown
+from bfsim.report.check.baseline import Case, Configuration, MeasuredOn, measured_on
+from bfsim.run import Feed, Fidelity, identified, recording_digest
+
+
+def arguments_of(configuration: Configuration, folder: Path) -> dict[str, Any]:
+    """Return the arguments of `simulate`; paths are relative to the `folder` of the baseline file."""
+    given = configuration.model_dump(exclude_defaults=True)
+    arguments: dict[str, Any] = {
+        "feed": Feed(configuration.feed),
+        "fidelity": Fidelity(configuration.fidelity),
+        "settings": configuration.set,
+        "defines": configuration.define,
+        "include_dirs": [folder / each for each in configuration.include],
+        "frames": configuration.frames,
+    }
+    arguments |= {key: folder / given[key] for key in ("recording", "script") if key in given}
+    arguments |= {key: _moved(given[key], folder) for key in ("firmware", "board", "profile") if key in given}
+    if configuration.ldf:
+        there = folder / configuration.ldf
+        is_shipped = not there.exists() and shipped.ldf_at(Path(configuration.ldf)) is not None
+        arguments["ldf"] = Path(configuration.ldf) if is_shipped else there
+    return arguments
+
+
+def configuration_of(given: Mapping[str, Any], folder: Path) -> Configuration:
+    """Return what options say, as a baseline file in `folder` has it; `given` are those that are not their defaults."""
+    plain = dict(given)
+    for key in ("recording", "script"):
+        if key in plain:
+            plain[key] = _from(plain[key], folder)
+    for key in ("firmware", "board", "profile"):
+        place, colon, name = str(plain.get(key, "")).partition(".py")
+        if colon:
+            plain[key] = f"{_from(place, folder)}.py{name}"
+    if "ldf" in plain:
+        found = shipped.ldf_at(plain["ldf"])
+        is_own = found is not None and found.parent != shipped.LDF_FOLDER
+        plain["ldf"] = _from(plain["ldf"], folder) if is_own else str(plain["ldf"])
+    names = {"settings": "set", "defines": "define", "include_dirs": "include"}
+    plain = {names.get(key, key): value for key, value in plain.items()}
+    if "include" in plain:
+        plain["include"] = [_from(each, folder) for each in plain["include"]]
+    return Configuration.model_validate(plain)
+
+
+def name_of(configuration: Configuration) -> str:
+    """Return the name of a run that nobody named: its recording, and the options that are not their defaults."""
+    words = [Path(configuration.recording or shipped.RECORDING).stem]
+    for key, value in configuration.model_dump(exclude_defaults=True, exclude={"recording"}).items():
+        match value:
+            case dict():
+                words += [f"--{key} {name}={each}" for name, each in value.items()]
+            case list():
+                words += [f"--{key} {each}" for each in value]
+            case _:
+                words.append(f"--{key} {value}")
+    return " ".join(words)
+
+
+def require_comparable(case: Case, path: Path) -> None:
+    """Read and check all that a run needs. Raises ConfigError if it is not what its limits were measured on."""
+    arguments = arguments_of(case.configuration, path.parent)
+    then = case.measured_on
+    identity, frames = identified(**arguments)
+    if then is None:
+        return
+    now = measured_on(identity, frames)
+    differences = [
+        f"{key} {name} has other {what} than when the limits were measured"
+        for key, name, what in (
+            ("board", identity.board, "numbers"),
+            ("compiler", identity.compiler, "costs"),
+            ("script", case.script, "orders"),
+        )
+        if getattr(then, key) != getattr(now, key)
+    ]
+    differences = [*_recording_differences(then, now, arguments.get("recording")), *differences]
+    if differences:
+        raise ConfigError(
+            f"{path}: run {shown(case.name)}: {'; '.join(differences)}: limits of one say nothing about the other; "
+            f'`bfsim check --baseline {path} --case "{case.name}" --update` measures it anew'
+        )
+
+
+def _recording_differences(then: MeasuredOn, now: MeasuredOn, recording: Path | None) -> list[str]:
+    name = (recording or shipped.RECORDING).name
+    if now.recording == then.recording:
+        return []
+    if now.frames != then.frames:
+        has = f"recording {name} must have {then.frames} frames to run, as when the limits were measured, not {now.frames}"
+        is_longer = now.frames > then.frames and recording_digest(recording, then.frames) == then.recording
+        return [
+            f"{has} (the first {then.frames} are the same: frames = {then.frames} runs those)"
+            if is_longer
+            else has
+        ]
+    return [f"recording {name} has other pictures or time stamps than when the limits were measured"]
+
+
+def _moved(name: str, folder: Path) -> str:
+    """Return FILE.py:NAME with a path from here; a name of a package, or a shipped one, as it is."""
+    return str(folder / name) if ".py" in name else name
+
+
+def _from(path: str | Path, folder: Path) -> str:
+    """Return a path relative to `folder`."""
+    return Path(os.path.relpath(path, folder)).as_posix()

@@ -1,0 +1,204 @@
+"""`bfsim check`: the runs of a baseline file against their limits."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.core import ParameterSource
+
+from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run
+from bfsim.endings import LIMIT_BROKEN
+from bfsim.errors import ConfigError
+from bfsim.terminal import print_report
+
+if TYPE_CHECKING:
+    from bfsim.report.check.baseline import Case, Configuration
+    from bfsim.report.check.judge import Outcome
+    from bfsim.trace import RunRecord
+
+OUTPUTS = {
+    "json": "every verdict and figure as JSON",
+    "junit": "JUnit XML, a test case for each run",
+    "markdown": "Markdown, for a pull request",
+    "benchmark": "JSON that github-action-benchmark reads as customSmallerIsBetter",
+}
+
+
+def _takes_outputs(command: Any) -> Any:
+    for name, what in reversed(OUTPUTS.items()):
+        path = click.Path(path_type=Path)
+        command = click.option(f"--{name}", metavar="FILE", type=path, help=f"Write {what}.")(command)
+    return command
+
+
+@click.command(short_help="Fail if a frame costs more than a baseline allows.")
+@takes_a_run
+@click.option(
+    "--baseline",
+    "path",
+    metavar="FILE",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="TOML file with the limits, kept in your repository.",
+)
+@click.option("--case", "name", metavar="NAME", help="Check or update the run of that name only.")
+@click.option("--update", is_flag=True, help="Make what is measured the limits; adds the run if it is new.")
+@click.option("--reason", metavar="TEXT", help="Why --update loosens limits: is kept in the file.")
+@_takes_outputs
+@click.option(
+    "--history",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Append a line for each run, JSON with commit, configuration and figures, and draw the trend.",
+)
+def check(
+    path: Path,
+    name: str | None,
+    update: bool,
+    reason: str | None,
+    history: Path | None,
+    sanitize: bool,
+    **what: Any,
+) -> None:
+    """Check all runs in a baseline file, or that of RECORDING and options, and exit with 1 if a limit is broken.
+
+    Limits of the last --update are on frame rate, latency, medians and maxima of stages and frames, memory, and what was
+    found; a run may be worse by its tolerance_percent. Beside them stands what you `require` yourself. Being faster breaks
+    nothing.
+
+    \b
+    Examples:
+      bfsim check --baseline bfsim.toml --update     once, then commit the file
+      bfsim check --baseline bfsim.toml              after every change: all runs in it
+      bfsim check drive.mcap --ldf l2 --baseline bfsim.toml --update     one run more
+      bfsim check --baseline bfsim.toml --update --reason "a second ball"
+    """
+    from bfsim.checking import require_comparable
+    from bfsim.report.check.history import read_history
+
+    outputs = {each: what.pop(each) for each in OUTPUTS}
+    _require_places([path, history, *outputs.values()], [what["recording"], what["script"], what["ldf"]])
+    cases = _cases(path, _given(what, path.parent), name, update=update)
+    if history:
+        read_history(history)
+    for case in cases:
+        require_comparable(case.model_copy(update={"measured_on": None}) if update else case, path)
+    runs = [(case, _run(case, path.parent, sanitize=sanitize)) for case in cases]
+    if update:
+        runs = _update(runs, path, reason)
+    outcomes = _judged(runs, path)
+    _write(outcomes, path, outputs)
+    if history:
+        _append(outcomes, history)
+    if not all(each.passed for each in outcomes):
+        raise SystemExit(LIMIT_BROKEN)
+
+
+def _given(what: dict[str, Any], folder: Path) -> Configuration | None:
+    """Return what the command line says to run, None if nothing."""
+    from bfsim.checking import configuration_of
+
+    ctx = click.get_current_context()
+    words = {each for each in what if ctx.get_parameter_source(each) is ParameterSource.COMMANDLINE}
+    defaults = {each.name: each.default for each in ctx.command.params}
+    is_given = {each: what[each] for each in words if what[each] != defaults[each]}
+    return configuration_of(is_given, folder) if words else None
+
+
+def _cases(path: Path, given: Configuration | None, name: str | None, *, update: bool) -> list[Case]:
+    from bfsim.checking import name_of
+    from bfsim.report.check.baseline import Baseline, Configuration, read_baseline
+    from bfsim.report.check.choice import chosen
+
+    baseline = Baseline() if update and not path.exists() else read_baseline(path)
+    return chosen(baseline, path, given, name, name_of(given or Configuration()), update=update)
+
+
+def _run(case: Case, folder: Path, *, sanitize: bool) -> RunRecord:
+    from bfsim.checking import arguments_of
+
+    done = simulated(sanitize=sanitize, **arguments_of(case.configuration, folder))
+    exit_if_interrupted(done)
+    return done
+
+
+def _update(
+    runs: Sequence[tuple[Case, RunRecord]], path: Path, reason: str | None
+) -> list[tuple[Case, RunRecord]]:
+    """Return the runs with what was measured as their limits, and write those into the file."""
+    from bfsim.report.check.update import loosened, updated, write_cases
+
+    loose = [f"run {case.name!r}: {each}" for case, run in runs for each in loosened(case, run, path)]
+    if loose and not reason:
+        listed = "".join(f"\n  {each}" for each in loose)
+        if not sys.stdin.isatty():
+            raise ConfigError(f"--update must come with --reason TEXT where limits loosen:{listed}")
+        reason = click.prompt(f"These limits loosen:{listed}\nWhy", err=True)
+    done = [(updated(case, run, reason or "", path), run) for case, run in runs]
+    write_cases(path, {case.name: case for case, _ in done})
+    for case, run in done:
+        click.echo(f"{path}: {case.name}: {len(case.limits)} limits from {len(run.frames)} frames.")
+    return done
+
+
+def _judged(runs: Sequence[tuple[Case, RunRecord]], path: Path) -> list[Outcome]:
+    """Hold each run against its limits, and print what came out."""
+    from bfsim.report.check.judge import judge
+    from bfsim.report.check.tables import check_report
+
+    outcomes = [judge(case, run, path) for case, run in runs]
+    for each in outcomes:
+        print_report(check_report(each, path))
+    failed = sum(not each.passed for each in outcomes)
+    if len(outcomes) > 1:
+        click.echo(f"{len(outcomes) - failed} of {len(outcomes)} runs passed, {failed} FAILED.")
+    return outcomes
+
+
+def _require_places(written: Sequence[Path | None], read: Sequence[Path | None]) -> None:
+    """Raise ConfigError unless each file can be written and is none of the others."""
+    from bfsim.report.save import require_apart, require_place
+
+    for index, each in enumerate(written):
+        if each:
+            require_place(each)
+            require_apart(each, (*written[:index], *read))
+
+
+def _write(outcomes: Sequence[Outcome], path: Path, outputs: Mapping[str, Path | None]) -> None:
+    from bfsim.report.check import outputs as forms
+    from bfsim.report.save import write_text
+
+    texts: dict[str, Callable[[], str]] = {
+        "json": lambda: forms.check_json(outcomes, path),
+        "junit": lambda: forms.junit_xml(outcomes, path),
+        "markdown": lambda: forms.markdown(outcomes, path),
+        "benchmark": lambda: forms.benchmark_json(outcomes),
+    }
+    for name, file in outputs.items():
+        if file:
+            write_text(file, texts[name]())
+
+
+def _append(outcomes: Sequence[Outcome], path: Path) -> None:
+    """Append to the history, and print the trend."""
+    from bfsim.report.check.history import history_lines, read_history, trend_table
+
+    with path.open("a", encoding="utf-8") as stream:
+        stream.write(history_lines(outcomes, _commit()))
+    print_report(trend_table(read_history(path), [each.case.name for each in outcomes]))
+
+
+def _commit() -> str:
+    """Return the commit of the current folder, with -dirty where it was changed; empty outside of git."""
+    command = ["git", "describe", "--always", "--dirty", "--abbrev=40", "--match="]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - it is git
+    except OSError:
+        return ""
+    return done.stdout.strip() if done.returncode == 0 else ""

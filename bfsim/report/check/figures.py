@@ -1,0 +1,125 @@
+"""What of a run can be limited: figures by name, each with its values, frame by frame where it has one for each.
+
+Waits for pictures and for the other core are left out of stages and frames: they are no work, and grow when something
+becomes faster. Time outside of stages counts in the frame alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+from bfsim.report.budget import (
+    Spread,
+    budget_rows,
+    costs_of,
+    frame_rate_hz,
+    latency_cclk,
+)
+from bfsim.trace import REST, RunRecord, StageCost, StallReason
+
+Name = tuple[str, ...]
+"""Such as ("frame_rate",), ("Thinning", "A") or ("memory", "L2"); the parts of a dotted key of TOML."""
+
+FRAME_RATE, MISSED, LATENCY, FRAME = ("frame_rate",), ("missed",), ("latency",), ("frame",)
+MEMORY, RESULTS = "memory", "results"
+
+
+class Unit(Enum):
+    """What a figure is counted in."""
+
+    HZ = "Hz"
+    CCLK = "cycles"
+    BYTES = "B"
+    COUNT = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Figure:
+    """One thing that was measured: a value a frame, or one of the whole run. `whole` is what there is, of a memory."""
+
+    values: tuple[float, ...]
+    unit: Unit
+    whole: float = 0
+
+
+STATISTICS = ("min", "median", "max", "total")
+
+
+def statistic(figure: Figure, name: str) -> float:
+    """Return one of the STATISTICS of a figure; the median is nearest-rank, as in the budget."""
+    if name == "total":
+        return sum(figure.values)
+    if name == "median" and len(figure.values) > 1:
+        return Spread.of([int(each) for each in figure.values]).median
+    return min(figure.values) if name == "min" else max(figure.values)
+
+
+def unit_of(name: Name) -> Unit:
+    """Return what the figure of that name is counted in."""
+    if name == FRAME_RATE:
+        return Unit.HZ
+    if name == MISSED or name[0] == RESULTS:
+        return Unit.COUNT
+    return Unit.BYTES if name[0] == MEMORY else Unit.CCLK
+
+
+def figures_of(run: RunRecord) -> dict[Name, Figure]:
+    """Return every figure of a run of at least one frame.
+
+    A stage is there for each core, and without a core as the longer of them in each frame. A stage that is called like
+    another figure, such as `frame`, is there by its cores alone.
+    """
+    figures: dict[Name, Figure] = {
+        FRAME_RATE: _figure(FRAME_RATE, frame_rate_hz(run.frames, run.identity.cclk_hz)),
+        MISSED: _figure(MISSED, len(run.missed)),
+        LATENCY: _figure(LATENCY, *(latency_cclk(frame) for frame in run.frames)),
+        FRAME: _figure(FRAME, *(max(_busy(core.stages) for core in frame.cores) for frame in run.frames)),
+    }
+    figures |= {name: _figure(name, *values) for name, values in _stages(run) if name not in figures}
+    for memory in run.memories:
+        name = (MEMORY, memory.memory)
+        figures[name] = Figure(values=(memory.used_bytes,), unit=Unit.BYTES, whole=memory.nbytes)
+    results = dict.fromkeys(each for frame in run.frames for each in frame.results)
+    for each in results:
+        figures[RESULTS, each] = _figure(
+            (RESULTS, each), *(frame.results.get(each, 0) for frame in run.frames)
+        )
+    return figures
+
+
+def kernel_cclk(run: RunRecord) -> Mapping[tuple[str, str, str], int]:
+    """Return the cycles a frame of each kernel, interlocks included, by stage, core and kernel: means over the run."""
+    totals: dict[tuple[str, str, str], int] = {}
+    for each in run.kernels:
+        key = (each.stage, each.core, each.kernel)
+        cclk = each.issue_cclk + sum(line.stall_cclk for line in each.lines)
+        totals[key] = totals.get(key, 0) + cclk
+    return {key: total // len(run.frames) for key, total in totals.items()}
+
+
+def _figure(name: Name, *values: float) -> Figure:
+    return Figure(values=values, unit=unit_of(name))
+
+
+def _stages(run: RunRecord) -> Iterator[tuple[Name, tuple[int, ...]]]:
+    rows = budget_rows(run)
+    for row in rows:
+        if row.stage == REST:
+            continue
+        by_core = [
+            tuple(_busy(costs_of(core, row, rows)) for core in cores)
+            for cores in zip(*(frame.cores for frame in run.frames), strict=True)
+        ]
+        yield (row.stage,), tuple(map(max, zip(*by_core, strict=True)))
+        for core, values in zip(run.frames[0].cores, by_core, strict=True):
+            if any(values):
+                yield (row.stage, core.core), values
+
+
+def _busy(costs: tuple[StageCost, ...] | list[StageCost]) -> int:
+    """Return the cycles of stages without the waits for pictures and for the other core."""
+    return sum(
+        cost.elapsed_cclk - cost.idle_cclk - cost.stall_cclk.get(StallReason.SEMAPHORE, 0) for cost in costs
+    )

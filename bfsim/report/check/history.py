@@ -1,0 +1,80 @@
+"""`--history`: a line of JSON for each run that was checked, and the trend of the frame time in them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from bfsim.errors import ConfigError
+from bfsim.report.check.judge import Outcome
+from bfsim.report.check.outputs import figures_json
+from bfsim.report.tables import new_table
+
+TREND = "frame.median ms"
+"""The figure that is drawn."""
+BARS = "▁▂▃▄▅▆▇█"
+DRAWN = 30
+"""The trend shows so many of the last lines of a run."""
+
+
+def history_lines(outcomes: Sequence[Outcome], commit: str) -> str:
+    """Return what is appended."""
+    return "".join(
+        json.dumps(
+            {
+                "commit": commit,
+                "run": outcome.case.name,
+                "passed": outcome.passed,
+                "configuration": outcome.case.configuration.model_dump(exclude_defaults=True),
+                "firmware_digest": outcome.run.identity.firmware_digest,
+                "bfsim_version": outcome.run.identity.bfsim_version,
+                "figures": figures_json(outcome),
+            },
+            ensure_ascii=False,
+        )
+        + "\n"
+        for outcome in outcomes
+    )
+
+
+def read_history(path: Path) -> list[dict[str, Any]]:
+    """Return the lines of a history, none of one that is not there yet. Raises ConfigError for a line that is none."""
+    if not path.exists():
+        return []
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path} must be a readable history of `bfsim check`: {error}") from error
+    return [_entry(line, f"{path}:{number}") for number, line in enumerate(lines, 1) if line.strip()]
+
+
+def trend_table(history: Sequence[dict[str, Any]], names: Sequence[str]) -> Table:
+    """Return the frame times of the last lines of each run as bars from the least to the most, and their ends."""
+    table = new_table("Work of a frame, median, ms", "Run", "First", "Least", "Most", "Now", "Trend")
+    table.columns[-1].justify = "left"
+    for name in names:
+        times = [each["figures"][TREND] for each in history if each["run"] == name][-DRAWN:]
+        numbers = (f"{each:.2f}" for each in (times[0], min(times), max(times), times[-1]))
+        table.add_row(name, *numbers, _bars(times))
+    return table
+
+
+def _entry(line: str, where: str) -> dict[str, Any]:
+    try:
+        entry: dict[str, Any] = json.loads(line)
+        float(entry["figures"][TREND])
+        str(entry["run"])
+    except (ValueError, TypeError, KeyError, RecursionError) as error:
+        raise ConfigError(
+            f"{where} must be a line that `bfsim check --history` wrote, but is none"
+        ) from error
+    return entry
+
+
+def _bars(values: Sequence[float]) -> str:
+    least, span = min(values), max(values) - min(values)
+    return "".join(BARS[round((each - least) / span * (len(BARS) - 1)) if span else 0] for each in values)

@@ -1,0 +1,157 @@
+"""Holding the figures of a run against what is required: verdicts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from bfsim.errors import ConfigError
+from bfsim.report.check.baseline import Case, requirements_of
+from bfsim.report.check.figures import RESULTS, Figure, Name, Unit, figures_of
+from bfsim.report.check.requirement import Requirement, dotted, nearest_of
+from bfsim.trace import RunRecord
+
+FRAME_SHARE = 10
+"""A stage may also grow by this part of what the tolerance is of a frame: shorter ones vary with the traffic of others."""
+HZ_RESOLUTION = 1e-6
+"""To which a frame rate is written."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """One sentence and what was measured, in the figure's unit. `limit` is what was written, `allowed` with its tolerance.
+
+    `frames` are those whose results differ, by their places in the run.
+    """
+
+    requirement: Requirement
+    is_persons: bool
+    unit: Unit
+    limit: float
+    allowed: float
+    measured: float
+    broken: bool
+    better: bool
+    frames: tuple[int, ...] = ()
+
+    @property
+    def by_percent(self) -> float:
+        """How much was measured over the limit, in percent of it."""
+        return 100 * (self.measured - self.limit) / self.limit if self.limit else 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """What came out for one run of the baseline file."""
+
+    case: Case
+    run: RunRecord
+    figures: Mapping[Name, Figure]
+    verdicts: tuple[Verdict, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether no limit is broken."""
+        return not any(each.broken for each in self.verdicts)
+
+    @property
+    def broken(self) -> tuple[Verdict, ...]:
+        """The broken limits, what is about the whole run first."""
+        return tuple(each for each in self.verdicts if each.broken)
+
+    @property
+    def better(self) -> tuple[Verdict, ...]:
+        """The limits that were beaten by more than the tolerance."""
+        return tuple(each for each in self.verdicts if each.better)
+
+
+def judge(case: Case, run: RunRecord, path: Path) -> Outcome:
+    """Hold a run of at least one frame against what `path` has for it. Raises ConfigError for a figure that it does not have."""
+    required, limits = requirements_of(case, path)
+    figures = figures_of(run)
+    tolerance = Fraction(str(case.tolerance_percent)) / 100
+    results_tolerance = Fraction(str(case.results_tolerance_percent)) / 100
+    frame = max(figures["frame",].values)
+    verdicts = [
+        _verdict(each, _figure(each, figures, case, path), run, Fraction(0), 0, is_persons=True)
+        for each in required
+    ]
+    for each in limits:
+        share = results_tolerance if each.name[0] == RESULTS else tolerance
+        floor = frame / FRAME_SHARE
+        figure = _figure(each, figures, case, path)
+        verdicts.append(_verdict(each, figure, run, share, floor, is_persons=False))
+    return Outcome(case=case, run=run, figures=figures, verdicts=tuple(verdicts))
+
+
+def _figure(requirement: Requirement, figures: Mapping[Name, Figure], case: Case, path: Path) -> Figure:
+    figure = figures.get(requirement.name)
+    if figure is None:
+        advice = "; --update removes it" if requirement.text in case.limits else ""
+        raise ConfigError(
+            f"{path}: run {case.name!r}: {dotted(requirement.name)} must be something that the run has; the nearest are "
+            f"{nearest_of(requirement.name, list(figures))}{advice}"
+        )
+    return figure
+
+
+def _verdict(
+    requirement: Requirement,
+    figure: Figure,
+    run: RunRecord,
+    share: Fraction,
+    floor: float,
+    *,
+    is_persons: bool,
+) -> Verdict:
+    if len(requirement.numbers) > 1:
+        return _frame_by_frame(requirement, figure, run, share, is_persons=is_persons)
+    limit = requirement.limit(figure, run.identity.cclk_hz)
+    base = max(limit, floor) if figure.unit is Unit.CCLK else limit
+    slack = float(share * Fraction(base))
+    measured = requirement.measured(figure)
+    below, above = measured < limit - slack, measured > limit + slack
+    broken = {"<=": above, ">=": below, "==": above or below}[requirement.comparison]
+    if requirement.comparison == "==" and not requirement.statistic:
+        broken = any(abs(each - limit) > slack for each in figure.values)
+        measured = max(figure.values, key=lambda each: abs(each - limit))
+    better = {"<=": below, ">=": measured > limit + slack + HZ_RESOLUTION, "==": False}
+    return Verdict(
+        requirement=requirement,
+        is_persons=is_persons,
+        unit=figure.unit,
+        limit=limit,
+        allowed=limit - slack if requirement.comparison == ">=" else limit + slack,
+        measured=measured,
+        broken=broken,
+        better=better[requirement.comparison] and not is_persons,
+    )
+
+
+def _frame_by_frame(
+    requirement: Requirement, figure: Figure, run: RunRecord, share: Fraction, *, is_persons: bool
+) -> Verdict:
+    pairs = list(zip(requirement.numbers, figure.values, strict=False))
+    off = [index for index, (want, got) in enumerate(pairs) if abs(Fraction(got) - want) > share * want]
+    are_as_many = len(requirement.numbers) == len(figure.values)
+    return Verdict(
+        requirement=requirement,
+        is_persons=is_persons,
+        unit=figure.unit,
+        limit=float(sum(requirement.numbers)),
+        allowed=float(sum(requirement.numbers)),
+        measured=sum(figure.values),
+        broken=bool(off) or not are_as_many,
+        better=False,
+        frames=tuple(run.frames[index].index for index in off),
+    )
+
+
+def worst_of_each(verdicts: Sequence[Verdict]) -> Iterator[Verdict]:
+    """Yield of the limits on one figure the one that is off most: the others say the same."""
+    names = dict.fromkeys(each.requirement.name for each in verdicts)
+    for name in names:
+        same = [each for each in verdicts if each.requirement.name == name]
+        yield max(same, key=lambda each: (each.is_persons, abs(each.by_percent)))

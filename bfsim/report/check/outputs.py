@@ -1,0 +1,141 @@
+"""The outcomes of a check for other programs: JSON, JUnit XML, Markdown, and what github-action-benchmark reads."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
+
+from bfsim.report.check.figures import RESULTS, Unit, statistic
+from bfsim.report.check.judge import Outcome, Verdict, worst_of_each
+from bfsim.report.check.requirement import dotted
+from bfsim.report.check.tables import amount, changes, explanation, tighten_command, verdict_line
+
+SCHEMA = "bfsim.check/1"
+"""Name and version of the layout; the version rises when a key changes its meaning or goes away."""
+
+
+def figures_json(outcome: Outcome) -> dict[str, float]:
+    """Return median and maximum of every figure but results in a unit that its name ends in, by name."""
+    hz, found = outcome.run.identity.cclk_hz, {}
+    for name, figure in outcome.figures.items():
+        if name[0] == RESULTS:
+            continue
+        if figure.unit is Unit.CCLK:
+            for each in ("median", "max"):
+                found[f"{dotted((*name, each))} ms"] = round(statistic(figure, each) * 1000 / hz, 6)
+        else:
+            found[f"{dotted(name)} {figure.unit.value}".strip()] = figure.values[0]
+    return found
+
+
+def check_json(outcomes: Sequence[Outcome], path: Path) -> str:
+    """Return every verdict and figure as JSON. Times are in cycles, in the figures in ms."""
+    runs = [
+        {
+            "name": outcome.case.name,
+            "passed": outcome.passed,
+            "firmware": outcome.run.identity.firmware,
+            "firmware_digest": outcome.run.identity.firmware_digest,
+            "figures": figures_json(outcome),
+            "verdicts": [_verdict(each) for each in outcome.verdicts],
+            "why": list(explanation(outcome, path)),
+            "notes": list(changes(outcome)),
+        }
+        for outcome in outcomes
+    ]
+    plain = {"schema": SCHEMA, "passed": all(each.passed for each in outcomes), "runs": runs}
+    return json.dumps(plain, indent=2, ensure_ascii=False) + "\n"
+
+
+def junit_xml(outcomes: Sequence[Outcome], path: Path) -> str:
+    """Return a JUnit XML with a test case for each run of the file."""
+    failed = sum(not each.passed for each in outcomes)
+    suite = ET.Element("testsuite", name="bfsim check", tests=str(len(outcomes)), failures=str(failed))
+    for outcome in outcomes:
+        case = ET.SubElement(suite, "testcase", classname=_xml(str(path)), name=_xml(outcome.case.name))
+        if not outcome.passed:
+            failure = ET.SubElement(case, "failure", message=_xml(verdict_line(outcome)))
+            failure.text = _xml("\n".join([*broken_lines(outcome), *explanation(outcome, path)]))
+    root = ET.Element("testsuites")
+    root.append(suite)
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def markdown(outcomes: Sequence[Outcome], path: Path) -> str:
+    """Return the outcome for a pull request."""
+    return "\n".join(line for outcome in outcomes for line in _markdown(outcome, path)) + "\n"
+
+
+def benchmark_json(outcomes: Sequence[Outcome]) -> str:
+    """Return what github-action-benchmark reads as `customSmallerIsBetter`: times and memory of each run."""
+    found = [
+        {"name": f"{outcome.case.name}: {name}", "unit": unit, "value": value}
+        for outcome in outcomes
+        for figure, value in figures_json(outcome).items()
+        for name, _, unit in [figure.rpartition(" ")]
+        if unit in {"ms", "B"}
+    ]
+    return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
+
+
+def broken_lines(outcome: Outcome) -> Iterator[str]:
+    """Yield a line for each figure whose limits are broken."""
+    for each in worst_of_each(outcome.broken):
+        name, hz = dotted(each.requirement.name), outcome.run.identity.cclk_hz
+        label = f"{name}.{each.requirement.statistic}" if each.requirement.statistic else name
+        measured = amount(each.measured, each.unit, hz)
+        limit = f"{each.requirement.comparison} {amount(each.allowed, each.unit, hz)}"
+        yield f"{label} must be {limit}, not {measured} ({each.by_percent:+.2f} %)"
+
+
+def _verdict(verdict: Verdict) -> dict[str, Any]:
+    return {
+        "requirement": verdict.requirement.text,
+        "by": "require" if verdict.is_persons else "limits",
+        "unit": verdict.unit.value,
+        "limit": verdict.limit,
+        "allowed": verdict.allowed,
+        "measured": verdict.measured,
+        "broken": verdict.broken,
+        "better": verdict.better,
+        "frames": list(verdict.frames),
+    }
+
+
+def _markdown(outcome: Outcome, path: Path) -> Iterator[str]:
+    hz = outcome.run.identity.cclk_hz
+    yield f"**{'✅' if outcome.passed else '❌'} {_cell(verdict_line(outcome))}**\n"
+    rows = [*worst_of_each(outcome.broken), *worst_of_each(outcome.better)]
+    if rows:
+        yield "| | limit | measured | % |\n|---|--:|--:|--:|"
+        for each in rows:
+            name = dotted((*each.requirement.name, *filter(None, [each.requirement.statistic])))
+            mark = "❌" if each.broken else "faster" if each.unit is Unit.CCLK else "better"
+            limit = f"{each.requirement.comparison} {amount(each.allowed, each.unit, hz)}"
+            measured = amount(each.measured, each.unit, hz)
+            yield f"| {_cell(name)} {mark} | {limit} | {measured} | {each.by_percent:+.2f} |"
+        yield ""
+    for line in explanation(outcome, path) if outcome.broken else ():
+        yield f"- {_cell(line)}"
+    if outcome.better:
+        yield f"\nTo keep what became better: `{tighten_command(outcome, path)}`"
+    yield ""
+
+
+def _cell(text: str) -> str:
+    return (
+        text.replace("\\", "\\\\")
+        .replace("|", "\\|")
+        .replace("<", "&lt;")
+        .replace("*", "\\*")
+        .replace("_", "\\_")
+    )
+
+
+def _xml(text: str) -> str:
+    """Return text without what XML 1.0 has no way to write."""
+    return "".join(each if each in "\n\t" or each.isprintable() else "?" for each in text)

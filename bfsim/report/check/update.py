@@ -1,0 +1,159 @@
+"""`--update`: the limits of a run become what was measured; one that was only missed within its tolerance stays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+from tomlkit.items import AoT, Array, Table
+
+from bfsim.report.check.baseline import (
+    COMPARABLE,
+    Case,
+    MeasuredOn,
+    measured_on,
+    parsed,
+    requirements_of,
+    validated,
+)
+from bfsim.report.check.cause import kernels_of
+from bfsim.report.check.figures import MISSED, RESULTS, STATISTICS, Name, Unit, figures_of, statistic
+from bfsim.report.check.judge import Outcome, Verdict, judge
+from bfsim.report.check.requirement import counts_text, limit_text
+from bfsim.report.save import write_text
+from bfsim.trace import RunRecord
+
+NEW_FILE = """\
+# What `bfsim check` holds every run against; `bfsim check --help` says how to use it.
+# Yours: name, what to run, tolerances, comments, and `require`, such as
+#     require = ["frame_rate >= 15 Hz", '"Look for lines".max <= 80 ms', "memory.L2 <= 90 %", "results.balls >= 1"]
+# Written by `--update`: limits, kernels (cycles a frame: they tell what grew, and limit nothing) and measured_on.
+
+"""
+DEFAULT_TOLERANCE_PERCENT = 1
+"""Of new runs: each change of one stage moves others a little, by what they wait for memory."""
+FRAMES_LISTED = 20
+"""Results are kept frame by frame of so many frames; of more, their total, least and most."""
+
+
+def loosened(case: Case, run: RunRecord, path: Path) -> list[str]:
+    """Return in words which limits of a run `--update` would loosen."""
+    return [
+        f"{each.requirement.text}, measured {_number(each, run)}"
+        for each in _held(case, run, path).verdicts
+        if each.broken and not each.is_persons
+    ]
+
+
+def updated(case: Case, run: RunRecord, reason: str, path: Path) -> Case:
+    """Return a run of the file with the limits that were measured. A `reason` is kept with what it loosened."""
+    outcome = _held(case, run, path)
+    kept = {
+        (each.requirement.name, each.requirement.statistic): each.requirement.text
+        for each in outcome.verdicts
+        if not each.is_persons and not each.broken and not each.better
+    }
+    loose = loosened(case, run, path)
+    values = {
+        "limits": [kept.get(key, text) for key, text in _limits(outcome)],
+        "loosened": [*case.loosened, *([f"{reason}: {'; '.join(loose)}"] if loose else [])],
+        "kernels": kernels_of(outcome),
+        "measured_on": _on(run),
+    }
+    return case.model_copy(update=values)
+
+
+def write_cases(path: Path, cases: Mapping[str, Case]) -> None:
+    """Write runs, by their names, into the file at `path`. Everything else in it stays as it is.
+
+    Raises ConfigError, and leaves the file alone, if it is no baseline.
+    """
+    document = parsed(path) if path.exists() else tomlkit.parse(NEW_FILE)
+    validated(document, path)
+    tables = document.setdefault("run", tomlkit.aot())
+    assert isinstance(tables, AoT)
+    for name, case in cases.items():
+        table = next((each for each in tables if each["name"] == name), None)
+        if table is None:
+            table = tomlkit.table()
+            tables.append(table)
+            table = tables[-1]
+        _fill(table, case)
+    text = tomlkit.dumps(document)
+    validated(tomlkit.parse(text), path)
+    write_text(path, text)
+
+
+def _held(case: Case, run: RunRecord, path: Path) -> Outcome:
+    """Hold a run against those of its limits that are about the same pictures and hardware, and what there still is."""
+    then, now, figures = case.measured_on, _on(run), figures_of(run)
+    is_same = then is not None and all(getattr(then, key) == getattr(now, key) for key in COMPARABLE)
+    _, limits = requirements_of(case, path)
+    texts = [each.text for each in limits if is_same and each.name in figures]
+    return judge(case.model_copy(update={"limits": texts}), run, path)
+
+
+def _on(run: RunRecord) -> MeasuredOn:
+    return measured_on(run.identity, len(run.frames) + len(run.missed))
+
+
+def _limits(outcome: Outcome) -> Iterator[tuple[tuple[Name, str], str]]:
+    """Yield a sentence for each thing that is limited: stages by core, and of times the median and the maximum."""
+    cclk_hz = outcome.run.identity.cclk_hz
+    for name, figure in outcome.figures.items():
+        is_of_all_cores = any(
+            len(each) > 1 and each[0] == name[0] for each in outcome.figures if each != name
+        )
+        is_nothing = not any(figure.values) and name != MISSED and name[0] != RESULTS
+        if is_nothing or (len(name) == 1 and is_of_all_cores):
+            continue
+        if name[0] == RESULTS and len(figure.values) <= FRAMES_LISTED:
+            yield (name, ""), counts_text(name, figure.values)
+        elif name[0] == RESULTS:
+            for each in STATISTICS:
+                if each != "median":
+                    yield (name, each), limit_text(name, statistic(figure, each), cclk_hz, each)
+        elif len(figure.values) == 1 and figure.unit is not Unit.CCLK:
+            yield (name, ""), limit_text(name, figure.values[0], cclk_hz)
+        else:
+            for each in ("median", "max"):
+                yield (name, each), limit_text(name, statistic(figure, each), cclk_hz, each)
+
+
+def _number(verdict: Verdict, run: RunRecord) -> str:
+    """Return what was measured as the sentence would have it."""
+    return limit_text(verdict.requirement.name, verdict.measured, run.identity.cclk_hz).rpartition("= ")[2]
+
+
+def _fill(table: Table, case: Case) -> None:
+    """Set in a TOML table what a run has; what is its default is left out, and what is as it was stays as it is written."""
+    plain = case.model_dump(exclude_defaults=True)
+    for key in ("name", *Case.model_fields):
+        if key not in plain:
+            if key in table:
+                del table[key]
+        elif key not in table or table[key] != plain[key]:
+            table[key] = _item(plain[key])
+
+
+def _item(value: Any) -> Any:
+    if isinstance(value, list):
+        return _lines(value)
+    if isinstance(value, dict):
+        table = tomlkit.table()
+        for key, each in value.items():
+            table[key] = _item(each)
+        return table
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
+    return tomlkit.integer(f"{value:_}") if type(value) is int else value
+
+
+def _lines(values: list[str]) -> Array:
+    """Return an array of one line for each of its sentences, in quotes that leave theirs alone."""
+    array = tomlkit.array()
+    for each in values:
+        array.append(tomlkit.string(each, literal="'" not in each and each.isprintable()))
+    return array.multiline(multiline=True)

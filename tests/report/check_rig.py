@@ -1,0 +1,52 @@
+"""Baselines for the tests of `bfsim check`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from bfsim.report.check.baseline import Case, read_baseline
+from bfsim.report.check.judge import Outcome, judge
+from bfsim.report.check.update import updated, write_cases
+from bfsim.trace import MemoryRecord, RunRecord
+from tests.report.records import edge_run
+
+
+def measured(path: Path, run: RunRecord, reason: str = "because", **changes: object) -> Case:
+    """Make the numbers of a run the limits of "drive" in a file; `changes` are of what a person writes there."""
+    before = {case.name: case for case in read_baseline(path).run} if path.exists() else {}
+    case = before.get("drive", Case(name="drive")).model_copy(update=changes)
+    write_cases(path, {"drive": updated(case, run, reason, path)})
+    return read_baseline(path).run[0]
+
+
+def hold(run: RunRecord, path: Path) -> Outcome:
+    """Hold a run against "drive" in a file."""
+    return judge(read_baseline(path).run[0], run, path)
+
+
+def broken(outcome: Outcome) -> list[str]:
+    """The sentences that are broken, without their numbers."""
+    return [each.requirement.text.partition("=")[0].rstrip("< >=") for each in outcome.broken]
+
+
+def with_results(run: RunRecord, *results: Mapping[str, int]) -> RunRecord:
+    """Give each frame of a run its results."""
+    frames = (replace(frame, results=each) for frame, each in zip(run.frames, results, strict=True))
+    return replace(run, frames=tuple(frames))
+
+
+def with_memory(run: RunRecord, used_bytes: int) -> RunRecord:
+    """Say how much of 128 KB of L2 a run takes."""
+    return replace(run, memories=(MemoryRecord(memory="L2", nbytes=131_072, used_bytes=used_bytes),))
+
+
+def replace_in(path: Path, old: str, new: str) -> None:
+    """Edit a file as its owner would; what is to be replaced must be there."""
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+
+
+__all__ = ["broken", "edge_run", "hold", "measured", "replace_in", "with_memory", "with_results"]

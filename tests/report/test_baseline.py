@@ -1,0 +1,128 @@
+"""The baseline file and the sentences in it: every mistake is told with its place."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bfsim.errors import ConfigError
+from bfsim.report.check.baseline import read_baseline
+from bfsim.report.check.figures import Figure, Unit
+from bfsim.report.check.requirement import counts_text, limit_text, parse_requirement
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "must begin with a name"),
+        ("frame_rate", "after the name must come <=, >= or =="),
+        ("frame_rate > 15 Hz", "after the name must come <=, >= or =="),
+        ("frame_rate >= fast", "after >= must come a number that is not negative"),
+        ("latency <= -1 ms", "after <= must come a number that is not negative"),
+        ("frame_rate >= 15 fps", "the unit of frame_rate must be Hz, not 'fps'"),
+        ("latency <= 200", "the unit of latency must be cycles or s or ms or us, not ''"),
+        ('"Edge detection".max <= 80 sec', "the unit of Edge detection must be cycles or s or ms or us, not 'sec'"),
+        ("memory.L2 <= 100 kB", "the unit of memory.L2 must be B or KB or MB or %, not 'kB'"),
+        ("missed == 0 frames", "the unit of missed must be none, not 'frames'"),
+        ("memory <= 1 KB", "memory must be followed by a name"),
+        ("results >= 1", "results must be followed by a name"),
+        ("frame.average <= 1 ms", "frame must be followed by min, median, max or total, or nothing"),
+        ("results.balls >= 1 2", "a number for each frame must come after =="),
+        ("Edge.A.mean <= 1 ms", "Edge.A must be followed by min, median, max or total"),
+        ("a..b <= 1 ms", "must begin with a name"),
+    ],
+)  # fmt: skip
+def test_a_wrong_sentence_has_a_caret_under_what_is_wrong(text: str, message: str) -> None:
+    """The message begins with where it stands."""
+    with pytest.raises(ConfigError, match="(?s)^bfsim.toml: ") as caught:
+        parse_requirement(text, "bfsim.toml")
+    told, shown, caret = str(caught.value).split("\n")
+    assert message in told
+    assert shown.strip() == text
+    assert caret.strip() == "^"
+
+
+def test_the_caret_is_under_the_unit() -> None:
+    """Not at its begin, where everything was right."""
+    with pytest.raises(ConfigError) as caught:
+        parse_requirement("frame_rate >= 15 fps", "f")
+    _, shown, caret = str(caught.value).split("\n")
+    assert shown[caret.index("^") :] == "fps"
+
+
+@given(st.integers(0, 10**12), st.sampled_from([400e6, 500e6, 600e6, 750e6, 1e9]))
+def test_a_limit_in_ms_says_every_cycle(cclk: int, cclk_hz: float) -> None:
+    """A run always keeps the limits that it set."""
+    figure = Figure(values=(cclk,), unit=Unit.CCLK)
+    written = parse_requirement(limit_text(("Edge", "A"), cclk, cclk_hz, "max"), "f")
+    assert written.limit(figure, cclk_hz) == cclk
+
+
+@given(st.floats(0.001, 10**5))
+def test_a_frame_rate_keeps_its_own_limit(hz: float) -> None:
+    """What is written is never more than what was measured."""
+    figure = Figure(values=(hz,), unit=Unit.HZ)
+    assert hz - 1e-6 <= parse_requirement(limit_text(("frame_rate",), hz, 1e6), "f").limit(figure, 1e6) <= hz
+
+
+@given(st.lists(st.integers(0, 10**6), min_size=1, max_size=40))
+def test_counts_are_read_as_they_were_written(values: list[int]) -> None:
+    """Repeated ones are written once."""
+    assert parse_requirement(counts_text(("results", "a b"), values), "f").numbers == tuple(
+        map(Fraction, values)
+    )
+
+
+@given(st.text(max_size=40))
+def test_whatever_is_written_is_read_or_refused(text: str) -> None:
+    """Nothing else comes out."""
+    try:
+        parse_requirement(text, "f")
+    except ConfigError:
+        return
+
+
+def refusal(tmp_path: Path, text: str) -> str:
+    """What is said of a file."""
+    path = tmp_path / "bfsim.toml"
+    path.write_text(text)
+    with pytest.raises(ConfigError) as caught:
+        read_baseline(path)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[[run]", "must be TOML: "),
+        ("[[run]]\nframes = 2", "run 1, the key name must be there"),
+        ("[[run]]\nname = 'a'\nframes = 0", "run 'a', frames must be greater than or equal to 1, not 0"),
+        ("[[run]]\nname = 'a'\ntolerance_percent = -1", "tolerance_percent must be greater than or equal to 0, not -1"),
+        ("[[run]]\nname = 'a'\ntolerance_percent = nan", "tolerance_percent must be a finite number, not nan"),
+        ("[[run]]\nname = 'a'\nplank = 'x'", "run 'a', plank must not be there; known keys are recording, "),
+        ("[[run]]\nname = 'a'\nfeed = 'fast'", "feed must be 'demand', 'recorded' or 'cameras', not 'fast'"),
+        ("[[run]]\nname = 'a'\n[[run]]\nname = 'a'", "each run must have a name of its own, but two are called 'a'"),
+        ("[[run]]\nname = 'a'\nrequire = ['fps > 1']", "run 'a', require: after the name"),
+        ("runs = 1", "runs must not be there; known keys are run"),
+        ("run = 1", "run must be a valid list, not 1"),
+        ("run = [1]", "run 1, it must be a valid dictionary, not 1"),
+        ("tolerance_percent = 0\n[measured_on]\nx = 1", "older bfsim, and must be made anew"),
+    ],
+)  # fmt: skip
+def test_faulty_file_names_run_and_key(tmp_path: Path, text: str, message: str) -> None:
+    """Every mistake in the file is told with the file, the run and what must be there."""
+    told = refusal(tmp_path, text)
+    assert told.startswith(str(tmp_path / "bfsim.toml"))
+    assert message in told
+
+
+def test_missing_file_is_told_how_to_make_one(tmp_path: Path) -> None:
+    """The first check of a new repository."""
+    with pytest.raises(
+        ConfigError, match=r"none\.toml must be a baseline file, but there is none: .* --update"
+    ):
+        read_baseline(tmp_path / "none.toml")

@@ -1,0 +1,188 @@
+"""`bfsim check` from the terminal: the whole walk in one small repository."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+from click.testing import CliRunner, Result
+
+from bfsim.cli import main
+from bfsim.errors import BfsimError
+from tests.test_run import FIRMWARE, record
+
+SLOWER = FIRMWARE.replace(
+    "        out[x] = 0\n",
+    "        out[x] = 0\n        if x * 7919 // (line[x] + 1) == 123456:\n            found += 1\n",
+)
+BLIND = FIRMWARE.replace("line[x] > 100", "line[x] > 200")
+WHAT = ("drive.mcap", "--firmware", "fw_eyes.py")
+
+
+def call(*arguments: object) -> Result:
+    """Call the command line in this process; unexpected exceptions come through."""
+    return CliRunner().invoke(
+        main, ["check", *map(str, arguments)], catch_exceptions=False, prog_name="bfsim"
+    )
+
+
+@pytest.fixture
+def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with firmware, a recording, and limits for two runs of it; the current one."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    Path("fw_eyes.py").write_text(FIRMWARE)
+    record(tmp_path / "drive.mcap", 3)
+    for more in ([], ["--frames", "1", "--set", "sdram.nRP=3"]):
+        assert call(*WHAT, *more, "--baseline", "limits.toml", "--update").exit_code == 0
+    return tmp_path
+
+
+@pytest.fixture
+def idle_repository(repository: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The same, where nothing may run any more."""
+    monkeypatch.setattr("bfsim.machine.board.Board.run", None)
+    return repository
+
+
+def test_all_runs_of_a_file_pass_from_any_folder(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Paths in the file are relative to it; without further words all runs in it are checked."""
+    (repository / "ci").mkdir()
+    monkeypatch.chdir(repository / "ci")
+    result = call("--baseline", "../limits.toml")
+    assert result.exit_code == 0, result.output
+    for name in ("drive --firmware fw_eyes.py", "drive --firmware fw_eyes.py --set sdram.nRP=3 --frames 1"):
+        assert f"Passed: {name}: all " in result.output
+    assert "2 of 2 runs passed, 0 FAILED." in result.output
+    assert " ".join(result.output.split()).count("is the same as when the limits were measured") == 2
+
+
+def test_slower_firmware_fails_with_the_kernel_that_grew(repository: Path) -> None:
+    """Exit code 1, in the terminal and in all forms."""
+    Path("fw_eyes.py").write_text(SLOWER)
+    forms = {"json": "o.json", "junit": "o.xml", "markdown": "o.md", "benchmark": "b.json"}
+    options = [word for name, file in forms.items() for word in (f"--{name}", file)]
+    result = call(*WHAT, "--baseline", "limits.toml", *options)
+    assert result.exit_code == 1, result.output
+    assert "ms a frame in Threshold on core A: threshold +" in result.output
+    assert "is another than when the limits were measured" in " ".join(result.output.split())
+    told = json.loads(Path("o.json").read_text())
+    assert told["passed"] is False
+    broken = [each["requirement"] for each in told["runs"][0]["verdicts"] if each["broken"]]
+    assert any(each.startswith("Threshold.A.median <= ") for each in broken)
+    assert not any(each.startswith("results.") for each in broken)
+    failure = ET.parse("o.xml").getroot().find("testsuite/testcase/failure")
+    assert failure is not None
+    assert "threshold +" in (failure.text or "")
+    assert "| Threshold.A" in Path("o.md").read_text()
+    benchmark = json.loads(Path("b.json").read_text())
+    assert {"name", "unit", "value"} == set(benchmark[0])
+    assert {each["unit"] for each in benchmark} == {"ms", "B"}
+
+
+def test_faster_firmware_passes_and_update_tightens(repository: Path) -> None:
+    """The command that is printed does it; the firmware as it was then fails, and loosening asks for a reason."""
+    Path("fw_eyes.py").write_text(SLOWER)
+    assert call("--baseline", "limits.toml", "--update", "--reason", "for a test").exit_code == 0
+    assert "for a test: " in Path("limits.toml").read_text()
+    Path("fw_eyes.py").write_text(FIRMWARE)
+    result = call("--baseline", "limits.toml")
+    assert result.exit_code == 0
+    command = 'bfsim check --baseline limits.toml --case "drive --firmware fw_eyes.py" --update'
+    assert command in result.output
+    assert call("--baseline", "limits.toml", "--update").exit_code == 0
+    Path("fw_eyes.py").write_text(SLOWER)
+    before = Path("limits.toml").read_text()
+    assert call("--baseline", "limits.toml").exit_code == 1
+    assert "--update must come with --reason TEXT where limits loosen:" in refused(
+        "--baseline", "limits.toml", "--update"
+    )
+    assert Path("limits.toml").read_text() == before
+
+
+def test_what_it_saw_is_a_limit(repository: Path) -> None:
+    """Firmware that finds less is told in which frames."""
+    Path("fw_eyes.py").write_text(BLIND)
+    result = call(*WHAT, "--baseline", "limits.toml")
+    assert result.exit_code == 1
+    assert "results.bright_A is another in frames 0, 1, 2" in result.output
+
+
+def refused(*arguments: object) -> str:
+    """What is said of a mistake, in this process."""
+    with pytest.raises(BfsimError) as caught:
+        CliRunner().invoke(
+            main, ["check", *map(str, arguments)], catch_exceptions=False, standalone_mode=False
+        )
+    return str(caught.value)
+
+
+@pytest.mark.usefixtures("idle_repository")
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([*WHAT, "--frames", "2"], "--firmware fw_eyes.py', differs: frames is the default there and 2 here; --update adds"),
+        ([*WHAT, "--ldf", "l2"], "ldf is the default there and 'l2' here"),
+        ([*WHAT, "--ldf", "none.ldf", "--update"], "LDF must be a file or a shipped one"),
+        (["--case", "drove"], "--case must name one of its 2 runs, not 'drove'; the nearest are"),
+        (["--case", "drive --firmware fw_eyes.py", "--frames", "2"], "says itself what to run: "),
+        (["--json", "limits.toml"], "limits.toml must be a file of its own to be written"),
+        (["--json", "no/o.json"], "the folder no must exist"),
+        (["--history", "fw_eyes.py"], "fw_eyes.py:1 must be a line that `bfsim check --history` wrote"),
+    ],
+)  # fmt: skip
+def test_what_does_not_fit_is_told_before_anything_runs(arguments: list[str], message: str) -> None:
+    """With the real difference."""
+    assert message in refused("--baseline", "limits.toml", *arguments)
+
+
+@pytest.mark.parametrize(
+    ("frames", "message"),
+    [
+        (
+            4,
+            "recording drive.mcap must have 3 frames to run, as when the limits were measured, not 4 (the first 3 are",
+        ),
+        (
+            2,
+            "recording drive.mcap must have 3 frames to run, as when the limits were measured, not 2: limits of",
+        ),
+    ],
+)
+def test_a_recording_of_another_length(idle_repository: Path, frames: int, message: str) -> None:
+    """It is the frames that differ, and not the pictures."""
+    record(idle_repository / "drive.mcap", frames)
+    assert message in refused("--baseline", "limits.toml")
+
+
+def test_another_recording_is_told_before_the_first_run(idle_repository: Path) -> None:
+    """Of any run in the file, not when it comes to it."""
+    record(idle_repository / "drive.mcap", 3, period_ns=50_000_000)
+    assert "recording drive.mcap has other pictures or time stamps than" in refused(
+        "--baseline", "limits.toml"
+    )
+
+
+def test_history_has_a_line_a_run_and_draws_the_trend(repository: Path) -> None:
+    """Slower and then as before."""
+    for text in (FIRMWARE, SLOWER, FIRMWARE):
+        Path("fw_eyes.py").write_text(text)
+        result = call(*WHAT, "--baseline", "limits.toml", "--history", "history.jsonl")
+    lines = [json.loads(line) for line in Path("history.jsonl").read_text().splitlines()]
+    assert [each["passed"] for each in lines] == [True, False, True]
+    assert lines[0]["configuration"] == {"recording": "drive.mcap", "firmware": "fw_eyes.py"}
+    assert lines[0]["figures"] == lines[2]["figures"] != lines[1]["figures"]
+    assert "▁█▁" in result.output
+
+
+def test_a_person_requires_more(repository: Path) -> None:
+    """A sentence that does not hold breaks, and --update does not touch it."""
+    text = Path("limits.toml").read_text()
+    sentence = 'require = ["frame_rate >= 1000000 Hz"]'
+    Path("limits.toml").write_text(text.replace("frames = 1", f"frames = 1\n{sentence}", 1))
+    result = call("--baseline", "limits.toml", "--update")
+    assert result.exit_code == 1
+    assert ">= 1000000.00 Hz" in result.output
+    assert sentence in Path("limits.toml").read_text()
