@@ -67,6 +67,7 @@ MAY_IMPORT = {
         "room",
         "shipped",
     },
+    "pytest_plugin": {"errors", "report", "result", "run"},
     "checking": {"errors", "report", "run", "shipped"},
     "mapping": {"chip", "hardware", "linker", "loading", "machine", "report", "run"},
     "endings": {"errors", "signals"},

@@ -1,0 +1,80 @@
+"""The pytest plugin in test suites of its users, alone and under xdist."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+SUITE = """
+import pytest
+
+def test_a_run(bfsim):
+    assert bfsim(frames=1).frames
+
+def test_the_same_run_is_there_already(bfsim):
+    assert bfsim(frames=1) is bfsim(frames=1)
+
+@pytest.mark.frame_budget("latency <= 500 ms", min_hz=5, stages={"Edge detection": 90})
+def test_kept(bfsim):
+    bfsim(frames=1)
+
+@pytest.mark.frame_budget(min_hz=15, stages={"Edge detection": 10.5})
+def test_broken(bfsim):
+    bfsim(frames=1)
+
+@pytest.mark.frame_budget("latency <= 500 parsecs")
+def test_misspelt(bfsim):
+    bfsim(frames=1)
+"""
+
+
+def suite(folder: Path, *options: str) -> str:
+    """Run the suite in a process of its own, and return what it prints."""
+    (folder / "test_budget.py").write_text(SUITE)
+    (folder / "pytest.ini").write_text("[pytest]\naddopts = --strict-markers\n")
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-p",
+        "bfsim.pytest_plugin",
+        "-p",
+        "no:cacheprovider",
+        *options,
+    ]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 1, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("options", [["-n0"], ["-n2"]])
+def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
+    """What broke and what bounds the frame rate are the text of the failure; in one process and in two workers."""
+    told = suite(tmp_path, *options)
+    assert "2 failed, 3 passed" in told
+    assert "frame_rate must be >= 15.00 Hz, not " in told
+    assert '"Edge detection".max must be <= 10.500 ms, not ' in told
+    assert "bound by core A's Edge detection" in told
+    assert "the unit of latency must be cycles or s or ms or us, not 'parsecs'" in told
+
+
+def test_who_does_not_use_it_does_not_wait_for_it() -> None:
+    """The plugin is imported by every pytest where bfsim is installed: without the simulator."""
+    program = "import bfsim.pytest_plugin, sys; print({'numba', 'llvmlite', 'simpy', 'pydantic', 'bfsim.run'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"
+
+
+def test_it_is_an_entry_point_of_the_package() -> None:
+    """Installed with bfsim, pytest finds it by itself."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    point = importlib.metadata.EntryPoint(
+        "p", project["entry-points"]["pytest11"]["bfsim.pytest_plugin"], "pytest11"
+    )
+    assert point.load().MARK == "frame_budget"
