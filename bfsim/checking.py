@@ -51,6 +51,11 @@ def configuration_of(given: Mapping[str, Any], folder: Path) -> Configuration:
     plain = {names.get(key, key): value for key, value in plain.items()}
     if "include" in plain:
         plain["include"] = [_from(each, folder) for each in plain["include"]]
+    for key, value in plain.items():
+        if not str(value).isascii() and str(value) != str(value).encode(errors="replace").decode():
+            raise ConfigError(
+                f"{key} must have a name that can be written into a baseline file, not {shown(value)}"
+            )
     return Configuration.model_validate(plain)
 
 

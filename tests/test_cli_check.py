@@ -128,6 +128,7 @@ def refused(*arguments: object) -> str:
         ([*WHAT, "--ldf", "none.ldf", "--update"], "LDF must be a file or a shipped one"),
         (["--case", "drove"], "--case must name one of its 2 runs, not 'drove'; the nearest are"),
         (["--case", "drive --firmware fw_eyes.py", "--frames", "2"], "says itself what to run: "),
+        (["a\udcff.mcap", "--update"], "recording must have a name that can be written into a baseline file"),
         (["--json", "limits.toml"], "limits.toml must be a file of its own to be written"),
         (["--json", "no/o.json"], "the folder no must exist"),
         (["--history", "fw_eyes.py"], "fw_eyes.py:1 must be a line that `bfsim check --history` wrote"),
