@@ -16,7 +16,7 @@ FIRMWARE_PACKAGE = "tinyphoon"
 FIRMWARE = ("tinyphoon", "one_eye")
 """Names in that package that `--firmware` takes alone. The first one is the default."""
 
-ACCURACY = _PACKAGE / "accuracy.md" if _IS_INSTALLED else _PACKAGE.parent / "docs" / "accuracy.md"
+ACCURACY = (_PACKAGE if _IS_INSTALLED else _PACKAGE.parent) / "docs" / "accuracy.md"
 """How far to trust the numbers: the page of the documentation."""
 
 DEFAULT_LDFS = {"ADSP-BF561": LDF_FOLDER / "thesis.ldf", "ADSP-BF533": LDF_FOLDER / "cm-bf533.ldf"}

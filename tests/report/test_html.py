@@ -138,18 +138,18 @@ def noise(width: int = 1980, height: int = 810) -> Image.Image:
 def test_a_picture_is_as_small_as_is_asked() -> None:
     """At its full size where there is room."""
     plain = Image.new("RGB", (1980, 810))
-    with Image.open(BytesIO(webp_of(plain, 40_000))) as image:
+    with Image.open(BytesIO(webp_of(plain, 100_000))) as image:
         assert image.size == (1980, 810)
     assert len(webp_of(noise(), 60_000)) <= 60_000
 
 
 def restless(record: FrameRecord) -> list[Span]:
-    """What makes the largest charts: all of six tracks changes in every slice."""
+    """What makes the largest charts: all of seven tracks changes in every slice, and half of these are just not too many."""
     begin, end = record.cores[0].begin_cclk, record.cores[0].end_cclk
     cuts = [begin + (end - begin) * number // SLICES for number in range(SLICES + 1)]
     spans = [
         Span(SpanKind.CALL, where, f"kernel_{number % 20}", *cuts[number : number + 2])
-        for where in ("core A", "core B", "MDMA1", "MDMA2", "MDMA3", "MDMA4")
+        for where in ("core A", "core B", "MDMA1", "MDMA2", "MDMA3", "MDMA4", "SPI")
         for number in range(SLICES)
     ]
     return [*spans, Span(SpanKind.FRAME, "core A", f"frame {record.index}", begin, end)]
@@ -168,7 +168,7 @@ def test_a_page_of_a_hundred_noisy_frames_has_at_most_8_mb(monkeypatch: pytest.M
             gantts.add(restless(each))
         gantts.finish()
         text = page_of(run, pictures, Target(1), gantts)
-    assert len(text.encode()) < 8_000_000, len(text.encode())
+    assert 7_000_000 < len(text.encode()) < 8_000_000
     assert text.count("data:image/webp") == frames.MOST
 
 

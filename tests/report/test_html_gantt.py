@@ -88,6 +88,17 @@ def test_a_core_that_is_never_without_a_span_has_bars_without_a_gap(lengths: lis
         assert {quarters for *_, quarters in bars} == {4}
 
 
+def test_too_many_bars_become_fewer_and_longer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half as many slices from the first bar on that is too many."""
+    spans = [call(number * 10, number * 10 + 10, f"kernel {number % 2}") for number in range(SLICES)]
+    monkeypatch.setattr("bfsim.report.html.gantt.MOST_BARS", SLICES)
+    assert len(bars_of(spans, 0, 10 * SLICES)) == SLICES
+    monkeypatch.setattr("bfsim.report.html.gantt.MOST_BARS", SLICES - 1)
+    chart = chart_of(spans, 0, 10 * SLICES, HZ)
+    assert len(chart["bars"]) == 1  # each of the longer slices has as much of one kernel as of the other
+    assert chart["slice_ms"] == pytest.approx(0.02)
+
+
 def test_a_frame_is_drawn_when_the_next_one_is_told_by_all_cores() -> None:
     """Also where one core tells its end later; its time is that of both."""
     stages = [Span(SpanKind.STAGE, f"core {core}", "Edges", 0, 4_000, "Edges") for core in "AB"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
 
@@ -13,7 +13,9 @@ from bfsim.spans import Span, SpanKind
 from bfsim.trace import Identity
 
 SLICES = 400
-"""Of a frame: about as many as a screen can show."""
+"""Of a frame: about as many as a screen can show. Half of them, or fewer, where that makes more than MOST_BARS."""
+MOST_BARS = 1500
+"""So many fit into a page of a hundred frames: some 20 KB."""
 
 WORK, STALL, IDLE, BUSY = "work", "stall", "idle", "busy"
 """What a bar can mean, beside the name of a stage."""
@@ -104,17 +106,19 @@ class Gantts:
         self._spans = [span for span in self._spans if span.end_cclk > following]
 
 
-def chart_of(spans: Iterable[Span], begin_cclk: int, end_cclk: int, cclk_hz: float) -> dict[str, Any]:
+def chart_of(
+    spans: Sequence[Span], begin_cclk: int, end_cclk: int, cclk_hz: float, slices: int = SLICES
+) -> dict[str, Any]:
     """Return the bars of what went on between two cycles, and the names of their tracks and keys.
 
-    `slice_ms` is how long a slice is.
+    `slice_ms` is how long a slice is: the time has `slices` of them, or so many fewer that there are not too many bars.
     """
-    length_cclk = max(SLICES, end_cclk - begin_cclk)
+    length_cclk = max(slices, end_cclk - begin_cclk)
     sliced: dict[str, dict[int, Counter[Key]]] = defaultdict(lambda: defaultdict(Counter))
     for span in spans:
-        # in parts of a cycle, of which a cycle has SLICES and a slice `length_cclk`, nothing is rounded
-        begin = (max(span.begin_cclk, begin_cclk) - begin_cclk) * SLICES
-        end = (min(span.end_cclk, end_cclk) - begin_cclk) * SLICES
+        # in parts of a cycle, of which a cycle has `slices` and a slice `length_cclk`, nothing is rounded
+        begin = (max(span.begin_cclk, begin_cclk) - begin_cclk) * slices
+        end = (min(span.end_cclk, end_cclk) - begin_cclk) * slices
         if end <= begin:
             continue
         track = sliced[_track(span)]
@@ -126,10 +130,12 @@ def chart_of(spans: Iterable[Span], begin_cclk: int, end_cclk: int, cclk_hz: flo
     bars: list[Bar] = []
     for place, name in enumerate(tracks):
         bars += _bars(place, sliced[name], keys, length_cclk)
+    if len(bars) > MOST_BARS and slices > 1:
+        return chart_of(spans, begin_cclk, end_cclk, cclk_hz, slices // 2)
     return {
         "tracks": tracks,
         "keys": [list(key) for key in keys],
-        "slice_ms": 1000 * length_cclk / SLICES / cclk_hz,
+        "slice_ms": 1000 * length_cclk / slices / cclk_hz,
         "bars": bars,
     }
 

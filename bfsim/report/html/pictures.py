@@ -12,11 +12,14 @@ from bfsim.report.overlay.overlay import overlay_of
 from bfsim.report.spool import Spool
 from bfsim.seen import SeenFrame
 
-PAGE_BYTES = 4_500_000
+PAGE_BYTES = 4_000_000
 """Of all pictures of a page together: with 100 frames in it, what is around them leaves so much of 8 MB."""
 
-_STEPS = ((2560, 80), (1980, 75), (1600, 65), (1320, 55), (1100, 45), (800, 40), (640, 25))
-"""Widths in px and qualities of WebP, from the best on; the last one is for pictures full of detail."""
+_PIXELS_A_BYTE = 25
+"""A picture has at most so many: then most are small enough at the first quality, and words can be read."""
+_QUALITIES = (75, 60, 45, 30)
+"""Of WebP: from the best to one for pictures full of detail."""
+_LEAST_WIDTH = 480  # px: nothing smaller is a picture of a frame
 
 
 class Pictures:
@@ -46,14 +49,15 @@ class Pictures:
 
 def webp_of(image: Image.Image, nbytes: int) -> bytes:
     """Return an image as WebP of at most `nbytes`, or as small as it becomes."""
-    content = b""
-    for width, quality in _STEPS:
-        small = image
-        if width < image.width:
-            small = image.resize((width, -(-image.height * width // image.width)), Image.Resampling.LANCZOS)
-        file = BytesIO()
-        small.save(file, "WEBP", quality=quality, method=4)
-        content = file.getvalue()
-        if len(content) <= nbytes:
-            break
-    return content
+    width = round((nbytes * _PIXELS_A_BYTE * image.width / image.height) ** 0.5)
+    while True:
+        width = min(width, image.width)
+        small = image.resize((width, -(-image.height * width // image.width)), Image.Resampling.LANCZOS)
+        for quality in _QUALITIES:
+            file = BytesIO()
+            small.save(file, "WEBP", quality=quality, method=2)
+            if file.tell() <= nbytes:
+                return file.getvalue()
+        if width <= _LEAST_WIDTH:
+            return file.getvalue()
+        width = max(_LEAST_WIDTH, width // 2)
