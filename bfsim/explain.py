@@ -24,6 +24,7 @@ from bfsim.trace import (
     InlinedKernel,
     KernelRecord,
     RunRecord,
+    StallReason,
 )  # fmt: skip
 
 BRANCHES = {Op.BRANCH_TAKEN, Op.BRANCH_NOT_TAKEN, Op.BRANCH_TAKEN_BP, Op.BRANCH_NOT_TAKEN_BP}
@@ -144,7 +145,9 @@ def _line(
                 if each.line.line == line
             ),
             executions=sum(cost.executions for cost in costs) if counted else None,
-            total_cclk=sum(cost.issue_cclk + cost.stall_cclk for cost in costs) if counted else None,
+            total_cclk=sum(cost.issue_cclk + cost.stall_cclk.get(StallReason.INTERLOCK, 0) for cost in costs)
+            if counted
+            else None,
         )
 
 

@@ -6,7 +6,7 @@ issue + stall + idle = elapsed.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -52,13 +52,39 @@ class StageCost:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class OwnerCost:
+    """What one owner cost one core in one stage of one frame: a kernel without its callees, or something that no kernel does.
+
+    `symbol` is the kernel's in the machine code (`KernelRecord`); it is empty for a ring, a semaphore, an interrupt, the
+    cameras ..., which `owner` then names. A stall of no cycles is left out of `stall_cclk`.
+    """
+
+    stage: str
+    owner: str
+    symbol: str
+    calls: int
+    issue_cclk: int
+    stall_cclk: Mapping[StallReason, int]
+    idle_cclk: int
+
+    @property
+    def elapsed_cclk(self) -> int:
+        """Cycles from first to last, whatever the core did in them."""
+        return self.issue_cclk + sum(self.stall_cclk.values()) + self.idle_cclk
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class CoreFrame:
-    """One frame on one core, from the end of the frame before to its own end; the stages fill it exactly."""
+    """One frame on one core, from the end of the frame before to its own end; the stages fill it exactly.
+
+    The `owners` of each stage fill that exactly: issue, each reason of a stall, and idle.
+    """
 
     core: str
     begin_cclk: int
     end_cclk: int
     stages: tuple[StageCost, ...]
+    owners: Sequence[OwnerCost] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,46 +105,101 @@ class FrameRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineCost:
-    """One source line of a kernel: how often its first operation ran, and the cycles of all of them.
-
-    `stall_cclk` are the interlocks: waits of one operation for another.
-    """
+    """One source line of a kernel: how often its first operation ran, and the cycles of all of them."""
 
     line: int
     executions: int
     issue_cclk: int
-    stall_cclk: int
+    stall_cclk: Mapping[StallReason, int]
+
+    @property
+    def elapsed_cclk(self) -> int:
+        """Cycles of the line, its stalls included."""
+        return self.issue_cclk + sum(self.stall_cclk.values())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KernelRecord:
-    """All calls of one kernel (or of a kernel called by it) by one core in one stage, over the whole run.
+    """All calls of one kernel (or of a kernel called by it) by one core in one stage, over all frames, without its callees.
 
-    `file` and `LineCost.line` say where the source is; `text` holds its lines, the first one being `first_line`.
-    `accesses` counts (reads, writes) of the kernel's array elements per memory; `issue_cclk` is without its callees.
+    `symbol` tells kernels of one name apart. `file` and `LineCost.line` say where the source is; `text` holds its lines, the
+    first one being `first_line`. The `lines` add up to `issue_cclk` and `stall_cclk`; where code lies outside L1, the kernel's
+    first line has the waits for it.
     """
 
     core: str
     stage: str
     kernel: str
+    symbol: str
     file: str
     first_line: int
     text: tuple[str, ...]
     calls: int
     issue_cclk: int
+    stall_cclk: Mapping[StallReason, int]
     lines: tuple[LineCost, ...]
-    accesses: Mapping[str, tuple[int, int]]
+
+    @property
+    def elapsed_cclk(self) -> int:
+        """Cycles of its calls, their stalls included, without its callees."""
+        return self.issue_cclk + sum(self.stall_cclk.values())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AccessRecord:
+    """What one line of a kernel accessed in one buffer, over all frames: elements that it read and wrote, and what it waited for them.
+
+    `fills` are lines that the data cache fetched for it. `buffer` is empty where the kernel's own code was waited for.
+    """
+
+    core: str
+    stage: str
+    symbol: str
+    line: int
+    buffer: str
+    reads: int
+    writes: int
+    fills: int
+    stall_cclk: Mapping[StallReason, int]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathRecord:
+    """One path of calls: what the last kernel of `path` (symbols) cost when called through the others, without its own callees."""
+
+    core: str
+    stage: str
+    path: tuple[str, ...]
+    calls: int
+    issue_cclk: int
+    stall_cclk: Mapping[StallReason, int]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BufferRecord:
+    """A buffer of the firmware, and where it lies. `core` is that which declares it, or "shared".
+
+    `buffer` is the name that other records have for it: its own, and that of the core behind it where both declare one.
+    """
+
+    buffer: str
+    core: str
+    memory: str
+    address: int
+    nbytes: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrafficRecord:
-    """What one master moved to and from one memory over the whole run.
+    """What one master moved to and from one buffer over the whole run, over a bus; a core's accesses of L1 are not among it.
 
-    `master` is a core, an MDMA stream or a PPI. The page counts are zero for memories without pages.
-    `busy_cclk` is how long it held the memory's bus, in CCLK cycles.
+    `memory` is where the buffer lies; `buffer` is empty for what is in no buffer, such as code and semaphores. `master` is a core,
+    an MDMA stream or a PPI; a DMA transfer counts for the buffers that it begins in. The page counts are zero for memories
+    without pages. `busy_cclk` is how long it held the memory's bus, in CCLK cycles.
     """
 
     memory: str
+    buffer: str
     master: str
     read_bytes: int
     written_bytes: int
@@ -251,7 +332,7 @@ class RunRecord:
     `geometry` says where the firmware takes the cameras to be, and whether the recording said so; it is empty for firmware
     that does not ask. `assumptions` are warnings of what was not given and had to be assumed; `losses` say in words what those published
     numbers count that the firmware lost.
-    When `interrupted` by Ctrl-C, `kernels` and `traffic` also hold what was done of the frame that was not finished.
+    When `interrupted` by Ctrl-C, `traffic` also holds what was moved of the frame that was not finished.
     """
 
     identity: Identity
@@ -263,6 +344,9 @@ class RunRecord:
     missed: tuple[int, ...]
     interrupted: bool
     kernels: tuple[KernelRecord, ...]
+    accesses: tuple[AccessRecord, ...]
+    paths: tuple[PathRecord, ...]
+    buffers: tuple[BufferRecord, ...]
     traffic: tuple[TrafficRecord, ...]
     code: tuple[CodeRecord, ...]
     messages: tuple[MessageRecord, ...]

@@ -23,7 +23,7 @@ KIND_BIT, STAMP_BIT = 28, 31
 OFFSET_MASK, KIND_MASK = (1 << KIND_BIT) - 1, 7
 LOAD, STORE, FILL, WRITE_BACK, FETCH, FETCH_LINE, TEST_AND_SET = range(7)
 
-# Words of the state; the log stands behind them.
+# Words of the state; the log stands behind them, and behind that the site of each of its entries (`call_paths`).
 (
     FUNCTION,  # address of `trace_access`; compiled kernels call it
     ARENA, END,  # host address of the arena, and of what is behind SDRAM and L2
@@ -39,6 +39,7 @@ TAGS = (
 )  # of each set, the line used last first: number << 1 | is it changed; or EMPTY
 MAX_LINES = 2048
 LOG = TAGS + MAX_LINES
+ENTRY_WORDS = 2
 EMPTY = -1
 
 
@@ -88,13 +89,13 @@ class AccessTrace:
     ) -> None:
         """`arena`: the host array of all memories; the first `traced_nbytes` of it are outside L1.
 
-        `room`: where the state and the log go, LOG words and as many as the log can have entries.
+        `room`: where the state and the log go, LOG words and ENTRY_WORDS for each entry that the log can have.
         """
         self._arena = arena  # the state has its address only
         self._state = room
         self._state[TAGS:LOG] = EMPTY
         self._state[ARENA], self._state[END] = arena.ctypes.data, arena.ctypes.data + traced_nbytes
-        self._state[ROOM] = len(room) - LOG
+        self._state[ROOM] = (len(room) - LOG) // ENTRY_WORDS
         if size and cached:
             self._state[LINE_BITS], self._state[SETS], self._state[WAYS] = (
                 size.line_bytes.bit_length() - 1,
@@ -125,13 +126,19 @@ class AccessTrace:
         """Return the first `count` entries of the log."""
         return self._state[LOG : LOG + count]
 
-    def insert(self, count: int, entries: NDArray[np.int64]) -> int:
+    def sites(self, count: int) -> NDArray[np.int64]:
+        """Return the sites of the first `count` entries of the log."""
+        first = LOG + int(self._state[ROOM])
+        return self._state[first : first + count]
+
+    def insert(self, count: int, entries: NDArray[np.int64], sites: NDArray[np.int64]) -> int:
         """Add `entries` to the first `count` of the log, by their stamps and behind those of the same; return the new count."""
         total = count + len(entries)
         self._check_room(total)
-        self._state[LOG + count : LOG + total] = entries
-        merged = self.entries(total)
-        merged[:] = merged[np.argsort(merged >> STAMP_BIT, kind="stable")]
+        merged, merged_sites = self.entries(total), self.sites(total)
+        merged[count:], merged_sites[count:] = entries, sites
+        order = np.argsort(merged >> STAMP_BIT, kind="stable")
+        merged[:], merged_sites[:] = merged[order], merged_sites[order]
         return total
 
     def _check_room(self, count: int) -> None:

@@ -7,17 +7,19 @@ asks for the size of kernels that are never called, and every build of a kernel 
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from functools import cache
 from typing import Any
 
 import llvmlite.binding as llvm
 
 from bfsim.kernel import generic, store, tree
+from bfsim.kernel.call_paths import RoutineCall, calls_of
 from bfsim.kernel.counters import Counter, cost
 from bfsim.kernel.emit import emit
 from bfsim.kernel.inlining import inlined_calls
-from bfsim.kernel.ir_text import SourceLine, read_module
+from bfsim.kernel.ir_text import Entrance, SourceLine, inlined_through, read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.charges import Access, Charge
 from bfsim.kernel.lowering.rewrites import rewritten
@@ -35,17 +37,45 @@ PASSES = (
 )  # fmt: skip
 
 
+@dataclass(frozen=True, slots=True)
+class Costs:
+    """What a kernel costs: `counters` of its routines, its own and those it calls, and how it comes from one to the other.
+
+    `calls`: of each routine its calls of others, in the order of its text. `inlined`: through which routines an inlined call
+    came, by its number (`SourceLine.site`), the routine that it was inlined into first.
+    """
+
+    counters: tuple[Counter, ...] = ()
+    calls: Mapping[str, tuple[RoutineCall, ...]] = field(default_factory=dict)
+    inlined: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
+
+
 @cache
-def counters_of(function: tree.Function, profile: CompilerProfile) -> tuple[Counter, ...]:
-    """Cost `function` and its callees, or take the counters from the cache on disk; once per process."""
-    key = store.key(function, profile, "counters")
+def costs_of(function: tree.Function, profile: CompilerProfile) -> Costs:
+    """Cost `function` and its callees, or take the costs from the cache on disk; once per process."""
+    key = store.key(function, profile, "costs")
     kept = store.load(key)
     if kept is not None:
-        return tuple(_counter(each) for each in json.loads(kept))
-    routines = read_module(optimised(function, profile))
-    counters = tuple(each for routine in routines for each in cost(routine, profile))
-    store.save(key, json.dumps([asdict(each) for each in counters], separators=(",", ":")).encode())
-    return counters
+        return _costs(json.loads(kept))
+    text = optimised(function, profile)
+    routines = read_module(text)
+    costs = Costs(
+        tuple(each for routine in routines for each in cost(routine, profile)),
+        calls_of(routines),
+        inlined_through(text),
+    )
+    store.save(key, json.dumps(asdict(costs), separators=(",", ":")).encode())
+    return costs
+
+
+def _costs(kept: dict[str, Any]) -> Costs:
+    """Build costs from their JSON."""
+    calls = {
+        routine: tuple(RoutineCall(callee, tuple(map(tuple, arrays))) for callee, arrays in each)
+        for routine, each in kept["calls"].items()
+    }
+    inlined = {int(site): tuple(routines) for site, routines in kept["inlined"].items()}
+    return Costs(tuple(map(_counter, kept["counters"])), calls, inlined)
 
 
 def _counter(row: dict[str, Any]) -> Counter:
@@ -53,8 +83,9 @@ def _counter(row: dict[str, Any]) -> Counter:
     charges = tuple(
         Charge(**each | {"op": Op(each["op"]), "line": SourceLine(*each["line"])}) for each in row["charges"]
     )
-    accesses = tuple(Access(*each) for each in row["accesses"])
-    return Counter(**row | {"charges": charges, "accesses": accesses, "enters": tuple(row["enters"])})
+    accesses = tuple(Access(*each)._replace(line=SourceLine(*each[4])) for each in row["accesses"])
+    enters = tuple(Entrance(symbol, SourceLine(*caller), note) for symbol, caller, note in row["enters"])
+    return Counter(**row | {"charges": charges, "accesses": accesses, "enters": enters})
 
 
 @cache

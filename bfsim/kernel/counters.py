@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from bfsim.kernel.ir_text import Routine, SourceLine
+from bfsim.kernel.ir_text import Entrance, Routine, SourceLine
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering import optimised, unoptimised
 from bfsim.kernel.lowering.charges import Access, Charge
@@ -36,7 +36,7 @@ class Counter:
     """Code of the block."""
     depth: int = 0
     """Loops around the block."""
-    enters: tuple[str, ...] = ()
+    enters: tuple[Entrance, ...] = ()
 
     @cached_property
     def array_accesses(self) -> tuple[tuple[str, int, int], ...]:
@@ -83,7 +83,8 @@ def cost(routine: Routine, profile: CompilerProfile) -> tuple[Counter, ...]:
             *(known[id(each)] for each in found.accesses if id(each) in known),
             *(known[id(each)]._replace(fills=True) for each in found.fills),
         )
-        enters = (*([routine.symbol] if block is routine.blocks[0] else []), *block.enters)
+        own = Entrance(routine.symbol, SourceLine(routine.symbol, 0))
+        enters = (*([own] if block is routine.blocks[0] else []), *block.enters)
         if not charges and not accesses and not found.tests and not enters:
             continue  # nothing to count: the block holds no code
         counters.append(Counter(*place, None, None, charges, accesses, found.nbytes, depth, enters))
@@ -111,5 +112,5 @@ def _accesses(flow: ControlFlow) -> dict[int, Access]:
         for number, each in enumerate(rows):
             root = flow.root(each.operands[-1])
             if not root.startswith("@"):
-                found[id(each)] = Access(root[1:], each.opcode == "store", block.label, number)
+                found[id(each)] = Access(root[1:], each.opcode == "store", block.label, number, each.line)
     return found

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from bfsim.errors import KernelError
 from bfsim.kernel import tree
 from bfsim.kernel.access_trace import AccessTrace
-from bfsim.kernel.costs import counters_of
+from bfsim.kernel.costs import costs_of
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import FIRST_ARGUMENT
 from bfsim.kernel.jit import CompiledKernel, compile_kernel
@@ -77,7 +77,7 @@ class Kernel:
     def counters(self, profile: CompilerProfile) -> tuple[Counter, ...]:
         """Return what is counted in a run and what it costs, callees included. Raises KernelError as `compiled`."""
         self._refuse_floats(profile)
-        return counters_of(self.function, profile)
+        return costs_of(self.function, profile).counters
 
     def code_bytes(self, profile: CompilerProfile) -> dict[str, int]:
         """Return the size of the kernel's code, and of each kernel that it calls, by the names in the machine code."""
@@ -92,8 +92,12 @@ class Kernel:
         arrays: Sequence[NDArray[Any]],
         totals: NDArray[np.int64],
         access_trace: AccessTrace | None = None,
+        first_site: int = 0,
     ) -> PreparedCall:
-        """Bind `arrays`, in the order of the array parameters. Raises KernelError when one does not fit its type."""
+        """Bind `arrays`, in the order of the array parameters. Raises KernelError when one does not fit its type.
+
+        `first_site`: what the access trace calls the first site of the program.
+        """
         slots = self._slots()
         bound = []
         for position, array in zip(self.array_positions, arrays, strict=True):
@@ -104,7 +108,15 @@ class Kernel:
         floats = [(slots[each], each) for each in self.float_positions]
         result = self.function.result
         return PreparedCall(
-            code, bound, integers, floats, self.check, result=result, access_trace=access_trace, totals=totals
+            code,
+            bound,
+            integers,
+            floats,
+            self.check,
+            result=result,
+            access_trace=access_trace,
+            first_site=first_site,
+            totals=totals,
         )
 
     def _refuse_floats(self, profile: CompilerProfile) -> None:

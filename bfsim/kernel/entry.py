@@ -3,7 +3,8 @@
 An entry takes nothing and returns the issue and interlock cycles of one call in one word, because a C call without arguments is the
 cheapest that Python has. It finds its argument block through the cell `cell_name(entry)`, a pointer: an array of
 64-bit words with the address of the totals (one word per counter), then pointer and length of each array,
-each integer (or the bits of a float), the access_trace's state (traced kernels only), and last a word for the kernel's result.
+each integer (or the bits of a float), in traced kernels the access_trace's state and the number of their first site, and last a
+word for the kernel's result.
 A guard that fails comes back to it from wherever it is (`setjmp` and `longjmp` of the C library), and it returns FAILED.
 """
 
@@ -12,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from bfsim.kernel import tree
+from bfsim.kernel.call_paths import Program
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.guards import RETURN
 from bfsim.kernel.types import ArrayType, FloatType
@@ -34,7 +36,7 @@ def running_name(entry: str) -> str:
     return f"{entry}_running"
 
 
-def globals_of(counters: Sequence[Counter], entry: str, *, traced: bool) -> str:
+def globals_of(entry: str, *, traced: bool) -> str:
     """Return the variables of a counted module: the cell, the totals and the cycles."""
     rows = [
         f"@{cell_name(entry)} = global ptr null",
@@ -66,10 +68,9 @@ def settle(counters: Sequence[tuple[int, Counter, str]], place: str) -> list[str
     return [*rows, f"  store i64 %{place}.cclk.{len(counters)}, ptr @bfsim.cclk"]
 
 
-def entry_point(
-    function: tree.Function, counters: Sequence[Counter], entry: str, *, traced: bool, checked: bool
-) -> str:
+def entry_point(function: tree.Function, program: Program, entry: str, *, traced: bool, checked: bool) -> str:
     """Return the entry point of `function`: call it, settle what its callees counted, return the cycles."""
+    counters = program.counters
     rows = [
         f"  %counts = alloca [{max(1, len(counters))} x i64]",
         f"  %arguments = load ptr, ptr @{cell_name(entry)}",
@@ -113,11 +114,12 @@ def entry_point(
     if traced:
         rows.append(f"  store ptr {take('ptr')}, ptr @bfsim.state")
         rows.append("  store i64 0, ptr @bfsim.clock")
+    handed = ["ptr %counts", *([f"i64 {take('i64')}"] if traced else [])]
     called = [number for number, each in enumerate(counters) if each.routine != function.symbol]
     for number in called:
         rows.append(f"  %count.{number} = getelementptr i64, ptr %counts, i64 {number}")
         rows.append(f"  store i64 0, ptr %count.{number}")
-    call = f"@{function.symbol}({', '.join([*values, 'ptr %counts'])})"
+    call = f"@{function.symbol}({', '.join([*values, *handed])})"
     if isinstance(function.result, FloatType):
         rows.append(f"  %value = call float {call}")
         rows.append("  %bits = bitcast float %value to i32")

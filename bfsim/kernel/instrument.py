@@ -3,7 +3,8 @@
 Each counter is a local of its function until the function returns: LLVM keeps it in a register or folds it
 to the trip count, so that counting costs next to nothing. The kernel itself then adds its counts to the
 caller's totals; those of its callees go to a table on the entry point's stack, which every function is handed:
-once callees are inlined, the table dissolves into registers, and a loop around them can still be vectorised.
+once callees are inlined, the table dissolves into registers, and a loop around them can still be vectorised. What a function
+is handed is its own part of the table, for the path by which it was called (`call_paths`).
 Names that are added begin with a dot, which a name of the kernel cannot.
 """
 
@@ -14,12 +15,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from bfsim.kernel import tree
+from bfsim.kernel.call_paths import Offset, Program
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.derived import Sum, derived
 from bfsim.kernel.entry import entry_point, globals_of, settle
 from bfsim.kernel.guards import Guarded
 from bfsim.kernel.ir_text import DEFINE, ENTRY, KERNEL_CALL, LABEL, read_module
-from bfsim.kernel.tracing import ROUTINES, Tracing
+from bfsim.kernel.tracing import ROUTINES, SITE, Tracing
 
 # [ours] In a program of so many counters, a routine of so many of them stays a routine on the host: LLVM takes twice as long
 # for what it inlines there, and the program runs no faster.
@@ -42,28 +44,29 @@ class _NumberedCounter:
 def instrument(
     text: str,
     function: tree.Function,
-    counters: Sequence[Counter],
+    program: Program,
     entry: str,
     *,
     traced: bool,
     checked: bool,
 ) -> str:
-    """Return the module `text` with counters and the entry point `entry`.
+    """Return the module `text` with the counters of `program` and the entry point `entry`.
 
     With `traced`, every access that was costed is also reported to the access trace that the argument block names. With `checked`,
     every index and divisor is checked (`guards`).
     """
+    counters = program.costs.counters
     known = _derived(text, counters)
     guarded = Guarded(text, entry) if checked else None
     whole = guarded.text if guarded else text
-    tracing = Tracing(whole, counters) if traced else None
+    tracing = Tracing(whole, program) if traced else None
     return "\n".join(
         [
-            globals_of(counters, entry, traced=traced),
-            _Rewriter(function, counters, tracing, known).rewrite(whole),
+            globals_of(entry, traced=traced),
+            _Rewriter(function, program, tracing, known).rewrite(whole),
             guarded.run_time() if guarded else "",
             ROUTINES if traced else "",
-            entry_point(function, counters, entry, traced=traced, checked=checked),
+            entry_point(function, program, entry, traced=traced, checked=checked),
         ]
     )
 
@@ -80,7 +83,7 @@ class _Rewriter:
     """Rewrites the functions of a module row by row; `function` is the one that the entry point calls."""
 
     function: tree.Function
-    counters: Sequence[Counter]
+    program: Program
     tracing: Tracing | None
     derived: dict[int, Sum]
     top: str = field(init=False)
@@ -92,8 +95,16 @@ class _Rewriter:
     at_first_block: bool = field(init=False, default=False)
     behind_phis: bool = field(init=False, default=True)
     exits: int = field(init=False, default=0)
+    offsets: Iterator[Offset] = field(init=False, default_factory=lambda: iter(()))
+    """Of the calls of other kernels that the routine still makes."""
+    calls: int = field(init=False, default=0)
+    counters: Sequence[Counter] = field(init=False)
+    slots: dict[int, int] = field(init=False)
+    """Of each counter, its place in the part of the table that its routine is handed."""
 
     def __post_init__(self) -> None:
+        self.counters = self.program.costs.counters
+        self.slots = self._slots()
         self.places = {}
         self.routines = {each.symbol for each in (*self.function.callees(), self.function)}
         self.top = self.function.symbol
@@ -110,7 +121,9 @@ class _Rewriter:
     def _row(self, row: str) -> Iterator[str]:
         if found := DEFINE.match(row):
             self.routine, self.at_first_block = found.group(1), True
-            head = _with_table(re.sub(r"^define ", "define internal ", row), f"@{self.routine}(")
+            self.offsets = iter(self.program.call_offsets(self.routine))
+            head = re.sub(r"^define ", "define internal ", row)
+            head = _with(head, f"@{self.routine}(", self._handed(TABLE, SITE))
             yield head.replace(" {", " noinline {") if self._is_large() else head
         elif found := LABEL.match(row):
             yield row.split(";", maxsplit=1)[0]
@@ -142,8 +155,31 @@ class _Rewriter:
         if self.tracing:
             yield from self.tracing.at(row)
         if (call := KERNEL_CALL.search(row)) and call.group(1) in self.routines:
-            row = _with_table(row, f"@{call.group(1)}(")
-        yield row
+            yield from self._call(row, call.group(1))
+        else:
+            yield row
+
+    def _call(self, row: str, callee: str) -> Iterator[str]:
+        """Hand a callee its part of the table, for the path that leads through here."""
+        offset = next(self.offsets, Offset(0, 0))  # without counters there is nothing to hand on
+        self.calls += 1
+        table, site = f"{TABLE}.{self.calls}", f"{SITE}.{self.calls}"
+        yield f"  {table} = getelementptr i64, ptr {TABLE}, i64 {offset.counter}"
+        if self.tracing:
+            yield f"  {site} = add i64 {SITE}, {offset.site}"
+        yield _with(row, f"@{callee}(", self._handed(table, site))
+
+    def _handed(self, table: str, site: str) -> str:
+        """What a routine is handed behind its own arguments."""
+        return f"ptr {table}, i64 {site}" if self.tracing else f"ptr {table}"
+
+    def _slots(self) -> dict[int, int]:
+        next_slot = {routine: self.program.base(routine).counter for routine in self.program.own}
+        found = {}
+        for number, counter in enumerate(self.counters):
+            found[number] = next_slot[counter.routine]
+            next_slot[counter.routine] += 1
+        return found
 
     def _begin_block(self) -> Iterator[str]:
         for each in self.here:
@@ -182,11 +218,11 @@ class _Rewriter:
                     events, [(factor, f"%{place}.mine.{other}") for factor, other in self.derived[number]]
                 )
         if is_top:
-            return rows + settle(mine, place)
+            return rows + settle([(self.slots[number], each, events) for number, each, events in mine], place)
         for number, _, events in mine:
             name = f"%{place}.{number}"
             rows += [
-                f"  {name}.slot = getelementptr i64, ptr {TABLE}, i64 {number}",
+                f"  {name}.slot = getelementptr i64, ptr {TABLE}, i64 {self.slots[number]}",
                 f"  {name}.old = load i64, ptr {name}.slot",
                 f"  {name}.new = add i64 {name}.old, {events}",
                 f"  store i64 {name}.new, ptr {name}.slot",
@@ -204,12 +240,12 @@ def _sum(result: str, terms: Sequence[tuple[int, str]]) -> list[str]:
     return rows
 
 
-def _with_table(row: str, head: str) -> str:
-    """Hand the table of counts to a function, behind its other arguments."""
+def _with(row: str, head: str, handed: str) -> str:
+    """Hand more to a function, behind its other arguments."""
     start = row.index(head) + len(head)
     end = _closing(row, start)
     separator = ", " if row[start:end].strip() else ""
-    return f"{row[:end]}{separator}ptr {TABLE}{row[end:]}"
+    return f"{row[:end]}{separator}{handed}{row[end:]}"
 
 
 def _closing(row: str, start: int) -> int:

@@ -43,6 +43,14 @@ class SourceLine(NamedTuple):
     site: int = 0
 
 
+class Entrance(NamedTuple):
+    """Where the code of the kernel `symbol` begins, called from the line `caller`; `location` is the number of its note."""
+
+    symbol: str
+    caller: SourceLine
+    location: str = ""
+
+
 @dataclass(frozen=True, slots=True)
 class Instruction:
     """One instruction. `operands` are the texts of its value operands: names such as %x, or constants."""
@@ -95,15 +103,17 @@ class BasicBlock:
 
     label: str
     instructions: tuple[Instruction, ...]
-    enters: tuple[str, ...] = ()
-    """Symbols of the inlined kernels whose code begins here."""
+    enters: tuple[Entrance, ...] = ()
+    """Of the inlined kernels whose code begins here."""
 
     def rows(self) -> Iterator[str]:
         """The block as LLVM's text."""
         yield f"{self.label}:"
         phis = [each for each in self.instructions if each.opcode == "phi"]
         yield from (each.row for each in phis)
-        yield from (f"  call void @{ENTERS}{each}()" for each in self.enters)
+        for entrance in self.enters:
+            location = f", !dbg !{entrance.location}" if entrance.location else ""
+            yield f"  call void @{ENTERS}{entrance.symbol}(){location}"
         yield from (each.row for each in self.instructions[len(phis) :])
 
     @property
@@ -165,6 +175,19 @@ def _source_lines(text: str) -> dict[str, SourceLine]:
     return {each[1]: SourceLine(routines[each[3]], int(each[2]), int(each[4] or 0)) for each in notes}
 
 
+def inlined_through(text: str) -> dict[int, tuple[str, ...]]:
+    """Return through which routines each inlined call came, by its number: the one that it was inlined into comes first."""
+    lines_of = _source_lines(text)
+    found: dict[int, tuple[str, ...]] = {}
+    for site in {line.site for line in lines_of.values()} - {0}:
+        through, number = [], site
+        while number and (line := lines_of.get(str(number))):
+            through.append(line.routine)
+            number = line.site
+        found[site] = tuple(reversed(through))
+    return found
+
+
 def with_names(text: str) -> str:
     """Return a module in which every value and block has a name: LLVM numbers the others by their order, which passes change."""
     return NUMBERED.sub(lambda found: f"%.n{found[1]}" if found[1] else f".n{found[2]}", text)
@@ -205,12 +228,14 @@ def _blocks(
 ) -> tuple[BasicBlock, ...]:
     """Read the blocks of a routine; `line` is its first one."""
     blocks: list[BasicBlock] = []
-    label, instructions, enters = "", list[Instruction](), list[str]()
+    label, instructions, enters = "", list[Instruction](), list[Entrance]()
     for row in rows:
         if found := LABEL.match(row):
             label, instructions, enters = found.group(1), [], []
         elif found := ENTRY.match(row):
-            enters.append(found.group(1))
+            debug = DEBUG.search(row)
+            location = debug.group(1) if debug else ""
+            enters.append(Entrance(found.group(1), lines_of.get(location, line), location))
         elif row.startswith("  "):
             debug = DEBUG.search(row)
             location = debug.group(1) if debug else ""

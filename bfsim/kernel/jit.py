@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
 from bfsim.kernel import crashes, failures, machine_code, store, tree
-from bfsim.kernel.costs import counters_of, optimised
+from bfsim.kernel.call_paths import Program
+from bfsim.kernel.costs import Costs, costs_of, optimised
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import cell_name, running_name
 from bfsim.kernel.guards import Guarded, note_name
@@ -31,9 +32,14 @@ class CompiledKernel:
 
     entry: ctypes._CFunctionType
     cell: ctypes.c_int64
-    counters: tuple[Counter, ...]
+    program: Program
     failure: Callable[[], KernelError]
     """Returns what a guard has noted in the last call; see `guards`."""
+
+    @property
+    def counters(self) -> tuple[Counter, ...]:
+        """What is counted, in the order of the totals: each counter as often as there are paths to its routine."""
+        return self.program.counters
 
     def new_totals(self) -> NDArray[np.int64]:
         """Return zeros for the events of each counter (one word at least, to have an address)."""
@@ -57,11 +63,12 @@ def compile_kernel(
     """
     key = store.key(function, profile, f"traced={traced} counted={counted} checked={checked}")
     entry = _entry_name(key)
-    counters = counters_of(function, profile) if counted else ()
+    costs = costs_of(function, profile) if counted else Costs()
+    program = Program(function.symbol, costs, function.array_names)
     code = store.load(key)
     if code is None:
         text = instrument(
-            optimised(function, profile), function, counters, entry, traced=traced, checked=checked
+            optimised(function, profile), function, program, entry, traced=traced, checked=checked
         )
         code = machine_code.host_code(text)
         store.save(key, code)
@@ -70,7 +77,7 @@ def compile_kernel(
     return CompiledKernel(
         ENTRY(machine_code.address_of(entry)),
         ctypes.c_int64.from_address(machine_code.address_of(cell_name(entry))),
-        counters,
+        program,
         partial(_failure, function, profile, entry),
     )
 

@@ -11,10 +11,12 @@ State = MutableSequence[int]
 
 
 @native
-def write_entry(state: State, kind: int, offset: int, stamp: int) -> None:
-    """Log an access, or only count it when the log is full."""
+def write_entry(state: State, kind: int, offset: int, stamp: int, site: int) -> None:
+    """Log an access of a site, or only count it when the log is full."""
     if state[log.ENTRIES] < state[log.ROOM]:
-        state[log.LOG + state[log.ENTRIES]] = stamp << log.STAMP_BIT | kind << log.KIND_BIT | offset
+        at = log.LOG + state[log.ENTRIES]
+        state[at] = stamp << log.STAMP_BIT | kind << log.KIND_BIT | offset
+        state[at + state[log.ROOM]] = site
     state[log.ENTRIES] += 1
 
 
@@ -52,27 +54,27 @@ def look_up(state: State, line: int, changed: int, allocate: bool) -> tuple[bool
 
 
 @native
-def trace_cached(state: State, offset: int, write: bool, policy: int, stamp: int) -> None:
+def trace_cached(state: State, offset: int, write: bool, policy: int, stamp: int, site: int) -> None:
     """Log what the data cache asks of the memories for an access."""
     bits, changes = state[log.LINE_BITS], write and policy == log.WRITE_BACK_POLICY
     hit, left = look_up(state, offset >> bits, 1 if changes else 0, changes or not write)
     if left != log.EMPTY:
-        write_entry(state, log.WRITE_BACK, left << bits, stamp)
+        write_entry(state, log.WRITE_BACK, left << bits, stamp, site)
     if write and not changes:
-        write_entry(state, log.STORE, offset, stamp)
+        write_entry(state, log.STORE, offset, stamp, site)
     elif not hit:
-        write_entry(state, log.FILL, offset >> bits << bits, stamp)
+        write_entry(state, log.FILL, offset >> bits << bits, stamp, site)
 
 
-@native_entry("void", "int64*", "int64", "int64", "int64")
-def trace_access(at: State, address: int, access: int, stamp: int) -> None:
-    """Trace an access of `access` bytes, WRITE more if it writes, at a host address and a cycle of the call."""
+@native_entry("void", "int64*", "int64", "int64", "int64", "int64")
+def trace_access(at: State, address: int, access: int, stamp: int, site: int) -> None:
+    """Trace an access of `access` bytes, WRITE more if it writes, at a host address and a cycle of the call, made by `site`."""
     state = words_at(at)
     if not state[log.ARENA] <= address < state[log.END]:
         return
     write, offset = access >= log.WRITE, address - state[log.ARENA]
     policy = policy_of(state, offset)
     if policy == log.EMPTY:
-        write_entry(state, log.STORE if write else log.LOAD, offset, stamp)
+        write_entry(state, log.STORE if write else log.LOAD, offset, stamp, site)
     else:
-        trace_cached(state, offset, write, policy, stamp)
+        trace_cached(state, offset, write, policy, stamp, site)

@@ -6,30 +6,33 @@ Nothing else is reported: neither what the costed code leaves out, nor what it d
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from bfsim.kernel.access_trace import WRITE
-from bfsim.kernel.counters import Counter
+from bfsim.kernel.call_paths import Program, Site
 from bfsim.kernel.ir_text import DEFINE, LABEL
 from bfsim.kernel.lowering.charges import Access
 
 ACCESS = re.compile(r"^  (?:%[\w.$-]+ = load|store) (i\d+|float)(?: [^,]+)?, ptr (%[\w.$-]+)")
 FLOAT_BYTES = 4
+SITE = "%.bf.site"
+"""In a routine: the first of its sites, on the path by which it was called."""
 ROUTINES = f"""
-define internal void @bfsim.trace_access(ptr %address, i64 %access) alwaysinline {{
+define internal void @bfsim.trace_access(ptr %address, i64 %access, i64 %first, i64 %number) alwaysinline {{
   %state = load ptr, ptr @bfsim.state
   %function = load ptr, ptr %state
   %stamp = load i64, ptr @bfsim.clock
-  call void %function(ptr %state, ptr %address, i64 %access, i64 %stamp)
+  %site = add i64 %first, %number
+  call void %function(ptr %state, ptr %address, i64 %access, i64 %stamp, i64 %site)
   ret void
 }}
-define internal void @bfsim.trace_fill(ptr %address) alwaysinline {{
+define internal void @bfsim.trace_fill(ptr %address, i64 %first, i64 %site) alwaysinline {{
   %number = ptrtoint ptr %address to i64
   %offset = and i64 %number, 3
   %begins_word = icmp eq i64 %offset, 0
   br i1 %begins_word, label %word, label %done
 word:
-  call void @bfsim.trace_access(ptr %address, i64 {4 + WRITE})
+  call void @bfsim.trace_access(ptr %address, i64 {4 + WRITE}, i64 %first, i64 %site)
   br label %done
 done:
   ret void
@@ -40,8 +43,14 @@ done:
 class Tracing:
     """The reports of one module: `begin` a block, then ask for those `before` its first row, and `at` each of its rows."""
 
-    def __init__(self, text: str, counters: Sequence[Counter]) -> None:
+    def __init__(self, text: str, program: Program) -> None:
+        counters = program.costs.counters
         self._reports = {(each.routine, each.label): each.accesses for each in counters if each.value is None}
+        self._sites = {
+            (routine, site): program.base(routine).site + number
+            for routine, sites in program.own_sites.items()
+            for number, site in enumerate(sites)
+        }
         self._calls = dict(_calls(text))
         self._routine = self._label = ""
         self._number = -1
@@ -69,9 +78,10 @@ class Tracing:
 
     def _report(self, access: Access) -> str:
         pointer, size = self._calls[self._routine, access.label, access.number]
+        site = f"i64 {SITE}, i64 {self._sites[self._routine, Site(access.line, access.array)]}"
         if access.fills:
-            return f"  call void @bfsim.trace_fill(ptr {pointer})"
-        return f"  call void @bfsim.trace_access(ptr {pointer}, i64 {size})"
+            return f"  call void @bfsim.trace_fill(ptr {pointer}, {site})"
+        return f"  call void @bfsim.trace_access(ptr {pointer}, i64 {size}, {site})"
 
 
 def _calls(text: str) -> Iterator[tuple[tuple[str, str, int], tuple[str, int]]]:

@@ -223,6 +223,11 @@ class Function:
     locals: tuple[tuple[str, Value], ...]
     body: tuple[Stmt, ...]
 
+    @property
+    def array_names(self) -> tuple[str, ...]:
+        """Names of the parameters that are arrays."""
+        return tuple(each.name for each in self.parameters if isinstance(each.type, ArrayType))
+
     def first_float(self) -> int | None:
         """Line of the first float in the kernel itself, counted like every `line`; None without floats."""
         kinds = (Const, Local, Load, Binary, Unary, Choose, Cast, KernelCall)

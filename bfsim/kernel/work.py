@@ -104,6 +104,7 @@ class PreparedCall:
         *,
         result: Number | None,
         access_trace: AccessTrace | None,
+        first_site: int,
         totals: NDArray[np.int64],
     ) -> None:
         """`arrays`: (word, array); `integers`, `floats`: (word, position); `totals`: one word per counter.
@@ -113,15 +114,15 @@ class PreparedCall:
         scalars = len(integers) + len(floats)
         self._count = len(arrays) + scalars
         words = FIRST_ARGUMENT + 2 * len(arrays) + scalars
-        self._value_word = words + (access_trace is not None) if result else 0
+        self._value_word = words + (2 if access_trace else 0) if result else 0
         self._is_float = isinstance(result, FloatType)
-        self._block = (ctypes.c_int64 * (words + 2))()
+        self._block = (ctypes.c_int64 * (words + 3))()
         self._block[0] = totals.ctypes.data
         for word, array in arrays:
             self._block[word], self._block[word + 1] = array.ctypes.data, len(array)
         self._kept = (arrays, totals)  # the block has their addresses only
         if access_trace:
-            self._block[words] = access_trace.address()
+            self._block[words], self._block[words + 1] = access_trace.address(), first_site
         self._at = ctypes.addressof(self._block)
         self._cell = compiled.cell
         self._entry = compiled.entry

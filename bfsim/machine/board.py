@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter as Tally
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -18,13 +19,13 @@ from bfsim.kernel.access_trace import AccessTrace
 from bfsim.linker import LinkMap, Symbol
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
-from bfsim.machine.bus.traffic import traffic_records
+from bfsim.machine.bus.memory_owners import MemoryOwner
 from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches, written_through
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.calls.conflicts import SubBanks
 from bfsim.machine.calls.fetch import CodeCache, CodeOutside
-from bfsim.machine.calls.records import kernel_records
+from bfsim.machine.calls.ledger import Ledger
 from bfsim.machine.cameras.capture import Capture, Feed, Pair, StereoPictures
 from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.code import code_outside_l1, code_records, code_symbols
@@ -47,7 +48,16 @@ from bfsim.machine.timeline import Timeline
 from bfsim.seen import Seen
 from bfsim.signals import uninterrupted
 from bfsim.spans import Span
-from bfsim.trace import CodeRecord, FrameRecord, KernelRecord, MessageRecord, TrafficRecord
+from bfsim.trace import (
+    AccessRecord,
+    BufferRecord,
+    CodeRecord,
+    FrameRecord,
+    KernelRecord,
+    MessageRecord,
+    PathRecord,
+    TrafficRecord,
+)
 
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
 
@@ -79,6 +89,9 @@ class Outcome:
     missed: tuple[int, ...]
     interrupted: bool
     kernels: tuple[KernelRecord, ...]
+    accesses: tuple[AccessRecord, ...]
+    paths: tuple[PathRecord, ...]
+    buffers: tuple[BufferRecord, ...]
     traffic: tuple[TrafficRecord, ...]
     code: tuple[CodeRecord, ...]
     messages: tuple[MessageRecord, ...]
@@ -195,8 +208,24 @@ class Board:
         placed: dict[str, dict[str, tuple[Row, ...]]] = {}
         for owner, buffers in self.firmware.buffers(self.size).items():
             placed[owner] = {each.name: self._place(each, PROCESSORS[owner]) for each in buffers}
+        self._buffer_records = tuple(self._own(placed))
         shared = placed.get("shared", {})
         return {core: shared | placed.get(core, {}) for core in self.spec.chip.cores}
+
+    def _own(self, placed: Mapping[str, Mapping[str, Sequence[Row]]]) -> Iterator[BufferRecord]:
+        """Let every buffer own its memory; yield its record."""
+        declared = Tally(name for buffers in placed.values() for name in buffers)
+        for owner, buffers in placed.items():
+            for name, rows in buffers.items():
+                record = BufferRecord(
+                    buffer=name if declared[name] == 1 else f"{name} ({owner})",
+                    core=owner,
+                    memory=rows[0].memory,
+                    address=rows[0].address,
+                    nbytes=sum(each.nbytes for each in rows),
+                )
+                self._bus.owners.add(MemoryOwner(record.memory, record.buffer, record.nbytes), rows[0].offset)
+                yield record
 
     def _declared(self, core: str, size: FrameSize) -> dict[str, Buffer]:
         """Return the buffers that a core knows by name, as the firmware declares them for pictures of `size`."""
@@ -346,7 +375,14 @@ class Board:
         code = CodeOutside(places, CodeCache(chip.cache) if caches.code else None)
         subbanks = SubBanks(chip, memories, self._bus.words)
         cache = self._calls[name] = CallCache(
-            name, self.profile, access_trace, code, subbanks, sanitize=self.sanitize
+            name,
+            self.profile,
+            access_trace,
+            code,
+            subbanks,
+            self._bus.owners,
+            Ledger(partial(self._bus.stalls_at_sites, index)),
+            sanitize=self.sanitize,
         )
         inward, outward = (MdmaStream(self._bus, self.spec, each) for each in MDMA_MASTERS[index])
         return Core(
@@ -373,6 +409,8 @@ class Board:
         if not all(core.finished for core in self.cores.values()):
             return
         parts = [core.finished.pop(0) for core in self.cores.values()]
+        for calls, part in zip(self._calls.values(), parts, strict=True):
+            calls.report(part.counted)
         record = FrameRecord(
             index=parts[0].index,
             last_line_cclk=parts[0].full_at_cclk,
@@ -389,14 +427,16 @@ class Board:
             on_frame(record)
 
     def _outcome(self, capture: Capture, interrupted: bool) -> Outcome:
+        counted = [calls.records() for calls in self._calls.values()]
         return Outcome(
             frames=tuple(self._frames),
             missed=tuple(sorted(capture.missed)),
             interrupted=interrupted,
-            kernels=tuple(
-                each for name, calls in self._calls.items() for each in kernel_records(name, calls.groups())
-            ),
-            traffic=traffic_records(self._bus.words, self.spec.clocks.cclk_ticks),
+            kernels=tuple(each for core in counted for each in core.kernels()),
+            accesses=tuple(each for core in counted for each in core.accesses(self._bus.owners)),
+            paths=tuple(each for core in counted for each in core.paths()),
+            buffers=self._buffer_records,
+            traffic=self._bus.traffic(),
             code=code_records(self.link_map, PROCESSORS, self.spec.chip.regions),
             messages=tuple(self._spi.records),
             device_notes=self._device_notes(),

@@ -12,9 +12,9 @@ from pydantic_core import to_jsonable_python
 from bfsim.report.budget import budget_of
 from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.report.warnings import warnings_of
-from bfsim.trace import RunRecord, RunWarning
+from bfsim.trace import OwnerCost, RunRecord, RunWarning
 
-SCHEMA = "bfsim.run/2"
+SCHEMA = "bfsim.run/3"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
 
 
@@ -33,12 +33,44 @@ def as_json(run: RunRecord) -> dict[str, Any]:
 
     Keys are the field names of `bfsim.trace` and `bfsim.report.budget`, so each carries its unit.
     """
-    plain: dict[str, Any] = to_jsonable_python(run, fallback=dict)
+    plain: dict[str, Any] = to_jsonable_python(run, fallback=_plain)
+    for core in (core for frame in plain["frames"] for core in frame["cores"]):
+        del core["owners"]  # `owners` has them, frame by frame
     budget = to_jsonable_python(budget_of(run), fallback=dict)
     digests = {"identity": identity_digest(run.identity), "cycles": cycle_digest(run.frames)}
     warnings = [_flat(each) for each in warnings_of(run)]
     del plain["assumptions"]  # they are among the warnings
-    return {"schema": SCHEMA, "digests": digests, "warnings": warnings, "budget": budget, **plain}
+    return {
+        "schema": SCHEMA,
+        "digests": digests,
+        "warnings": warnings,
+        "budget": budget,
+        **plain,
+        "owners": list(_owners(run)),
+    }
+
+
+def _plain(value: Any) -> Any:
+    return dict(value) if isinstance(value, Mapping) else []
+
+
+def _owners(run: RunRecord) -> Iterator[dict[str, Any]]:
+    """Yield whose cycles they were, core by core: of each owner in each stage its calls and its elapsed cycles in every frame."""
+    found: dict[tuple[str, str, str, str], dict[int, OwnerCost]] = {}
+    for number, frame in enumerate(run.frames):
+        for core in frame.cores:
+            for each in core.owners:
+                found.setdefault((core.core, each.stage, each.owner, each.symbol), {})[number] = each
+    for (core_name, stage, owner, symbol), costs in found.items():
+        in_frames = [costs.get(number) for number in range(len(run.frames))]
+        yield {
+            "core": core_name,
+            "stage": stage,
+            "owner": owner,
+            "symbol": symbol,
+            "calls": [each.calls if each else 0 for each in in_frames],
+            "elapsed_cclk": [each.elapsed_cclk if each else 0 for each in in_frames],
+        }
 
 
 def _flat(warning: RunWarning) -> dict[str, Any]:

@@ -69,10 +69,51 @@ class KernelCells(NamedTuple):
     first_line: int
     calls: int
     issue_cclk: int
+    stall_cclk: int
+
+
+class OwnerCells(NamedTuple):
+    """What an owner cost a core in a stage of a frame: a kernel without its callees, or what no kernel does (no `symbol`)."""
+
+    frame: int
+    core: str
+    stage: str
+    owner: str
+    symbol: str
+    calls: int
+    issue_cclk: int
+    stall_cclk: int
+    idle_cclk: int
+
+
+class AccessCells(NamedTuple):
+    """What a line of a kernel accessed in a buffer, and how long it waited for it."""
+
+    core: str
+    stage: str
+    kernel: str
+    line: int
+    buffer: str
+    memory: str
+    reads: int
+    writes: int
+    fills: int
+    stall_cclk: int
+
+
+class PathCells(NamedTuple):
+    """What a kernel cost when called through others, outermost first, without its own callees."""
+
+    core: str
+    stage: str
+    path: str
+    calls: int
+    issue_cclk: int
+    stall_cclk: int
 
 
 class LineCells(NamedTuple):
-    """A source line of a kernel; `stall_cclk` are its interlocks."""
+    """A source line of a kernel; its stalls are added up."""
 
     core: str
     stage: str
@@ -86,9 +127,10 @@ class LineCells(NamedTuple):
 
 
 class TrafficCells(NamedTuple):
-    """What a master moved to and from a memory over the whole run."""
+    """What a master moved to and from a buffer over the whole run."""
 
     memory: str
+    buffer: str
     master: str
     read_bytes: int
     written_bytes: int
@@ -126,6 +168,9 @@ def tables_of(run: RunRecord, spans: Iterable[Span] = ()) -> dict[str, Columns]:
         "stalls": _columns(StallCells, _stalls(run)),
         "kernels": _columns(KernelCells, _kernels(run)),
         "lines": _columns(LineCells, _lines(run)),
+        "owners": _columns(OwnerCells, _owners(run)),
+        "accesses": _columns(AccessCells, _accesses(run)),
+        "paths": _columns(PathCells, _paths(run)),
         "traffic": _columns(TrafficCells, _traffic(run)),
         "spans": _columns(SpanCells, map(_span, spans)),
     }
@@ -180,8 +225,64 @@ def _kernels(run: RunRecord) -> Iterator[KernelCells]:
     for each in run.kernels:
         file = PurePath(each.file).name
         yield KernelCells(
-            each.core, each.stage, each.kernel, file, each.first_line, each.calls, each.issue_cclk
+            each.core,
+            each.stage,
+            each.kernel,
+            file,
+            each.first_line,
+            each.calls,
+            each.issue_cclk,
+            sum(each.stall_cclk.values()),
         )
+
+
+def _owners(run: RunRecord) -> Iterator[OwnerCells]:
+    for frame in run.frames:
+        for core in frame.cores:
+            for each in core.owners:
+                stall_cclk = sum(each.stall_cclk.values())
+                yield OwnerCells(
+                    frame.index,
+                    core.core,
+                    each.stage,
+                    each.owner,
+                    each.symbol,
+                    each.calls,
+                    each.issue_cclk,
+                    stall_cclk,
+                    each.idle_cclk,
+                )
+
+
+def _accesses(run: RunRecord) -> Iterator[AccessCells]:
+    names, memories = kernel_names(run), {each.buffer: each.memory for each in run.buffers}
+    for each in run.accesses:
+        yield AccessCells(
+            each.core,
+            each.stage,
+            names[each.symbol],
+            each.line,
+            each.buffer,
+            memories.get(each.buffer, ""),
+            each.reads,
+            each.writes,
+            each.fills,
+            sum(each.stall_cclk.values()),
+        )
+
+
+def _paths(run: RunRecord) -> Iterator[PathCells]:
+    names = kernel_names(run)
+    for each in run.paths:
+        path = " > ".join(names[symbol] for symbol in each.path)
+        yield PathCells(
+            each.core, each.stage, path, each.calls, each.issue_cclk, sum(each.stall_cclk.values())
+        )
+
+
+def kernel_names(run: RunRecord) -> dict[str, str]:
+    """Return the names of the kernels that ran, by their symbols."""
+    return {each.symbol: each.kernel for each in run.kernels}
 
 
 def _lines(run: RunRecord) -> Iterator[LineCells]:
@@ -197,7 +298,7 @@ def _lines(run: RunRecord) -> Iterator[LineCells]:
                 text.get(line.line, "").strip(),
                 line.executions,
                 line.issue_cclk,
-                line.stall_cclk,
+                sum(line.stall_cclk.values()),
             )
 
 

@@ -20,7 +20,7 @@ def identity_digest(identity: Identity) -> str:
 
 
 def cycle_digest(frames: Sequence[FrameRecord]) -> str:
-    """Return the sha256, in hex, over every cycle number of every frame, in the order of the records."""
+    """Return the sha256, in hex, over every cycle number of every frame and stage, in the order of the records."""
     digest = hashlib.sha256()
     for frame in frames:
         digest.update(_canonical(_cycles(frame)) + b"\n")

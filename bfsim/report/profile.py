@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from bfsim.report.budget import stage_names
 from bfsim.trace import KernelRecord, LineCost, RunRecord, TrafficRecord
+
+BUSES = "L2", "SDRAM"
+"""Memories that all masters share."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,7 +86,7 @@ def profile_of(run: RunRecord, core: str | None = None) -> Profile:
         cores=cores if core is None else (core,),
         issue_cclk=sum(record.issue_cclk for record in records),
         stages=tuple(stage for stage in stages if stage.kernels),
-        accesses=_accesses(records),
+        accesses=_accesses(run, cores if core is None else (core,)),
         traffic=_traffic(run),
     )
 
@@ -126,12 +129,14 @@ def _lines(costs: Iterable[LineCost], text: dict[int, str]) -> tuple[LineProfile
     )
 
 
-def _accesses(records: Sequence[KernelRecord]) -> tuple[AccessProfile, ...]:
+def _accesses(run: RunRecord, cores: Sequence[str]) -> tuple[AccessProfile, ...]:
+    memory_of = {each.buffer: each.memory for each in run.buffers}
     sums: dict[tuple[str, str], tuple[int, int]] = {}
-    for record in records:
-        for memory, (reads, writes) in record.accesses.items():
-            before = sums.get((memory, record.stage), (0, 0))
-            sums[memory, record.stage] = (before[0] + reads, before[1] + writes)
+    for record in run.accesses:
+        if record.buffer and record.core in cores:
+            key = memory_of[record.buffer], record.stage
+            reads, writes = sums.get(key, (0, 0))
+            sums[key] = (reads + record.reads, writes + record.writes)
     return tuple(
         AccessProfile(memory=memory, stage=stage, reads=reads, writes=writes)
         for (memory, stage), (reads, writes) in sorted(sums.items())
@@ -141,7 +146,30 @@ def _accesses(records: Sequence[KernelRecord]) -> tuple[AccessProfile, ...]:
 def _traffic(run: RunRecord) -> tuple[TrafficProfile, ...]:
     begin_cclk = min(core.begin_cclk for core in run.frames[0].cores)
     end_cclk = max(core.end_cclk for core in run.frames[-1].cores)
+    sums: dict[tuple[str, str], list[TrafficRecord]] = {}
+    for each in run.traffic:
+        if each.memory in BUSES:
+            sums.setdefault((each.memory, each.master), []).append(each)
     return tuple(
         TrafficProfile(traffic=traffic, busy_share=traffic.busy_cclk / (end_cclk - begin_cclk))
-        for traffic in run.traffic
+        for traffic in map(_together, sums.values())
+    )
+
+
+def _together(records: Sequence[TrafficRecord]) -> TrafficRecord:
+    """Add up what one master moved to and from all buffers of one memory."""
+    return replace(
+        records[0],
+        buffer="",
+        **{
+            name: sum(getattr(each, name) for each in records)
+            for name in (
+                "read_bytes",
+                "written_bytes",
+                "page_hits",
+                "page_misses",
+                "page_conflicts",
+                "busy_cclk",
+            )
+        },
     )

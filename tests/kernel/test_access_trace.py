@@ -60,7 +60,7 @@ class Memory:
 
     def __post_init__(self) -> None:
         self.arena = np.zeros(OUTSIDE + L1, np.uint8)
-        room = np.zeros(log.LOG + self.entries, np.int64)
+        room = np.zeros(log.LOG + log.ENTRY_WORDS * self.entries, np.int64)
         self.access_trace = AccessTrace(self.arena, OUTSIDE, room, self.cached, self.size)
 
     @property

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from bfsim.kernel import VDSP_O2
-from bfsim.kernel.costs import optimised
+from bfsim.kernel.call_paths import Program
+from bfsim.kernel.costs import Costs, optimised
 from bfsim.kernel.counters import cost
 from bfsim.kernel.instrument import instrument
 from bfsim.kernel.ir_text import Instruction, read_module
@@ -141,10 +142,10 @@ def test_the_costed_code_knows_nothing_of_the_host() -> None:
 def test_names_of_the_kernel_and_of_the_counters_never_meet() -> None:
     """Everything that counting adds begins with a dot, which no Python name does."""
     text = optimised(cost_kernels.store_each.function, VDSP_O2)
+    function = cost_kernels.store_each.function
     counters = tuple(each for routine in read_module(text) for each in cost(routine, VDSP_O2))
-    counted = instrument(
-        text, cost_kernels.store_each.function, counters, "entry_name", traced=False, checked=False
-    )
+    program = Program(function.symbol, Costs(counters), function.array_names)
+    counted = instrument(text, function, program, "entry_name", traced=False, checked=False)
     assert 0 < counted.count("= alloca i64") <= len(counters)  # the others are derived
     added = [row.split(" = ")[0].strip() for row in counted.splitlines() if " = alloca i64" in row]
     assert all(name.startswith("%.bf.") for name in added)

@@ -65,7 +65,7 @@ def counted(
     entered: Tally[str] = Tally()
     lines: Tally[tuple[str, int]] = Tally()
     for counter, events in zip(code.counters, totals.tolist(), strict=True):
-        for symbol in counter.enters:
+        for symbol, *_ in counter.enters:
             entered[symbol.rsplit("_", 1)[-1]] += events
         for place, _, _ in counter.line_cclk if counter.value is None else ():
             key = (place.routine.rsplit("_", 1)[-1], place.line)

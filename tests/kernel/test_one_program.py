@@ -45,7 +45,9 @@ class Run:
 
     def __post_init__(self) -> None:
         placed, first = self._placed()
-        trace = AccessTrace(placed["arena"], len(placed["arena"]), np.zeros(log.LOG + ROOM, np.int64))
+        trace = AccessTrace(
+            placed["arena"], len(placed["arena"]), np.zeros(log.LOG + log.ENTRY_WORDS * ROOM, np.int64)
+        )
         code = self.kernel.compile(self.profile, traced=True)
         rows = [placed[each] for each in self.arrays]
         totals = code.new_totals()

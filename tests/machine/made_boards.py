@@ -13,6 +13,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.linker import LinkerScript, link
 from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.program import Main
+from tests.machine.owners import assert_owned
 from tests.machine.rig import (
     SIZE,
     STAGES,
@@ -88,6 +89,7 @@ def assert_accounted(outcome: Outcome) -> None:
     for name in {each.core for frame in outcome.frames for each in frame.cores}:
         cores = [of_core(frame, name) for frame in outcome.frames]
         assert all(before.end_cclk == after.begin_cclk for before, after in pairwise(cores))
+    assert_owned(outcome)
 
 
 def cclk_now(core: Core) -> int:

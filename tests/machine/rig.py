@@ -25,8 +25,8 @@ from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus, Transfer
 from bfsim.machine.bus.weave import Weave, compiled_weave
+from bfsim.machine.calls.ledger import BUS_STALLS
 from bfsim.machine.cameras.capture import Feed
-from bfsim.machine.core.playing import BUS_STALLS
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.program import Main
@@ -265,7 +265,7 @@ class Bench:
             count += 1
         return Call(self, core, self.bus.access(core, begin, cclk, count))
 
-    def traffic(self, master: int, memory: int = w.IN_SDRAM) -> Traffic:
-        """Return what a master moved so far."""
-        first = w.TRAFFIC_AT + (master * w.MEMORIES + memory) * w.TRAFFIC_WORDS
+    def traffic(self, master: int, owner: int = w.NO_BUFFER_IN_SDRAM) -> Traffic:
+        """Return what a master moved so far to and from memory of an owner."""
+        first = w.TRAFFIC_AT + (owner * w.MASTERS + master) * w.TRAFFIC_WORDS
         return Traffic(*self.bus.words[first : first + w.TRAFFIC_WORDS].tolist())

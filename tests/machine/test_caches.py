@@ -119,7 +119,7 @@ def test_a_line_costs_once() -> None:
             times.append((yield from timed(core, walk)))
 
     def timed(core: Core, walk: Sequence[int]) -> Play:
-        stalls = core._account.stall_cclk
+        stalls = core._account.kernels.stall_cclk
         before = stalls.get(StallReason.CACHE_FILL, 0)
         yield core.run(visit, core.array("far_image"), core.array("order"), len(walk))
         return stalls.get(StallReason.CACHE_FILL, 0) - before

@@ -111,7 +111,7 @@ def test_lines_and_code_in_l2_stall_for_the_latency(kind: int) -> None:
     reason = StallReason.CACHE_FILL if kind == FILL else StallReason.CODE_FETCH
     assert play(bench, (0, kind, L2)).stalls == {reason: bench.spec.chip.l2.read_cclk - 1}
     nbytes = w.FETCH_BYTES if kind == FETCH else bench.spec.chip.cache.line_bytes
-    assert bench.traffic(w.CORE_A, w.IN_L2).read_bytes == nbytes
+    assert bench.traffic(w.CORE_A, w.NO_BUFFER_IN_L2).read_bytes == nbytes
 
 
 def test_a_refresh_in_the_way_is_told_apart() -> None:
@@ -137,7 +137,7 @@ def test_stores_are_posted_as_long_as_the_buffer_has_room(address: int) -> None:
         bench = Bench()
         call = play(bench, *((0, STORE, address + 4 * number) for number in range(count)))
         assert (set(call.stalls) == {StallReason.STORE_BUFFER}) == waits
-        memory = w.IN_L2 if address == L2 else w.IN_SDRAM
+        memory = w.NO_BUFFER_IN_L2 if address == L2 else w.NO_BUFFER_IN_SDRAM
         assert bench.traffic(w.STORES_A, memory).written_bytes == 4 * count
 
 
@@ -334,8 +334,10 @@ def test_a_core_moves_what_it_asks_for(drawn: list[tuple[int, int, int, int]]) -
     log = in_order(drawn)
     play(bench, *log)
     size = {LOAD: 4, STORE: 4, FETCH: 8, FILL: 32, FETCH_LINE: 32, WRITE_BACK: 32}
-    for memory in (w.IN_SDRAM, w.IN_L2):
-        asked = [(kind, size[kind]) for _, kind, address in log if (address >= L2) == (memory == w.IN_L2)]
+    for memory in (w.NO_BUFFER_IN_SDRAM, w.NO_BUFFER_IN_L2):
+        asked = [
+            (kind, size[kind]) for _, kind, address in log if (address >= L2) == (memory == w.NO_BUFFER_IN_L2)
+        ]
         written = sum(nbytes for kind, nbytes in asked if kind in {STORE, WRITE_BACK})
         assert bench.traffic(w.STORES_A, memory).written_bytes == written
         assert bench.traffic(w.CORE_A, memory).read_bytes == sum(nbytes for _, nbytes in asked) - written

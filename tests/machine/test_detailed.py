@@ -457,7 +457,7 @@ def test_a_core_that_spins_takes_time_at_the_port_of_l2(kind: int) -> None:
     for bench, event in zip(benches, done, strict=True):
         bench.env.run(until=event)
     tries = [
-        traffic[w.CORE_B * w.MEMORIES * w.TRAFFIC_WORDS :][w.TRAFFIC_WORDS] // 4
+        traffic[(w.NO_BUFFER_IN_L2 * w.MASTERS + w.CORE_B) * w.TRAFFIC_WORDS] // 4
         for traffic in (fast.traffic(), detailed.traffic())
     ]
     assert tries[0] == pytest.approx(40 * accesses / 19, rel=0.05)

@@ -180,7 +180,7 @@ def test_lines_of_different_sets_do_not_push_each_other_out() -> None:
 
 def test_fetches_come_between_the_accesses_without_reordering_them() -> None:
     """The log is in order of time; accesses of one block, which have one stamp, stay as the block made them."""
-    access_trace = AccessTrace(np.zeros(64, np.uint8), 64, np.zeros(log.LOG + 16, np.int64))
+    access_trace = AccessTrace(np.zeros(64, np.uint8), 64, np.zeros(log.LOG + log.ENTRY_WORDS * 16, np.int64))
 
     def entry(stamp: int, kind: int, offset: int) -> int:
         return stamp << log.STAMP_BIT | kind << log.KIND_BIT | offset
@@ -188,7 +188,7 @@ def test_fetches_come_between_the_accesses_without_reordering_them() -> None:
     block = [entry(5, log.WRITE_BACK, 32), entry(5, log.FILL, 0), entry(5, log.LOAD, 60)]
     access_trace.entries(3)[:] = block
     fetches = [entry(0, log.FETCH, 8), entry(5, log.FETCH, 16), entry(9, log.FETCH, 24)]
-    assert access_trace.insert(3, np.array(fetches)) == 6
+    assert access_trace.insert(3, np.array(fetches), np.arange(3)) == 6
     assert access_trace.entries(6).tolist() == [fetches[0], *block, fetches[1], fetches[2]]
 
 

@@ -119,7 +119,7 @@ def test_a_copy_on_the_chip_leaves_the_bus_alone(board: str, source: int, target
     expected = dma.startup_sclk + ceil(160 * dma.on_chip_word_sclk)
     assert bench.ends(copy(bench, source, target)) == [bench.sclk(expected)]
     assert not any(bench.traffic(w.MDMA1_0))
-    in_l2 = bench.traffic(w.MDMA1_0, w.IN_L2)
+    in_l2 = bench.traffic(w.MDMA1_0, w.NO_BUFFER_IN_L2)
     assert (in_l2.read_bytes, in_l2.written_bytes) == (640 * (source == L2), 640 * (target == L2))
 
 

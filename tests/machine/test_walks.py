@@ -84,7 +84,7 @@ def test_every_element_arrives_and_nothing_else_changes(
     (end,) = bench.ends(bench.bus.post(plan))
     assert np.array_equal(around.array, expected)
     assert end >= count * (bench.cclk(2) if master == w.IMDMA_0 else bench.sclk(1))
-    in_sdram, in_l2 = (bench.traffic(master, each) for each in (w.IN_SDRAM, w.IN_L2))
+    in_sdram, in_l2 = (bench.traffic(master, each) for each in (w.NO_BUFFER_IN_SDRAM, w.NO_BUFFER_IN_L2))
     assert in_sdram.read_bytes == count * size * (source.place == "SDRAM")
     assert in_l2.read_bytes == count * size * (source.place == "L2")
     assert in_sdram.written_bytes == count * size * (target.place == "another bank")

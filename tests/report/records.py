@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -9,7 +10,9 @@ from hypothesis import strategies as st
 
 from bfsim.trace import (
     REST,
+    AccessRecord,
     BudgetRow,
+    BufferRecord,
     CoreFrame,
     FrameRecord,
     Identity,
@@ -90,6 +93,9 @@ def run_of(frames: Sequence[FrameRecord], missed: tuple[int, ...] = ()) -> RunRe
         missed=missed,
         interrupted=False,
         kernels=(),
+        accesses=(),
+        paths=(),
+        buffers=(),
         code=(),
         traffic=(),
         messages=(),
@@ -126,21 +132,37 @@ def kernel(stage: str, name: str, *lines: LineCost, core: str = "A", **changes: 
         core=core,
         stage=stage,
         kernel=name,
+        symbol=name,
         file="/robot/edges.py",
         first_line=10,
         text=("for x in range(n):", "    total += row[x]"),
         calls=1,
         issue_cclk=sum(line.issue_cclk for line in lines),
+        stall_cclk=sum((Counter(line.stall_cclk) for line in lines), Counter()),
         lines=lines,
-        accesses={},
     )
     return replace(record, **changes)  # type: ignore[arg-type]
+
+
+def access(
+    stage: str, symbol: str, name: str, reads: int, writes: int, *, core: str = "A", line: int = 11
+) -> AccessRecord:
+    """What a line of a kernel accessed in a buffer, without waiting."""
+    return AccessRecord(
+        core=core, stage=stage, symbol=symbol, line=line, buffer=name, reads=reads, writes=writes, fills=0, stall_cclk={}
+    )  # fmt: skip
+
+
+def buffer(name: str, memory: str) -> BufferRecord:
+    """A buffer of 1 KB in a memory."""
+    return BufferRecord(buffer=name, core="A", memory=memory, address=0, nbytes=1024)
 
 
 def traffic(memory: str, master: str, busy_cclk: int) -> TrafficRecord:
     """What one master moved; the bytes and pages are the same each time."""
     return TrafficRecord(
         memory=memory,
+        buffer="image",
         master=master,
         read_bytes=2000,
         written_bytes=1000,

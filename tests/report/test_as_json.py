@@ -14,10 +14,10 @@ from tests.report.records import core_frame, cost, edge_run, frame, kernel, run_
 
 def test_json_keeps_every_record_and_adds_the_budget() -> None:
     """Frames, kernels and traffic are there as recorded; budget and digests beside them."""
-    line = LineCost(line=10, executions=4, issue_cclk=40, stall_cclk=0)
+    line = LineCost(line=10, executions=4, issue_cclk=40, stall_cclk={StallReason.INTERLOCK: 2})
     run = replace(
         edge_run(100, 200),
-        kernels=(kernel("Edge detection", "sobel_row", line, accesses={"L1_DATA_A": (3, 1)}),),
+        kernels=(kernel("Edge detection", "sobel_row", line),),
         traffic=(traffic("SDRAM", "MDMA1", 5),),
         missed=(2,),
     )
@@ -27,8 +27,9 @@ def test_json_keeps_every_record_and_adds_the_budget() -> None:
     assert [each["index"] for each in plain["frames"]] == [0, 1]
     assert plain["frames"][1]["cores"][0]["stages"][0]["issue_cclk"] == 200
     assert plain["budget"]["cores"][0]["frame"]["elapsed_cclk"]["total"] == 400
-    assert plain["kernels"][0]["lines"] == [{"line": 10, "executions": 4, "issue_cclk": 40, "stall_cclk": 0}]
-    assert plain["kernels"][0]["accesses"] == {"L1_DATA_A": [3, 1]}
+    assert plain["kernels"][0]["lines"] == [
+        {"line": 10, "executions": 4, "issue_cclk": 40, "stall_cclk": {"interlocks": 2}}
+    ]
     assert plain["traffic"][0]["master"] == "MDMA1"
     assert plain["missed"] == [2]
     assert plain["identity"]["cclk_hz"] == 1_000_000.0

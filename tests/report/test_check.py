@@ -154,8 +154,8 @@ def test_the_explanation_names_the_kernel_once(tmp_path: Path) -> None:
     """What grew is said by stage and kernel; what did not is left out."""
 
     def run(slow: int) -> RunRecord:
-        lines = LineCost(line=10, executions=1, issue_cclk=2 * slow, stall_cclk=20)
-        other = LineCost(line=10, executions=1, issue_cclk=100, stall_cclk=0)
+        lines = LineCost(line=10, executions=1, issue_cclk=2 * slow, stall_cclk={StallReason.INTERLOCK: 20})
+        other = LineCost(line=10, executions=1, issue_cclk=100, stall_cclk={})
         kernels = kernel("Edge detection", "gauss", lines), kernel("Edge detection", "thin", other)
         return replace(edge_run(slow + 60, slow + 60), kernels=kernels)
 

@@ -16,7 +16,7 @@ def stalled_run() -> RunRecord:
     first = core_frame("A", 0, cost("Edge detection", 80, stalls), cost(REST, 0, idle_cclk=900))
     second = core_frame("A", 1_000, cost("Edge detection", 2_000))
     frames = replace(frame(0, first), results={"edges": 7}, remarks=("one", "two")), frame(1, second)
-    line = LineCost(line=11, executions=4, issue_cclk=75, stall_cclk=3)
+    line = LineCost(line=11, executions=4, issue_cclk=75, stall_cclk={StallReason.INTERLOCK: 3})
     return replace(
         run_of(frames),
         kernels=(kernel("Edge detection", "sobel_row", line),),

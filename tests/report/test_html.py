@@ -105,7 +105,7 @@ def test_a_cycle_stack_sums_to_the_mean_frame(run: RunRecord) -> None:
 
 def test_sources_add_up_over_the_cores() -> None:
     """Lines without a cost stand where they are; the dearest kernel comes first."""
-    line = LineCost(line=11, executions=5, issue_cclk=30, stall_cclk=10)
+    line = LineCost(line=11, executions=5, issue_cclk=30, stall_cclk={StallReason.INTERLOCK: 10})
     run = replace(
         run_of([frame(0, core_frame("A", 0, cost(REST, 1)))]),
         kernels=(
@@ -212,7 +212,7 @@ def evil_run() -> RunRecord:
         device_notes=(EVIL,),
         assumptions=(RunWarning(kind=WarningKind.GEOMETRY, text=EVIL),),
         reference=replace(run.reference, name=EVIL, about=EVIL),
-        kernels=(kernel(EVIL, EVIL, LineCost(line=10, executions=1, issue_cclk=1, stall_cclk=0), text=(EVIL,), file=EVIL),),
+        kernels=(kernel(EVIL, EVIL, LineCost(line=10, executions=1, issue_cclk=1, stall_cclk={}), text=(EVIL,), file=EVIL),),
         traffic=(traffic(EVIL, EVIL, 5),),
         interrupts={EVIL: 2},
     )  # fmt: skip

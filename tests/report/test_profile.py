@@ -6,28 +6,32 @@ from dataclasses import replace
 
 from bfsim.report.profile import profile_of
 from bfsim.trace import LineCost, RunRecord
-from tests.report.records import edge_run, kernel, traffic
+from tests.report.records import access, buffer, edge_run, kernel, traffic
 
 
 def two_core_run() -> RunRecord:
     """Sobel on both cores, a Gauss on core A, an erosion in the next stage; the run takes 1000 cycles."""
     lines = (
-        LineCost(line=10, executions=5, issue_cclk=10, stall_cclk=0),
-        LineCost(line=11, executions=4, issue_cclk=40, stall_cclk=0),
+        LineCost(line=10, executions=5, issue_cclk=10, stall_cclk={}),
+        LineCost(line=11, executions=4, issue_cclk=40, stall_cclk={}),
     )
     return replace(
         edge_run(450, 450),
         kernels=(
-            kernel("Edge detection", "sobel_row", *lines, accesses={"L1_DATA_A": (4, 1)}),
+            kernel("Edge detection", "sobel_row", *lines),
+            kernel("Edge detection", "sobel_row", *lines, core="B"),
             kernel(
-                "Edge detection", "sobel_row", *lines, core="B", accesses={"L1_DATA_A": (4, 2), "L2": (1, 0)}
+                "Edge detection", "gauss_row", LineCost(line=11, executions=9, issue_cclk=300, stall_cclk={})
             ),
             kernel(
-                "Edge detection", "gauss_row", LineCost(line=11, executions=9, issue_cclk=300, stall_cclk=0)
+                "Open & closing", "erode_row", LineCost(line=10, executions=1, issue_cclk=7, stall_cclk={})
             ),
-            kernel(
-                "Open & closing", "erode_row", LineCost(line=10, executions=1, issue_cclk=7, stall_cclk=0)
-            ),
+        ),
+        buffers=(buffer("row", "L1_DATA_A"), buffer("table", "L2")),
+        accesses=(
+            access("Edge detection", "sobel_row", "row", 4, 1),
+            access("Edge detection", "sobel_row", "row", 4, 2, core="B"),
+            access("Edge detection", "sobel_row", "table", 1, 0, core="B"),
         ),
         traffic=(traffic("SDRAM", "MDMA1", 250),),
     )

@@ -154,7 +154,7 @@ def test_reports_fit_with_all_seven_rows(width: int) -> None:
             kernel(
                 names[0],
                 "non_maximum_suppression_row",
-                LineCost(line=11, executions=10**7, issue_cclk=10**9, stall_cclk=0),
+                LineCost(line=11, executions=10**7, issue_cclk=10**9, stall_cclk={}),
             ),
         ),
         traffic=(traffic("SDRAM", "MDMA1 D0", 9),),
@@ -168,8 +168,8 @@ def test_reports_fit_with_all_seven_rows(width: int) -> None:
 def test_profile_shows_dear_lines_in_their_kernel_and_sums_the_others() -> None:
     """Of two lines only the dearest is shown; brackets in source text are no markup."""
     dear, cheap = (
-        LineCost(line=11, executions=4, issue_cclk=75, stall_cclk=0),
-        LineCost(line=10, executions=5, issue_cclk=25, stall_cclk=0),
+        LineCost(line=11, executions=4, issue_cclk=75, stall_cclk={}),
+        LineCost(line=10, executions=5, issue_cclk=25, stall_cclk={}),
     )
     run = replace(edge_run(100), kernels=(kernel("Edge detection", "sobel_row", cheap, dear, calls=2),))
     lines = printed(profile_report(run, core="A", top=1))

@@ -44,12 +44,13 @@ class Test:
 
 
 class Access(NamedTuple):
-    """A load or store that the costed code makes: number `number`, from 0, of those that the IR has in block `label`."""
+    """A load or store of line `line` that the costed code makes: number `number`, from 0, of those that the IR has in block `label`."""
 
     array: str
     writes: bool
     label: str
     number: int
+    line: SourceLine
     fills: bool = False
     """Whether a routine of the library makes it, which stores words."""
 

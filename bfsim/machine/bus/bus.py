@@ -22,12 +22,15 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
 from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.bus.sdram import new_sdram
 from bfsim.machine.bus.told import ToldBus
+from bfsim.machine.bus.traffic import traffic_records
 from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.timeline import Timeline
+from bfsim.trace import TrafficRecord
 
 TRANSFER_LAYOUT = struct.Struct(f"@{w.TRANSFER_WORDS}q")
 
@@ -105,6 +108,7 @@ class Bus:
         self._memory: Any = memories.arena.view(np.uint32)
         self.words: Any = self._state.data
         """The whole state, word by word."""
+        self.owners = MemoryOwners(self.words, memories.sdram_end, memories.l2_end)
         self._advance = weave(self._state, self._memory)
         self._transfers = 0
         self._waiting: dict[int, simpy.Event] = {}
@@ -246,6 +250,7 @@ class Bus:
                 source.offset, source.x_count, source.x_modify, source.y_modify, source.x_count,
                 destination.offset, destination.x_count, destination.x_modify, destination.y_modify, destination.x_count,
                 pace.start, parts, element, line, pace.line_elements, 0, 0,
+                master, self.owners.of(source.offset), self.owners.of(destination.offset),
             ),
             count * element_bytes,
         )  # fmt: skip
@@ -303,7 +308,7 @@ class Bus:
 
     def use(self, timeline: Timeline) -> None:
         """Tell `timeline` of transfers and of the load from now on."""
-        self._told = ToldBus(timeline, self._board, self.words)
+        self._told = ToldBus(timeline, self._board, self.words, self.owners)
 
     @property
     def timeline(self) -> Timeline | None:
@@ -337,7 +342,8 @@ class Bus:
     def log_in_l2(self, core: int, stamp_cclk: int, kind: int) -> int:
         """Make the log of a core that of one access to a shared variable in L2; return the number of its entries."""
         entry = stamp_cclk << log.STAMP_BIT | kind << log.KIND_BIT | self.words[w.L2_FIRST]
-        self.room_of(core)[log.LOG] = entry
+        room = self.room_of(core)
+        room[log.LOG], room[log.LOG + w.LOG_ENTRIES] = entry, w.NO_SITE
         return 1
 
     def spin(self, core: int, since: int) -> None:
@@ -367,6 +373,19 @@ class Bus:
         first = w.JOBS_AT + core * w.JOB_WORDS + w.STALL
         stalls: list[int] = self.words[first : first + w.STALLS].tolist()
         return stalls
+
+    def stalls_at_sites(self, core: int, count: int) -> NDArray[np.int64]:
+        """Return what the first `count` sites of a core have stalled so far: by site and, in the order of `bus.state`, reason.
+
+        The last column counts the lines that were filled.
+        """
+        first = w.SITES_AT + core * w.MAX_SITES * w.SITE_WORDS
+        found: NDArray[np.int64] = self._state[first : first + count * w.SITE_WORDS]
+        return found.reshape(count, w.SITE_WORDS)
+
+    def traffic(self) -> tuple[TrafficRecord, ...]:
+        """Return what every master has moved so far."""
+        return traffic_records(self._state, self.owners, self._clocks.cclk_ticks)
 
     def room_of(self, core: int) -> NDArray[np.int64]:
         """Return where a core's access trace keeps its state and its log."""

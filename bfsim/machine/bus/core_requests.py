@@ -9,6 +9,7 @@ from __future__ import annotations
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.memory_owners import owner_for
 from bfsim.machine.bus.pacing import aligned
 from bfsim.machine.bus.runs import l2_alone_until
 from bfsim.machine.bus.sdram import access, stream
@@ -22,6 +23,20 @@ def bytes_of(state: State, kind: int) -> int:
     if kind in (log.LOAD, log.STORE, log.TEST_AND_SET):
         return w.CORE_WORD_BYTES
     return w.FETCH_BYTES if kind == log.FETCH else state[w.LINE_BYTES]
+
+
+@native
+def site_of(state: State, core: int) -> int:
+    """Return the site of the core's present access."""
+    entry = state[w.JOBS_AT + core * w.JOB_WORDS + w.ENTRY]
+    return state[w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + w.LOG_ENTRIES + entry]
+
+
+@native
+def charge(state: State, core: int, reason: int, cycles: int) -> None:
+    """Charge what the core's present access stalls."""
+    state[w.JOBS_AT + core * w.JOB_WORDS + w.STALL + reason] += cycles
+    state[w.SITES_AT + (core * w.MAX_SITES + site_of(state, core)) * w.SITE_WORDS + reason] += cycles
 
 
 @native
@@ -41,7 +56,7 @@ def next_entry(state: State, core: int, not_before: int) -> int:
     waits = kind not in (log.STORE, log.WRITE_BACK)
     if waits and state[job + w.LINE_DONE] > issued:  # a core reads one line at a time
         cycles = (state[job + w.LINE_DONE] - issued + cclk - 1) // cclk
-        state[job + w.STALL + (w.CODE_FETCH if kind == log.FETCH_LINE else w.CACHE_FILL)] += cycles
+        charge(state, core, w.CODE_FETCH if kind == log.FETCH_LINE else w.CACHE_FILL, cycles)
         state[job + w.STALLED] += cycles * cclk
         issued += cycles * cclk
     state[job + w.ISSUED_AT] = issued
@@ -75,12 +90,20 @@ def start_jobs(state: State) -> None:
 
 
 @native
-def stall(state: State, job: int, cclk: int, done: int, reason: int) -> int:
-    """Stall the core for `reason` from its present access until `done`, less that access's own cycle; return the cycles."""
+def wait(state: State, core: int, done: int) -> int:
+    """Stall the core from its present access until `done`, less that access's own cycle; return the cycles, to be charged."""
+    job, cclk = w.JOBS_AT + core * w.JOB_WORDS, state[w.CCLK]
     cycles = max(0, (done - state[job + w.ISSUED_AT] + cclk - 1) // cclk - 1)
-    state[job + w.STALL + reason] += cycles
     state[job + w.STALLED] += cycles * cclk
     return cycles
+
+
+@native
+def stall(state: State, core: int, done: int, reason: int) -> None:
+    """Stall the core for `reason` from its present access until `done`."""
+    cycles = wait(state, core, done)
+    if cycles:
+        charge(state, core, reason, cycles)
 
 
 @native
@@ -97,7 +120,8 @@ def store(state: State, core: int, at: int, entry: int) -> int:
     job = w.JOBS_AT + core * w.JOB_WORDS
     if state[job + w.STORES] >= state[w.STORE_DEPTH]:
         return wait_for_buffer(state, core, w.BUFFER_FULL)
-    state[job + w.STORE_QUEUE + (state[job + w.STORE_HEAD] + state[job + w.STORES]) % w.MAX_STORES] = entry
+    place = (state[job + w.STORE_HEAD] + state[job + w.STORES]) % w.MAX_STORES
+    state[job + w.STORE_QUEUE + place] = site_of(state, core) << log.STAMP_BIT | entry
     state[job + w.STORES] += 1
     if state[job + w.STORES] == 1:
         prepare_drain(state, core, at)
@@ -122,26 +146,25 @@ def serve_stores(state: State, core: int, at: int) -> int:
     job = w.JOBS_AT + core * w.JOB_WORDS
     entry = state[job + w.STORE_QUEUE + state[job + w.STORE_HEAD]]
     offset, nbytes = entry & log.OFFSET_MASK, bytes_of(state, entry >> log.KIND_BIT & log.KIND_MASK)
+    owner = owner_for(state, core, offset, entry >> log.STAMP_BIT)
     if offset < state[w.SDRAM_END]:
         access(state, at, offset, True)
         more = (nbytes >> state[w.WORD_BITS]) - 1
         if more > 0:
             stream(state, more, True, offset)
         state[w.LAST_CORE] = core
-        count_access(state, w.STORES_A + core, 1 + max(0, more))
-        count_traffic(state, w.STORES_A + core, w.IN_SDRAM, True, nbytes)
+        count_access(state, w.STORES_A + core, owner, 1 + max(0, more))
         free = state[w.COMMAND_FREE]
     else:
         free = hold_l2(state, core, at, nbytes)
-        count_traffic(state, w.STORES_A + core, w.IN_L2, True, nbytes)
+    count_traffic(state, w.STORES_A + core, owner, True, nbytes)
     state[job + w.STORE_HEAD] = (state[job + w.STORE_HEAD] + 1) % w.MAX_STORES
     state[job + w.STORES] -= 1
     prepare_drain(state, core, free)
     waited = state[job + w.STATE]
     if waited == w.BUFFER_FULL or (waited == w.BUFFER_NOT_EMPTY and state[job + w.STORES] == 0):
         state[job + w.STATE] = w.RUNNING
-        cclk = state[w.CCLK]
-        stall(state, job, cclk, free + cclk, w.STORE_BUFFER)
+        stall(state, core, free + state[w.CCLK], w.STORE_BUFFER)
         return next_entry(state, core, free)
     return w.NONE
 
@@ -179,7 +202,9 @@ def serve_core(state: State, core: int, at: int, until: int) -> int:
     elif offset < state[w.SDRAM_END]:
         done = read_sdram(state, core, at, kind, offset)
     else:
-        done = read_l2(state, core, at, kind)
+        done = read_l2(state, core, at, kind, offset)
+    if kind == log.FILL:
+        state[w.SITES_AT + (core * w.MAX_SITES + site_of(state, core)) * w.SITE_WORDS + w.FILLS] += 1
     state[job + w.ENTRY] += 1
     return next_entry(state, core, done)
 
@@ -193,10 +218,10 @@ def hold_l2(state: State, core: int, at: int, nbytes: int) -> int:
 
 
 @native
-def wait_for_l2(state: State, job: int, at: int) -> None:
+def wait_for_l2(state: State, core: int, at: int) -> None:
     """Stall a core from its present access until it has the port of L2, at tick `at`."""
-    stall(state, job, state[w.CCLK], at + state[w.CCLK], w.L2_PORT)
-    state[job + w.ISSUED_AT] = at
+    stall(state, core, at + state[w.CCLK], w.L2_PORT)
+    state[w.JOBS_AT + core * w.JOB_WORDS + w.ISSUED_AT] = at
 
 
 @native
@@ -212,32 +237,27 @@ def test_and_set(state: State, core: int, at: int, until: int) -> int:
         more = max(0, (l2_alone_until(state, w.CORE_A + core, until) - at - 1) // turn)
         at += more * turn
     else:
-        wait_for_l2(state, job, at)
-        stall(state, job, state[w.CCLK], at + locked + state[w.CCLK], w.L2_LATENCY)
+        wait_for_l2(state, core, at)
+        stall(state, core, at + locked + state[w.CCLK], w.L2_LATENCY)
     state[w.LAST_CORE_AT_L2], state[w.IMDMA_HAD_L2] = core, 0
     state[w.L2_FREE] = at + locked
     for write in (False, True):
-        count_traffic(state, w.CORE_A + core, w.IN_L2, write, (1 + more) * w.CORE_WORD_BYTES)
+        count_traffic(state, w.CORE_A + core, w.NO_BUFFER_IN_L2, write, (1 + more) * w.CORE_WORD_BYTES)
     return at + locked
 
 
 @native
-def read_l2(state: State, core: int, at: int, kind: int) -> int:
+def read_l2(state: State, core: int, at: int, kind: int, offset: int) -> int:
     """Read from L2 through the port that both cores share; return when the first data are there."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     nbytes = bytes_of(state, kind)
     hold_l2(state, core, at, nbytes)
-    count_traffic(state, w.CORE_A + core, w.IN_L2, False, nbytes)
-    wait_for_l2(state, job, at)
+    count_traffic(state, w.CORE_A + core, owner_for(state, core, offset, site_of(state, core)), False, nbytes)
+    wait_for_l2(state, core, at)
     done = at + state[w.L2_READ]
     state[job + w.LINE_DONE] = done + (nbytes - 1 >> state[w.L2_PORT_BITS]) * state[w.L2_NEXT]
-    stall(
-        state,
-        job,
-        state[w.CCLK],
-        done,
-        w.L2_LATENCY if kind == log.LOAD else w.CACHE_FILL if kind == log.FILL else w.CODE_FETCH,
-    )
+    reason = w.L2_LATENCY if kind == log.LOAD else w.CACHE_FILL if kind == log.FILL else w.CODE_FETCH
+    stall(state, core, done, reason)
     return done
 
 
@@ -259,12 +279,13 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
         whole = stream(state, more, False, offset) + state[w.CORE_SYNC] - state[w.SCLK]
         if kind != log.FETCH:
             state[job + w.LINE_DONE] = whole
-    count_access(state, w.CORE_A + core, 1 + more)
-    count_traffic(state, w.CORE_A + core, w.IN_SDRAM, False, nbytes)
+    owner = owner_for(state, core, offset, site_of(state, core))
+    count_access(state, w.CORE_A + core, owner, 1 + more)
+    count_traffic(state, w.CORE_A + core, owner, False, nbytes)
     state[w.LAST_CORE] = core
     edge = aligned(state[job + w.ISSUED_AT], state[w.SCLK])
     done = through + state[w.CORE_SYNC] - state[w.SCLK] - (edge - state[job + w.ISSUED_AT])
-    cycles = stall(state, job, cclk, done, w.ARBITRATION)
+    cycles = wait(state, core, done)
     waited = min(cycles, max(0, state[w.BEGAN] - edge) // cclk)
     granted = state[w.BEGAN] + state[w.REFRESH_WAIT]
     refreshed = min(cycles - waited, (granted - max(edge, state[w.BEGAN])) // cclk)
@@ -275,7 +296,9 @@ def read_sdram(state: State, core: int, at: int, kind: int, offset: int) -> int:
         if kind == log.FILL
         else w.CODE_FETCH
     )
-    state[job + w.STALL + reason] += cycles - waited - refreshed
-    state[job + w.STALL + w.REFRESHING] += refreshed
-    state[job + w.STALL + w.ARBITRATION] -= cycles - waited
+    charge(state, core, reason, cycles - waited - refreshed)
+    if refreshed:
+        charge(state, core, w.REFRESHING, refreshed)
+    if waited:
+        charge(state, core, w.ARBITRATION, waited)
     return done

@@ -17,12 +17,13 @@ def access_burst(state: State, number: int, at: int, offset: int, step: int, cou
     """Access `count` elements, `step` bytes apart, one after the other; return when the last one is through."""
     transfer = w.TRANSFERS_AT + state[w.MASTERS_AT + number + w.TRANSFER] * w.TRANSFER_WORDS
     beats = max(1, 1 << state[transfer + w.ELEMENT_BITS] >> state[w.WORD_BITS])
+    owner = state[transfer + (w.TO_OWNER if write else w.FROM_OWNER)]
     through = at
     for element in range(count):
         through = access(state, at, offset + element * step, write)
         if beats > 1:
             through = stream(state, beats - 1, write, offset)
-        count_access(state, number, 1)
+        count_access(state, number, owner, 1)
     return through
 
 
@@ -33,7 +34,9 @@ def exchange(state: State, memory: Memory, number: int, at: int) -> int:
     transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
     if state[master + w.WRITES]:
         through = access_burst(state, number, at, state[transfer + w.TO], 0, 1, True)
-        count_traffic(state, number, w.IN_SDRAM, True, 1 << state[transfer + w.ELEMENT_BITS])
+        count_traffic(
+            state, number, state[transfer + w.TO_OWNER], True, 1 << state[transfer + w.ELEMENT_BITS]
+        )
         state[master + w.IN_FIFO] -= 1
         state[master + w.WRITES] = state[master + w.IN_FIFO] > 0
         state[master + w.READY] = state[w.COMMAND_FREE]
@@ -41,7 +44,7 @@ def exchange(state: State, memory: Memory, number: int, at: int) -> int:
         return after_move(state, master, transfer, through)
     offset = state[transfer + w.FROM] + state[master + w.IN_FIFO] * state[transfer + w.FROM_X_MODIFY]
     through = access_burst(state, number, at, offset, 0, 1, False)
-    count_traffic(state, number, w.IN_SDRAM, False, 1 << state[transfer + w.ELEMENT_BITS])
+    count_traffic(state, number, state[transfer + w.FROM_OWNER], False, 1 << state[transfer + w.ELEMENT_BITS])
     take_turn(state, master, 1)
     state[master + w.IN_FIFO] += 1
     state[master + w.READY] = state[w.COMMAND_FREE]
@@ -62,9 +65,9 @@ def copy_on_chip(state: State, memory: Memory, number: int, at: int) -> int:
     left = state[transfer + w.TO_X_LEFT]
     nbytes = left << state[transfer + w.ELEMENT_BITS]
     if first <= state[transfer + w.FROM] < end:
-        count_traffic(state, number, w.IN_L2, False, nbytes)
+        count_traffic(state, number, state[transfer + w.FROM_OWNER], False, nbytes)
     if first <= state[transfer + w.TO] < end:
-        count_traffic(state, number, w.IN_L2, True, nbytes)
+        count_traffic(state, number, state[transfer + w.TO_OWNER], True, nbytes)
     while left:
         count = min(state[transfer + w.FROM_X_LEFT], left)
         moved(state, memory, transfer, count)
@@ -90,9 +93,9 @@ def copy_through_l2_port(state: State, memory: Memory, number: int, at: int, unt
     more = max(0, min(alone, state[transfer + w.FROM_X_LEFT] - 1, state[transfer + w.TO_X_LEFT] - 1))
     nbytes = (1 + more) << state[transfer + w.ELEMENT_BITS]
     if reads:
-        count_traffic(state, number, w.IN_L2, False, nbytes)
+        count_traffic(state, number, state[transfer + w.FROM_OWNER], False, nbytes)
     if writes:
-        count_traffic(state, number, w.IN_L2, True, nbytes)
+        count_traffic(state, number, state[transfer + w.TO_OWNER], True, nbytes)
     at += more * step
     state[w.L2_FREE], state[w.IMDMA_HAD_L2] = at + holds, 1
     state[master + w.READY] = at + word
@@ -111,6 +114,7 @@ def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> 
     count = burst_of(state, transfer)
     offset = state[transfer + w.TO] if write else state[transfer + w.FROM]
     through, nbytes = at, count << state[transfer + w.ELEMENT_BITS]
+    owner = state[transfer + (w.TO_OWNER if write else w.FROM_OWNER)]
     if state[master + w.USES] == w.SDRAM:
         through = access_burst(
             state,
@@ -121,9 +125,9 @@ def exchange_with_device(state: State, memory: Memory, number: int, at: int) -> 
             count,
             write,
         )
-        count_traffic(state, number, w.IN_SDRAM, write, nbytes)
+        count_traffic(state, number, owner, write, nbytes)
     elif state[w.L2_FIRST] <= offset < state[w.L2_END]:
-        count_traffic(state, number, w.IN_L2, write, nbytes)
+        count_traffic(state, number, owner, write, nbytes)
     if not write:
         # a link that has nothing to send holds its clock until it has
         state[transfer + w.START] += max(0, through - arrival(state, transfer, -1))

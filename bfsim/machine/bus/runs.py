@@ -6,7 +6,7 @@ from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.sdram import access, hits_ahead, stream
 from bfsim.machine.bus.state import Memory, State
-from bfsim.machine.bus.traffic import count_access, count_traffic
+from bfsim.machine.bus.traffic import count_access, count_traffic, traffic_at
 from bfsim.machine.bus.transfers import after_move, moved
 
 
@@ -115,13 +115,15 @@ def move_run(state: State, memory: Memory, number: int, at: int, until: int) -> 
         state[w.DATA_FREE] += paused
         through = stream(state, more * beats, write, offset)
     state[master + w.READY] = state[w.COMMAND_FREE] + (0 if write else pause(state, master, 1))
-    count_access(state, number, 1 + more)
-    state[w.TRAFFIC_AT + (number * w.MEMORIES + w.IN_SDRAM) * w.TRAFFIC_WORDS + w.BUSY] -= paused
+    source, target = state[transfer + w.FROM_OWNER], state[transfer + w.TO_OWNER]
+    owner, other = (target, source) if write else (source, target)
+    count_access(state, number, owner, 1 + more)
+    state[traffic_at(owner, number) + w.BUSY] -= paused
     nbytes = (1 + more) << state[transfer + w.ELEMENT_BITS]
-    count_traffic(state, number, w.IN_SDRAM, write, nbytes)
+    count_traffic(state, number, owner, write, nbytes)
     on_chip = state[transfer + w.FROM] if write else state[transfer + w.TO]
     if state[w.L2_FIRST] <= on_chip < state[w.L2_END]:
-        count_traffic(state, number, w.IN_L2, not write, nbytes)
+        count_traffic(state, number, other, not write, nbytes)
     moved(state, memory, transfer, 1 + more)
     take_turn(state, master, 1 + more)
     return after_move(state, master, transfer, through)

@@ -50,8 +50,9 @@ BUS_AT = SDRAM_WORDS
     FREE_TRANSFERS, # how many transfers can still be posted
     DONE_AT,        # tick of the completion that `advance` returned with
     POSTED,         # transfers that were posted since
-) = range(BUS_AT, BUS_AT + 23)  # fmt: skip
-BUS_WORDS = 23
+    PIECES,         # how many pieces the memories are in
+) = range(BUS_AT, BUS_AT + 24)  # fmt: skip
+BUS_WORDS = 24
 
 # The masters in the order of their rows. Cores have one for what they wait for and one for their store buffer.
 PPI0, PPI1, SPI, MDMA1_0, MDMA1_1, MDMA2_0, MDMA2_1, IMDMA_0, IMDMA_1, STORES_A, STORES_B, CORE_A, CORE_B = (
@@ -97,8 +98,10 @@ NOTHING, SDRAM, L2 = range(3)  # what a request can need
     # The pace of a device, in parts of a tick: an element and a line take so many PARTS, PARTS make a tick.
     START, PARTS, ELEMENT, LINE, LINE_ELEMENTS,
     PLACE, LINE_BEGAN,  # where the next element is: in its line, and when that began, in parts from the start
-) = range(27)  # fmt: skip
-TRANSFER_WORDS = 27
+    OF_MASTER,      # whose it is
+    FROM_OWNER, TO_OWNER,  # the memory owners (below) that its sides begin in
+) = range(30)  # fmt: skip
+TRANSFER_WORDS = 30
 MAX_TRANSFERS = 256
 ENDS = 1 << 16
 """Transfers whose end is remembered: the latest so many."""
@@ -138,24 +141,37 @@ CORES = 2
 CORE_WORD_BYTES = 4  # what a load or a store moves, whatever its width
 FETCH_BYTES = 8  # of an instruction fetch that no cache serves: one 64-bit word
 
-# ---- Traffic: by master, memory, and what.
-IN_SDRAM, IN_L2 = range(2)
-MEMORIES = 2
+# ---- Who owns memory: each buffer, and nobody what is left of SDRAM, of L2 and of all else.
+NO_BUFFER_IN_SDRAM, NO_BUFFER_IN_L2, NO_BUFFER = range(3)
+MAX_OWNERS = 4096
+
+# ---- Traffic: by owner of the memory, master, and what.
 READ_BYTES, WRITTEN_BYTES, HITS, MISSES, CONFLICTS, BUSY = range(6)
 TRAFFIC_WORDS = 6
 MAX_SUBBANKS = 64
+
+# ---- What accesses stalled the cores: by site, one of the lines of one kernel call (`kernel.call_paths`), and what.
+NO_SITE = 0
+"""Of an access that no kernel makes."""
+MAX_SITES = 1 << 18
+# Behind the stalls by reason: how many lines were filled; the piece of memory that was accessed last, to find it again.
+FILLS, PIECE = STALLS, STALLS + 1
+SITE_WORDS = STALLS + 2
 
 # ---- Where each part begins in the one array; the SDRAM controller and the bus begin it.
 MASTERS_AT = BUS_AT + BUS_WORDS
 JOBS_AT = MASTERS_AT + MASTERS * MASTER_WORDS
 TRAFFIC_AT = JOBS_AT + CORES * JOB_WORDS
-SUBBANKS_AT = TRAFFIC_AT + MASTERS * MEMORIES * TRAFFIC_WORDS
+SUBBANKS_AT = TRAFFIC_AT + MAX_OWNERS * MASTERS * TRAFFIC_WORDS
 TRANSFERS_AT = SUBBANKS_AT + MAX_SUBBANKS
 FREE_PLACES_AT = TRANSFERS_AT + MAX_TRANSFERS * TRANSFER_WORDS
 POSTS_AT = FREE_PLACES_AT + MAX_TRANSFERS  # master and place of each transfer that was posted
 ENDS_AT = POSTS_AT + 2 * MAX_TRANSFERS
-LOGS_AT = ENDS_AT + ENDS
+PIECES_AT = ENDS_AT + ENDS  # where each piece of memory begins, in order, and who owns it
+MAX_PIECES = 2 * MAX_OWNERS
+SITES_AT = PIECES_AT + 2 * MAX_PIECES
+LOGS_AT = SITES_AT + CORES * MAX_SITES * SITE_WORDS
 LOG_ENTRIES = 1 << 23
 """Accesses outside L1 that one kernel call may make; the host has memory for those that are made only."""
-ACCESS_TRACE_WORDS = log.LOG + LOG_ENTRIES
+ACCESS_TRACE_WORDS = log.LOG + log.ENTRY_WORDS * LOG_ENTRIES
 STATE_WORDS = LOGS_AT + CORES * ACCESS_TRACE_WORDS

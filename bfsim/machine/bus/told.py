@@ -9,9 +9,12 @@ from collections import deque
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.traffic import MASTERS
+from bfsim.machine.bus.memory_owners import MemoryOwners
+from bfsim.machine.bus.traffic import MASTERS, traffic_in
 from bfsim.machine.timeline import Timeline
 from bfsim.spans import SpanKind
 
@@ -41,9 +44,12 @@ class _Posted(NamedTuple):
 class ToldBus:
     """A bus as the timeline sees it. `words`: the bus's state."""
 
-    def __init__(self, timeline: Timeline, board: BoardSpec, words: Sequence[int]) -> None:
+    def __init__(
+        self, timeline: Timeline, board: BoardSpec, words: Sequence[int], owners: MemoryOwners
+    ) -> None:
         self._timeline = timeline
         self._words = words
+        self._owners = owners
         self._l2 = board.chip.l2
         self._cclk_ticks = board.clocks.cclk_ticks
         self._posted: dict[int, deque[_Posted]] = {}
@@ -90,18 +96,19 @@ class ToldBus:
         elapsed_cclk = now_cclk - self._sampled_cclk
         self._next_sample = now + SAMPLE_CCLK * self._cclk_ticks
         for who, masters in _BUSY.items():
-            before, self._busy[who] = self._busy[who], self._sum(masters, w.IN_SDRAM, (w.BUSY,))
+            before, self._busy[who] = self._busy[who], self._sum("SDRAM", masters, [w.BUSY])
             percent = 100 * (self._busy[who] - before) // (elapsed_cclk * self._cclk_ticks)
             self._timeline.level("SDRAM bus", f"busy with {who}, %", percent, self._sampled_cclk)
         if self._l2:
             before, self._l2_bytes = (
                 self._l2_bytes,
-                self._sum(_AT_L2_PORT, w.IN_L2, (w.READ_BYTES, w.WRITTEN_BYTES)),
+                self._sum("L2", _AT_L2_PORT, [w.READ_BYTES, w.WRITTEN_BYTES]),
             )
             held_cclk = (self._l2_bytes - before) * self._l2.next_cclk // self._l2.port_bytes
             self._timeline.level("L2 port", "busy, %", 100 * held_cclk // elapsed_cclk, self._sampled_cclk)
         self._sampled_cclk = now_cclk
 
-    def _sum(self, masters: Sequence[int], memory: int, counters: Sequence[int]) -> int:
-        rows = [w.TRAFFIC_AT + (master * w.MEMORIES + memory) * w.TRAFFIC_WORDS for master in masters]
-        return sum(self._words[row + each] for row in rows for each in counters)
+    def _sum(self, memory: str, masters: Sequence[int], counters: Sequence[int]) -> int:
+        """Return the sum of some counters of some masters over all buffers in a memory."""
+        owners = [number for number, each in enumerate(self._owners) if each.memory == memory]
+        return int(traffic_in(self._words)[np.ix_(owners, masters, counters)].sum())

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.bus.state import State
 from bfsim.trace import TrafficRecord
 
@@ -22,24 +26,27 @@ MASTERS = {
     "core A": (w.CORE_A, w.STORES_A),
     "core B": (w.CORE_B, w.STORES_B),
 }
-MEMORIES = {"L2": w.IN_L2, "SDRAM": w.IN_SDRAM}
 
 
-def traffic_records(words: Sequence[int], cclk_ticks: int) -> tuple[TrafficRecord, ...]:
-    """Return what was counted in the state `words` of the bus, by memory and master; who moved nothing is left out."""
+def traffic_in(words: Any) -> NDArray[np.int64]:
+    """Return the traffic in the state `words` of the bus: by owner of the memory, master, and what."""
+    size = w.MAX_OWNERS * w.MASTERS * w.TRAFFIC_WORDS
+    counted = np.asarray(words[w.TRAFFIC_AT : w.TRAFFIC_AT + size], np.int64)
+    return counted.reshape(w.MAX_OWNERS, w.MASTERS, w.TRAFFIC_WORDS)
+
+
+def traffic_records(words: Any, owners: MemoryOwners, cclk_ticks: int) -> tuple[TrafficRecord, ...]:
+    """Return what was counted in the state `words` of the bus, by buffer and master; who moved nothing is left out."""
+    counted = zip(owners, traffic_in(words), strict=False)
     records = []
-    for memory, number in MEMORIES.items():
+    for owner, rows in sorted(counted, key=lambda each: each[0].memory):
         for name, masters in MASTERS.items():
-            total = [0] * w.TRAFFIC_WORDS
-            for master in masters:
-                first = w.TRAFFIC_AT + (master * w.MEMORIES + number) * w.TRAFFIC_WORDS
-                for word in range(w.TRAFFIC_WORDS):
-                    total[word] += words[first + word]
-            read, written, hits, misses, conflicts, busy = total
+            read, written, hits, misses, conflicts, busy = rows[list(masters)].sum(axis=0).tolist()
             if read or written:
                 records.append(
                     TrafficRecord(
-                        memory=memory,
+                        memory=owner.memory,
+                        buffer=owner.buffer,
                         master=name,
                         read_bytes=read,
                         written_bytes=written,
@@ -53,28 +60,43 @@ def traffic_records(words: Sequence[int], cclk_ticks: int) -> tuple[TrafficRecor
 
 
 @native
-def count_traffic(state: State, master: int, memory: int, write: bool, nbytes: int) -> None:
-    """Count bytes that a master moved to or from a memory."""
-    at = w.TRAFFIC_AT + (master * w.MEMORIES + memory) * w.TRAFFIC_WORDS
-    state[at + (w.WRITTEN_BYTES if write else w.READ_BYTES)] += nbytes
+def traffic_at(owner: int, master: int) -> int:
+    """Return where it is counted what a master moves to or from memory of an owner."""
+    return w.TRAFFIC_AT + (owner * w.MASTERS + master) * w.TRAFFIC_WORDS
 
 
 @native
-def count_access(state: State, master: int, elements: int) -> None:
+def count_traffic(state: State, master: int, owner: int, write: bool, nbytes: int) -> None:
+    """Count bytes that a master moved to or from memory of an owner."""
+    state[traffic_at(owner, master) + (w.WRITTEN_BYTES if write else w.READ_BYTES)] += nbytes
+
+
+@native
+def count_access(state: State, master: int, owner: int, elements: int) -> None:
     """Count `elements` accesses of SDRAM, the first of which was the controller's last one, and the time they took."""
-    at = w.TRAFFIC_AT + (master * w.MEMORIES + w.IN_SDRAM) * w.TRAFFIC_WORDS
+    at = traffic_at(owner, master)
     state[at + w.HITS + state[w.PAGE_CLASS]] += 1
     state[at + w.HITS] += elements - 1
     state[at + w.BUSY] += state[w.COMMAND_FREE] - state[w.BEGAN] - state[w.REFRESH_WAIT]
 
 
 @native
+def count_in_l1(state: State, transfer: int, count: int) -> None:
+    """Count the next `count` elements of a transfer at those of its sides that are in L1."""
+    master, nbytes = state[transfer + w.OF_MASTER], count << state[transfer + w.ELEMENT_BITS]
+    if state[transfer + w.FROM] >= state[w.L1_FIRST]:
+        count_traffic(state, master, state[transfer + w.FROM_OWNER], False, nbytes)
+        count_subbanks(state, transfer + w.FROM, count)
+    if state[transfer + w.TO] >= state[w.L1_FIRST]:
+        count_traffic(state, master, state[transfer + w.TO_OWNER], True, nbytes)
+        count_subbanks(state, transfer + w.TO, count)
+
+
+@native
 def count_subbanks(state: State, side: int, count: int) -> None:
-    """Count what the next `count` elements of a side move to or from each sub-bank of L1."""
+    """Count what the next `count` elements of a side in L1 move to or from each of its sub-banks."""
     first, bits = state[w.L1_FIRST], state[w.SUBBANK_BITS]
     at = state[side + w.POSITION] - first
-    if at < 0:
-        return
     if (at + (count - 1) * state[side + w.X_MODIFY]) >> bits == at >> bits:
         state[w.SUBBANKS_AT + (at >> bits)] += count
         return

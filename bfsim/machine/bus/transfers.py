@@ -6,7 +6,7 @@ from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.pacing import aligned, next_paced
 from bfsim.machine.bus.state import Memory, State
-from bfsim.machine.bus.traffic import count_subbanks
+from bfsim.machine.bus.traffic import count_in_l1
 from bfsim.machine.bus.walk import move
 
 
@@ -61,9 +61,8 @@ def next_on_chip(state: State, master: int, transfer: int) -> None:
 
 @native
 def moved(state: State, memory: Memory, transfer: int, count: int) -> None:
-    """Move the bytes of `count` elements, and count what goes to and from the sub-banks of L1."""
-    count_subbanks(state, transfer + w.FROM, count)
-    count_subbanks(state, transfer + w.TO, count)
+    """Move the bytes of `count` elements, and count what goes to and from L1."""
+    count_in_l1(state, transfer, count)
     move(state, memory, transfer, count)
 
 

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError, KernelError
 from bfsim.kernel import CompilerProfile, Kernel, Work
 from bfsim.kernel.access_trace import AccessTrace
+from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.calls.conflicts import SubBanks
 from bfsim.machine.calls.fetch import CodeOutside, FetchedCall
 from bfsim.machine.calls.groups import CallGroup
+from bfsim.machine.calls.ledger import Ledger, Snapshot
+from bfsim.machine.calls.records import CoreRecords
 from bfsim.machine.memories import Row
+from bfsim.machine.owner_costs import Owner
 from bfsim.trace import REST
 
 
@@ -46,12 +53,13 @@ class CheckedCall:
 
 
 class DeferredWork(Work):
-    """A call that is still to be made, with `run`."""
+    """A call that is still to be made, with `run`. `owner`: whom its cycles belong to, if to no kernel."""
 
-    __slots__ = ("_arguments", "_call")
+    __slots__ = ("_arguments", "_call", "owner")
 
-    def __init__(self, call: BoundCall, arguments: tuple[Row | int, ...]) -> None:
+    def __init__(self, call: BoundCall, arguments: tuple[Row | int, ...], owner: str = "") -> None:
         super().__init__(0, 0)
+        self.owner = owner
         self._call = call
         self._arguments = arguments
 
@@ -70,6 +78,8 @@ class CallCache:
         access_trace: AccessTrace,
         code: CodeOutside,
         subbanks: SubBanks,
+        owners: MemoryOwners,
+        ledger: Ledger,
         *,
         sanitize: bool,
     ) -> None:
@@ -79,7 +89,9 @@ class CallCache:
         self._code = code
         self._subbanks = subbanks
         self._sanitize = sanitize
-        self._groups: dict[tuple[str, Kernel, tuple[str, ...]], CallGroup] = {}
+        self._owners = owners
+        self._ledger = ledger
+        self._groups: dict[tuple[str, Kernel, tuple[int, ...]], CallGroup] = {}
         self._calls: dict[str, dict[tuple[Kernel, object], BoundCall]] = {}
         self.enter(REST)
 
@@ -91,9 +103,11 @@ class CallCache:
 
     def conflicts_cclk(self, elapsed_cclk: int) -> int:
         """Return what conflicts in L1 cost the present stage in its `elapsed_cclk`, since it was asked last."""
-        return self._subbanks.since(
-            (each for each in self._groups.values() if each.stage == self.stage), elapsed_cclk
-        )
+        groups = (each for each in self._groups.values() if each.stage == self.stage)
+        conflicts = self._subbanks.since(groups, elapsed_cclk)
+        if conflicts.cclk:
+            self._ledger.add_conflicts(conflicts.sites, conflicts.at_sites_cclk)
+        return conflicts.cclk
 
     def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> BoundCall:
         """Prepare a call for the first time, and know it from now on. Rows outside of L1 are traced."""
@@ -103,9 +117,21 @@ class CallCache:
         call = self.known[kernel, kernel.arrays_of(arguments)] = self._prepared(kernel, arguments)
         return call
 
-    def groups(self) -> Iterable[CallGroup]:
-        """Return every group of calls, in the order of their first call."""
-        return self._groups.values()
+    def snapshot(self) -> Snapshot:
+        """Return what the kernels have counted so far."""
+        return self._ledger.snapshot()
+
+    def close(self, now: Snapshot) -> tuple[Sequence[Owner], NDArray[np.int64]]:
+        """Return all kernels, in each stage, and what they cost in the frame that ends with the counts of `now`."""
+        return self._ledger.close(now)
+
+    def report(self, counted: Snapshot) -> None:
+        """Let the counts at the end of a frame be those that are reported."""
+        self._ledger.reported = counted
+
+    def records(self) -> CoreRecords:
+        """Return the records of what was reported."""
+        return CoreRecords(self._core, self._groups.values(), self._ledger.reported)
 
     def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> BoundCall:
         for each in arguments:
@@ -125,17 +151,15 @@ class CallCache:
                 )
             rows.append(row)
         traced = sum(map(self._is_traced, rows)) > 0  # of every row, since some cannot be reached at all
-        group = self._group(kernel, tuple(each.memory for each in rows), traced)
+        group = self._group(kernel, tuple(self._owners.of(each.offset) for each in rows), traced)
         for seen, row in zip(group.subbanks, rows, strict=True):
             seen.update(self._subbanks.of(row))
         access_trace = self._access_trace if traced else None
         call: BoundCall = kernel.prepare(
-            group.code, [each.array for each in rows], group.totals, access_trace
+            group.code, [each.array for each in rows], group.totals, access_trace, group.first_site
         )
-        if outside := self._code.of(group.code.counters):
-            call = FetchedCall(
-                call, outside, group.code.counters, group.totals, self._access_trace, self._code.cache
-            )
+        if group.fetched:
+            call = FetchedCall(call, group, self._code, self._access_trace)
         return CheckedCall(call, kernel) if self._sanitize else call
 
     def _is_traced(self, row: Row) -> bool:
@@ -151,11 +175,24 @@ class CallCache:
             )
         return False
 
-    def _group(self, kernel: Kernel, memories: tuple[str, ...], traced: bool) -> CallGroup:
-        key = (self.stage, kernel, memories)
+    def _group(self, kernel: Kernel, owners: tuple[int, ...], traced: bool) -> CallGroup:
+        key = (self.stage, kernel, owners)
         if key not in self._groups:
             code = kernel.compile(self._profile, traced=traced)
-            self._groups[key] = CallGroup(
-                self.stage, kernel, memories, code, code.new_totals(), [set() for _ in memories]
+            fetched = tuple(self._code.of(code.program.costs.counters))
+            totals, first_event, first_site = self._ledger.room(
+                len(code.new_totals()), len(code.program.sites) + len(fetched)
             )
+            self._groups[key] = CallGroup(
+                stage=self.stage,
+                kernel=kernel,
+                owners=owners,
+                fetched=fetched,
+                code=code,
+                totals=totals,
+                first_event=first_event,
+                first_site=first_site,
+                subbanks=[set() for _ in owners],
+            )
+            self._ledger.add(self._groups[key])
         return self._groups[key]

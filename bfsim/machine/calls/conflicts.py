@@ -1,21 +1,34 @@
 """Conflicts in L1: a sub-bank takes one access a cycle, and a DMA word that moves there makes the core wait.
 
 Which cycles a DMA word meets is not followed; what is charged is the expected number: the words of DMA that moved in or out
-of a sub-bank while a stage ran, times the share of the stage's cycles in which the core accessed that sub-bank.
+of a sub-bank while a stage ran, times the share of the stage's cycles in which the core accessed that sub-bank. Lines of kernels
+have them by their part in those accesses.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import ChipSpec
+from bfsim.kernel.call_paths import Site
 from bfsim.machine.bus import state as w
 from bfsim.machine.calls.groups import CallGroup
-from bfsim.machine.calls.records import arrays_of_callees
 from bfsim.machine.memories import Memories, Row
+
+
+class Conflicts(NamedTuple):
+    """Cycles that were lost, and the sites that lost how many of them."""
+
+    cclk: int
+    sites: NDArray[np.int64]
+    at_sites_cclk: NDArray[np.int64]
+
+
+NO_CONFLICTS = Conflicts(0, np.zeros(0, np.int64), np.zeros(0, np.int64))
 
 
 class SubBanks:
@@ -41,36 +54,57 @@ class SubBanks:
         first, last = row.offset - self._first, row.offset + row.nbytes - 1 - self._first
         return range(first // self._bytes, last // self._bytes + 1)
 
-    def since(self, groups: Iterable[CallGroup], elapsed_cclk: int) -> int:
-        """Return the cycles that conflicts cost in the last `elapsed_cclk`, in which the calls of `groups` ran."""
+    def since(self, groups: Iterable[CallGroup], elapsed_cclk: int) -> Conflicts:
+        """Return what conflicts cost in the last `elapsed_cclk`, in which the calls of `groups` ran."""
         moved = self._dma_words()
         dma = moved - self._moved
         self._moved = moved
         accesses = np.zeros(w.MAX_SUBBANKS, np.float64)
+        shares = []
         for group in groups:
             before = self._counted.get(id(group), np.zeros_like(group.totals))
             self._counted[id(group)] = group.totals.copy()
-            self._add(group, group.totals - before, accesses)
+            counters, banks, each, parts, sites = self._spread_of(group)
+            made = (group.totals - before)[counters] * each / parts
+            np.add.at(accesses, banks, made)
+            shares.append((sites, made * dma[banks]))
         if elapsed_cclk <= 0:
-            return 0
+            return NO_CONFLICTS
         # added up in order: a product of vectors may round otherwise on another machine
-        return int(sum((dma * accesses).tolist()) / elapsed_cclk) * self._conflict_cclk
+        cclk = int(sum((dma * accesses).tolist()) / elapsed_cclk) * self._conflict_cclk
+        if not cclk:
+            return NO_CONFLICTS
+        sites = np.concatenate([each for each, _ in shares])
+        return Conflicts(cclk, sites, _shared_out(cclk, np.concatenate([each for _, each in shares])))
 
-    def _add(self, group: CallGroup, events: NDArray[np.int64], accesses: NDArray[np.float64]) -> None:
-        """Spread the accesses of a group's calls evenly over the sub-banks that its rows lie in."""
+    def _spread_of(self, group: CallGroup) -> NDArray[np.int64]:
         if id(group) not in self._spread:
             self._spread[id(group)] = _spread(group)
-        counters, banks, each, parts = self._spread[id(group)]
-        np.add.at(accesses, banks, events[counters] * each / parts)
+        return self._spread[id(group)]
+
+
+def _shared_out(cclk: int, shares: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Share whole cycles out by `shares`, which are not all 0: each gets its part of them, rounded so that none is lost."""
+    up_to = np.cumsum(shares)
+    ends = np.floor(up_to / up_to[-1] * cclk).astype(np.int64)
+    ends[-1] = cclk
+    whole: NDArray[np.int64] = np.diff(ends, prepend=0)
+    return whole
 
 
 def _spread(group: CallGroup) -> NDArray[np.int64]:
-    """Return what an event of each counter accesses, as four rows: counter, sub-bank, accesses, sub-banks to share them."""
-    banks = arrays_of_callees(group.kernel, tuple(map(tuple, group.subbanks)))
-    found = [
-        (number, bank, reads + writes, len(banks[counter.routine, array]))
-        for number, counter in enumerate(group.code.counters)
-        for array, reads, writes in counter.array_accesses
-        for bank in banks[counter.routine, array]
-    ]
-    return np.array(found, np.int64).reshape(-1, 4).T
+    """Return what an event of each counter accesses, spread evenly over the sub-banks that the rows lie in.
+
+    Five rows: counter, sub-bank, accesses, sub-banks to share them, and the core's site that makes them.
+    """
+    banks = group.by_array(group.subbanks)
+    found: dict[tuple[int, int, int, int], int] = {}
+    for number, path, counter in group.counted():
+        for access in counter.accesses:
+            hit = banks.get(path.arrays.get(access.array, ""), set())
+            site = group.first_site + group.site_number(path, Site(access.line, access.array))
+            for bank in hit if not access.fills else ():
+                key = (number, bank, len(hit), site)
+                found[key] = found.get(key, 0) + 1
+    rows = [(number, bank, each, parts, site) for (number, bank, parts, site), each in found.items()]
+    return np.array(rows, np.int64).reshape(-1, 5).T

@@ -8,7 +8,6 @@ used later. Code that is not cached is fetched 64 bits at a time, as often as it
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -20,9 +19,11 @@ from bfsim.kernel import access_trace as log
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.counters import Counter
 from bfsim.machine.bus.state import FETCH_BYTES
+from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.memories import Row
 
 SUBBANK_BYTES = 4096
+Words = NDArray[np.int64]
 
 
 class Runnable(Protocol):
@@ -62,51 +63,45 @@ class CodeCache:
         return missed
 
 
-@dataclass(frozen=True, slots=True)
-class Code:
-    """Where the code of a kernel and of its callees lies outside L1: (offset in the arena, bytes) by routine."""
-
-    places: Mapping[str, tuple[int, int]]
-
-    def lines(self, line_bytes: int) -> list[int]:
-        """Return the cache lines that it fills."""
-        return [
-            line
-            for offset, nbytes in self.places.values()
-            for line in range(offset // line_bytes, (offset + nbytes - 1) // line_bytes + 1)
-        ]
-
-
 class CodeOutside:
     """The kernels of one core whose code lies outside L1, and the cache that holds it, if the LDF has one."""
 
     def __init__(self, places: Mapping[str, tuple[int, int]], cache: CodeCache | None) -> None:
         """`places`: (offset in the arena, bytes) of each routine outside L1."""
         self.cache = cache
-        self._places = places
+        self.places = places
 
-    def of(self, counters: Iterable[Counter]) -> Code | None:
-        """Return what of a kernel and its callees lies outside L1, None if nothing does."""
-        routines = {each.routine: None for each in counters}
-        places = {routine: self._places[routine] for routine in routines if routine in self._places}
-        return Code(places) if places else None
+    def of(self, counters: Iterable[Counter]) -> Iterable[str]:
+        """Return the routines of a kernel and its callees that lie outside L1."""
+        routines = dict.fromkeys(each.routine for each in counters)
+        return [each for each in routines if each in self.places]
 
 
 class FetchedCall:
     """A call whose code lies outside L1: its fetches are added to what its access trace has."""
 
     def __init__(
-        self, call: Runnable, code: Code, counters: Iterable[Counter], totals: NDArray[np.int64],
-        access_trace: AccessTrace, cache: CodeCache | None,
-    ) -> None:  # fmt: skip
+        self, call: Runnable, group: CallGroup, code: CodeOutside, access_trace: AccessTrace
+    ) -> None:
         self._call = call
-        self._totals = totals
+        self._totals = group.totals
         self._access_trace = access_trace
-        self._cache = cache
-        self._code = code
-        self._lines = code.lines(cache.line_bytes) if cache else []
-        outside = [each.nbytes if each.routine in code.places else 0 for each in counters]
+        self._cache = code.cache
+        places = [code.places[each] for each in group.fetched]
+        sites = range(group.first_site + len(group.code.program.sites), group.first_site + group.site_count)
+        self._pieces = list(zip(sites, places, strict=True))
+        self._lines = self._cached_lines(code.cache.line_bytes) if code.cache else []
+        self._site_of = dict(reversed(self._lines))
+        outside = [each.nbytes if each.routine in group.fetched else 0 for each in group.code.counters]
         self._nbytes = np.array(outside or [0], np.int64)
+
+    def _cached_lines(self, line_bytes: int) -> list[tuple[int, int]]:
+        """Return the cache lines that the code fills, each with the site that fetches it."""
+        return [
+            (line, site)
+            for site, (offset, nbytes) in self._pieces
+            for line in range(offset // line_bytes, (offset + nbytes - 1) // line_bytes + 1)
+        ]
 
     @property
     def stays_in_l1(self) -> bool:
@@ -117,25 +112,26 @@ class FetchedCall:
         """Run the kernel now and say what it cost."""
         before = self._totals.copy()
         work = self._call.run(arguments)
-        fetches = self._line_fills() if self._cache else self._single_fetches(work, self._totals - before)
+        if self._cache:
+            fetches, sites = self._line_fills(self._cache)
+        else:
+            fetches, sites = self._single_fetches(work, self._totals - before)
         if len(fetches):
-            work.accesses = self._access_trace.insert(work.accesses, fetches)
+            work.accesses = self._access_trace.insert(work.accesses, fetches, sites)
         return work
 
-    def _line_fills(self) -> NDArray[np.int64]:
-        assert self._cache
-        line_bytes = self._cache.line_bytes
-        offsets = [line * line_bytes for line in self._cache.miss(self._lines)]
-        return np.array(offsets, np.int64) | log.FETCH_LINE << log.KIND_BIT
+    def _line_fills(self, cache: CodeCache) -> tuple[Words, Words]:
+        missed = np.array(cache.miss(line for line, _ in self._lines), np.int64)
+        sites = [self._site_of[line] for line in missed.tolist()]
+        return missed * cache.line_bytes | log.FETCH_LINE << log.KIND_BIT, np.array(sites, np.int64)
 
-    def _single_fetches(self, work: Work, events: NDArray[np.int64]) -> NDArray[np.int64]:
+    def _single_fetches(self, work: Work, events: Words) -> tuple[Words, Words]:
         """One fetch for every 64 bits that were executed, from the routines' code in turn."""
         count = -(-int(events @ self._nbytes) // FETCH_BYTES)
         number = np.arange(count, dtype=np.int64)
         stamps = number * (work.issue_cclk + work.stall_cclk) // max(1, count)
-        words = np.concatenate(
-            [np.arange(at, at + nbytes, FETCH_BYTES) for at, nbytes in self._code.places.values()]
-        )
-        offsets = words[number % len(words)]
-        fetches: NDArray[np.int64] = stamps << log.STAMP_BIT | log.FETCH << log.KIND_BIT | offsets
-        return fetches
+        words = [np.arange(at, at + nbytes, FETCH_BYTES) for _, (at, nbytes) in self._pieces]
+        sites = [np.full(len(each), site) for (site, _), each in zip(self._pieces, words, strict=True)]
+        turn = number % sum(map(len, words))
+        fetches: Words = stamps << log.STAMP_BIT | log.FETCH << log.KIND_BIT | np.concatenate(words)[turn]
+        return fetches, np.concatenate(sites)[turn]

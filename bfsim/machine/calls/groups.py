@@ -2,25 +2,79 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.kernel import Kernel
+from bfsim.kernel.call_paths import CallPath, Site
+from bfsim.kernel.counters import Counter
+from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.jit import CompiledKernel
+from bfsim.machine.bus.state import NO_BUFFER
+
+Label = TypeVar("Label")
+
+
+class GroupSite(NamedTuple):
+    """Where the calls of a group access memory: the path of calls to it, its line, and the owner of the memory."""
+
+    path: tuple[str, ...]
+    line: SourceLine
+    owner: int
 
 
 @dataclass(slots=True)
 class CallGroup:
-    """Calls of one kernel in one stage with its arrays in the same memories. `totals`: events of each counter.
+    """Calls of one kernel in one stage with its arrays in the same buffers.
 
+    `owners`: of the memory of each array. `fetched`: routines whose code is outside L1. `totals`: events of each counter, which
+    are among those of its core from `first_event` on, as its sites are from `first_site` on.
     `subbanks`: the sub-banks of L1 that the rows of each array have lain in.
     """
 
     stage: str
     kernel: Kernel
-    memories: tuple[str, ...]
+    owners: tuple[int, ...]
+    fetched: tuple[str, ...]
     code: CompiledKernel
     totals: NDArray[np.int64]
+    first_event: int
+    first_site: int
     subbanks: list[set[int]]
+
+    def counted(self) -> Iterator[tuple[int, CallPath, Counter]]:
+        """Yield every counter with its number and the path that it counts."""
+        program = self.code.program
+        for path in program.paths:
+            yield from (
+                (number, path, counter)
+                for number, counter in enumerate(program.own[path.routines[-1]], path.first.counter)
+            )
+
+    def site_number(self, path: CallPath, site: Site) -> int:
+        """Return the number of a site of a path among those of the group."""
+        return path.first.site + self.code.program.own_sites[path.routines[-1]].index(site)
+
+    @property
+    def site_count(self) -> int:
+        """Number of its sites."""
+        return len(self.code.program.sites) + len(self.fetched)
+
+    def sites(self) -> Iterator[GroupSite]:
+        """Yield the sites in order: those of its accesses, and one for the code of each routine that is fetched."""
+        program, owner_of = self.code.program, self.by_array(self.owners)
+        for path in program.paths:
+            for site in program.own_sites[path.routines[-1]]:
+                owner = owner_of.get(path.arrays.get(site.array, ""), NO_BUFFER)
+                yield GroupSite(program.through(path, site.line), site.line, owner)
+        for routine in self.fetched:
+            path = next(each for each in program.paths if each.routines[-1] == routine)
+            yield GroupSite(path.routines, SourceLine(routine, 1), NO_BUFFER)
+
+    def by_array(self, labels: Sequence[Label]) -> dict[str, Label]:
+        """Return the labels of the kernel's arrays by the arrays' names."""
+        return dict(zip(self.kernel.function.array_names, labels, strict=True))

@@ -1,112 +1,180 @@
-"""Counters of the kernels → records per kernel and source line, the kernels that were called by others included."""
+"""What the kernels of one core have counted → records: per kernel and source line, per buffer, and per path of calls."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cache
-from typing import TypeVar
 
-from bfsim.kernel import Kernel, tree
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.kernel import tree
+from bfsim.kernel.call_paths import Offset
 from bfsim.kernel.ir_text import SourceLine
+from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.calls.groups import CallGroup
-from bfsim.trace import KernelRecord, LineCost
+from bfsim.machine.calls.ledger import FILLS, Snapshot, stalls_by_reason
+from bfsim.trace import AccessRecord, KernelRecord, LineCost, PathRecord
 
-Label = TypeVar("Label")
-_Array = tuple[str, str]  # routine and parameter
+Stalls = NDArray[np.int64]
+
+
+def _no_stalls() -> Stalls:
+    return np.zeros(FILLS, np.int64)
 
 
 @dataclass(slots=True)
-class _Tally:
-    """Sums of one kernel in one stage."""
+class _Cost:
+    """Cycles that add up. `stalls`: those at sites."""
+
+    issue_cclk: int = 0
+    interlocks_cclk: int = 0
+    stalls: Stalls = field(default_factory=_no_stalls)
+
+
+@dataclass(slots=True)
+class _Accesses:
+    """What adds up of the accesses of one line to one buffer."""
+
+    reads: int = 0
+    writes: int = 0
+    fills: int = 0
+    stalls: Stalls = field(default_factory=_no_stalls)
+
+
+@dataclass(slots=True)
+class _Kernel:
+    """Sums of one kernel in one stage, by line."""
 
     function: tree.Function
     calls: int = 0
     executions: dict[int, int] = field(default_factory=lambda: defaultdict(int))
-    issue_cclk: dict[int, int] = field(default_factory=lambda: defaultdict(int))
-    stall_cclk: dict[int, int] = field(default_factory=lambda: defaultdict(int))
-    accesses: dict[str, list[int]] = field(default_factory=lambda: defaultdict(lambda: [0, 0]))
+    lines: dict[int, _Cost] = field(default_factory=lambda: defaultdict(_Cost))
+    accesses: dict[tuple[int, int], _Accesses] = field(default_factory=lambda: defaultdict(_Accesses))
+    """By line and owner of the memory."""
 
 
-def kernel_records(core: str, groups: Iterable[CallGroup]) -> Iterator[KernelRecord]:
-    """Return one record per stage and kernel of one core."""
-    tallies: dict[tuple[str, str], _Tally] = {}
-    for group in groups:
-        _add(group, tallies)
-    for (stage, _), tally in tallies.items():
-        function = tally.function
-        yield KernelRecord(
-            core=core,
-            stage=stage,
-            kernel=function.name,
-            file=function.file,
-            first_line=function.first_line,
-            text=tuple(function.source.splitlines()),
-            calls=tally.calls,
-            issue_cclk=sum(tally.issue_cclk.values()),
-            lines=tuple(
-                LineCost(
-                    line=function.first_line + line - 1,
-                    executions=tally.executions[line],
-                    issue_cclk=cclk,
-                    stall_cclk=tally.stall_cclk[line],
+@dataclass(slots=True)
+class _Path:
+    """Sums of one path of calls in one stage."""
+
+    calls: int = 0
+    cost: _Cost = field(default_factory=_Cost)
+
+
+class CoreRecords:
+    """The records of one core, made of its groups of calls and of what had been counted at one moment."""
+
+    def __init__(self, core: str, groups: Iterable[CallGroup], counted: Snapshot) -> None:
+        self._core = core
+        self._kernels: dict[tuple[str, str], _Kernel] = {}
+        self._paths: dict[tuple[str, tuple[str, ...]], _Path] = defaultdict(_Path)
+        for group in groups:
+            events = counted.events[group.first_event :]
+            self._add_events(group, events[: len(group.code.counters)].tolist())
+            self._add_stalls(group, counted.sites[group.first_site :])
+
+    def kernels(self) -> Iterator[KernelRecord]:
+        """Yield one record per stage and kernel."""
+        for (stage, symbol), each in self._kernels.items():
+            function, first = each.function, each.function.first_line
+            costs = each.lines.values()
+            yield KernelRecord(
+                core=self._core,
+                stage=stage,
+                kernel=function.name,
+                symbol=symbol,
+                file=function.file,
+                first_line=first,
+                text=tuple(function.source.splitlines()),
+                calls=each.calls,
+                issue_cclk=sum(cost.issue_cclk for cost in costs),
+                stall_cclk=stalls_by_reason(
+                    sum(cost.interlocks_cclk for cost in costs), _sum(cost.stalls for cost in costs)
+                ),
+                lines=tuple(
+                    LineCost(
+                        line=first + line - 1,
+                        executions=each.executions[line],
+                        issue_cclk=cost.issue_cclk,
+                        stall_cclk=stalls_by_reason(cost.interlocks_cclk, cost.stalls.tolist()),
+                    )
+                    for line, cost in sorted(each.lines.items())
+                ),
+            )
+
+    def accesses(self, owners: MemoryOwners) -> Iterator[AccessRecord]:
+        """Yield one record per stage, kernel, line and buffer."""
+        for (stage, symbol), kernel in self._kernels.items():
+            for (line, owner), each in sorted(kernel.accesses.items()):
+                yield AccessRecord(
+                    core=self._core,
+                    stage=stage,
+                    symbol=symbol,
+                    line=kernel.function.first_line + line - 1,
+                    buffer=owners[owner].buffer,
+                    reads=each.reads,
+                    writes=each.writes,
+                    fills=each.fills,
+                    stall_cclk=stalls_by_reason(0, each.stalls.tolist()),
                 )
-                for line, cclk in sorted(tally.issue_cclk.items())
-            ),
-            accesses={memory: (reads, writes) for memory, (reads, writes) in sorted(tally.accesses.items())},
-        )
+
+    def paths(self) -> Iterator[PathRecord]:
+        """Yield one record per stage and path of calls."""
+        for (stage, path), each in self._paths.items():
+            yield PathRecord(
+                core=self._core,
+                stage=stage,
+                path=path,
+                calls=each.calls,
+                issue_cclk=each.cost.issue_cclk,
+                stall_cclk=stalls_by_reason(each.cost.interlocks_cclk, each.cost.stalls.tolist()),
+            )
+
+    def _kernel(self, group: CallGroup, symbol: str) -> _Kernel:
+        key = (group.stage, symbol)
+        if key not in self._kernels:
+            functions = (*group.kernel.function.callees(), group.kernel.function)
+            self._kernels[key] = _Kernel(next(each for each in functions if each.symbol == symbol))
+        return self._kernels[key]
+
+    def _add_events(self, group: CallGroup, totals: Sequence[int]) -> None:
+        program, owner_of = group.code.program, group.by_array(group.owners)
+        executions: dict[tuple[Offset, SourceLine], int] = {}
+        for number, path, counter in group.counted():
+            events = totals[number]
+            for each in counter.enters:
+                self._kernel(group, each.symbol).calls += events
+                self._paths[group.stage, program.entered(path, each)].calls += events
+            for place, issue_cclk, stall_cclk in counter.line_cclk:
+                through = self._paths[group.stage, program.through(path, place)]
+                for cost in (self._kernel(group, place.routine).lines[place.line], through.cost):
+                    cost.issue_cclk += events * issue_cclk
+                    cost.interlocks_cclk += events * stall_cclk
+                if counter.value is None:
+                    once = (path.first, place)
+                    executions[once] = max(executions.get(once, 0), events)
+            for access in counter.accesses:
+                owner = owner_of.get(path.arrays.get(access.array, ""))
+                if owner is not None and not access.fills:
+                    sums = self._kernel(group, access.line.routine).accesses[access.line.line, owner]
+                    sums.reads += 0 if access.writes else events
+                    sums.writes += events if access.writes else 0
+        for (_, place), events in executions.items():
+            self._kernel(group, place.routine).executions[place.line] += events
+
+    def _add_stalls(self, group: CallGroup, rows: Stalls) -> None:
+        for site, row in zip(group.sites(), rows, strict=False):
+            if row.any():
+                kernel, stalls = self._kernel(group, site.line.routine), row[:FILLS]
+                kernel.lines[site.line.line].stalls += stalls
+                self._paths[group.stage, site.path].cost.stalls += stalls
+                accesses = kernel.accesses[site.line.line, site.owner]
+                accesses.stalls += stalls
+                accesses.fills += int(row[FILLS])
 
 
-def _add(group: CallGroup, tallies: dict[tuple[str, str], _Tally]) -> None:
-    top = group.kernel.function
-    functions = {each.symbol: each for each in (*top.callees(), top)}
-    memory_of = arrays_of_callees(group.kernel, group.memories)
-    executions: dict[tuple[str, SourceLine], int] = {}
-
-    def tally(symbol: str) -> _Tally:
-        return tallies.setdefault((group.stage, symbol), _Tally(functions[symbol]))
-
-    for counter, events in zip(group.code.counters, group.totals.tolist(), strict=False):
-        for symbol in counter.enters:
-            tally(symbol).calls += events
-        for place, issue_cclk, stall_cclk in counter.line_cclk:
-            own = tally(place.routine)
-            own.issue_cclk[place.line] += events * issue_cclk
-            own.stall_cclk[place.line] += events * stall_cclk
-            if counter.value is None:
-                once = (counter.routine, place)
-                executions[once] = max(executions.get(once, 0), events)
-        for array, reads, writes in counter.array_accesses:
-            sums = tally(counter.routine).accesses[memory_of[counter.routine, array]]
-            sums[0] += events * reads
-            sums[1] += events * writes
-    for (_, place), events in executions.items():
-        tally(place.routine).executions[place.line] += events
-
-
-def arrays_of_callees(kernel: Kernel, labels: tuple[Label, ...]) -> dict[_Array, Label]:
-    """Hand the labels of a kernel's arrays on to the kernels it calls: label by (routine, parameter).
-
-    What a callee gets comes from its first call.
-    """
-    names = [kernel.function.parameters[each].name for each in kernel.array_positions]
-    found = {(kernel.function.symbol, name): label for name, label in zip(names, labels, strict=True)}
-    for taker, giver in _handed_on(kernel):
-        found.setdefault(taker, found[giver])
-    return found
-
-
-@cache
-def _handed_on(kernel: Kernel) -> tuple[tuple[_Array, _Array], ...]:
-    """Return the arrays of the kernels that a kernel calls, each with the caller's that it is, callers first."""
-    pairs: list[tuple[_Array, _Array]] = []
-    waiting = [kernel.function]
-    while waiting:
-        caller = waiting.pop()
-        for call in tree.calls_in(caller.body):
-            for parameter, argument in zip(call.callee.parameters, call.arguments, strict=True):
-                if isinstance(argument, str):
-                    pairs.append(((call.callee.symbol, parameter.name), (caller.symbol, argument)))
-            waiting.append(call.callee)
-    return tuple(dict.fromkeys(pairs))
+def _sum(rows: Iterable[Stalls]) -> list[int]:
+    total: list[int] = sum(rows, _no_stalls()).tolist()
+    return total

@@ -1,12 +1,25 @@
-"""Where a core's cycles went: an account per stage of a frame, closed into records at the frame's end."""
+"""Where a core's cycles went: an account per stage of a frame, closed into records at the frame's end.
+
+Every cycle has an owner: kernels, which say themselves how it is split among them (`calls.ledger`), or one of those that no kernel
+is, by name: a ring, a semaphore, an interrupt, the cameras.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.machine.owner_costs import COLUMN_OF, COLUMNS, IDLE, ISSUE, Owner, OwnerCosts
 from bfsim.trace import REST, CoreFrame, StageCost, StallReason
 
+KERNELS = ""
+"""The owner of what kernels cost."""
 
-class StageAccount:
-    """Cycles of one stage in one frame."""
+
+class Account:
+    """Cycles of one owner in one stage of a frame."""
 
     __slots__ = ("idle_cclk", "issue_cclk", "stall_cclk")
 
@@ -15,10 +28,44 @@ class StageAccount:
         self.idle_cclk = 0
         self.stall_cclk: dict[StallReason, int] = {}
 
+    def stall(self, reason: StallReason, cclk: int) -> None:
+        """Add cycles of a stall."""
+        self.stall_cclk[reason] = self.stall_cclk.get(reason, 0) + cclk
+
+    def write(self, row: NDArray[np.int64]) -> None:
+        """Write the cycles into a row of an `OwnerCosts` table."""
+        row[ISSUE], row[IDLE] = self.issue_cclk, self.idle_cclk
+        for reason, cclk in self.stall_cclk.items():
+            row[COLUMN_OF[reason]] = cclk
+
+
+class StageAccount:
+    """Cycles of one stage in one frame, by owner."""
+
+    def __init__(self) -> None:
+        self.kernels = Account()
+        self._owners = {KERNELS: self.kernels}
+
+    def of(self, owner: str) -> Account:
+        """Return the account of an owner."""
+        return self._owners.get(owner) or self._owners.setdefault(owner, Account())
+
     def cost(self, stage: str) -> StageCost:
-        """Return the record of `stage`."""
-        stalls = {reason: cclk for reason, cclk in sorted(self.stall_cclk.items()) if cclk}
-        return StageCost(stage=stage, issue_cclk=self.issue_cclk, stall_cclk=stalls, idle_cclk=self.idle_cclk)
+        """Return the record of `stage`, all owners together."""
+        total: dict[StallReason, int] = {}
+        for each in self._owners.values():
+            for reason, cclk in each.stall_cclk.items():
+                total[reason] = total.get(reason, 0) + cclk
+        return StageCost(
+            stage=stage,
+            issue_cclk=sum(each.issue_cclk for each in self._owners.values()),
+            stall_cclk={reason: cclk for reason, cclk in sorted(total.items()) if cclk},
+            idle_cclk=sum(each.idle_cclk for each in self._owners.values()),
+        )
+
+    def others(self) -> Iterator[tuple[str, Account]]:
+        """Yield the accounts of those owners that are no kernels."""
+        return ((owner, each) for owner, each in self._owners.items() if owner != KERNELS)
 
 
 class FrameAccounts:
@@ -38,11 +85,25 @@ class FrameAccounts:
         """Let cycles go to `stage`, or to the rest."""
         self.now = self._accounts.setdefault(stage, StageAccount())
 
-    def close(self, end_cclk: int) -> CoreFrame:
-        """End the frame at `end_cclk`, begin the next one, and return the record: stages in the budget's order."""
+    def close(self, end_cclk: int, kernels: Sequence[Owner], costs: NDArray[np.int64]) -> CoreFrame:
+        """End the frame at `end_cclk`, begin the next one, and return the record: stages in the budget's order.
+
+        `kernels` are those that ran, in each stage, with their `costs` as rows of an `OwnerCosts` table.
+        """
         order = [each for each in (*self._stages, REST) if each in self._accounts]
-        stages = tuple(self._accounts[each].cost(each) for each in order)
-        frame = CoreFrame(core=self._core, begin_cclk=self._begin_cclk, end_cclk=end_cclk, stages=stages)
+        others = [
+            (Owner(stage, owner), each) for stage in order for owner, each in self._accounts[stage].others()
+        ]
+        table = np.zeros((len(others), COLUMNS), np.int64)
+        for row, (_, each) in zip(table, others, strict=True):
+            each.write(row)
+        frame = CoreFrame(
+            core=self._core,
+            begin_cclk=self._begin_cclk,
+            end_cclk=end_cclk,
+            stages=tuple(self._accounts[each].cost(each) for each in order),
+            owners=OwnerCosts((*kernels, *(owner for owner, _ in others)), np.concatenate([costs, table])),
+        )
         self._begin_cclk = end_cclk
         self._open()
         return frame

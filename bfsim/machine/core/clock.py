@@ -59,14 +59,14 @@ class CoreClock:
         end = transfer.end
         return end is not None and end <= self._cclk * self._cclk_ticks
 
-    def wait_transfer(self, transfer: Transfer, reason: StallReason) -> Generator[Any, Any, None]:
-        """Stall for `reason` until `transfer` is done."""
+    def wait_transfer(self, transfer: Transfer, reason: StallReason, owner: str) -> Generator[Any, Any, None]:
+        """Stall for `reason` until `transfer` is done; `owner`: whom these cycles belong to, as everywhere here."""
         if transfer.end is None:
             yield from self._sync()
             self._bus.settle()
             if transfer.end is None:
                 yield from self._blocked(iter([self._bus.when_done(transfer)]), "DMA", reason)
-        self._charge(reason, self._until(transfer.end), transfer)
+        self._charge(reason, self._until(transfer.end), owner, transfer)
 
     def wait_event(
         self, event: simpy.Event | None, what: str, last: Callable[[], Transfer | None]
@@ -75,22 +75,21 @@ class CoreClock:
         yield from self._sync()
         if event is not None and not event.processed:
             yield from self._blocked(iter([event]), what, StallReason.RING_EMPTY)
-            self._wake(StallReason.RING_EMPTY, ended_by=last())
+            self._wake(StallReason.RING_EMPTY, what, ended_by=last())
 
-    def stall(self, reason: StallReason, cclk: int) -> None:
+    def stall(self, reason: StallReason, cclk: int, owner: str) -> None:
         """Let `cclk` cycles pass without work, for `reason`."""
         if self._timeline:
             self._timeline.wait(reason, self._cclk, cclk)
         self._cclk += cclk
-        stalls = self._account.stall_cclk
-        stalls[reason] = stalls.get(reason, 0) + cclk
+        self._account.of(owner).stall(reason, cclk)
 
-    def issue(self, cclk: int) -> None:
+    def issue(self, cclk: int, owner: str) -> None:
         """Let `cclk` cycles pass with work that is no kernel's."""
         if self._timeline:
             self._timeline.work(self._cclk, cclk)
         self._cclk += cclk
-        self._account.issue_cclk += cclk
+        self._account.of(owner).issue_cclk += cclk
 
     @property
     def is_told(self) -> bool:
@@ -112,10 +111,11 @@ class CoreClock:
         yield
         self._timeline.place = before
 
-    def program_device(self, writes: int, reads: int = 0) -> None:
+    def program_device(self, owner: str, *, writes: int, reads: int = 0) -> None:
         """Write and read registers of a device: that is DMA set-up."""
         events = self._board.chip.events
-        self.stall(StallReason.DMA_SETUP, writes * events.mmr_write_cclk + reads * events.mmr_read_cclk)
+        cclk = writes * events.mmr_write_cclk + reads * events.mmr_read_cclk
+        self.stall(StallReason.DMA_SETUP, cclk, owner)
 
     def _sync(self) -> Generator[Any, Any, None]:
         if late := self.catch_up():
@@ -126,19 +126,20 @@ class CoreClock:
         assert tick is not None
         return max(0, -(-tick // self._cclk_ticks) - self._cclk)
 
-    def _wake(self, reason: StallReason | None, step_cclk: int = 1, ended_by: Transfer | None = None) -> None:
-        """Go on at the first CCLK edge from now, or whole `step_cclk` later; that was a stall, or idle without a reason."""
-        self._charge(reason, -(-self._until(self._env.tick) // step_cclk) * step_cclk, ended_by)
+    def _wake(self, reason: StallReason | None, owner: str, ended_by: Transfer | None = None) -> None:
+        """Go on at the first CCLK edge from now; that was a stall, or idle without a reason."""
+        self._charge(reason, self._until(self._env.tick), owner, ended_by)
 
-    def _charge(self, reason: StallReason | None, waited_cclk: int, ended_by: Transfer | None = None) -> None:
+    def _charge(
+        self, reason: StallReason | None, waited_cclk: int, owner: str, ended_by: Transfer | None = None
+    ) -> None:
         """Let `waited_cclk` pass, and charge them with what the wait owes from before its interrupts."""
         self._pass_waiting(reason, waited_cclk, ended_by)
         waited_cclk, self._owed_cclk = waited_cclk + self._owed_cclk, 0
         if reason is None:
-            self._account.idle_cclk += waited_cclk
+            self._account.of(owner).idle_cclk += waited_cclk
         elif waited_cclk:
-            stalls = self._account.stall_cclk
-            stalls[reason] = stalls.get(reason, 0) + waited_cclk
+            self._account.of(owner).stall(reason, waited_cclk)
 
     def _pass_waiting(self, reason: StallReason | None, cclk: int, ended_by: Transfer | None = None) -> None:
         """Let `cclk` cycles of a wait pass that are on no account yet."""

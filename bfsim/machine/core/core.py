@@ -16,8 +16,10 @@ from bfsim.kernel.types import Number
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
 from bfsim.machine.calls.call_cache import CallCache
+from bfsim.machine.calls.ledger import Snapshot
 from bfsim.machine.cameras.capture import Capture
 from bfsim.machine.cameras.settling import CameraSettings
+from bfsim.machine.core.accounts import KERNELS
 from bfsim.machine.core.layouts import Layouts
 from bfsim.machine.core.readout import Readout
 from bfsim.machine.core.synchronised import SharedObjects, SynchronisedCore
@@ -32,6 +34,9 @@ from bfsim.machine.spi.spi import Spi
 from bfsim.seen import Seen
 from bfsim.spans import Place
 from bfsim.trace import REST, CoreFrame, StallReason
+
+CAMERAS, SPI = "cameras", "SPI"
+"""Owners of cycles."""
 
 
 def _range(places: int | range) -> range:
@@ -50,11 +55,12 @@ class Frame:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FinishedFrame:
-    """What one core reports at the end of a frame."""
+    """What one core reports at the end of a frame. `counted`: what its kernels have counted since the run began."""
 
     index: int
     full_at_cclk: int
     cycles: CoreFrame
+    counted: Snapshot
     results: Mapping[str, int]
     remarks: tuple[str, ...]
     seen: Seen | None
@@ -203,12 +209,12 @@ class Core(SynchronisedCore):
         self.at()
         self._close_frame()
         pair = yield from self._blocked(self._capture.claim(self.name), "the next picture", None)
-        self._wake(None, ended_by=pair.last if pair else None)
+        self._wake(None, CAMERAS, ended_by=pair.last if pair else None)
         if pair is None:
             self._is_over = True
             return None
         events = self._board.chip.events  # the interrupt of the PPI's DMA ends the wait
-        self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk + events.interrupt_exit_cclk)
+        self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk + events.interrupt_exit_cclk, CAMERAS)
         self._full_at_cclk = -(-pair.full_at_ticks // self._cclk_ticks)
         rows = pair.picture[self.name]
         width = rows[0].nbytes // 2
@@ -232,7 +238,7 @@ class Core(SynchronisedCore):
     @awaited
     def ppi_status(self) -> Generator[Any, Any, int]:
         """Read PPI_STATUS of this core's PPI, which clears it: the bits of `PpiStatusBit` that were set since the last time."""
-        self.program_device(writes=0, reads=1)
+        self.program_device(CAMERAS, writes=0, reads=1)
         yield from self._sync()
         return self._capture.read_status(self.name)
 
@@ -257,8 +263,8 @@ class Core(SynchronisedCore):
         yield from self._sync()
         if self._spi.busy is not None:
             yield from self._blocked(iter([self._spi.busy]), "the SPI", StallReason.RING_FULL)
-            self._wake(StallReason.RING_FULL)
-        self.program_device(writes=TRANSFER_WRITES)
+            self._wake(StallReason.RING_FULL, SPI)
+        self.program_device(SPI, writes=TRANSFER_WRITES)
         yield from self._sync()
         self._spi.send(row, nbytes)
 
@@ -268,12 +274,12 @@ class Core(SynchronisedCore):
         yield from self._sync()
         if not self._spi.has_message:
             return 0
-        self.program_device(writes=TRANSFER_WRITES)
+        self.program_device(SPI, writes=TRANSFER_WRITES)
         yield from self._sync()
         if not self._spi.has_message:  # the other core was faster
             return 0
         transfer, nbytes = self._spi.receive(row)
-        yield from self.wait_transfer(transfer, StallReason.RING_EMPTY)
+        yield from self.wait_transfer(transfer, StallReason.RING_EMPTY, SPI)
         return nbytes
 
     def _is_cached(self, image: Sequence[Row]) -> bool:
@@ -283,14 +289,15 @@ class Core(SynchronisedCore):
         """Let the data cache forget what it holds of a picture that DMA has written over."""
         lines = self._access_trace.forget(rows[0].offset, rows[0].nbytes * len(rows))
         cclk = lines * self._board.chip.cache.invalidate_cclk
-        self.issue(cclk)
+        self.issue(cclk, CAMERAS)
 
     def _enter(self, stage: str) -> None:
         """Go over to another row of the budget, and charge the one that ends what conflicts in L1 cost it."""
+        self._check_claimed()
         self._bus.settle()
         conflicts_cclk = self._calls.conflicts_cclk(self._cclk - self._entered_at_cclk)
         if conflicts_cclk:
-            self.stall(StallReason.L1_CONFLICT, conflicts_cclk)
+            self.stall(StallReason.L1_CONFLICT, conflicts_cclk, KERNELS)
         self._entered_at_cclk = self._cclk
         if self._timeline:
             self._timeline.enter(stage, self._cclk)
@@ -334,13 +341,15 @@ class Core(SynchronisedCore):
             return
         if self._timeline:
             self._timeline.end_frame(self._frame.index, self._cclk)
-        cycles = self._accounts.close(self._cclk)
+        snapshot = self._calls.snapshot()
+        cycles = self._accounts.close(self._cclk, *self._calls.close(snapshot))
         self._account = self._accounts.now
         self.finished.append(
             FinishedFrame(
                 index=self._frame.index,
                 full_at_cclk=self._full_at_cclk,
                 cycles=cycles,
+                counted=snapshot,
                 results=self._results,
                 remarks=tuple(self._remarks),
                 seen=self._view(Readout(self, self._frame, self._results)) if self._view else None,

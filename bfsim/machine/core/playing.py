@@ -13,6 +13,8 @@ from bfsim.kernel import Kernel, Work
 from bfsim.kernel.work import UNYIELDED
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.calls.call_cache import CallCache, DeferredWork
+from bfsim.machine.calls.ledger import BUS_STALLS
+from bfsim.machine.core.accounts import KERNELS, Account
 from bfsim.machine.core.clock import CoreClock
 from bfsim.machine.core.interrupts import Handler, Interrupts
 from bfsim.machine.core.waits import Waits, awaited, name_of
@@ -20,13 +22,6 @@ from bfsim.machine.firmware_lines import line_at, line_of
 from bfsim.machine.memories import Row
 from bfsim.machine.simulation import Simulation
 from bfsim.trace import REST, StallReason
-
-BUS_STALLS = (
-    StallReason.L2_LATENCY, StallReason.L2_PORT, StallReason.SDRAM_PAGE_HIT, StallReason.SDRAM_PAGE_MISS,
-    StallReason.SDRAM_PAGE_CONFLICT, StallReason.SDRAM_REFRESH, StallReason.EBIU_ARBITRATION, StallReason.STORE_BUFFER,
-    StallReason.CACHE_FILL, StallReason.CODE_FETCH,
-)  # fmt: skip
-"""What the bus stalls a core for, in the order of its counters (`bus.state`)."""
 
 
 class PlayingCore(CoreClock):
@@ -94,7 +89,7 @@ class PlayingCore(CoreClock):
         self._in_handler = before
         if not self._interrupts.is_waiting:
             yield from self._blocked(iter([self._interrupts.next_request()]), "an interrupt", None)
-            self._wake(None)
+            self._wake(None, "wait for an interrupt")
         if not self._in_handler:
             yield from self._take_interrupts()
 
@@ -122,12 +117,14 @@ class PlayingCore(CoreClock):
             if item is self._unclaimed and item is not None:
                 self._unclaimed = None
                 stalls: dict[StallReason, int] = {}
+                owner = KERNELS
                 if isinstance(item, DeferredWork):
+                    owner = item.owner
                     yield from self._sync()
                     item = self._made(item, task)
                     if item.accesses:
                         stalls = yield from self._outside_l1(item)
-                self._charge_work(item, stalls)
+                self._charge_work(item, stalls, self._account.of(owner))
                 value = item.value
             elif isinstance(item, simpy.Event):
                 value = yield item
@@ -140,19 +137,18 @@ class PlayingCore(CoreClock):
         self._check_waits(task)
         self._task = before
 
-    def _charge_work(self, work: Work, stalls: dict[StallReason, int]) -> None:
-        """Let the cycles of a call pass; `stalls` are those of its accesses outside L1."""
+    def _charge_work(self, work: Work, stalls: dict[StallReason, int], account: Account) -> None:
+        """Let the cycles of a call pass, on `account`; `stalls` are those of its accesses outside L1."""
         if work.stall_cclk:
             stalls[StallReason.INTERLOCK] = work.stall_cclk
         if self._timeline:
             name = self._unclaimed_kernel.name if self._unclaimed_kernel else "TESTSET"
             self._timeline.call(name, self._cclk, work.issue_cclk, stalls)
         self._cclk += work.issue_cclk
-        self._account.issue_cclk += work.issue_cclk
-        sums = self._account.stall_cclk
+        account.issue_cclk += work.issue_cclk
         for reason, cclk in stalls.items():
             self._cclk += cclk
-            sums[reason] = sums.get(reason, 0) + cclk
+            account.stall(reason, cclk)
 
     def _check_waits(self, task: Generator[Any, Any, Any]) -> None:
         """Raise FirmwareError if `task`, which has ended, has forgotten a wait."""
@@ -259,11 +255,11 @@ class PlayingCore(CoreClock):
             source, handler = self._interrupts.take()
             begin_cclk = self._cclk
             with self._elsewhere():
-                self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk)
+                self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk, f"interrupt {source}")
                 task = handler(self)
                 if isinstance(task, Generator):
                     yield from self._perform(task)
-                self.stall(StallReason.INTERRUPT, events.interrupt_exit_cclk)
+                self.stall(StallReason.INTERRUPT, events.interrupt_exit_cclk, f"interrupt {source}")
             if self._timeline:
                 self._timeline.interrupt(source, begin_cclk, self._cclk)
         self._in_handler = before

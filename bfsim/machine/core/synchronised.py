@@ -47,36 +47,36 @@ class SynchronisedCore(PlayingCore):
     @awaited
     def post(self, name: str) -> Generator[Any, Any, None]:
         """Add one to the semaphore `name`, in L2."""
-        yield from self._test_and_set()
+        yield from self._test_and_set(f"semaphore {name}")
         self._semaphore(name).post()
         self._tell_count(name)
 
     @awaited
     def wait(self, name: str) -> Generator[Any, Any, None]:
         """Take one from the semaphore `name`, trying until another core has posted it."""
-        yield from self._test_and_set()
+        yield from self._test_and_set(f"semaphore {name}")
         turn = self._semaphore(name).take()
         if turn is not None:
-            yield from self._take_turn(turn, f"semaphore {name!r}")
+            yield from self._take_turn(turn, f"semaphore {name!r}", f"semaphore {name}")
         self._tell_count(name)
 
     @awaited
     def lock(self, name: str) -> Generator[Any, Any, None]:
         """Take the spin lock `name`, trying until the other core gives it back."""
-        yield from self._test_and_set()
+        yield from self._test_and_set(f"lock {name}")
         lock = self._lock(name)
         if lock.core == self.name:
             raise FirmwareError(f"core {self.name} must not take lock {name!r} again: it holds it already")
         turn = lock.take(self.name, self._described())
         if turn is not None:
-            yield from self._take_turn(turn, f"lock {name!r}, held by {lock.holder}")
+            yield from self._take_turn(turn, f"lock {name!r}, held by {lock.holder}", f"lock {name}")
             lock.holder = self._described()
         lock.since_cclk = self._cclk
 
     @awaited
     def unlock(self, name: str) -> Generator[Any, Any, None]:
         """Give the spin lock `name` back."""
-        yield from self._access(log.STORE, 1)  # of zero
+        yield from self._access(log.STORE, 1, f"lock {name}")  # of zero
         lock = self._lock(name)
         if lock.core != self.name:
             raise FirmwareError(
@@ -86,7 +86,7 @@ class SynchronisedCore(PlayingCore):
             timeline.span(SpanKind.LOCK, f"lock {name}", f"core {self.name}", lock.since_cclk, self._cclk)
         lock.release()
 
-    def _take_turn(self, turn: simpy.Event, what: str) -> Generator[Any, Any, None]:
+    def _take_turn(self, turn: simpy.Event, what: str, owner: str) -> Generator[Any, Any, None]:
         """Wait for `turn`, when another core gives way, in a loop around TESTSET; the first try from then on succeeds."""
         if not self.can_be_interrupted:
             self._shared.turns[self.name] = turn
@@ -100,7 +100,7 @@ class SynchronisedCore(PlayingCore):
             before, self._in_handler = self._in_handler, True  # the clock still stands where the wait began
             yield self._bus.stop_spinning(self._number)
             self._in_handler = before
-        self._wake(StallReason.SEMAPHORE)
+        self._wake(StallReason.SEMAPHORE, owner)
 
     def _tell_count(self, name: str) -> None:
         if timeline := self._env.timeline:
@@ -109,17 +109,17 @@ class SynchronisedCore(PlayingCore):
     def _described(self) -> str:
         return f"core {self.name} since cycle {self._cclk:,} ({running_line()})"
 
-    def _test_and_set(self) -> Generator[Any, Any, None]:
-        yield from self._access(log.TEST_AND_SET, self._board.chip.events.testset_cclk)
+    def _test_and_set(self, owner: str) -> Generator[Any, Any, None]:
+        yield from self._access(log.TEST_AND_SET, self._board.chip.events.testset_cclk, owner)
 
-    def _access(self, kind: int, issue_cclk: int) -> Generator[Any, Any, None]:
+    def _access(self, kind: int, issue_cclk: int, owner: str) -> Generator[Any, Any, None]:
         """Access a shared variable in L2, and let the simulated time come up to that. Without L2 it costs its issue only."""
         if not self._board.chip.l2:
-            self.issue(issue_cclk)
+            self.issue(issue_cclk, owner)
         else:
             self._check_claimed()
             self._unclaimed_kernel = None
-            self._unclaimed = DeferredWork(SharedAccess(self._bus, self._number, kind, issue_cclk), ())
+            self._unclaimed = DeferredWork(SharedAccess(self._bus, self._number, kind, issue_cclk), (), owner)
             yield self._unclaimed
         yield from self._sync()
 
@@ -135,6 +135,6 @@ class SynchronisedCore(PlayingCore):
         others: Mapping[str, Interrupts] = self._shared.interrupts
         if other not in others or other == self.name:
             raise FirmwareError(f"core {self.name} can interrupt another core of the chip, not {other!r}")
-        self.issue(self._board.chip.events.mmr_write_cclk)
+        self.issue(self._board.chip.events.mmr_write_cclk, f"interrupt {OTHER_CORE}")
         yield from self._sync()
         others[other].request(OTHER_CORE)

@@ -46,9 +46,10 @@ def never() -> bool:
 
 @dataclass(eq=False, slots=True, kw_only=True)
 class Request:
-    """A transaction that a master asks for. `granted` happens with a Grant when it has the bus."""
+    """A transaction that a master asks for. `owner`: of the memory. `granted` happens with a Grant when it has the bus."""
 
     master: int
+    owner: int
     offset: int = 0
     nbytes: int
     write: bool = False
@@ -64,10 +65,14 @@ def wait_until(env: Simulation, tick: int) -> Generator[simpy.Event, Any, None]:
         yield env.after(tick - env.tick)
 
 
-def count_bytes(words: Any, master: int, memory: int, nbytes: int, *, write: bool) -> None:
-    """Count what a master moved to or from a memory."""
-    at = w.TRAFFIC_AT + (master * w.MEMORIES + memory) * w.TRAFFIC_WORDS
-    words[at + (w.WRITTEN_BYTES if write else w.READ_BYTES)] += nbytes
+def traffic_at(owner: int, master: int) -> int:
+    """Return where in the state it is counted what a master moves to or from memory of an owner."""
+    return w.TRAFFIC_AT + (owner * w.MASTERS + master) * w.TRAFFIC_WORDS
+
+
+def count_bytes(words: Any, master: int, owner: int, nbytes: int, *, write: bool) -> None:
+    """Count what a master moved to or from memory of an owner."""
+    words[traffic_at(owner, master) + (w.WRITTEN_BYTES if write else w.READ_BYTES)] += nbytes
 
 
 class Arbiter:
@@ -139,12 +144,20 @@ class SdramArbiter(Arbiter):
         self._streams = MdmaTurns(board.mdma_period_transfers)
 
     def ask(
-        self, master: int, offset: int, nbytes: int, *, write: bool, is_urgent: Callable[[], bool] = never
+        self,
+        master: int,
+        owner: int,
+        offset: int,
+        nbytes: int,
+        *,
+        write: bool,
+        is_urgent: Callable[[], bool] = never,
     ) -> simpy.Event:
-        """Ask for the bus, to move `nbytes`; return the event of its grant."""
+        """Ask for the bus, to move `nbytes` to or from memory of an owner; return the event of its grant."""
         return self._ask(
             Request(
                 master=master,
+                owner=owner,
                 offset=offset,
                 nbytes=nbytes,
                 write=write,
@@ -198,8 +211,8 @@ class SdramArbiter(Arbiter):
         self._streams.count(request.master)
 
     def _count(self, request: Request, page: Page, beats: int, busy: int) -> None:
-        at = w.TRAFFIC_AT + (request.master * w.MEMORIES + w.IN_SDRAM) * w.TRAFFIC_WORDS
-        count_bytes(self._words, request.master, w.IN_SDRAM, request.nbytes, write=request.write)
+        at = traffic_at(request.owner, request.master)
+        count_bytes(self._words, request.master, request.owner, request.nbytes, write=request.write)
         self._words[at + w.HITS + page] += 1
         if request.master in CORE_OF:
             self._words[at + w.HITS] += beats - 1
@@ -245,24 +258,30 @@ class L2Port(Arbiter):
         self._free = 0
         self._imdma_was_last = False
 
-    def ask(self, master: int, nbytes: int, *, write: bool) -> simpy.Event:
+    def ask(self, master: int, owner: int, nbytes: int, *, write: bool) -> simpy.Event:
         """Ask for `nbytes`, to be read or written by a core; return the event of its grant."""
         return self._ask_for(
-            master, nbytes, -(-nbytes // self._l2.port_bytes) * self._l2.next_cclk, write=write
+            master, owner, nbytes, -(-nbytes // self._l2.port_bytes) * self._l2.next_cclk, write=write
         )
 
     def ask_locked(self, master: int, nbytes: int) -> simpy.Event:
         """Ask for a TESTSET: nobody else has the port between its read and its write."""
-        count_bytes(self._words, master, w.IN_L2, nbytes, write=True)
-        return self._ask_for(master, nbytes, self._l2.read_cclk + self._l2.next_cclk, write=False)
+        owner = w.NO_BUFFER_IN_L2
+        count_bytes(self._words, master, owner, nbytes, write=True)
+        return self._ask_for(master, owner, nbytes, self._l2.read_cclk + self._l2.next_cclk, write=False)
 
     def ask_for_word(self, master: int, times: int) -> simpy.Event:
         """Ask for a word of the internal DMA, `times` 2 if it is both read and written here."""
-        return self._ask_for(master, 0, times * self._l2.next_cclk, write=False)
+        return self._ask_for(master, w.NO_BUFFER_IN_L2, 0, times * self._l2.next_cclk, write=False)
 
-    def _ask_for(self, master: int, nbytes: int, hold_cclk: int, *, write: bool) -> simpy.Event:
+    def _ask_for(self, master: int, owner: int, nbytes: int, hold_cclk: int, *, write: bool) -> simpy.Event:
         request = Request(
-            master=master, nbytes=nbytes, write=write, hold_cclk=hold_cclk, granted=self._env.event()
+            master=master,
+            owner=owner,
+            nbytes=nbytes,
+            write=write,
+            hold_cclk=hold_cclk,
+            granted=self._env.event(),
         )
         return self._ask(request)
 
@@ -279,6 +298,6 @@ class L2Port(Arbiter):
         self._free = now + request.hold_cclk * self._cclk_ticks
         self._imdma_was_last = request.master in INTERNAL
         if request.nbytes:
-            count_bytes(self._words, request.master, w.IN_L2, request.nbytes, write=request.write)
+            count_bytes(self._words, request.master, request.owner, request.nbytes, write=request.write)
         through = now + self._l2.read_cclk * self._cclk_ticks
         return Grant(now, self._free, through, through, Page.HIT, 0)

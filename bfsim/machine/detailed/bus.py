@@ -34,9 +34,7 @@ class DetailedBus(Bus):
         self._channels = {
             master: DmaMaster(env, board, memories, sdram, l2, self.words, master) for master in RANKS
         }
-        self._ports = [
-            CorePort(env, board, sdram, l2, memories.sdram_end, number) for number in range(w.CORES)
-        ]
+        self._ports = [CorePort(env, board, sdram, l2, self.words, number) for number in range(w.CORES)]
         self._on_their_way: dict[int, DetailedTransfer] = {}
         self._spins: dict[int, Spin] = {}
 
@@ -62,7 +60,17 @@ class DetailedBus(Bus):
         self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, setup: int, pace: Pace
     ) -> TransferPlan:  # fmt: skip
         return DetailedPlan(
-            master, (), count * element_bytes, mode, source, destination, count, element_bytes, setup, pace
+            master,
+            (),
+            count * element_bytes,
+            mode,
+            source,
+            destination,
+            count,
+            element_bytes,
+            setup,
+            pace,
+            (self.owners.of(source.offset), self.owners.of(destination.offset)),
         )
 
     def post(self, plan: TransferPlan, at: int = 0) -> Transfer:
@@ -106,7 +114,8 @@ class DetailedBus(Bus):
     def access(self, core: int, begin: int, cclk: int, entries: int) -> simpy.Event:
         """Play the first `entries` accesses of a core's log, of a call of `cclk` cycles from tick `begin`; return its end."""
         done = self._env.event()
-        made = self.room_of(core)[log.LOG :][:entries]
+        room = self.room_of(core)[log.LOG :]
+        made = zip(room[:entries].tolist(), room[w.LOG_ENTRIES :][:entries].tolist(), strict=True)
         self._env.process(self._ports[core].call(begin, cclk, made, done))
         return done
 

@@ -7,28 +7,30 @@ its place until it is written. A load of anything that is in the buffer waits un
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import simpy
-from numpy.typing import NDArray
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.memory_owners import owner_for
 from bfsim.machine.detailed.arbiter import Grant, L2Port, SdramArbiter, wait_until
 from bfsim.machine.simulation import Simulation
 
 
 @dataclass(frozen=True, slots=True)
 class CoreAccess:
-    """One access outside L1: cycle of its call, what it is, and where."""
+    """One access outside L1: cycle of its call, what it is, where, the site that makes it, and who owns the memory."""
 
     stamp_cclk: int
     kind: int
     offset: int
     nbytes: int
+    site: int
+    owner: int
 
     def overlaps(self, other: CoreAccess) -> bool:
         """Whether both touch the same bytes."""
@@ -48,11 +50,13 @@ class CorePort:
     """One core with its store buffer. `stalls`: cycles that the last call stalled, by reason, in the order of `bus.state`."""
 
     def __init__(
-        self, env: Simulation, board: BoardSpec, sdram: SdramArbiter, l2: L2Port, sdram_end: int, number: int
+        self, env: Simulation, board: BoardSpec, sdram: SdramArbiter, l2: L2Port, words: Any, number: int
     ) -> None:
+        """`words`: the state of the bus."""
         self._env = env
         self._board = board
-        self._sdram, self._l2, self._sdram_end = sdram, l2, sdram_end
+        self._sdram, self._l2, self._sdram_end = sdram, l2, words[w.SDRAM_END]
+        self._words = words
         self._number = number
         self._cclk, self._sclk = board.clocks.cclk_ticks, board.clocks.sclk_ticks
         self._buffer: deque[CoreAccess] = deque()
@@ -62,12 +66,15 @@ class CorePort:
         env.process(self._drain())
 
     def call(
-        self, begin: int, cclk: int, entries: NDArray[Any], done: simpy.Event
+        self, begin: int, cclk: int, entries: Iterable[tuple[int, int]], done: simpy.Event
     ) -> Generator[simpy.Event, Any, None]:
-        """Make the accesses of a call of `cclk` cycles from tick `begin` on; `done` happens at its end."""
+        """Make the accesses of a call of `cclk` cycles from tick `begin` on, each an entry of the log and its site.
+
+        `done` happens at its end.
+        """
         self.stalls = [0] * w.STALLS
-        for entry in entries.tolist():
-            access = self._access(entry)
+        for entry, site in entries:
+            access = self._access(entry, site)
             yield from self._issue(begin, access)
             if access.kind in (log.STORE, log.WRITE_BACK):
                 yield from self._wait_for_buffer(begin, access, self._is_full)
@@ -88,12 +95,19 @@ class CorePort:
         """Stall until the last line is whole: a core reads one at a time."""
         late = self._line_done - self._env.tick
         if late > 0:
-            self.stalls[w.CODE_FETCH if access.kind == log.FETCH_LINE else w.CACHE_FILL] += -(
-                -late // self._cclk
-            )
+            reason = w.CODE_FETCH if access.kind == log.FETCH_LINE else w.CACHE_FILL
+            self._stall(access, reason, -(-late // self._cclk))
             yield from self._issue(begin, access)
 
-    def _access(self, entry: int) -> CoreAccess:
+    def _stall(self, access: CoreAccess, reason: int, cycles: int) -> None:
+        """Charge what an access stalls to the call and to its site."""
+        self.stalls[reason] += cycles
+        self._words[self._at_site(access) + reason] += cycles
+
+    def _at_site(self, access: CoreAccess) -> int:
+        return w.SITES_AT + (self._number * w.MAX_SITES + access.site) * w.SITE_WORDS
+
+    def _access(self, entry: int, site: int) -> CoreAccess:
         kind = entry >> log.KIND_BIT & log.KIND_MASK
         nbytes = self._board.chip.cache.line_bytes
         if kind in (log.LOAD, log.STORE, log.TEST_AND_SET):
@@ -102,7 +116,12 @@ class CorePort:
             nbytes = w.FETCH_BYTES
         offset = entry & log.OFFSET_MASK
         return CoreAccess(
-            entry >> log.STAMP_BIT, kind, offset // w.CORE_WORD_BYTES * w.CORE_WORD_BYTES, nbytes
+            entry >> log.STAMP_BIT,
+            kind,
+            offset // w.CORE_WORD_BYTES * w.CORE_WORD_BYTES,
+            nbytes,
+            site,
+            owner_for(self._words, self._number, offset, site),
         )
 
     def _issue(self, begin: int, access: CoreAccess) -> Generator[simpy.Event, Any, None]:
@@ -121,8 +140,9 @@ class CorePort:
         edge = self._edge(issued)
         yield from wait_until(self._env, edge)
         grant: Grant = yield self._sdram.ask(
-            w.CORE_A + self._number, access.offset, access.nbytes, write=False
+            w.CORE_A + self._number, access.owner, access.offset, access.nbytes, write=False
         )
+        self._count_fill(access)
         # a load needs all of its word; with a line the core goes on when its first word is there
         through = grant.through if access.kind == log.LOAD else grant.first_through
         sync = (self._board.chip.external.core_sync_sclk - 1) * self._sclk
@@ -141,14 +161,15 @@ class CorePort:
         waited = min(cycles, max(0, began - edge) // self._cclk)
         refreshed = min(cycles - waited, (grant.at - max(edge, began)) // self._cclk)
         self._charge(access, w.PAGE_HIT + grant.page, cycles - waited - refreshed)
-        self.stalls[w.REFRESHING] += refreshed
-        self.stalls[w.ARBITRATION] += waited
+        self._stall(access, w.REFRESHING, refreshed)
+        self._stall(access, w.ARBITRATION, waited)
 
     def _read_l2(self, access: CoreAccess) -> Generator[simpy.Event, Any, None]:
         """Read from L2."""
         issued = self._env.tick
-        grant: Grant = yield self._l2.ask(w.CORE_A + self._number, access.nbytes, write=False)
-        self.stalls[w.L2_PORT] += -(-(grant.at - issued) // self._cclk)
+        grant: Grant = yield self._l2.ask(w.CORE_A + self._number, access.owner, access.nbytes, write=False)
+        self._count_fill(access)
+        self._stall(access, w.L2_PORT, -(-(grant.at - issued) // self._cclk))
         self._charge(access, w.L2_LATENCY, self._cycles_since(grant.at, grant.through))
         l2 = self._board.chip.l2
         assert l2 is not None, "a board without L2 has no accesses to it"
@@ -160,8 +181,8 @@ class CorePort:
         """Read and write a byte of L2 with the port locked."""
         issued = self._env.tick
         grant: Grant = yield self._l2.ask_locked(w.CORE_A + self._number, access.nbytes)
-        self.stalls[w.L2_PORT] += -(-(grant.at - issued) // self._cclk)
-        self.stalls[w.L2_LATENCY] += (grant.free - grant.at) // self._cclk
+        self._stall(access, w.L2_PORT, -(-(grant.at - issued) // self._cclk))
+        self._stall(access, w.L2_LATENCY, (grant.free - grant.at) // self._cclk)
         yield from wait_until(self._env, grant.free)
 
     def spin(self, begin: int, turn: int) -> Spin:
@@ -184,7 +205,11 @@ class CorePort:
         reason = (
             of_load if access.kind == log.LOAD else w.CACHE_FILL if access.kind == log.FILL else w.CODE_FETCH
         )
-        self.stalls[reason] += cycles
+        self._stall(access, reason, cycles)
+
+    def _count_fill(self, access: CoreAccess) -> None:
+        if access.kind == log.FILL:
+            self._words[self._at_site(access) + w.FILLS] += 1
 
     def _edge(self, tick: int) -> int:
         return -(-tick // self._sclk) * self._sclk
@@ -204,7 +229,7 @@ class CorePort:
         since = self._env.tick
         while holds_up():
             yield self._buffer_changed
-        self.stalls[w.STORE_BUFFER] += -(-(self._env.tick - since) // self._cclk)
+        self._stall(access, w.STORE_BUFFER, -(-(self._env.tick - since) // self._cclk))
         yield from self._issue(begin, access)
 
     def _change_buffer(self) -> None:
@@ -219,9 +244,9 @@ class CorePort:
             store, master = self._buffer[0], w.STORES_A + self._number
             if store.offset < self._sdram_end:
                 yield from wait_until(self._env, self._edge(self._env.tick))
-                asked = self._sdram.ask(master, store.offset, store.nbytes, write=True)
+                asked = self._sdram.ask(master, store.owner, store.offset, store.nbytes, write=True)
             else:
-                asked = self._l2.ask(master, store.nbytes, write=True)
+                asked = self._l2.ask(master, store.owner, store.nbytes, write=True)
             grant: Grant = yield asked
             yield from wait_until(self._env, grant.free)
             self._buffer.popleft()

@@ -36,6 +36,8 @@ class DetailedPlan(TransferPlan):
     element_bytes: int
     setup: int
     pace: Pace
+    owners: tuple[int, int]
+    """Of the memory that it begins to read and to write."""
 
 
 @dataclass(slots=True)
@@ -163,7 +165,7 @@ class DmaMaster:
 
         yield from wait_until(self._env, self._edge(self._env.tick))
         grant: Grant = yield self._sdram.ask(
-            self._master, offset, plan.element_bytes, write=write, is_urgent=is_urgent
+            self._master, plan.owners[write], offset, plan.element_bytes, write=write, is_urgent=is_urgent
         )
         return grant
 
@@ -269,9 +271,9 @@ class DmaMaster:
         self._bytes[offset : offset + len(value)] = value
 
     def _count(self, plan: DetailedPlan, offset: int, *, write: bool) -> None:
-        """Count what goes to L2 and to the sub-banks of L1; the arbiter counts what goes to SDRAM."""
+        """Count what goes to L2, to L1 and to its sub-banks; the arbiter counts what goes to SDRAM."""
         memories = self._memories
-        if memories.sdram_end <= offset < memories.l2_end:
-            count_bytes(self._words, self._master, w.IN_L2, plan.element_bytes, write=write)
-        elif offset >= memories.l1:
+        if memories.sdram_end <= offset < memories.l2_end or offset >= memories.l1:
+            count_bytes(self._words, self._master, plan.owners[write], plan.element_bytes, write=write)
+        if offset >= memories.l1:
             self._words[w.SUBBANKS_AT + (offset - memories.l1) // self._board.chip.l1.subbank_bytes] += 1

@@ -93,7 +93,7 @@ class MemoryDma:
         for channel, registers in ((self.source, source), (self.destination, destination)):
             for register, value in registers.items():
                 channel.write(register, value, place)
-        self.core.program_device(writes=len(source) + len(destination))
+        self.core.program_device(self.name, writes=len(source) + len(destination))
 
     @property
     def waits(self) -> Waits:
@@ -104,7 +104,7 @@ class MemoryDma:
     def start(self, source: DmaConfig, destination: DmaConfig) -> Generator[Any, Any, None]:
         """Write both CONFIG registers; the first work unit begins. MmrError for what the chip would flag."""
         place = running_line()
-        self.core.program_device(writes=2)
+        self.core.program_device(self.name, writes=2)
         if late := self.core.catch_up():
             yield late
         steps = self.source.start(source, place), self.destination.start(destination, place)
@@ -114,7 +114,7 @@ class MemoryDma:
 
     def stop(self) -> None:
         """Write both CONFIG registers with DMAEN=0. The work unit under way is still moved; the chip would cut it."""
-        self.core.program_device(writes=2)
+        self.core.program_device(self.name, writes=2)
         self._stopping = True
 
     @awaited

@@ -44,8 +44,8 @@ class InputRing:
         self._stream = stream
         self._image = image
         self._rows = rows
+        self._owner = f"ring {rows[0].buffer}"
         self._height, self._depth = len(image), len(rows)
-        self._level = f"ring {rows[0].buffer}"
         self._taken = 0
         self._coming: Transfer | None = None
         """The next line's transfer."""
@@ -61,15 +61,15 @@ class InputRing:
             )
         self._taken = number + 1
         core.take_line(number, self._height)
-        core.program_device(writes=COPY_WRITES, reads=COPY_READS)
+        core.program_device(self._owner, writes=COPY_WRITES, reads=COPY_READS)
         transfer = self._coming or self._fetch(number)
         # one line ahead: its row is the one that the core gave up with this call
         self._coming = self._fetch(number + 1) if number + 1 < self._height else None
         core.settle()
         is_there = core.has(transfer)
-        core.tell_level(self._level, int(is_there))
+        core.tell_level(self._owner, int(is_there))
         if not is_there:
-            yield from core.wait_transfer(transfer, StallReason.RING_EMPTY)
+            yield from core.wait_transfer(transfer, StallReason.RING_EMPTY, self._owner)
         return self._rows[number % self._depth]
 
     def _fetch(self, number: int) -> Transfer:
@@ -94,15 +94,15 @@ class OutputRing:
         self._stream = stream
         self._image = image
         self._rows = rows
+        self._owner = f"ring {rows[0].buffer}"
         self._height, self._depth = len(image), len(rows)
-        self._level = f"ring {rows[0].buffer}"
         self._transfers: list[Transfer] = []
 
     def row(self) -> Generator[Any, Any, Row]:
         """Wait until a row is free and return it, to be written and then sent."""
         number, depth = len(self._transfers), self._depth
         if number >= depth and not self._core.has(transfer := self._transfers[number - depth]):
-            yield from self._core.wait_transfer(transfer, StallReason.RING_FULL)
+            yield from self._core.wait_transfer(transfer, StallReason.RING_FULL, self._owner)
         return self._rows[number % depth]
 
     def send(self) -> None:
@@ -112,7 +112,7 @@ class OutputRing:
             raise FirmwareError(
                 f"the picture {self._image[0].buffer} has {self._height} lines; one more was sent"
             )
-        self._core.program_device(writes=COPY_WRITES, reads=COPY_READS)
+        self._core.program_device(self._owner, writes=COPY_WRITES, reads=COPY_READS)
         row = self._rows[number % self._depth]
         self._transfers.append(self._stream.copy(row, self._image[number], self._core.now_ticks))
         if self._core.is_told:
@@ -121,7 +121,7 @@ class OutputRing:
     def _tell_fill(self) -> None:
         """Tell how many rows wait for their DMA."""
         on_their_way = [each for each in self._transfers[-self._depth :] if not self._core.has(each)]
-        self._core.tell_level(self._level, len(on_their_way))
+        self._core.tell_level(self._owner, len(on_their_way))
 
     @property
     def waits(self) -> Waits:
@@ -132,4 +132,4 @@ class OutputRing:
     def flush(self) -> Generator[Any, Any, None]:
         """Wait until every line that was sent has arrived."""
         if self._transfers:
-            yield from self._core.wait_transfer(self._transfers[-1], StallReason.RING_FULL)
+            yield from self._core.wait_transfer(self._transfers[-1], StallReason.RING_FULL, self._owner)

@@ -90,12 +90,11 @@ def figures_of(run: RunRecord) -> dict[Name, Figure]:
 
 
 def kernel_cclk(run: RunRecord) -> Mapping[tuple[str, str, str], int]:
-    """Return the cycles a frame of each kernel, interlocks included, by stage, core and kernel: means over the run."""
+    """Return the cycles a frame of each kernel, its stalls included, by stage, core and kernel: means over the run."""
     totals: dict[tuple[str, str, str], int] = {}
     for each in run.kernels:
         key = (each.stage, each.core, each.kernel)
-        cclk = each.issue_cclk + sum(line.stall_cclk for line in each.lines)
-        totals[key] = totals.get(key, 0) + cclk
+        totals[key] = totals.get(key, 0) + each.elapsed_cclk
     return {key: total // len(run.frames) for key, total in totals.items()}
 
 

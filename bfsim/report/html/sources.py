@@ -70,7 +70,7 @@ def _lines(records: Sequence[KernelRecord]) -> tuple[SourceLine, ...]:
         for cost in record.lines:
             executions[cost.line] += cost.executions
             issue_cclk[cost.line] += cost.issue_cclk
-            stall_cclk[cost.line] += cost.stall_cclk
+            stall_cclk[cost.line] += sum(cost.stall_cclk.values())
     whole_cclk = sum(issue_cclk.values()) + sum(stall_cclk.values())
     return tuple(
         SourceLine(

@@ -1,0 +1,87 @@
+"""Who owns memory: the buffers, and the rest of each memory, which is no buffer's. So it is known what moves for whom."""
+
+from __future__ import annotations
+
+from bisect import bisect_right, insort
+from collections.abc import Iterator
+from dataclasses import dataclass
+from operator import itemgetter
+from typing import Any
+
+from bfsim.errors import FirmwareError
+from bfsim.kernel.native import native
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.state import State
+
+
+@dataclass(frozen=True, slots=True)
+class MemoryOwner:
+    """A buffer by the name that is its own among those of all cores, or without one what of `memory` belongs to none."""
+
+    memory: str
+    buffer: str = ""
+    nbytes: int = 0
+
+
+class MemoryOwners:
+    """All owners by their numbers; in the state `words` of a bus stands which piece of the arena belongs to whom."""
+
+    def __init__(self, words: Any, sdram_end: int, l2_end: int) -> None:
+        self._words = words
+        self._owners = [MemoryOwner("SDRAM"), MemoryOwner("L2"), MemoryOwner("elsewhere")]
+        self._pieces = [(0, w.NO_BUFFER_IN_SDRAM), (sdram_end, w.NO_BUFFER_IN_L2), (l2_end, w.NO_BUFFER)]
+        self._write()
+
+    def __iter__(self) -> Iterator[MemoryOwner]:
+        return iter(self._owners)
+
+    def __getitem__(self, number: int) -> MemoryOwner:
+        return self._owners[number]
+
+    def add(self, owner: MemoryOwner, offset: int) -> None:
+        """Let a buffer own its bytes from `offset` in the arena on."""
+        if len(self._owners) == w.MAX_OWNERS:
+            raise FirmwareError(f"firmware must have at most {w.MAX_OWNERS - 3} buffers")
+        end, number = offset + owner.nbytes, len(self._owners)
+        behind = self.of(end)
+        self._pieces = [each for each in self._pieces if not offset <= each[0] <= end]
+        insort(self._pieces, (offset, number))
+        insort(self._pieces, (end, behind))
+        self._owners.append(owner)
+        self._write()
+
+    def of(self, offset: int) -> int:
+        """Return the number of the owner of the byte at `offset`."""
+        return self._pieces[bisect_right(self._pieces, offset, key=itemgetter(0)) - 1][1]
+
+    def _write(self) -> None:
+        self._words[w.PIECES] = len(self._pieces)
+        for number, (offset, owner) in enumerate(self._pieces):
+            self._words[w.PIECES_AT + number] = offset
+            self._words[w.PIECES_AT + w.MAX_PIECES + number] = owner
+        self._words[w.PIECES_AT + len(self._pieces)] = w.NEVER
+
+
+@native
+def owner_for(state: State, core: int, offset: int, site: int) -> int:
+    """Return who owns the memory that an access of a core's site is for: no buffer, if no kernel makes it."""
+    if site == w.NO_SITE:
+        return w.NO_BUFFER_IN_SDRAM if offset < state[w.SDRAM_END] else w.NO_BUFFER_IN_L2
+    row = w.SITES_AT + (core * w.MAX_SITES + site) * w.SITE_WORDS
+    piece = state[row + w.PIECE]
+    if not state[w.PIECES_AT + piece] <= offset < state[w.PIECES_AT + piece + 1]:
+        piece = state[row + w.PIECE] = piece_of(state, offset)
+    return state[w.PIECES_AT + w.MAX_PIECES + piece]
+
+
+@native
+def piece_of(state: State, offset: int) -> int:
+    """Return the number of the piece of memory that `offset` is in."""
+    low, high = 0, state[w.PIECES] - 1
+    while low < high:
+        middle = (low + high + 1) >> 1
+        if state[w.PIECES_AT + middle] <= offset:
+            low = middle
+        else:
+            high = middle - 1
+    return low

@@ -1,0 +1,123 @@
+"""What the kernels of one core have counted: events and, site by site, stalls. So each cycle of a call has an owner.
+
+Nothing is added up call by call. At a frame's end all counts are compared with those at the end of the frame before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.errors import FirmwareError
+from bfsim.machine.bus import state as w
+from bfsim.machine.calls.groups import CallGroup
+from bfsim.machine.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE, Owner
+from bfsim.trace import StallReason
+
+BUS_STALLS = (
+    StallReason.L2_LATENCY, StallReason.L2_PORT, StallReason.SDRAM_PAGE_HIT, StallReason.SDRAM_PAGE_MISS,
+    StallReason.SDRAM_PAGE_CONFLICT, StallReason.SDRAM_REFRESH, StallReason.EBIU_ARBITRATION, StallReason.STORE_BUFFER,
+    StallReason.CACHE_FILL, StallReason.CODE_FETCH,
+)  # fmt: skip
+"""What the bus stalls a core for, in the order of its counters (`bus.state`)."""
+SITE_STALLS = (*BUS_STALLS, StallReason.L1_CONFLICT)
+"""What is counted of a site, in the order of a snapshot; the lines that its accesses filled are behind them."""
+FILLS = len(SITE_STALLS)
+SITE_COLUMNS = np.array([COLUMN_OF[each] for each in SITE_STALLS])
+INTERLOCKS = COLUMN_OF[StallReason.INTERLOCK]
+
+MAX_EVENTS = 1 << 20
+NO_ROOM = "firmware must call its kernels in fewer stages, or with fewer different buffers: there are too many to keep apart"
+
+Rows = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """The counts at one moment: events of each counter, and of each site its stalls and line fills."""
+
+    events: Rows
+    sites: Rows
+
+    def since(self, before: Snapshot) -> Snapshot:
+        """Return what was counted since `before`."""
+        events, sites = self.events.copy(), self.sites.copy()
+        events[: len(before.events)] -= before.events
+        sites[: len(before.sites)] -= before.sites
+        return Snapshot(events, sites)
+
+
+class Ledger:
+    """The counts of one core. `bus_stalls` returns those of its first so many sites, as the bus has them."""
+
+    def __init__(self, bus_stalls: Callable[[int], Rows]) -> None:
+        self._bus_stalls = bus_stalls
+        self._events = np.zeros(MAX_EVENTS, np.int64)
+        self._conflicts = np.zeros(w.MAX_SITES, np.int64)
+        self._event_count, self._site_count = 0, w.NO_SITE + 1
+        self._owners: dict[Owner, int] = {}
+        self._charges: list[tuple[int, int, int, int]] = []  # event, owner, column, cycles or calls
+        self._site_owners: list[int] = [0] * self._site_count
+        self._charged = np.zeros((4, 0), np.int64)  # the same as columns
+        self._before = self.snapshot()
+        self.reported = self._before
+        """The counts at the end of the last frame that is on record."""
+
+    def room(self, events: int, sites: int) -> tuple[Rows, int, int]:
+        """Make room for another group: return where it counts its events, the number of the first, and of the first site."""
+        first_event, first_site = self._event_count, self._site_count
+        self._event_count += events
+        self._site_count += sites
+        if self._event_count > MAX_EVENTS or self._site_count > w.MAX_SITES:
+            raise FirmwareError(NO_ROOM)
+        return self._events[first_event : self._event_count], first_event, first_site
+
+    def add(self, group: CallGroup) -> None:
+        """Note who owns what a new group counts."""
+        names = {each.symbol: each.name for each in (*group.kernel.function.callees(), group.kernel.function)}
+
+        def owner(symbol: str) -> int:
+            return self._owners.setdefault(Owner(group.stage, names[symbol], symbol), len(self._owners))
+
+        for number, _, counter in group.counted():
+            event = group.first_event + number
+            for each in counter.enters:
+                self._charges.append((event, owner(each.symbol), CALLS, 1))
+            for place, issue_cclk, stall_cclk in counter.line_cclk:
+                self._charges.append((event, owner(place.routine), ISSUE, issue_cclk))
+                self._charges.append((event, owner(place.routine), INTERLOCKS, stall_cclk))
+        self._site_owners.extend(owner(each.line.routine) for each in group.sites())
+
+    def add_conflicts(self, sites: Rows, cclk: Rows) -> None:
+        """Add cycles that conflicts in L1 cost at sites."""
+        np.add.at(self._conflicts, sites, cclk)
+
+    def snapshot(self) -> Snapshot:
+        """Return the counts of now."""
+        count = self._site_count
+        on_bus = self._bus_stalls(count)
+        sites = np.column_stack([on_bus[:, : w.STALLS], self._conflicts[:count], on_bus[:, w.FILLS]])
+        sites[w.NO_SITE] = 0  # semaphores and locks are no kernel's
+        return Snapshot(self._events[: self._event_count].copy(), sites)
+
+    def close(self, now: Snapshot) -> tuple[Sequence[Owner], Rows]:
+        """Return the kernels in each stage, and what they cost since the last time: rows of an `OwnerCosts` table."""
+        counted, self._before = now.since(self._before), now
+        if len(self._charges) != self._charged.shape[1]:
+            self._charged = np.array(self._charges, np.int64).T
+        events, owners, columns, each = self._charged
+        costs = np.zeros((len(self._owners), COLUMNS), np.int64)
+        np.add.at(costs, (owners, columns), counted.events[events] * each)
+        stalled = np.flatnonzero(counted.sites[:, :FILLS].any(axis=1))
+        owners = np.array(self._site_owners)[stalled]
+        np.add.at(costs, (owners[:, np.newaxis], SITE_COLUMNS), counted.sites[stalled, :FILLS])
+        return tuple(self._owners), costs
+
+
+def stalls_by_reason(interlocks_cclk: int, at_sites: Sequence[int]) -> dict[StallReason, int]:
+    """Return stalls by reason: interlocks, and those in the order of SITE_STALLS; what is 0 is left out."""
+    pairs = zip((StallReason.INTERLOCK, *SITE_STALLS), (interlocks_cclk, *at_sites), strict=True)
+    return {reason: cclk for reason, cclk in sorted(pairs) if cclk}
