@@ -12,6 +12,7 @@ from bfsim import __version__
 from bfsim.cli_boards import boards
 from bfsim.cli_check import check
 from bfsim.cli_colours import colours
+from bfsim.cli_diff import diff
 from bfsim.cli_html import paging, takes_html
 from bfsim.cli_ldf import ldf
 from bfsim.cli_record import record
@@ -66,6 +67,7 @@ main.add_command(record)
 main.add_command(boards)
 main.add_command(check)
 main.add_command(colours)
+main.add_command(diff)
 main.add_command(ldf)
 
 

@@ -97,11 +97,13 @@ MAY_IMPORT = {
         "watchers",
     },
     "cli_check": {"checking", "cli_running", "endings", "errors", "report", "terminal", "trace"},
+    "cli_diff": {"cli_running", "report", "run", "terminal", "watchers"},
     "cli": {"endings", "errors", "explain", "report", "run", "shipped", "terminal", "trace", "watchers"}
     | {
         "cli_boards",
         "cli_check",
         "cli_colours",
+        "cli_diff",
         "cli_html",
         "cli_ldf",
         "cli_record",

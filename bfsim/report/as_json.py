@@ -11,8 +11,9 @@ from pydantic_core import to_jsonable_python
 
 from bfsim.report.budget import budget_of
 from bfsim.report.digest import cycle_digest, identity_digest
+from bfsim.report.owners import owner_frames
 from bfsim.report.warnings import warnings_of
-from bfsim.trace import OwnerCost, RunRecord, RunWarning
+from bfsim.trace import RunRecord, RunWarning
 
 SCHEMA = "bfsim.run/3"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
@@ -46,31 +47,12 @@ def as_json(run: RunRecord) -> dict[str, Any]:
         "warnings": warnings,
         "budget": budget,
         **plain,
-        "owners": list(_owners(run)),
+        "owners": to_jsonable_python(list(owner_frames(run))),
     }
 
 
 def _plain(value: Any) -> Any:
     return dict(value) if isinstance(value, Mapping) else []
-
-
-def _owners(run: RunRecord) -> Iterator[dict[str, Any]]:
-    """Yield whose cycles they were, core by core: of each owner in each stage its calls and its elapsed cycles in every frame."""
-    found: dict[tuple[str, str, str, str], dict[int, OwnerCost]] = {}
-    for number, frame in enumerate(run.frames):
-        for core in frame.cores:
-            for each in core.owners:
-                found.setdefault((core.core, each.stage, each.owner, each.symbol), {})[number] = each
-    for (core_name, stage, owner, symbol), costs in found.items():
-        in_frames = [costs.get(number) for number in range(len(run.frames))]
-        yield {
-            "core": core_name,
-            "stage": stage,
-            "owner": owner,
-            "symbol": symbol,
-            "calls": [each.calls if each else 0 for each in in_frames],
-            "elapsed_cclk": [each.elapsed_cclk if each else 0 for each in in_frames],
-        }
 
 
 def _flat(warning: RunWarning) -> dict[str, Any]:

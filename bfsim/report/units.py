@@ -1,9 +1,10 @@
-"""Sizes of memory and rates of clocks for people."""
+"""Sizes of memory, rates of clocks and large counts for people."""
 
 from __future__ import annotations
 
 KIB = 1024
 MIB = 1024 * KIB
+MILLION = 1_000_000
 
 
 def size(nbytes: int) -> str:
@@ -16,3 +17,9 @@ def size(nbytes: int) -> str:
 def mhz(hz: float) -> str:
     """Return a rate in MHz."""
     return f"{hz / 1e6:.6g} MHz"
+
+
+def counted(number: int, *, sign: bool = False) -> str:
+    """Return a count with thousands apart, from ten millions on in millions: 1,843,200 and 303.54 M; with its `sign` also if positive."""
+    plus = "+" if sign else ""
+    return f"{number / MILLION:{plus},.2f} M" if abs(number) >= 10 * MILLION else f"{number:{plus},}"

@@ -1,0 +1,18 @@
+"""The difference of two runs as JSON."""
+
+from __future__ import annotations
+
+import json
+
+from pydantic_core import to_jsonable_python
+
+from bfsim.report.diff.difference import Difference
+
+SCHEMA = "bfsim.diff/1"
+"""Name and version of the layout; the version rises when a key changes its meaning or goes away."""
+
+
+def diff_json(difference: Difference) -> str:
+    """Return all of a difference as indented text. Keys are the field names of `difference`, so each carries its unit."""
+    plain = {"schema": SCHEMA, "cclk": difference.cclk, **to_jsonable_python(difference)}
+    return f"{json.dumps(plain, indent=2, ensure_ascii=False)}\n"

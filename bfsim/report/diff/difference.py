@@ -1,0 +1,93 @@
+"""The difference of two runs as plain data: a tree of contributions, each the sum of its parts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Kind(StrEnum):
+    """What a contribution is of."""
+
+    STAGE = "stage"
+    KERNEL = "kernel"
+    OTHER = "no kernel"
+    FOLLOWS = "follows"
+    LINE = "line"
+    CAUSE = "cause"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contribution:
+    """Part of a difference, in CCLK cycles of both cores over all compared frames. The `parts`, if any, sum to `cclk`.
+
+    `place` is FILE:LINE of the new run, or of the old one for what is gone. `before_cclk` and `after_cclk` are None for a cause,
+    which is a difference alone. Waits for the other core or for the cameras are of kind FOLLOWS: they grow and shrink with what
+    the rest of the firmware takes.
+    """
+
+    kind: Kind
+    name: str
+    place: str
+    before_cclk: int | None
+    after_cclk: int | None
+    cclk: int
+    parts: tuple[Contribution, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Change:
+    """Something about the runs that is not the same: what it is, and what it was and is."""
+
+    what: str
+    before: str
+    after: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrameChange:
+    """A frame and the cycles of the core that it took longest, before and after."""
+
+    index: int
+    before_cclk: int
+    after_cclk: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeenChange:
+    """Something that the firmware told only one of the runs about, in so many `frames`, of which `first` was the first.
+
+    `gone`: seen before and not after.
+    """
+
+    name: str
+    gone: bool
+    frames: int
+    first: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Difference:
+    """Two runs beside each other. `frames` are those that both have; cycles are of these alone.
+
+    The `stages` sum to `after_cclk - before_cclk`, the largest contribution first. They have source lines only where both runs
+    have the same frames (`has_lines`), since lines are counted over a whole run. `before_ms` and `after_ms` are of a frame on
+    average. `results` are the firmware's published numbers, summed over the frames.
+    """
+
+    configuration: tuple[Change, ...]
+    frames: tuple[int, ...]
+    has_lines: bool
+    before_ms: float
+    after_ms: float
+    before_cclk: int
+    after_cclk: int
+    stages: tuple[Contribution, ...]
+    changed_frames: tuple[FrameChange, ...]
+    results: tuple[Change, ...]
+    seen: tuple[SeenChange, ...]
+
+    @property
+    def cclk(self) -> int:
+        """Cycles more than before."""
+        return self.after_cclk - self.before_cclk

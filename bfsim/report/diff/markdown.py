@@ -1,0 +1,49 @@
+"""The difference of two runs as Markdown, for a comment on a pull request."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from bfsim.report.diff.difference import Difference
+from bfsim.report.diff.sentences import reason, verdict
+from bfsim.report.diff.tables import cells, frames_compared, labelled, seen_lines, shown
+
+INDENT = "&emsp;"
+
+
+def diff_markdown(difference: Difference, top: int) -> str:
+    """Return the difference with its `top` largest contributions."""
+    return "\n".join(_lines(difference, top)) + "\n"
+
+
+def _lines(difference: Difference, top: int) -> Iterator[str]:
+    yield f"**{verdict(difference)}**"
+    if because := reason(difference):
+        yield f"\n{_escaped(because)}"
+    if difference.configuration:
+        rows = ((each.what, each.before, each.after) for each in difference.configuration)
+        yield from _table(("Configuration", "before", "after"), rows)
+    contributions = shown(difference, top)
+    if contributions:
+        heads = f"Cycles of both cores in {frames_compared(difference)}", "before", "after", "difference"
+        yield from _table(
+            heads, ((INDENT * depth + labelled(each), *cells(each)) for depth, each in contributions)
+        )
+    for each in seen_lines(difference):
+        yield f"- {_escaped(each)}"
+
+
+def _table(heads: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[str]:
+    yield ""
+    yield f"| {' | '.join(heads)} |"
+    yield f"| --- |{' ---: |' * (len(heads) - 1)}"
+    for row in rows:
+        yield f"| {' | '.join(_escaped(each) for each in row)} |"
+    yield ""
+
+
+def _escaped(text: str) -> str:
+    """Return text that no renderer of Markdown takes for markup or for the end of a cell."""
+    for mark in "\\`*_|<>[]":
+        text = text.replace(mark, f"\\{mark}")
+    return text.replace("\n", " ")

@@ -1,0 +1,48 @@
+"""The difference of two runs in a sentence or two: what it is, and what makes most of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from bfsim.report.diff.difference import Contribution, Difference, Kind
+from bfsim.report.units import counted
+
+
+def verdict(difference: Difference) -> str:
+    """Say by how much a frame takes longer or shorter."""
+    before, after = difference.before_ms, difference.after_ms
+    if not difference.cclk and before == after:
+        return f"No difference: {after:.2f} ms a frame, every cycle of every frame as before."
+    change = round(100 * (after / before - 1), 2)
+    word = "slower" if change > 0 else "faster" if change < 0 else "as fast as before"
+    return (
+        f"{before:.2f} → {after:.2f} ms a frame ({change:+.2f} %, {word}): {1000 / before:.2f} → "
+        f"{1000 / after:.2f} frames/s."
+    )
+
+
+def reason(difference: Difference) -> str:
+    """Say where the largest contribution is, from the stage down to the cause; nothing where there is no difference."""
+    parts = [f"{_named(each)} {counted(each.cclk, sign=True)}" for each in _largest(difference.stages)]
+    return f"The largest part, in cycles of both cores: {'; in it '.join(parts)}." if parts else ""
+
+
+def _named(contribution: Contribution) -> str:
+    if contribution.kind is Kind.LINE:
+        return f"line {contribution.place.rpartition(':')[2]}"
+    return f"{contribution.name} ({contribution.place})" if contribution.place else contribution.name
+
+
+def _largest(parts: Sequence[Contribution]) -> Iterator[Contribution]:
+    """Yield the largest contribution that follows from no other, and in it the largest again."""
+    own = [each for each in parts if each.kind is not Kind.FOLLOWS and each.cclk]
+    if own:
+        largest = max(own, key=lambda each: abs(_own_cclk(each)))
+        yield largest
+        yield from _largest(largest.parts)
+
+
+def _own_cclk(contribution: Contribution) -> int:
+    """Cycles without the waits that follow from others."""
+    following = sum(each.cclk for each in contribution.parts if each.kind is Kind.FOLLOWS)
+    return contribution.cclk - following

@@ -1,0 +1,131 @@
+"""The difference of two runs as rich tables of 80 columns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from bfsim.report.diff.contributions import walk
+from bfsim.report.diff.difference import Change, Contribution, Difference, Kind
+from bfsim.report.diff.sentences import reason, verdict
+from bfsim.report.tables import new_table, stacked
+from bfsim.report.units import counted
+
+FRAMES_LISTED = 5
+"""Frames that changed most which are listed."""
+
+RESULTS_LISTED = 10
+"""Published numbers that changed which are listed."""
+
+
+def diff_report(difference: Difference, top: int) -> RenderableType:
+    """Return the difference: what it is, what was compared, the `top` contributions, frames, results and what was seen."""
+    lines = [verdict(difference), reason(difference), *_scope(difference)]
+    return stacked(
+        Text("\n".join(each for each in lines if each)),
+        *_change_table("What differs in the configuration", "What", difference.configuration),
+        *_contribution_table(difference, top),
+        *_frame_table(difference),
+        *_change_table(
+            "Published numbers, all frames together", "Number", difference.results, RESULTS_LISTED
+        ),
+        *_seen(difference),
+    )
+
+
+def _scope(difference: Difference) -> Iterator[str]:
+    if not difference.has_lines:
+        yield (
+            f"The runs do not have the same frames: {len(difference.frames)} are in both, and cycles are of these, "
+            "without source lines."
+        )
+
+
+def _change_table(
+    title: str, first: str, changes: Sequence[Change], most: int | None = None
+) -> Iterator[Table]:
+    if changes:
+        table = new_table(title, first, "before", "after")
+        for column in table.columns[1:]:
+            column.justify, column.overflow = "left", "fold"
+        for each in changes[:most]:
+            table.add_row(each.what, each.before, each.after)
+        if most and len(changes) > most:
+            table.add_row(f"({len(changes) - most} others)")
+        yield table
+
+
+def _contribution_table(difference: Difference, top: int) -> Iterator[Table]:
+    rows = shown(difference, top)
+    if not rows:
+        return
+    title = f"Cycles of both cores in {frames_compared(difference)}, the largest difference first"
+    table = new_table(title, "Stage / kernel / line / cause", "before", "after", "difference")
+    for depth, each in rows:
+        bold = "bold" if each.kind is Kind.STAGE else "dim" if each.kind is Kind.FOLLOWS else None
+        table.add_row("  " * depth + labelled(each), *cells(each), style=bold)
+    table.add_section()
+    sums = difference.before_cclk, difference.after_cclk
+    table.add_row("All", *(counted(each) for each in sums), counted(difference.cclk, sign=True), style="bold")
+    # where room is short the source text gives way, never a number
+    table.expand, table.columns[0].ratio = True, 1
+    yield table
+
+
+def frames_compared(difference: Difference) -> str:
+    """Return how many frames are compared."""
+    count = len(difference.frames)
+    return f"{count} frame{'s' if count > 1 else ''}"
+
+
+def labelled(contribution: Contribution) -> str:
+    """Return what a contribution is called, with its place."""
+    if contribution.kind is Kind.LINE:
+        return f"{contribution.place.rpartition(':')[2]}  {contribution.name}"
+    return f"{contribution.name} ({contribution.place})" if contribution.place else contribution.name
+
+
+def cells(contribution: Contribution) -> tuple[str, str, str]:
+    """Return the cycles before, after, and more than before."""
+    before, after = (
+        "" if each is None else counted(each) for each in (contribution.before_cclk, contribution.after_cclk)
+    )
+    return before, after, counted(contribution.cclk, sign=True)
+
+
+def shown(difference: Difference, top: int) -> list[tuple[int, Contribution]]:
+    """Return the `top` largest contributions that have no parts, and what they are parts of, with their depths."""
+    rows = list(walk(difference.stages))
+    leaves = [each for _, each in rows if not each.parts and each.cclk]
+    wanted = {id(each) for each in sorted(leaves, key=lambda each: -abs(each.cclk))[:top]}
+    return [(depth, each) for depth, each in rows if wanted & set(_ids(each))]
+
+
+def _ids(contribution: Contribution) -> Iterable[int]:
+    return (id(each) for _, each in walk([contribution]))
+
+
+def _frame_table(difference: Difference) -> Iterator[Table]:
+    changed = difference.changed_frames
+    if changed:
+        title = f"Frames that changed most, of {len(changed)} (cycles of the slower core)"
+        table = new_table(title, "Frame", "before", "after", "difference")
+        for each in changed[:FRAMES_LISTED]:
+            more = each.after_cclk - each.before_cclk
+            table.add_row(str(each.index), f"{each.before_cclk:,}", f"{each.after_cclk:,}", f"{more:+,}")
+        yield table
+
+
+def _seen(difference: Difference) -> Iterator[Text]:
+    if difference.seen:
+        yield Text("\n".join(seen_lines(difference)))
+
+
+def seen_lines(difference: Difference) -> Iterator[str]:
+    """Yield sentences about what only one of the runs saw."""
+    for each in difference.seen:
+        frames = f"{each.frames} frame{'s' if each.frames > 1 else ''}, first in {each.first}"
+        yield f"{each.name}: {'seen before, not any more' if each.gone else 'seen now, not before'}, in {frames}"

@@ -1,0 +1,48 @@
+"""Whose cycles those of a run are, frame by frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from bfsim.trace import OwnerCost, RunRecord, StallReason
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnerFrames:
+    """An owner of cycles in a stage of a core, named as in `OwnerCost`, with a number for each frame of the run.
+
+    `waiting_cclk` are those of the elapsed cycles in which the core only waited for the other core or for the cameras.
+    """
+
+    core: str
+    stage: str
+    owner: str
+    symbol: str
+    calls: tuple[int, ...]
+    elapsed_cclk: tuple[int, ...]
+    waiting_cclk: tuple[int, ...]
+
+
+def owner_frames(run: RunRecord) -> Iterator[OwnerFrames]:
+    """Yield all owners of a run, core by core."""
+    found: dict[tuple[str, str, str, str], dict[int, OwnerCost]] = {}
+    for number, frame in enumerate(run.frames):
+        for core in frame.cores:
+            for each in core.owners:
+                found.setdefault((core.core, each.stage, each.owner, each.symbol), {})[number] = each
+    for (core_name, stage, owner, symbol), costs in found.items():
+        in_frames = [costs.get(number) for number in range(len(run.frames))]
+        yield OwnerFrames(
+            core=core_name,
+            stage=stage,
+            owner=owner,
+            symbol=symbol,
+            calls=tuple(each.calls if each else 0 for each in in_frames),
+            elapsed_cclk=tuple(each.elapsed_cclk if each else 0 for each in in_frames),
+            waiting_cclk=tuple(_waiting(each) if each else 0 for each in in_frames),
+        )
+
+
+def _waiting(cost: OwnerCost) -> int:
+    return cost.idle_cclk + (0 if cost.symbol else cost.stall_cclk.get(StallReason.SEMAPHORE, 0))

@@ -1,0 +1,94 @@
+"""Results of earlier runs: the files that `bfsim run --json` writes, read back."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from bfsim.errors import ConfigError, cut, shown
+from bfsim.report.as_json import SCHEMA
+from bfsim.report.owners import OwnerFrames, owner_frames
+from bfsim.trace import RunRecord, WarningKind
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """A run; by the frame's index what was seen in it (`seen_json`), nothing where the firmware has no view; and whose the cycles were.
+
+    What was read from a file has its `owners` here alone, and not in the frames of the run.
+    """
+
+    run: RunRecord
+    seen: Mapping[int, Mapping[str, Any]]
+    owners: Sequence[OwnerFrames]
+
+
+def result_of(run: RunRecord, seen: Mapping[int, Mapping[str, Any]]) -> Result:
+    """Return a run that has just been made as a result."""
+    return Result(run, seen, tuple(owner_frames(run)))
+
+
+def read_result(path: Path) -> Result:
+    """Read what `bfsim run --json` wrote. Raises ConfigError that names the file, the key and what must be there."""
+    plain = _plain(path)
+    if plain.get("schema") != SCHEMA:
+        raise ConfigError(
+            f"{path} must be a result of this version of bfsim, schema {SCHEMA}, not {shown(plain.get('schema'))}: "
+            "write it again with `bfsim run --json`"
+        )
+    try:
+        run = _records().validate_python({**plain, "assumptions": _assumptions(plain)})
+        owners = _owners().validate_python(plain.get("owners"))
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = cut(".".join(str(part) for part in first["loc"])) or "the result"
+        must_be = first["msg"].replace("Input should", "must").replace("Field required", "must be there")
+        raise ConfigError(f"{path}: {key} {must_be}, not {shown(first['input'])}") from None
+    if any(len(each.elapsed_cclk) != len(run.frames) for each in owners):
+        raise ConfigError(f"{path}: owners must have a number for each of the {len(run.frames)} frames")
+    if not run.frames:
+        raise ConfigError(f"{path} must hold at least one frame, and holds none")
+    return Result(run, {each["index"]: each["seen"] for each in plain["frames"] if "seen" in each}, owners)
+
+
+def _plain(path: Path) -> dict[str, Any]:
+    try:
+        plain = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise ConfigError(
+            f"{path} must be a result of `bfsim run --json`, but there is no such file"
+        ) from None
+    except (ValueError, RecursionError) as error:
+        raise ConfigError(f"{path} must be JSON as `bfsim run --json` writes it: {cut(str(error))}") from None
+    except OSError as error:
+        raise ConfigError(f"{path} must be a readable file: {error.strerror}") from error
+    if not isinstance(plain, dict):
+        raise ConfigError(f"{path} must be a result of `bfsim run --json`, not {shown(plain)}")
+    return plain
+
+
+@cache
+def _records() -> TypeAdapter[RunRecord]:
+    return TypeAdapter(RunRecord)
+
+
+@cache
+def _owners() -> TypeAdapter[tuple[OwnerFrames, ...]]:
+    return TypeAdapter(tuple[OwnerFrames, ...])
+
+
+def _assumptions(plain: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Return those of the warnings that cannot be derived from other records."""
+    warnings = plain.get("warnings")
+    kinds = {WarningKind.GEOMETRY.value, WarningKind.CLOCKS.value}
+    return [
+        {"kind": each["kind"], "text": str(each.get("text"))}
+        for each in (warnings if isinstance(warnings, list) else [])
+        if isinstance(each, dict) and each.get("kind") in kinds
+    ]

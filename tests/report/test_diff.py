@@ -1,0 +1,241 @@
+"""The difference of two runs: contributions that sum to it, lines that are found again, waits that only follow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bfsim.errors import ConfigError
+from bfsim.report.diff.alignment import LinePair, aligned
+from bfsim.report.diff.compare import difference_of
+from bfsim.report.diff.difference import Contribution, Difference, Kind
+from bfsim.report.diff.line_causes import line_causes
+from bfsim.report.diff.markdown import diff_markdown
+from bfsim.report.diff.sentences import reason, verdict
+from bfsim.report.result_file import Result, result_of
+from bfsim.trace import CoreFrame, FrameRecord, KernelRecord, LineCost, OwnerCost, RunRecord, StallReason
+from tests.report.records import IDENTITY, cost, frame, run_of
+
+TEXT = ("@kernel\n", "def blur(row):\n", "    left = row[0]\n", "    row[1] = left\n")
+SDRAM = StallReason.SDRAM_PAGE_MISS
+
+
+def line(number: int, executions: int, issue_cclk: int, **stalls: int) -> LineCost:
+    """A line with stalls by the name of their reason."""
+    stall_cclk = {StallReason[reason]: cclk for reason, cclk in stalls.items()}
+    return LineCost(line=number, executions=executions, issue_cclk=issue_cclk, stall_cclk=stall_cclk)
+
+
+def kernel(
+    *lines: LineCost, text: Sequence[str] = TEXT, name: str = "blur", stage: str = "Blur"
+) -> KernelRecord:
+    """A kernel of core A with these lines; it is called once."""
+    stalls: dict[StallReason, int] = {}
+    for each in lines:
+        for stalled, cclk in each.stall_cclk.items():
+            stalls[stalled] = stalls.get(stalled, 0) + cclk
+    return KernelRecord(
+        core="A", stage=stage, kernel=name, symbol=f"mine_{name}", file="/home/me/mine.py", first_line=10, text=tuple(text),
+        calls=1, issue_cclk=sum(each.issue_cclk for each in lines), stall_cclk=stalls, lines=lines,
+    )  # fmt: skip
+
+
+def wait(stage: str, owner: str, reason: StallReason | None, cclk: int) -> OwnerCost:
+    """A wait that no kernel owns; without a reason the core is idle."""
+    return OwnerCost(
+        stage=stage, owner=owner, symbol="", calls=0, issue_cclk=0,
+        stall_cclk={reason: cclk} if reason else {}, idle_cclk=0 if reason else cclk,
+    )  # fmt: skip
+
+
+def owner(record: KernelRecord) -> OwnerCost:
+    """What a kernel cost in the one frame of its run."""
+    return OwnerCost(
+        stage=record.stage, owner=record.kernel, symbol=record.symbol, calls=record.calls,
+        issue_cclk=record.issue_cclk, stall_cclk=record.stall_cclk, idle_cclk=0,
+    )  # fmt: skip
+
+
+def run(*kernels: KernelRecord, waits: Sequence[OwnerCost] = (), index: int = 0, **seen: Any) -> Result:
+    """A run of one frame on core A that these fill."""
+    owners = (*(owner(each) for each in kernels), *waits)
+    stages = [cost(each.stage, each.issue_cclk, each.stall_cclk, each.idle_cclk) for each in owners]
+    end_cclk = sum(each.elapsed_cclk for each in owners)
+    core = CoreFrame(core="A", begin_cclk=0, end_cclk=end_cclk, stages=tuple(stages), owners=owners)
+    record = replace(run_of([frame(index, core)]), kernels=kernels)
+    return result_of(record, {index: {"objects": [{"name": each} for each in seen.get("objects", ())]}})
+
+
+def leaves(difference: Difference) -> dict[str, int]:
+    """The contributions without parts, by their names."""
+
+    def walk(parts: Sequence[Contribution]) -> Iterator[Contribution]:
+        for each in parts:
+            yield from walk(each.parts) if each.parts else iter([each])
+
+    return {each.name: each.cclk for each in walk(difference.stages)}
+
+
+def check_sums(parts: Sequence[Contribution], cclk: int) -> None:
+    """Every whole is the sum of its parts."""
+    assert sum(each.cclk for each in parts) == cclk
+    for each in parts:
+        if each.parts:
+            check_sums(each.parts, each.cclk)
+
+
+def test_equal_runs_have_no_difference() -> None:
+    """No contribution, and a sentence that says so."""
+    one = run(kernel(line(12, 5, 50)))
+    found = difference_of(one, one)
+    assert (found.cclk, found.stages, found.configuration, found.changed_frames) == (0, (), (), ())
+    assert verdict(found).startswith("No difference")
+    assert reason(found) == ""
+
+
+def test_a_line_that_takes_longer_is_named_with_its_cause() -> None:
+    """One more operation of 3 cycles in a line that runs 100 times."""
+    before = run(kernel(line(12, 100, 200), line(13, 100, 100)))
+    after = run(kernel(line(12, 100, 500), line(13, 100, 100)))
+    found = difference_of(before, after)
+    assert found.cclk == 300
+    assert leaves(found) == {"+3 cycles x 100 times": 300}
+    assert reason(found) == (
+        "The largest part, in cycles of both cores: Blur +300; in it blur (mine.py:10) +300; in it line 12 +300; "
+        "in it +3 cycles x 100 times +300."
+    )
+
+
+def test_running_more_often_and_taking_longer_are_told_apart() -> None:
+    """From 10 times 4 cycles to 15 times 6: 5 x 4 are for the times, 15 x 2 for the cycles."""
+    causes = line_causes(line(12, 10, 40), line(12, 15, 90))
+    assert [(each.name, each.cclk) for each in causes] == [
+        ("+2 cycles x 15 times", 30),
+        ("+5 times x 4 cycles", 20),
+    ]
+
+
+def test_stalls_are_causes_by_reason() -> None:
+    """A buffer in SDRAM: the same work, and waits that were not there."""
+    found = difference_of(
+        run(kernel(line(12, 10, 40, L2_LATENCY=7))), run(kernel(line(12, 10, 40, SDRAM_PAGE_MISS=500)))
+    )
+    assert leaves(found) == {f"stall: {SDRAM}": 500, "stall: L2 latency": -7}
+
+
+def test_lines_are_found_again_where_they_moved() -> None:
+    """A line put in before another is new, and the other one has not changed."""
+    longer = (*TEXT[:2], "    # why\n", "    spare = 0\n", *TEXT[2:])
+    before = run(kernel(line(12, 10, 20), line(13, 10, 30)))
+    after = run(kernel(line(13, 10, 5), line(14, 10, 20), line(15, 10, 30), text=longer))
+    assert leaves(difference_of(before, after)) == {"new: 10 times x 0.5 cycles": 5}
+
+
+def test_waits_for_others_only_follow() -> None:
+    """The other core is waited for longer because of something else, which is the reason."""
+    semaphore, cameras = StallReason.SEMAPHORE, None
+    before = run(
+        kernel(line(12, 1, 10)),
+        waits=[wait("Blur", "core B", semaphore, 50), wait("Rest", "cameras", cameras, 9)],
+    )
+    after = run(
+        kernel(line(12, 1, 30)),
+        waits=[wait("Blur", "core B", semaphore, 900), wait("Rest", "cameras", cameras, 99)],
+    )
+    found = difference_of(before, after)
+    check_sums(found.stages, 20 + 850 + 90)
+    kinds = {part.kind: part.cclk for stage in found.stages if stage.name == "Blur" for part in stage.parts}
+    assert kinds == {Kind.FOLLOWS: 850, Kind.KERNEL: 20}
+    assert "line 12 +20" in reason(found)
+
+
+def test_kernels_that_came_and_went() -> None:
+    """Both are in full."""
+    before = run(kernel(line(12, 1, 10), name="slow"))
+    after = run(kernel(line(12, 1, 4), name="fast"))
+    found = difference_of(before, after)
+    names = {part.name: (part.before_cclk, part.after_cclk) for part in found.stages[0].parts}
+    assert names == {"slow": (10, 0), "fast": (0, 4)}
+    check_sums(found.stages, -6)
+
+
+def test_other_frames_are_compared_without_lines() -> None:
+    """Lines are counted over a whole run: where frames are missing they say nothing."""
+    first, second = run(kernel(line(12, 1, 10))), run(kernel(line(12, 1, 30)))
+    both = replace(second.run, frames=(*first.run.frames, *run(kernel(line(12, 1, 30)), index=1).run.frames))
+    found = difference_of(first, result_of(both, {}))
+    assert (found.frames, found.has_lines, found.cclk) == ((0,), False, 0)
+    with pytest.raises(ConfigError, match="frames of the same number"):
+        difference_of(first, run(kernel(line(12, 1, 30)), index=7))
+
+
+def test_the_configuration_comes_first() -> None:
+    """Names in full, digests cut."""
+    one = run(kernel(line(12, 1, 10)))
+    other = result_of(replace(one.run, identity=replace(IDENTITY, ldf="l2", ldf_digest="9" * 64)), one.seen)
+    found = difference_of(one, other)
+    assert [(each.what, each.before, each.after) for each in found.configuration] == [
+        ("ldf", "thesis", "l2"),
+        ("ldf: content", "4" * 12, "9" * 12),
+    ]
+
+
+def test_what_is_seen_no_longer() -> None:
+    """A speed-up that loses the ball says so."""
+    before = run(kernel(line(12, 1, 10)), objects=["ball", "goal"])
+    after = run(kernel(line(12, 1, 5)), objects=["goal", "goal"])
+    found = difference_of(before, after)
+    assert [(each.name, each.gone, each.frames, each.first) for each in found.seen] == [
+        ("ball", True, 1, 0),
+        ("goal", False, 1, 0),
+    ]
+
+
+def test_markdown_takes_no_markup_from_sources() -> None:
+    """A pipe or a tag in a source line stays what it is."""
+    text = (*TEXT[:2], "    x = a | b  # <script>\n", TEXT[3])
+    before, after = (run(kernel(line(12, 1, cclk), text=text)) for cclk in (10, 30))
+    assert r"x = a \| b  # \<script\>" in diff_markdown(difference_of(before, after), top=5)
+
+
+def test_lines_are_aligned_in_their_order() -> None:
+    """Equal ones first; indentation is no difference."""
+    assert list(aligned(["a", "b", "c"], ["  a", "x", "c", "d"])) == [
+        LinePair(0, 0),
+        LinePair(1, 1),
+        LinePair(2, 2),
+        LinePair(None, 3),
+    ]
+
+
+costs = st.tuples(st.integers(0, 50), st.integers(0, 10**6), st.integers(0, 10**6))
+
+
+@given(st.lists(costs, min_size=4, max_size=4), st.lists(costs, min_size=4, max_size=4), st.integers(0, 999))
+def test_contributions_sum_to_the_difference(
+    old: list[tuple[int, int, int]], new: list[tuple[int, int, int]], waited: int
+) -> None:
+    """Whatever changed, at every level."""
+
+    def made(values: list[tuple[int, int, int]], waited: int) -> Result:
+        lines = [line(10 + i, *each[:2], SDRAM_PAGE_MISS=each[2]) for i, each in enumerate(values)]
+        return run(
+            kernel(*lines[:2]),
+            kernel(*lines[2:], name="other"),
+            waits=[wait("Rest", "ring", SDRAM, 1 + waited)],
+        )
+
+    before, after = made(old, 7), made(new, waited)
+    found = difference_of(before, after)
+    check_sums(found.stages, found.cclk)
+    assert found.cclk == _elapsed(after.run) - _elapsed(before.run)
+
+
+def _elapsed(run: RunRecord) -> int:
+    frames: Sequence[FrameRecord] = run.frames
+    return sum(core.end_cclk - core.begin_cclk for each in frames for core in each.cores)
