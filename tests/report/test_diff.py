@@ -16,7 +16,7 @@ from bfsim.report.diff.compare import difference_of
 from bfsim.report.diff.difference import Contribution, Difference, Kind
 from bfsim.report.diff.line_causes import line_causes
 from bfsim.report.diff.markdown import diff_markdown
-from bfsim.report.diff.sentences import reason, verdict
+from bfsim.report.diff.sentences import clock, reason, verdict
 from bfsim.report.result_file import Result, result_of
 from bfsim.trace import CoreFrame, FrameRecord, KernelRecord, LineCost, OwnerCost, RunRecord, StallReason
 from tests.report.records import IDENTITY, cost, frame, run_of
@@ -183,6 +183,16 @@ def test_the_configuration_comes_first() -> None:
         ("ldf", "thesis", "l2"),
         ("ldf: content", "4" * 12, "9" * 12),
     ]
+
+
+def test_another_clock_is_told_apart_from_cycles() -> None:
+    """The same cycles at half the clock take twice as long, and no line is the reason."""
+    one = run(kernel(line(12, 1, 1000)))
+    slower = result_of(replace(one.run, identity=replace(IDENTITY, cclk_hz=IDENTITY.cclk_hz / 2)), one.seen)
+    found = difference_of(one, slower)
+    assert found.cclk == 0
+    assert clock(found) == ("The core clock went from 1 MHz to 0.5 MHz, which alone makes +1.00 ms a frame.")
+    assert clock(difference_of(one, one)) == ""
 
 
 def test_what_is_seen_no_longer() -> None:

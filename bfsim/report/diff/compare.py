@@ -33,6 +33,8 @@ def difference_of(before: Result, after: Result) -> Difference:
         has_lines=has_lines,
         before_ms=1000 / budget_of(old).frame_rate_hz,
         after_ms=1000 / budget_of(new).frame_rate_hz,
+        before_hz=old.identity.cclk_hz,
+        after_hz=new.identity.cclk_hz,
         before_cclk=sum(_cclk(each) for each in olds),
         after_cclk=sum(_cclk(each) for each in news),
         stages=tuple(each for each in stages if each.cclk or each.parts),

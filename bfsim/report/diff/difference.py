@@ -72,7 +72,7 @@ class Difference:
 
     The `stages` sum to `after_cclk - before_cclk`, the largest contribution first. They have source lines only where both runs
     have the same frames (`has_lines`), since lines are counted over a whole run. `before_ms` and `after_ms` are of a frame on
-    average. `results` are the firmware's published numbers, summed over the frames.
+    average, at the core clocks `before_hz` and `after_hz`. `results` are the firmware's published numbers, summed over the frames.
     """
 
     configuration: tuple[Change, ...]
@@ -80,6 +80,8 @@ class Difference:
     has_lines: bool
     before_ms: float
     after_ms: float
+    before_hz: float
+    after_hz: float
     before_cclk: int
     after_cclk: int
     stages: tuple[Contribution, ...]

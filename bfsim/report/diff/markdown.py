@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from bfsim.report.diff.difference import Difference
-from bfsim.report.diff.sentences import reason, verdict
+from bfsim.report.diff.sentences import clock, reason, verdict
 from bfsim.report.diff.tables import cells, frames_compared, labelled, seen_lines, shown
 
 INDENT = "&emsp;"
@@ -18,8 +18,9 @@ def diff_markdown(difference: Difference, top: int) -> str:
 
 def _lines(difference: Difference, top: int) -> Iterator[str]:
     yield f"**{verdict(difference)}**"
-    if because := reason(difference):
-        yield f"\n{_escaped(because)}"
+    for why in (clock(difference), reason(difference)):
+        if why:
+            yield f"\n{_escaped(why)}"
     if difference.configuration:
         rows = ((each.what, each.before, each.after) for each in difference.configuration)
         yield from _table(("Configuration", "before", "after"), rows)

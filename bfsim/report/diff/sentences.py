@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from bfsim.report.diff.difference import Contribution, Difference, Kind
-from bfsim.report.units import counted
+from bfsim.report.units import counted, mhz
 
 
 def verdict(difference: Difference) -> str:
@@ -19,6 +19,15 @@ def verdict(difference: Difference) -> str:
         f"{before:.2f} → {after:.2f} ms a frame ({change:+.2f} %, {word}): {1000 / before:.2f} → "
         f"{1000 / after:.2f} frames/s."
     )
+
+
+def clock(difference: Difference) -> str:
+    """Say what another core clock makes of the difference; nothing where the clock is the same."""
+    before, after = difference.before_hz, difference.after_hz
+    if before == after:
+        return ""
+    alone_ms = difference.before_ms * (before / after - 1)
+    return f"The core clock went from {mhz(before)} to {mhz(after)}, which alone makes {alone_ms:+.2f} ms a frame."
 
 
 def reason(difference: Difference) -> str:

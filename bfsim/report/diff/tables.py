@@ -10,7 +10,7 @@ from rich.text import Text
 
 from bfsim.report.diff.contributions import walk
 from bfsim.report.diff.difference import Change, Contribution, Difference, Kind
-from bfsim.report.diff.sentences import reason, verdict
+from bfsim.report.diff.sentences import clock, reason, verdict
 from bfsim.report.tables import new_table, stacked
 from bfsim.report.units import counted
 
@@ -23,7 +23,7 @@ RESULTS_LISTED = 10
 
 def diff_report(difference: Difference, top: int) -> RenderableType:
     """Return the difference: what it is, what was compared, the `top` contributions, frames, results and what was seen."""
-    lines = [verdict(difference), reason(difference), *_scope(difference)]
+    lines = [verdict(difference), clock(difference), reason(difference), *_scope(difference)]
     return stacked(
         Text("\n".join(each for each in lines if each)),
         *_change_table("What differs in the configuration", "What", difference.configuration),
