@@ -10,8 +10,6 @@ PLACEMENTS = DEFAULT_LDF.parent
 SEMAPHORES_OF_FIRST_FRAME = (
     3  # each core posts one and takes one; before it, core A posts that orders are taken
 )
-MIXED = "Object detection"
-"""A kernel there is called with arrays of different memories; what it reads is counted as the first call's."""
 
 
 def test_rows_in_l2_stall_for_every_read() -> None:
@@ -20,11 +18,13 @@ def test_rows_in_l2_stall_for_every_read() -> None:
     at_home = simulate(frames=1)
     moved = simulate(frames=1, ldf=PLACEMENTS / "l2.ldf")
     assert moved.frames[0].results == at_home.frames[0].results
+    memory_of = {each.buffer: each.memory for each in moved.buffers}
     for core, home in zip(moved.frames[0].cores, at_home.frames[0].cores, strict=True):
-        kernels = [each for each in moved.kernels if each.core == core.core and each.stage != MIXED]
-        stages = [each for each in core.stages if each.stage != MIXED]
-        reads = sum(each.accesses.get("L2", (0, 0))[0] for each in kernels)
-        stalls = sum(each.stall_cclk.get(StallReason.L2_LATENCY, 0) for each in stages)
+        mine = [
+            each for each in moved.accesses if each.core == core.core and memory_of.get(each.buffer) == "L2"
+        ]
+        reads = sum(each.reads for each in mine)
+        stalls = sum(each.stall_cclk.get(StallReason.L2_LATENCY, 0) for each in core.stages)
         assert reads > 1_000_000
         testset_cclk = BF561.l2.read_cclk + BF561.l2.next_cclk
         assert stalls == reads * (BF561.l2.read_cclk - 1) + SEMAPHORES_OF_FIRST_FRAME * testset_cclk
