@@ -122,6 +122,9 @@ class BareCore:
             call = self._calls[key] = kernel.prepare(code, rows, code.new_totals())
         return call.run(arguments)
 
+    def at(self, *place: int | range) -> None:
+        """Take no note of a place: nothing is drawn."""
+
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Charge nothing."""

@@ -121,7 +121,7 @@ class Program:
     def call_offsets(self, routine: str) -> tuple[Offset, ...]:
         """Return, of each call that a routine makes, where the callee's part begins, from where the caller's does."""
         calls = self.costs.calls.get(routine, ())
-        if not self._has_tree:
+        if not calls or not self._has_tree:
             return (Offset(0, 0),) * len(calls)
         found, at = dict[RoutineCall, Offset](), self._own_size(routine)
         for each in calls:
