@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cache
 from itertools import groupby
 from typing import NamedTuple, overload
 
@@ -17,6 +18,9 @@ COLUMNS = FIRST_STALL + len(REASONS)
 """What a row has of one owner in one stage: calls, issue and idle cycles, and stalls in the order of `StallReason`."""
 COLUMN_OF = {reason: FIRST_STALL + number for number, reason in enumerate(REASONS)}
 
+NUMBER = np.dtype([("owner", np.uint32), ("column", np.uint8), ("cclk", np.int64)])
+"""A number that is not 0: of which owner, in which column."""
+
 
 class Owner(NamedTuple):
     """An owner of cycles in a stage, named as in `trace.OwnerCost`."""
@@ -26,24 +30,30 @@ class Owner(NamedTuple):
     symbol: str = ""
 
 
+@cache
+def _shared(owners: tuple[Owner, ...]) -> tuple[Owner, ...]:
+    """Return the first tuple that was equal: most frames have the same owners."""
+    return owners
+
+
 class OwnerCosts(Sequence[OwnerCost]):
     """The costs of owners, made from a table with a row of COLUMNS for each; rows of zeros are left out."""
 
-    __slots__ = ("_cclk", "_columns", "_owners", "_rows")
+    __slots__ = ("_numbers", "_owners")
 
     def __init__(self, owners: Sequence[Owner], table: NDArray[np.int64]) -> None:
         rows, columns = np.nonzero(table)
         kept, row_of = np.unique(rows, return_inverse=True)
-        self._owners = tuple(owners[each] for each in kept.tolist())
-        self._rows = row_of.astype(np.uint32)
-        self._columns = columns.astype(np.uint8)
-        self._cclk = table[rows, columns]
+        self._owners = _shared(tuple(owners[each] for each in kept.tolist()))
+        numbers = np.empty(len(rows), NUMBER)
+        numbers["owner"], numbers["column"], numbers["cclk"] = row_of, columns, table[rows, columns]
+        self._numbers = numbers.tobytes()
 
     def __len__(self) -> int:
         return len(self._owners)
 
     def __iter__(self) -> Iterator[OwnerCost]:
-        numbers = zip(self._rows.tolist(), self._columns.tolist(), self._cclk.tolist(), strict=True)
+        numbers = np.frombuffer(self._numbers, NUMBER).tolist()
         for row, group in groupby(numbers, key=lambda each: each[0]):
             yield _cost(self._owners[row], {column: number for _, column, number in group})
 
