@@ -36,6 +36,10 @@ SAMPLED = 500
 ROOT = Path(__file__).parent.parent
 
 
+def _most_mb() -> int:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> 10
+
+
 @dataclass(slots=True)
 class Tally:
     """How many inputs of each kind ended how, and what was wrong with those that ended wrongly."""
@@ -43,6 +47,8 @@ class Tally:
     counts: Counter[tuple[str, int]] = field(default_factory=Counter)
     faults: list[str] = field(default_factory=list)
     sampled: int = 0
+    begun_at_mb: int = field(default_factory=_most_mb)
+    """What the process took before: a test's has done other things."""
 
     def lines(self) -> Iterator[str]:
         """Yield a line for each kind, and one for each fault."""
@@ -72,7 +78,8 @@ def try_one(seed: int, number: int, tally: Tally) -> None:
         arguments = kind(random, Path(name))
         begun = time.process_time()
         result = CliRunner().invoke(bfsim, arguments, prog_name="bfsim")
-        problem = _problem(result.exit_code, result.stderr, time.process_time() - begun)
+        spent_s, grown_mb = time.process_time() - begun, _most_mb() - tally.begun_at_mb
+        problem = _problem(result.exit_code, result.stderr, spent_s, grown_mb)
         if result.exception and not isinstance(result.exception, SystemExit):
             problem = f"{type(result.exception).__name__}: {str(result.exception)[:200]}"
         if not problem and number % SAMPLED == SAMPLED - 1:
@@ -84,9 +91,8 @@ def try_one(seed: int, number: int, tally: Tally) -> None:
         tally.faults.append(f"--seed {seed} --only {number}: {kind.__name__}: {problem}: bfsim {shown!r}")
 
 
-def _problem(code: int, stderr: str, seconds: float) -> str:
+def _problem(code: int, stderr: str, seconds: float, used_mb: int) -> str:
     """Say what is wrong with how an input ended; nothing if all is well."""
-    used_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> 10
     if code not in (0, 2):
         return f"exit code {code}"
     if code == 2 and not stderr.strip():

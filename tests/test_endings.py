@@ -21,10 +21,10 @@ import bfsim.report.overlay.files as files
 
 drawn = files.overlay_of
 
-def slowly(frame):
+def slowly(*frame, **how):
     open("drawing", "w").close()
     time.sleep(1)
-    return drawn(frame)
+    return drawn(*frame, **how)
 
 files.overlay_of = slowly
 from bfsim.__main__ import main
