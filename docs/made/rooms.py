@@ -11,10 +11,10 @@ FLOORS = (
         ("trace", "records"),
         ("seen", "what a frame showed"),
     ),
-    (("chip", "data: chips, boards, registers"), ("kernel", "Python → code and cost")),
+    (("spans", "the timeline"), ("chip", "data: boards, registers"), ("kernel", "Python → code and cost")),
     (("linker", "LDF → placement"), ("recording", "frames in, results out")),
     (("machine", "the devices; the only room with SimPy"), ("report", "records → tables, pictures")),
-    (("api", "all that firmware imports"), ("loading", "firmware by name")),
+    (("api", "all that firmware imports"), ("loading", "firmware by name"), ("result", "a run with reports")),
     (("run", "recording + firmware + board + LDF → records"), ("explain", "a kernel line by line")),
     (("cli", "commands: parse, call, print"),),
 )
