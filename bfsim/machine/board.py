@@ -22,13 +22,13 @@ from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.memory_owners import MemoryOwner
 from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches, written_through
-from bfsim.machine.calls.call_cache import CallCache
+from bfsim.machine.calls.call_cache import BeforeCall, CallCache
 from bfsim.machine.calls.conflicts import SubBanks
 from bfsim.machine.calls.fetch import CodeCache, CodeOutside
 from bfsim.machine.calls.ledger import Ledger
 from bfsim.machine.cameras.capture import Capture, Feed, Pair, StereoPictures
 from bfsim.machine.cameras.ppi import Ppi
-from bfsim.machine.code import code_outside_l1, code_records, code_symbols
+from bfsim.machine.code import code_outside_l1, code_records, code_symbols, object_file
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.interrupts import Interrupts
 from bfsim.machine.core.layouts import Layouts
@@ -121,7 +121,13 @@ def symbols_of(firmware: Firmware, size: FrameSize, profile: CompilerProfile = V
             if not isinstance(each, Buffer):
                 raise FirmwareError(f"buffers of {owner} must be of bfsim.api.Buffer, not {each!r}")
             found.append(
-                Symbol(name=each.name, section=each.section, nbytes=each.nbytes, processor=PROCESSORS[owner])
+                Symbol(
+                    name=each.name,
+                    section=each.section,
+                    nbytes=each.nbytes,
+                    processor=PROCESSORS[owner],
+                    object_file=object_file(each.name),
+                )
             )
     return found
 
@@ -142,7 +148,7 @@ def _called(firmware: Firmware, size: FrameSize) -> Buffers:
 
 @dataclass
 class Board:
-    """A board with firmware in it, and `device` on its SPI, ready to run once."""
+    """A board with firmware in it, and `device` on its SPI, ready to run once. `core`: makes its cores."""
 
     spec: BoardSpec
     firmware: Firmware
@@ -150,10 +156,11 @@ class Board:
     link_map: LinkMap
     feed: Feed = Feed.DEMAND
     profile: CompilerProfile = VDSP_O2
-    sanitize: bool = False
+    before_call: tuple[BeforeCall, ...] = ()
     device: SpiDevice = field(default_factory=SpiDevice)
     fidelity: Fidelity = Fidelity.FAST
     weave: Weave = compiled_weave
+    core: Callable[..., Core] = Core
     cores: dict[str, Core] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -226,6 +233,20 @@ class Board:
                 )
                 self._bus.owners.add(MemoryOwner(record.memory, record.buffer, record.nbytes), rows[0].offset)
                 yield record
+
+    @property
+    def owners_of_memory(self) -> list[tuple[str, int]]:
+        """Name and bytes of each owner of memory; what belongs to no buffer has no name."""
+        return [(each.buffer, each.nbytes) for each in self._bus.owners]
+
+    @property
+    def is_bound_to_placement(self) -> bool:
+        """Whether what is accessed depends on where everything lies: where there is a cache, or code outside of L1."""
+        outside = (
+            code_outside_l1(self.link_map, PROCESSORS[core], self.spec.chip.regions, self._memories)
+            for core in self.spec.chip.cores
+        )
+        return any(each.data or each.code for each in self._caches.values()) or any(outside)
 
     def _declared(self, core: str, size: FrameSize) -> dict[str, Buffer]:
         """Return the buffers that a core knows by name, as the firmware declares them for pictures of `size`."""
@@ -382,10 +403,10 @@ class Board:
             subbanks,
             self._bus.owners,
             Ledger(partial(self._bus.stalls_at_sites, index)),
-            sanitize=self.sanitize,
+            before_call=self.before_call,
         )
         inward, outward = (MdmaStream(self._bus, self.spec, each) for each in MDMA_MASTERS[index])
-        return Core(
+        return self.core(
             self._env,
             name,
             self.spec,

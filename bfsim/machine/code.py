@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from types import CodeType, FunctionType
 from typing import Any
@@ -25,7 +26,17 @@ def code_symbols(main: Main, processor: str | None, profile: CompilerProfile) ->
     nbytes: dict[str, int] = {}
     for kernel in kernels_named(main):
         nbytes.update(kernel.code_bytes(profile))
-    return [Symbol(name, SECTION, size, ALIGN_BYTES, processor) for name, size in nbytes.items() if size]
+    return [
+        Symbol(name, SECTION, size, ALIGN_BYTES, processor, object_file(name))
+        for name, size in nbytes.items()
+        if size
+    ]
+
+
+def object_file(name: str) -> str:
+    """Return the object file of a kernel or a buffer: each has one of its own, so that an LDF can place it apart."""
+    stem = re.sub(r"\W", "_", name, flags=re.ASCII)
+    return f"{stem}.doj"
 
 
 def code_records(

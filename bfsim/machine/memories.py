@@ -36,6 +36,11 @@ class Row:
         self.octets = array.view(np.uint8).data  # copies in a third of numpy's time
         self.nbytes: int = array.nbytes
 
+    @property
+    def is_in_l1(self) -> bool:
+        """Whether it lies in the L1 of a core."""
+        return self.memory.startswith("CORE")
+
     def __repr__(self) -> str:
         return f"<row of {self.buffer} at 0x{self.address:08X} in {self.memory}>"
 

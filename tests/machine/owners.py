@@ -25,6 +25,8 @@ def assert_owned(outcome: Outcome) -> None:
         _add(kernels, place, kernel.issue_cclk, kernel.stall_cclk)
         for line in kernel.lines:
             _add(lines, place, line.issue_cclk, line.stall_cclk)
+            assert sum(cclk for _, cclk in line.operations.values()) == line.issue_cclk
+            assert all(count > 0 for count, _ in line.operations.values())
     for path in outcome.paths:
         _add(paths, (path.core, path.stage, path.path[-1]), path.issue_cclk, path.stall_cclk)
     assert kernels == owned

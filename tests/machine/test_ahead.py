@@ -14,8 +14,7 @@ from random import Random
 
 import pytest
 
-from bfsim import run
-from bfsim.kernel import store
+from bfsim import run, store
 from bfsim.kernel.native import NativeEntry
 from bfsim.machine.bus import ahead
 from bfsim.machine.bus.weave import Weave, compiled_weave

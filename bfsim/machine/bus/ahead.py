@@ -18,7 +18,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from bfsim.kernel import store
+from bfsim import store
 from bfsim.kernel.traced_access import trace_access
 from bfsim.machine.bus.weave import Weave, advance, compiled_weave, plain_weave
 

@@ -7,7 +7,7 @@ done settles it first; while anybody waits, the simulation plays it up to each e
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import lcm
@@ -24,6 +24,7 @@ from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.bus.sdram import new_sdram
+from bfsim.machine.bus.stretches import end_of_stretch
 from bfsim.machine.bus.told import ToldBus
 from bfsim.machine.bus.traffic import traffic_records
 from bfsim.machine.bus.weave import Weave, compiled_weave
@@ -76,6 +77,20 @@ class TransferPlan:
     """What is moved, for people."""
 
 
+@dataclass(frozen=True, slots=True)
+class Played:
+    """What a stretch of a core took, in cycles. `clock_cclk`: where the core's clock is now.
+
+    `accounts`: of each that was used, in the order of their first use, the words from TOUCH on (`bus.state`).
+    """
+
+    clock_cclk: int
+    issue_cclk: int
+    interlocks_cclk: int
+    bus_stalls_cclk: Sequence[int]
+    accounts: Mapping[int, Sequence[int]]
+
+
 class Transfer:
     """One transfer of a DMA on its way. `end` is the tick at which it is done, or None as long as nobody can know."""
 
@@ -110,7 +125,7 @@ class Bus:
         """The whole state, word by word."""
         self.owners = MemoryOwners(self.words, memories.sdram_end, memories.l2_end)
         self._advance = weave(self._state, self._memory)
-        self._transfers = 0
+        self._plans = 0
         self._waiting: dict[int, simpy.Event] = {}
         self._told: ToldBus | None = None
         self._state[: w.SDRAM_WORDS] = new_sdram(board)
@@ -143,6 +158,9 @@ class Bus:
             w.LAST_CORE_AT_L2: w.NONE,
             w.FREE_TRANSFERS: w.MAX_TRANSFERS,
         }
+        for core in range(w.CORES):
+            play = w.PLAYS_AT + core * w.PLAY_WORDS
+            bus |= {play + w.ACTS_AT: w.NEVER, play + w.AWAITED: w.NONE}
         for word, value in bus.items():
             self._state[word] = value
 
@@ -266,8 +284,8 @@ class Bus:
             raise FirmwareError(f"DMA must have at most {w.MAX_TRANSFERS} transfers to do at a time")
         words[w.FREE_TRANSFERS] = top
         place = words[w.FREE_PLACES_AT + top]
-        number = self._transfers
-        self._transfers = number + 1
+        number = words[w.ALL_POSTED]
+        words[w.ALL_POSTED] = number + 1
         words[w.ENDS_AT + number % w.ENDS] = w.NONE
         # the bus may still be behind the simulated time; the transfer is not
         TRANSFER_LAYOUT.pack_into(
@@ -338,6 +356,56 @@ class Bus:
             (w.STATE, w.STARTING), (w.BEGIN, begin), (w.TOTAL, cclk), (w.END, entries), (w.SPIN, spin),
         ):  # fmt: skip
             self.words[job + word] = value
+
+    def play(
+        self, core: int, clock_cclk: int, operations: NDArray[np.int64], accesses: NDArray[np.int64]
+    ) -> simpy.Event:
+        """Let a core do `operations` by itself from now on, its clock being at a cycle; return the end.
+
+        `operations`: rows of OPERATION_WORDS as in `bus.state`, at most MAX_OPERATIONS of them. `accesses`: the log that those
+        of their calls refer to, a row of entries and one of sites.
+        """
+        play = w.PLAYS_AT + core * w.PLAY_WORDS
+        copies = self.words[play + w.COPIES]
+        self._state[play : play + w.PLAY_WORDS] = 0
+        for word, value in (
+            (w.OPERATIONS_END, len(operations)), (w.CLOCK, clock_cclk), (w.ACTS_AT, self._env.tick),
+            (w.AWAITED, w.NONE), (w.COPIES, copies),
+        ):  # fmt: skip
+            self.words[play + word] = value
+        first = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS
+        self._state[first : first + operations.size] = operations.reshape(-1)
+        room, count = self.room_of(core)[log.LOG :], accesses.shape[1]
+        room[:count], room[w.LOG_ENTRIES : w.LOG_ENTRIES + count] = accesses
+        return self._await(end_of_stretch(core))
+
+    def played(self, core: int) -> Played:
+        """Return what the last stretch of a core took. Raises FirmwareError if DMA had no room for all of its copies."""
+        play = w.PLAYS_AT + core * w.PLAY_WORDS
+        words: list[int] = self.words[play : play + w.PLAY_WORDS].tolist()
+        if words[w.OPERATION] < words[w.OPERATIONS_END]:
+            raise FirmwareError(f"DMA must have at most {w.MAX_TRANSFERS} transfers to do at a time")
+        accounts = [
+            words[each : each + w.ACCOUNT_WORDS] for each in range(w.ACCOUNTS, w.PLAY_WORDS, w.ACCOUNT_WORDS)
+        ]
+        used = sorted((each[w.TOUCH], number) for number, each in enumerate(accounts) if each[w.TOUCH])
+        return Played(
+            clock_cclk=words[w.CLOCK],
+            issue_cclk=words[w.ISSUED],
+            interlocks_cclk=words[w.INTERLOCKED],
+            bus_stalls_cclk=words[w.ON_BUS : w.ACCOUNTS],
+            accounts={number: accounts[number] for _, number in used},
+        )
+
+    def keep_plan(self, plan: TransferPlan) -> int:
+        """Keep a plan where stretches find it; return its number."""
+        number = self._plans
+        if number == w.MAX_PLANS:
+            raise FirmwareError(f"a recorded run must have at most {w.MAX_PLANS} different copies")
+        first = w.PLANS_AT + number * w.PLAN_WORDS + w.SETUP
+        self._state[first : first + len(plan.words)] = plan.words
+        self._plans = number + 1
+        return number
 
     def log_in_l2(self, core: int, stamp_cclk: int, kind: int) -> int:
         """Make the log of a core that of one access to a shared variable in L2; return the number of its entries."""

@@ -81,12 +81,19 @@ def start_jobs(state: State) -> None:
     for core in range(w.CORES):
         job = w.JOBS_AT + core * w.JOB_WORDS
         if state[job + w.STATE] == w.STARTING:
-            state[job + w.STATE] = w.RUNNING
-            state[job + w.STALLED] = 0
-            state[job + w.ENTRY] = 0
-            for reason in range(w.STALLS):
-                state[job + w.STALL + reason] = 0
-            next_entry(state, core, state[job + w.BEGIN])
+            start_job(state, core, state[job + w.BEGIN], state[job + w.TOTAL], 0, state[job + w.END])
+
+
+@native
+def start_job(state: State, core: int, begin: int, cclk: int, first: int, end: int) -> None:
+    """Let a core begin with the accesses from `first` to before `end` of its log, of a call of `cclk` cycles from tick `begin`."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    state[job + w.STATE] = w.RUNNING
+    state[job + w.BEGIN], state[job + w.TOTAL], state[job + w.STALLED] = begin, cclk, 0
+    state[job + w.ENTRY], state[job + w.END] = first, end
+    for reason in range(w.STALLS):
+        state[job + w.STALL + reason] = 0
+    next_entry(state, core, begin)
 
 
 @native

@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from bfsim.errors import FirmwareError
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
@@ -30,6 +33,8 @@ class MemoryOwners:
         self._words = words
         self._owners = [MemoryOwner("SDRAM"), MemoryOwner("L2"), MemoryOwner("elsewhere")]
         self._pieces = [(0, w.NO_BUFFER_IN_SDRAM), (sdram_end, w.NO_BUFFER_IN_L2), (l2_end, w.NO_BUFFER)]
+        self.first = [0, sdram_end, l2_end]
+        """Where in the arena the memory of each owner begins, by its number."""
         self._write()
 
     def __iter__(self) -> Iterator[MemoryOwner]:
@@ -48,11 +53,18 @@ class MemoryOwners:
         insort(self._pieces, (offset, number))
         insort(self._pieces, (end, behind))
         self._owners.append(owner)
+        self.first.append(offset)
         self._write()
 
     def of(self, offset: int) -> int:
         """Return the number of the owner of the byte at `offset`."""
         return self._pieces[bisect_right(self._pieces, offset, key=itemgetter(0)) - 1][1]
+
+    def of_all(self, offsets: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return the numbers of the owners of the bytes at `offsets`."""
+        firsts, owners = np.array(self._pieces, np.int64).T
+        found: NDArray[np.int64] = owners[np.searchsorted(firsts, offsets, "right") - 1]
+        return found
 
     def _write(self) -> None:
         self._words[w.PIECES] = len(self._pieces)

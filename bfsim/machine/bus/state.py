@@ -51,8 +51,9 @@ BUS_AT = SDRAM_WORDS
     DONE_AT,        # tick of the completion that `advance` returned with
     POSTED,         # transfers that were posted since
     PIECES,         # how many pieces the memories are in
-) = range(BUS_AT, BUS_AT + 24)  # fmt: skip
-BUS_WORDS = 24
+    ALL_POSTED,     # transfers that were posted in all: the number of the next one
+) = range(BUS_AT, BUS_AT + 25)  # fmt: skip
+BUS_WORDS = 25
 
 # The masters in the order of their rows. Cores have one for what they wait for and one for their store buffer.
 PPI0, PPI1, SPI, MDMA1_0, MDMA1_1, MDMA2_0, MDMA2_1, IMDMA_0, IMDMA_1, STORES_A, STORES_B, CORE_A, CORE_B = (
@@ -141,6 +142,39 @@ CORES = 2
 CORE_WORD_BYTES = 4  # what a load or a store moves, whatever its width
 FETCH_BYTES = 8  # of an instruction fetch that no cache serves: one 64-bit word
 
+# ---- A stretch: what a core does by itself between two calls of firmware that need Python, as a list of operations.
+(
+    OPERATION, OPERATIONS_END,  # the next one, and how many there are
+    CLOCK,          # the core's own clock, in its cycles
+    ACTS_AT,        # tick at which it goes on, NEVER while it waits for the bus or has no stretch
+    AWAITED,        # what `advance` returns when the core can go on: a transfer, or its job; NONE
+    COPIES,         # copies that it has posted in all
+    TOUCHED,        # of the accounts below, how many were used
+    ISSUED, INTERLOCKED,  # cycles of its kernels
+) = range(9)  # fmt: skip
+ON_BUS = 9  # what its kernels stalled, in the order above
+ACCOUNTS = ON_BUS + STALLS  # cycles of others, such as rings
+TOUCH, SETTING_UP, RING_EMPTY, RING_FULL = range(
+    4
+)  # the how-manieth account it was, from 1 on, and why it stalled
+ACCOUNT_WORDS = 4
+MAX_ACCOUNTS = 64
+PLAY_WORDS = ACCOUNTS + MAX_ACCOUNTS * ACCOUNT_WORDS
+
+# An operation: what it is, and up to four numbers.
+(
+    RUN,            # a call that stays in L1: issue cycles, interlocks
+    ACCESS,         # a call that does not: the same, the first of its accesses in the log, and the one behind its last
+    CATCH_UP,       # let the bus come up to the core
+    SET_UP,         # program a device: cycles, account
+    COPY,           # post a copy: its plan
+    AWAIT,          # wait for a copy: how many were posted since, why that is a stall, account
+) = range(6)  # fmt: skip
+OPERATION_WORDS = 5
+MAX_OPERATIONS = 1 << 17
+PLAN_WORDS = TRANSFER_WORDS
+MAX_PLANS = 1 << 17
+
 # ---- Who owns memory: each buffer, and nobody what is left of SDRAM, of L2 and of all else.
 NO_BUFFER_IN_SDRAM, NO_BUFFER_IN_L2, NO_BUFFER = range(3)
 MAX_OWNERS = 4096
@@ -174,4 +208,10 @@ LOGS_AT = SITES_AT + CORES * MAX_SITES * SITE_WORDS
 LOG_ENTRIES = 1 << 23
 """Accesses outside L1 that one kernel call may make; the host has memory for those that are made only."""
 ACCESS_TRACE_WORDS = log.LOG + log.ENTRY_WORDS * LOG_ENTRIES
-STATE_WORDS = LOGS_AT + CORES * ACCESS_TRACE_WORDS
+PLAYS_AT = LOGS_AT + CORES * ACCESS_TRACE_WORDS
+OPERATIONS_AT = PLAYS_AT + CORES * PLAY_WORDS
+COPIES_AT = (
+    OPERATIONS_AT + CORES * MAX_OPERATIONS * OPERATION_WORDS
+)  # number and place of the latest copies of each core
+PLANS_AT = COPIES_AT + CORES * 2 * ENDS
+STATE_WORDS = PLANS_AT + MAX_PLANS * PLAN_WORDS

@@ -20,6 +20,7 @@ from bfsim.machine.bus.dma_requests import serve_dma
 from bfsim.machine.bus.pacing import arrival
 from bfsim.machine.bus.sdram import hold_up
 from bfsim.machine.bus.state import Memory, State
+from bfsim.machine.bus.stretches import act, resume, who_acts
 from bfsim.machine.bus.transfers import accept
 
 # What changes a rank (HRM of the BF537, 5-50 to 5-54): an urgent request comes before everything else, one against the
@@ -123,15 +124,9 @@ def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int
     return serve_dma(state, memory, number, at, until)
 
 
-@native_entry("int64", "int64*", "uint32*", "int64")
-def advance(state_at: State, memory_at: Memory, until: int) -> int:
-    """Grant all requests before tick `until`, in order; return early with who is woken, at tick DONE_AT, else NONE.
-
-    A transfer is woken by its number, the job of core c by NONE - 1 - c.
-    """
-    state, memory = words_at(state_at), words_at(memory_at)
-    accept(state)
-    start_jobs(state)
+@native
+def grant(state: State, memory: Memory, until: int) -> int:
+    """Grant all requests before tick `until`, in order; return early with who is woken, at tick DONE_AT, else NONE."""
     while True:
         first, at = first_request(state, until)
         if first == w.NONE:
@@ -147,6 +142,31 @@ def advance(state_at: State, memory_at: Memory, until: int) -> int:
             count_direction(state, before)
         if woken != w.NONE:
             return woken
+
+
+@native_entry("int64", "int64*", "uint32*", "int64")
+def advance(state_at: State, memory_at: Memory, until: int) -> int:
+    """Play everything before tick `until`: requests and, where the cores have stretches to play, these.
+
+    Returns early with who is woken, at tick DONE_AT, else NONE: a transfer by its number, the job of core c by NONE - 1 - c, the end of
+    its stretch by `end_of_stretch`.
+    """
+    state, memory = words_at(state_at), words_at(memory_at)
+    start_jobs(state)
+    while True:
+        accept(state)
+        core = who_acts(state)
+        acts_at = state[w.PLAYS_AT + core * w.PLAY_WORDS + w.ACTS_AT]
+        woken = grant(state, memory, min(until, acts_at))
+        if woken != w.NONE:
+            if not resume(state, woken):
+                return woken
+        elif acts_at >= until:
+            return w.NONE
+        else:
+            woken = act(state, core, acts_at)
+            if woken != w.NONE:
+                return woken
 
 
 Weave = Callable[[NDArray[Any], NDArray[Any]], Callable[[int], int]]

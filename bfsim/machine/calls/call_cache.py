@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -34,12 +34,22 @@ class BoundCall(Protocol):
         """Run the kernel now and say what it cost."""
 
 
+BeforeCall = Callable[[Kernel, tuple[Row | int, ...]], None]
+"""Is told of a kernel and its arguments before each call, and changes neither."""
+
+
+def sanitized(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
+    """Run a kernel as it is written, on copies. Raises KernelError for a wrong index or divisor."""
+    kernel.sanitize([each.array if isinstance(each, Row) else each for each in arguments])
+
+
 @dataclass(frozen=True, slots=True)
-class CheckedCall:
-    """A call that is checked before it runs."""
+class WatchedCall:
+    """A call that others are told of before it runs."""
 
     call: BoundCall
     kernel: Kernel
+    before: tuple[BeforeCall, ...]
 
     @property
     def stays_in_l1(self) -> bool:
@@ -47,8 +57,9 @@ class CheckedCall:
         return self.call.stays_in_l1
 
     def run(self, arguments: tuple[Row | int, ...]) -> Work:
-        """Run the kernel, if its indexes are right, and say what it cost."""
-        self.kernel.sanitize([each.array if isinstance(each, Row) else each for each in arguments])
+        """Tell of the call, run the kernel, and say what it cost."""
+        for tell in self.before:
+            tell(self.kernel, arguments)
         return self.call.run(arguments)
 
 
@@ -81,14 +92,14 @@ class CallCache:
         owners: MemoryOwners,
         ledger: Ledger,
         *,
-        sanitize: bool,
+        before_call: tuple[BeforeCall, ...],
     ) -> None:
         self._core = core
         self._profile = profile
         self._access_trace = access_trace
         self._code = code
         self._subbanks = subbanks
-        self._sanitize = sanitize
+        self._before_call = before_call
         self._owners = owners
         self._ledger = ledger
         self._groups: dict[tuple[str, Kernel, tuple[int, ...]], CallGroup] = {}
@@ -116,6 +127,11 @@ class CallCache:
             raise FirmwareError(f"core.run must get a function with @kernel before it, not {name}")
         call = self.known[kernel, kernel.arrays_of(arguments)] = self._prepared(kernel, arguments)
         return call
+
+    @property
+    def events(self) -> NDArray[np.int64]:
+        """The events that the kernels have counted, counter by counter, to be read and added to."""
+        return self._ledger.events
 
     def snapshot(self) -> Snapshot:
         """Return what the kernels have counted so far."""
@@ -160,11 +176,11 @@ class CallCache:
         )
         if group.fetched:
             call = FetchedCall(call, group, self._code, self._access_trace)
-        return CheckedCall(call, kernel) if self._sanitize else call
+        return WatchedCall(call, kernel, self._before_call) if self._before_call else call
 
     def _is_traced(self, row: Row) -> bool:
         """Whether accesses to `row` take longer than one cycle. Another core's L1 cannot be reached at all."""
-        if not row.memory.startswith("CORE"):
+        if not row.is_in_l1:
             return True
         if (
             not row.memory.startswith(f"CORE{self._core}_L1_DATA")

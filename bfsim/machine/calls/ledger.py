@@ -95,6 +95,11 @@ class Ledger:
         """Add cycles that conflicts in L1 cost at sites."""
         np.add.at(self._conflicts, sites, cclk)
 
+    @property
+    def events(self) -> Rows:
+        """The events that each counter has counted, to be read and added to."""
+        return self._events[: self._event_count]
+
     def snapshot(self) -> Snapshot:
         """Return the counts of now."""
         count = self._site_count

@@ -51,6 +51,7 @@ class _Kernel:
     calls: int = 0
     executions: dict[int, int] = field(default_factory=lambda: defaultdict(int))
     lines: dict[int, _Cost] = field(default_factory=lambda: defaultdict(_Cost))
+    operations: dict[int, dict[str, tuple[int, int]]] = field(default_factory=lambda: defaultdict(dict))
     accesses: dict[tuple[int, int], _Accesses] = field(default_factory=lambda: defaultdict(_Accesses))
     """By line and owner of the memory."""
 
@@ -99,6 +100,7 @@ class CoreRecords:
                         executions=each.executions[line],
                         issue_cclk=cost.issue_cclk,
                         stall_cclk=stalls_by_reason(cost.interlocks_cclk, cost.stalls.tolist()),
+                        operations={name: both for name, both in each.operations[line].items() if any(both)},
                     )
                     for line, cost in sorted(each.lines.items())
                 ),
@@ -155,6 +157,10 @@ class CoreRecords:
                 if counter.value is None:
                     once = (path.first, place)
                     executions[once] = max(executions.get(once, 0), events)
+            for place, name, times, cclk in counter.line_operations if events else ():
+                operations = self._kernel(group, place.routine).operations[place.line]
+                had_times, had_cclk = operations.get(name, (0, 0))
+                operations[name] = had_times + events * times, had_cclk + events * cclk
             for access in counter.accesses:
                 owner = owner_of.get(path.arrays.get(access.array, ""))
                 if owner is not None and not access.fills:

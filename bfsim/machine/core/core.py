@@ -21,7 +21,7 @@ from bfsim.machine.cameras.capture import Capture
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.accounts import KERNELS
 from bfsim.machine.core.layouts import Layouts
-from bfsim.machine.core.readout import Readout
+from bfsim.machine.core.readout import Readout, seen_by
 from bfsim.machine.core.synchronised import SharedObjects, SynchronisedCore
 from bfsim.machine.core.waits import awaited
 from bfsim.machine.dma.mdma import MdmaStream
@@ -352,7 +352,7 @@ class Core(SynchronisedCore):
                 counted=snapshot,
                 results=self._results,
                 remarks=tuple(self._remarks),
-                seen=self._view(Readout(self, self._frame, self._results)) if self._view else None,
+                seen=seen_by(self._view, Readout(self, self._frame, self._results)) if self._view else None,
             )
         )
         self._frame, self._frame_index, self._results, self._remarks = None, None, {}, []

@@ -25,7 +25,7 @@ class Layouts:
     ) -> None:
         """`placed`: the buffers for pictures of `size`. `declared`: what the firmware wants for another size."""
         self._core = core
-        self._memories = memories
+        self.memories = memories
         self._placed = placed
         self._full = size
         self._declared = declared
@@ -54,7 +54,7 @@ class Layouts:
                 f"buffer {buffer.name} must be no table and fit into its memory at {self._full} "
                 f"to be used for pictures of {size}"
             )
-        return self._memories.overlay(placed, buffer.element, buffer.columns)[: buffer.rows]
+        return self.memories.overlay(placed, buffer.element, buffer.columns)[: buffer.rows]
 
     def __contains__(self, name: str) -> bool:
         return name in self._buffers
@@ -71,7 +71,7 @@ class Layouts:
         """Return the memory of buffer `name` as rows of `columns` elements of another kind."""
         kind = (self._size, name, element, columns)
         if kind not in self._overlays:
-            self._overlays[kind] = self._memories.overlay(self.rows(name), element, columns)
+            self._overlays[kind] = self.memories.overlay(self.rows(name), element, columns)
         return self._overlays[kind]
 
     def part(self, rows: Sequence[Row], first: int, count: int) -> Rows:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bfsim.errors import FirmwareError, shown
 from bfsim.machine.memories import Row
-from bfsim.seen import Seen, SeenText
+from bfsim.seen import CAMERAS, Seen, SeenText
 
 if TYPE_CHECKING:
     from bfsim.machine.core.core import Core, Frame
@@ -28,6 +29,11 @@ class Readout:
     def core(self) -> str:
         """Name of the core."""
         return self._core.name
+
+    @property
+    def camera(self) -> str:
+        """Name of the camera that it looks at: left or right."""
+        return CAMERAS[self.core]
 
     def has_buffer(self, name: str) -> bool:
         """Whether there is a buffer called `name`."""
@@ -74,7 +80,22 @@ def plain_view(readout: Readout) -> Seen:
         SeenText(place_px=(picture.shape[1] / 4, LINE_PX * (line + 0.5)), text=each)
         for line, each in enumerate(words)
     )
-    return Seen(camera="left" if readout.core == "A" else "right", picture=picture, texts=tuple(texts))
+    return Seen(camera=readout.camera, picture=picture, texts=tuple(texts))
+
+
+def seen_by(view: Callable[[Readout], Seen | None], readout: Readout) -> Seen | None:
+    """Return what a view says. Raises FirmwareError where that is not of the core's camera."""
+    seen = view(readout)
+    if seen is None:
+        return None
+    if not isinstance(seen, Seen):
+        raise FirmwareError(f"view must return a bfsim.api.Seen or None, not {shown(seen)}")
+    if seen.camera != readout.camera:
+        raise FirmwareError(
+            f"view of core {readout.core} must return a Seen of camera {readout.camera!r} (readout.camera), "
+            f"not {shown(seen.camera)}"
+        )
+    return seen
 
 
 def stacked(rows: Sequence[Row]) -> NDArray[Any]:

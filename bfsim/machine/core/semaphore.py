@@ -14,6 +14,8 @@ class Semaphore:
 
     def __init__(self, env: Simulation, name: str) -> None:
         self.name = name
+        self.taken = 0
+        """How often it was taken, by whomever."""
         self._env = env
         self._count = 0
         self._waiters: deque[simpy.Event] = deque()
@@ -26,6 +28,7 @@ class Semaphore:
     def post(self) -> None:
         """Add one, or let the first waiter go on."""
         if self._waiters:
+            self.taken += 1
             self._waiters.popleft().succeed()
         else:
             self._count += 1
@@ -34,6 +37,7 @@ class Semaphore:
         """Take one and return None, or return the event that happens when this waiter's turn comes."""
         if self._count:
             self._count -= 1
+            self.taken += 1
             return None
         event = self._env.event()
         self._waiters.append(event)

@@ -14,6 +14,8 @@ class SpinLock:
 
     def __init__(self, env: Simulation, name: str) -> None:
         self.name = name
+        self.taken = 0
+        """How often it was taken, by whomever."""
         self.core: str | None = None
         self.holder: str | None = None
         self.since_cclk = 0
@@ -25,6 +27,7 @@ class SpinLock:
         """Give the lock to `core`, or return the event at which it gets it."""
         if self.core is None:
             self.core, self.holder = core, holder
+            self.taken += 1
             return None
         event = self._env.event()
         self._waiters.append((event, core))
@@ -35,5 +38,6 @@ class SpinLock:
         self.core = self.holder = None
         if self._waiters:
             event, self.core = self._waiters.popleft()
+            self.taken += 1
             self.holder = f"core {self.core}"
             event.succeed()

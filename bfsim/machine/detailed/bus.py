@@ -76,8 +76,8 @@ class DetailedBus(Bus):
     def post(self, plan: TransferPlan, at: int = 0) -> Transfer:
         """Put a transfer behind those that its master has already; it begins at tick `at` or later."""
         assert isinstance(plan, DetailedPlan), "a plan belongs to the bus that made it"
-        number = self._transfers
-        self._transfers = number + 1
+        number = self.words[w.ALL_POSTED]
+        self.words[w.ALL_POSTED] = number + 1
         self.words[w.ENDS_AT + number % w.ENDS] = w.NONE
         transfer = DetailedTransfer(number, plan, max(at, self._env.tick), self._env.event())
         self._on_their_way[number] = transfer

@@ -34,10 +34,11 @@ class MdmaStream:
         """
         plan = self._plans.get((source, destination))
         if plan is None:
-            plan = self._plans[source, destination] = self._plan(source, destination)
+            plan = self._plans[source, destination] = self.plan(source, destination)
         return self._bus.post(plan, at)
 
-    def _plan(self, source: Row, destination: Row) -> TransferPlan:
+    def plan(self, source: Row, destination: Row) -> TransferPlan:
+        """Plan to copy `source` to `destination`."""
         size = element_bytes(self._word_bytes, source.offset, destination.offset, source.nbytes)
         count = source.nbytes // size
         inward, outward = (Walk(each.offset, count, size, size) for each in (source, destination))

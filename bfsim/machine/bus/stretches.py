@@ -1,0 +1,196 @@
+"""Stretches, compiled: a core does one operation after the other by its own clock, and meets the bus where it has to.
+
+What it does takes the cycles that the operations say; what it waits comes from the bus. A stretch ends at the tick at which the
+core met the bus last, though its clock may be further.
+"""
+
+from __future__ import annotations
+
+from bfsim.kernel.native import native
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.core_requests import start_job
+from bfsim.machine.bus.state import State
+
+
+@native
+def end_of_stretch(core: int) -> int:
+    """Return what `advance` returns at the end of a core's stretch: behind the numbers of transfers and jobs."""
+    return w.NONE - 1 - w.CORES - core
+
+
+@native
+def who_acts(state: State) -> int:
+    """Return the core that goes on first."""
+    first = 0
+    for core in range(1, w.CORES):
+        at = w.PLAYS_AT + w.ACTS_AT
+        if state[at + core * w.PLAY_WORDS] < state[at + first * w.PLAY_WORDS]:
+            first = core
+    return first
+
+
+@native
+def resume(state: State, woken: int) -> bool:
+    """Let the core whose stretch waits for what has just ended go on then; return whether there is one."""
+    for core in range(w.CORES):
+        play = w.PLAYS_AT + core * w.PLAY_WORDS
+        if state[play + w.AWAITED] == woken:
+            state[play + w.ACTS_AT] = state[w.DONE_AT]
+            return True
+    return False
+
+
+@native
+def act(state: State, core: int, now: int) -> int:
+    """Do a core's operations at tick `now`, up to which the bus was played, until it must wait; return the end of its stretch, or NONE."""
+    play = w.PLAYS_AT + core * w.PLAY_WORDS
+    if state[play + w.AWAITED] != w.NONE:
+        end_wait(state, core, now)
+    while state[play + w.OPERATION] < state[play + w.OPERATIONS_END]:
+        at = operation_of(state, core)
+        if needs_bus(state, core, at):
+            clock = state[play + w.CLOCK] * state[w.CCLK]
+            if clock > now:
+                state[play + w.ACTS_AT] = clock
+                return w.NONE
+            if must_wait(state, at):
+                begin_wait(state, core, clock)
+                return w.NONE
+        if not do(state, core, at, now):
+            break
+        state[play + w.OPERATION] += 1
+    state[play + w.ACTS_AT] = w.NEVER
+    state[w.DONE_AT] = now
+    return end_of_stretch(core)
+
+
+@native
+def needs_bus(state: State, core: int, at: int) -> bool:
+    """Whether the bus must come up to a core before its operation: a wait for a copy needs that only while its end is not known."""
+    kind = state[at]
+    if kind == w.AWAIT:
+        return end_of_copy(state, core, state[at + 1]) == w.NONE
+    return kind in (w.ACCESS, w.CATCH_UP)
+
+
+@native
+def must_wait(state: State, at: int) -> bool:
+    """Whether an operation that needs the bus must wait for it: a call may turn out to access nothing."""
+    return state[at] == w.AWAIT or (state[at] == w.ACCESS and state[at + 3] != state[at + 4])
+
+
+@native
+def do(state: State, core: int, at: int, now: int) -> bool:
+    """Do an operation that waits for nothing that is not known; return whether it could be done."""
+    play, kind = w.PLAYS_AT + core * w.PLAY_WORDS, state[at]
+    if kind in (w.RUN, w.ACCESS):
+        work(state, play, state[at + 1], state[at + 2])
+    elif kind == w.SET_UP:
+        spend(state, play, state[at + 2], w.SETTING_UP, state[at + 1])
+    elif kind == w.AWAIT:
+        wait_until(state, core, end_of_copy(state, core, state[at + 1]))
+    elif kind == w.COPY:
+        return post(state, core, state[at + 1], now)
+    return True
+
+
+@native
+def operation_of(state: State, core: int) -> int:
+    """Return where a core's present operation stands."""
+    number = core * w.MAX_OPERATIONS + state[w.PLAYS_AT + core * w.PLAY_WORDS + w.OPERATION]
+    return w.OPERATIONS_AT + number * w.OPERATION_WORDS
+
+
+@native
+def begin_wait(state: State, core: int, clock: int) -> None:
+    """Let the bus play a call's accesses, or a copy whose end is not known, before the core goes on."""
+    play, at = w.PLAYS_AT + core * w.PLAY_WORDS, operation_of(state, core)
+    state[play + w.ACTS_AT] = w.NEVER
+    if state[at] == w.ACCESS:
+        start_job(state, core, clock, state[at + 1] + state[at + 2], state[at + 3], state[at + 4])
+        state[play + w.AWAITED] = w.NONE - 1 - core
+    else:
+        copy = copy_before(state, core, state[at + 1])
+        state[w.TRANSFERS_AT + state[copy + 1] * w.TRANSFER_WORDS + w.WAKE] = w.AT_END
+        state[play + w.AWAITED] = state[copy]
+
+
+@native
+def end_wait(state: State, core: int, now: int) -> None:
+    """Charge what the core has waited for, at tick `now`, and go on to its next operation."""
+    play, at = w.PLAYS_AT + core * w.PLAY_WORDS, operation_of(state, core)
+    if state[at] == w.ACCESS:
+        work(state, play, state[at + 1], state[at + 2])
+        for reason in range(w.STALLS):
+            cclk = state[w.JOBS_AT + core * w.JOB_WORDS + w.STALL + reason]
+            state[play + w.ON_BUS + reason] += cclk
+            state[play + w.CLOCK] += cclk
+    else:
+        wait_until(state, core, now)
+    state[play + w.AWAITED] = w.NONE
+    state[play + w.OPERATION] += 1
+
+
+@native
+def work(state: State, play: int, issue: int, interlocks: int) -> None:
+    """Let the cycles of a call pass."""
+    state[play + w.ISSUED] += issue
+    state[play + w.INTERLOCKED] += interlocks
+    state[play + w.CLOCK] += issue + interlocks
+
+
+@native
+def spend(state: State, play: int, number: int, reason: int, cclk: int) -> None:
+    """Let cycles pass on an account."""
+    account = play + w.ACCOUNTS + number * w.ACCOUNT_WORDS
+    if state[account + w.TOUCH] == 0:
+        state[play + w.TOUCHED] += 1
+        state[account + w.TOUCH] = state[play + w.TOUCHED]
+    state[account + reason] += cclk
+    state[play + w.CLOCK] += cclk
+
+
+@native
+def wait_until(state: State, core: int, end: int) -> None:
+    """Stall a core until the copy that its operation awaits was over, at tick `end`."""
+    play, at = w.PLAYS_AT + core * w.PLAY_WORDS, operation_of(state, core)
+    cclk = (end + state[w.CCLK] - 1) // state[w.CCLK] - state[play + w.CLOCK]
+    if cclk > 0:
+        spend(state, play, state[at + 3], state[at + 2], cclk)
+
+
+@native
+def copy_before(state: State, core: int, back: int) -> int:
+    """Return where number and place of the copy stand behind which a core has posted `back` - 1 more."""
+    number = state[w.PLAYS_AT + core * w.PLAY_WORDS + w.COPIES] - back
+    return w.COPIES_AT + 2 * (core * w.ENDS + number % w.ENDS)
+
+
+@native
+def end_of_copy(state: State, core: int, back: int) -> int:
+    """Return the tick at which such a copy was over, NONE if that is not known yet."""
+    return state[w.ENDS_AT + state[copy_before(state, core, back)] % w.ENDS]
+
+
+@native
+def post(state: State, core: int, number: int, now: int) -> bool:
+    """Post the copy of plan `number` at tick `now`, not before the core's clock; return whether there was room for it."""
+    play, plan = w.PLAYS_AT + core * w.PLAY_WORDS, w.PLANS_AT + number * w.PLAN_WORDS
+    if state[w.FREE_TRANSFERS] == 0:
+        return False
+    state[w.FREE_TRANSFERS] -= 1
+    place = state[w.FREE_PLACES_AT + state[w.FREE_TRANSFERS]]
+    transfer, identity = w.TRANSFERS_AT + place * w.TRANSFER_WORDS, state[w.ALL_POSTED]
+    state[w.ALL_POSTED] += 1
+    state[w.ENDS_AT + identity % w.ENDS] = w.NONE
+    for word in range(w.SETUP, w.TRANSFER_WORDS):
+        state[transfer + word] = state[plan + word]
+    state[transfer + w.IDENTITY], state[transfer + w.NEXT] = identity, w.NONE
+    state[transfer + w.AT] = max(now, state[play + w.CLOCK] * state[w.CCLK])
+    posted = w.POSTS_AT + 2 * state[w.POSTED]
+    state[posted], state[posted + 1] = state[plan + w.OF_MASTER], place
+    state[w.POSTED] += 1
+    state[play + w.COPIES] += 1
+    copy = copy_before(state, core, 1)
+    state[copy], state[copy + 1] = identity, place
+    return True

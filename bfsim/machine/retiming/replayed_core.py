@@ -1,0 +1,274 @@
+"""A core that does again what a recorded one did, on the hardware that it is part of. It runs no kernel, and moves no pixel that counts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator
+from typing import Any
+
+import numpy as np
+
+from bfsim.errors import BfsimError, WorkError, shown
+from bfsim.kernel import Kernel
+from bfsim.kernel import access_trace as log
+from bfsim.kernel.types import ArrayType, IntType, Number, u8
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.calls.ledger import BUS_STALLS
+from bfsim.machine.cameras.settling import CameraSettings
+from bfsim.machine.core.core import Core
+from bfsim.machine.core.semaphore import Semaphore
+from bfsim.machine.core.spin_lock import SpinLock
+from bfsim.machine.dma.mdma import MdmaStream
+from bfsim.machine.memories import Row
+from bfsim.machine.program import FrameSize
+from bfsim.machine.retiming.work import (
+    BYTE,
+    CALL,
+    KIND,
+    OWNER,
+    SITE,
+    STAMP,
+    FrameWork,
+    Place,
+    Table,
+)
+from bfsim.trace import StallReason
+
+REASONS = {
+    w.SETTING_UP: StallReason.DMA_SETUP,
+    w.RING_EMPTY: StallReason.RING_EMPTY,
+    w.RING_FULL: StallReason.RING_FULL,
+}
+NOT_THE_SAME = "what the cores do depends on the hardware, so the recorded run cannot be played on this one; run the firmware itself"
+
+Wait = Generator[Any, Any, Any]
+
+
+class ReplayedCore(Core):
+    """A core that plays `works`. `kernels`: those of its firmware, by symbol."""
+
+    def __init__(
+        self,
+        *arguments: Any,
+        bus: Bus,
+        streams: tuple[MdmaStream, MdmaStream],
+        kernels: dict[str, Kernel],
+        works: Iterator[FrameWork],
+        **named: Any,
+    ) -> None:
+        super().__init__(*arguments, bus=bus, streams=streams, **named)
+        self._works = works
+        self._kernels = kernels
+        self._firsts = np.array(bus.owners.first, np.int64)
+        self._is_outside = self._firsts < int(bus.words[w.L2_END])
+        self._prepared_outside: list[bool] = []
+        self._account_names: list[str] = []
+        self._plans = np.zeros(0, np.int64)
+
+    # The main loop
+
+    def replay(self) -> Generator[Any, Any, None]:
+        """Do what was recorded."""
+        for work in self._works:
+            try:
+                yield from self._play_work(work)
+            except BfsimError:
+                raise
+            except (LookupError, TypeError, ValueError, OverflowError) as error:  # a file may hold anything
+                raise WorkError(
+                    f"the work of core {self.name} must be as it was recorded, but names what is not there: {shown(error)}"
+                ) from error
+
+    def _play_work(self, work: FrameWork) -> Wait:
+        self._account_names += work.accounts
+        if work.copies:
+            plans = [self._planned(*each) for each in work.copies]
+            self._plans = np.concatenate([self._plans, np.array(plans, np.int64)])
+        calls = np.flatnonzero(work.operations[:, 0] == CALL).tolist()
+        counts = np.where(work.operations[:, 0] == w.ACCESS, work.operations[:, 3], 0)
+        ends = np.cumsum(counts)
+        begin = 0
+        events = np.searchsorted(work.events[:, 0], np.arange(len(calls) + 1)).tolist()
+        for number, at in enumerate(calls):
+            yield from self._stretches(work, begin, at, ends)
+            _, counters, since = work.events[events[number] : events[number + 1]].T
+            name, arguments = work.calls[number]
+            self._calls.events[counters] += since
+            yield from self._call(name, arguments)
+            begin = at + 1
+        yield from self._stretches(work, begin, len(work.operations), ends)
+
+    # Stretches
+
+    def _stretches(self, work: FrameWork, begin: int, end: int, ends: Table) -> Wait:
+        for first in range(begin, end, w.MAX_OPERATIONS):
+            last = min(first + w.MAX_OPERATIONS, end)
+            accesses = work.accesses[ends[first - 1] if first else 0 : ends[last - 1]]
+            yield from self._stretch(work.operations[first:last], accesses)
+
+    def _stretch(self, recorded: Table, accesses: Table) -> Wait:
+        operations, log_of_it = self._translated(recorded, accesses)
+        yield self._bus.play(self._number, self._cclk, operations, log_of_it)
+        played = self._bus.played(self._number)
+        self._cclk = played.clock_cclk
+        kernels = self._account.kernels
+        kernels.issue_cclk += played.issue_cclk
+        for reason, cclk in zip(
+            (StallReason.INTERLOCK, *BUS_STALLS),
+            (played.interlocks_cclk, *played.bus_stalls_cclk),
+            strict=True,
+        ):
+            if cclk:
+                kernels.stall(reason, cclk)
+        for number, words in played.accounts.items():
+            account = self._account.of(self._account_names[number])
+            for word, reason in REASONS.items():
+                if words[word]:
+                    account.stall(reason, words[word])
+
+    def _translated(self, recorded: Table, accesses: Table) -> tuple[Table, Table]:
+        """Return operations as the bus plays them here, and the log of their accesses."""
+        operations = recorded.copy()
+        kinds = recorded[:, 0]
+        calls = kinds == w.ACCESS
+        outside = self._is_outside[accesses[:, OWNER]]
+        kept = accesses[outside]
+        ends = np.cumsum(np.where(calls, recorded[:, 3], 0))
+        behind = np.concatenate([[0], np.cumsum(outside)])
+        numbers = operations[calls, 4]
+        operations[calls, 4] = behind[ends[calls]]
+        operations[calls, 3] = behind[ends[calls] - recorded[calls, 3]]
+        operations[calls, 0] = np.where(np.array(self._prepared_outside, bool)[numbers], w.ACCESS, w.RUN)
+        setups = kinds == w.SET_UP
+        events = self._board.chip.events
+        operations[setups, 1] = (
+            recorded[setups, 1] * events.mmr_write_cclk + recorded[setups, 2] * events.mmr_read_cclk
+        )
+        operations[setups, 2] = recorded[setups, 3]
+        copies = kinds == w.COPY
+        operations[copies, 1] = self._plans[recorded[copies, 1]]
+        entries = (
+            kept[:, STAMP] << log.STAMP_BIT
+            | kept[:, KIND] << log.KIND_BIT
+            | self._firsts[kept[:, OWNER]] + kept[:, BYTE]
+        )
+        return operations, np.stack([entries, kept[:, SITE]])
+
+    def _planned(self, stream: int, source: Place, destination: Place) -> int:
+        rows = self._row(source), self._row(destination)
+        for each in rows:
+            if "SCRATCH" in each.memory:
+                raise WorkError(f"{each.buffer} must be where DMA can reach it, not in {each.memory}")
+        return self._bus.keep_plan(self._streams[stream].plan(*rows))
+
+    # Calls of firmware, by the name that they are noted by
+
+    def _call(self, name: str, arguments: tuple[Any, ...]) -> Wait:
+        calls: dict[str, Callable[..., Any]] = {
+            "prepare": self._prepare,
+            "stage": self._enter,
+            "end_frame": lambda: None,
+            "next_frame": self._take,
+            "publish": lambda results: self.publish(**results),
+            "remark": self.remark,
+            "set_camera": lambda settings: self.set_camera(CameraSettings(**settings)),
+            "set_picture_size": lambda *size: self.set_picture_size(FrameSize(*size)),
+            "post": self.post,
+            "unlock": self.unlock,
+            "wait": self._take_semaphore,
+            "lock": self._take_lock,
+            "interrupt_core": self.interrupt_core,
+            "send": self._send,
+            "receive": self._receive,
+            "ppi_status": self._read_status,
+        }
+        again = calls[name](*arguments)
+        if isinstance(again, Generator):
+            yield from again
+
+    def _take_semaphore(self, name: str, turn: int) -> Wait:
+        yield from self.wait(name)
+        self._check_turn(self._semaphore(name), turn)
+
+    def _take_lock(self, name: str, turn: int) -> Wait:
+        yield from self.lock(name)
+        self._check_turn(self._lock(name), turn)
+
+    def _check_turn(self, shared: Semaphore | SpinLock, turn: int) -> None:
+        if shared.taken != turn:
+            raise WorkError(
+                f"the cores take {shared.name!r} in another order than when the run was recorded: {NOT_THE_SAME}"
+            )
+
+    def _send(self, place: Place, octets: str) -> Wait:
+        row, sent = self._row(place), bytes.fromhex(octets)
+        row.octets[: len(sent)] = sent
+        yield from self.send(row, len(sent))
+
+    def _receive(self, place: Place, octets: str) -> Wait:
+        row = self._row(place)
+        nbytes = yield from self.receive(row)
+        if row.octets[:nbytes].tobytes().hex() != octets:
+            raise WorkError(
+                f"a message of the device on the SPI comes earlier or later than when the run was recorded: {NOT_THE_SAME}"
+            )
+
+    def _read_status(self, before: int) -> Wait:
+        status = yield from self.ppi_status()
+        if status != before:
+            raise WorkError(
+                f"PPI_STATUS of core {self.name} is another one than when the run was recorded: {NOT_THE_SAME}"
+            )
+
+    def _take(self, index: int, place: Place) -> Wait:
+        frame = yield from self.next_frame()
+        taken = frame.index if frame else -1
+        if taken != index or (frame and frame.rows[0].offset != self._offset(place)):
+            got, had = (f"frame {each}" if each >= 0 else "no more frame" for each in (taken, index))
+            where = ", in another frame buffer" if taken == index else ""
+            raise WorkError(
+                f"core {self.name} gets {got}{where} where it got {had} when the run was recorded, for others are missed here: {NOT_THE_SAME}"
+            )
+        if any(name.startswith("ppi_words_lost_") for name in self._results):
+            raise WorkError(
+                f"in frame {index} the DMA of a camera loses words on this hardware: {NOT_THE_SAME}"
+            )
+
+    def _prepare(self, symbol: str, in_l1: list[bool], *places: Place) -> None:
+        kernel = self._kernels.get(symbol)
+        if kernel is None:
+            raise WorkError(
+                f"kernel {symbol} must stand in a module of the firmware to be found again: {NOT_THE_SAME}"
+            )
+        parameters = kernel.function.parameters
+        rows = iter(places)
+        arguments: list[Any] = [
+            self._row(next(rows), each.type.element)
+            if isinstance(each.type, ArrayType)
+            else (0 if isinstance(each.type, IntType) else 0.0)
+            for each in parameters
+        ]
+        call = self._calls.prepare(kernel, tuple(arguments))
+        given = [each for each in arguments if isinstance(each, Row)]
+        moved_out = [each.buffer for each, was in zip(given, in_l1, strict=True) if was and not each.is_in_l1]
+        if moved_out:
+            raise WorkError(
+                f"{', '.join(dict.fromkeys(moved_out))} must be in L1, for it was when the run was recorded, and of what lies there "
+                "the accesses are not; record a run with this LDF, which can be played where it is in L1, too"
+            )
+        self._prepared_outside.append(not call.stays_in_l1)
+
+    def _offset(self, place: Place) -> int:
+        return int(self._firsts[place.owner]) + place.first
+
+    def _row(self, place: Place, element: Number = u8) -> Row:
+        """Return the row at a place, of elements of a kind."""
+        owner = self._bus.owners[place.owner]
+        array = self._layouts.memories.bytes_from(self._offset(place), place.nbytes).view(element.dtype)
+        return Row(owner.buffer, owner.memory, 0, self._offset(place), array)
+
+
+def played_again(core: Core) -> Generator[Any, Any, None]:
+    """Play what was recorded: the main loop of every replayed core."""
+    assert isinstance(core, ReplayedCore), "only a replayed core has something to play again"
+    yield from core.replay()

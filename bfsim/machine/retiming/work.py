@@ -1,0 +1,82 @@
+"""What a core did between two pictures that it took, without when: kernels' cycles and accesses, copies, waits, calls of its firmware.
+
+Memory is named by its owner (`bus.memory_owners`) and the byte there, never by an address: another LDF may place it elsewhere.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.kernel import access_trace as log
+from bfsim.machine.bus import state as w
+
+CALL = w.AWAIT + 1
+"""An operation besides those of a stretch (`bus.state`): the next call of its firmware, which is played in Python."""
+
+STAMP, KIND, OWNER, BYTE, SITE = range(5)
+"""Columns of an access: cycle in its call, kind (`kernel.access_trace`), owner of the memory, byte there, and the core's site."""
+
+OPERATION_COLUMNS, ACCESS_COLUMNS, EVENT_COLUMNS = w.OPERATION_WORDS, 5, 3
+
+Table = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Some bytes of the memory of an owner."""
+
+    owner: int
+    first: int
+    nbytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrameWork:
+    """What one core did, from its call of `next_frame` to before the next one, or to its end.
+
+    `operations`: rows of a kind and four numbers as in `bus.state`, with differences: of ACCESS the last two are how many accesses it
+    has, and the number of its call among those prepared; SET_UP has register writes and reads before its account.
+    `accesses`: rows as above, of all calls one after the other. `events`: rows of a call's number here, a counter of the
+    core and what that has counted since it was written down last, up to that call. `calls`: name and arguments.
+    `accounts`, `copies`: those used for the first time; a copy is the stream, the source and the destination.
+    """
+
+    core: str
+    operations: Table
+    accesses: Table
+    events: Table
+    calls: tuple[tuple[str, tuple[Any, ...]], ...]
+    accounts: tuple[str, ...]
+    copies: tuple[tuple[int, Place, Place], ...]
+
+
+def check(work: FrameWork, owners: int) -> None:
+    """Raise ValueError unless all numbers are such as the bus can play: a file may hold anything. `owners`: how many there are."""
+    operations, accesses = work.operations, work.accesses
+    kinds = operations[:, 0]
+    counts, accounts = operations[kinds == w.ACCESS, 3], operations[kinds == w.SET_UP, 3]
+    awaits = operations[kinds == w.AWAIT]
+    ranges = (
+        (kinds, 0, CALL),
+        (operations[:, 1:], 0, 1 << 40),
+        (accounts, 0, w.MAX_ACCOUNTS - 1),
+        (awaits[:, 1], 1, w.ENDS - 1),
+        (awaits[:, 2], w.SETTING_UP, w.RING_FULL),
+        (awaits[:, 3], 0, w.MAX_ACCOUNTS - 1),
+        (accesses[:, STAMP], 0, (1 << 32) - 1),
+        (accesses[:, KIND], 0, log.FETCH_LINE),
+        (accesses[:, OWNER], 0, owners - 1),
+        (accesses[:, BYTE], 0, log.OFFSET_MASK),
+        (accesses[:, SITE], 0, w.MAX_SITES - 1),
+        (work.events, 0, 1 << 40),
+    )
+    if any(
+        len(each) and not (lowest <= each.min() and each.max() <= highest) for each, lowest, highest in ranges
+    ):
+        raise ValueError("a number is out of its range")
+    if counts.sum() != len(accesses) or (kinds == CALL).sum() != len(work.calls):
+        raise ValueError("there must be as many accesses and calls as the operations have")

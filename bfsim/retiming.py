@@ -1,0 +1,170 @@
+"""Re-timing: a run is recorded while it goes on, or a recorded one is played on the hardware of another."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import asdict, replace
+from functools import partial
+from pathlib import Path
+from typing import Any, Protocol
+
+from bfsim.errors import ConfigError, WorkError
+from bfsim.kernel import Kernel
+from bfsim.loading import LoadedFirmware, kernels_of
+from bfsim.machine.board import Board, Fidelity
+from bfsim.machine.code import kernels_named
+from bfsim.machine.core.core import Core
+from bfsim.machine.retiming.recording_core import RecordingCore
+from bfsim.machine.retiming.replayed_core import ReplayedCore, played_again
+from bfsim.report.save import growing_file
+from bfsim.trace import Identity
+from bfsim.work_file import WorkReader, WorkWriter, opened
+
+SAME = {
+    "recording": "recording",
+    "firmware": "firmware",
+    "compiler": "compiler",
+    "compiler_digest": "compiler",
+    "script_digest": "script for the device",
+    "llvm_version": "version of LLVM",
+}
+"""Fields of an identity in which a recorded run and the one that it is played for must be the same, in words."""
+
+
+class DigestedFrames(Protocol):
+    """The frames of a recording as they are read. `expect` has them compared with those that were read before."""
+
+    digests: list[str]
+    total: int
+
+    def expect(self, digests: Sequence[str]) -> None:
+        """Compare each frame from now on."""
+
+
+@contextmanager
+def retimed(
+    machine: Board,
+    identity: Identity,
+    frames: DigestedFrames,
+    loaded: LoadedFirmware,
+    *,
+    record_work: Path | None,
+    work: Path | None,
+    is_watched: bool,
+) -> Iterator[None]:
+    """Record the run of `machine` in the `with` block to a file, or have it play one, or neither.
+
+    `is_watched`: whether anybody wants pictures or a timeline of it.
+    """
+    with ExitStack() as stack:
+        if record_work and work:
+            raise ConfigError("--record-work must stand without --work: what is played is recorded already")
+        if record_work:
+            stack.enter_context(recording_work(record_work, machine, identity, frames, loaded))
+        if work and is_watched:
+            raise ConfigError(
+                "--work must go without pictures, timelines and HTML: a recorded run has neither pixels nor single calls, only cycles"
+            )
+        if work:
+            stack.enter_context(playing_work(work, machine, identity, frames, loaded))
+        yield
+
+
+@contextmanager
+def recording_work(
+    path: Path, machine: Board, identity: Identity, frames: DigestedFrames, loaded: LoadedFirmware
+) -> Iterator[None]:
+    """Record what the cores of `machine` do in the `with` block; the file is there at its end. Raises ConfigError where none can be written."""
+    if machine.fidelity is not Fidelity.FAST:
+        raise ConfigError(
+            "--record-work must go with --fidelity fast: only there the same buses play it again"
+        )
+    with growing_file(path) as stream:
+        writer = WorkWriter(stream)
+        machine.core = partial(RecordingCore, on_work=writer.add, on_obstacle=writer.add_obstacle)
+        writer.begin(
+            identity={
+                each: value for each, value in asdict(identity).items() if each in (*SAME, "ldf_digest")
+            },
+            buffers=machine.owners_of_memory,
+            is_bound=machine.is_bound_to_placement,
+        )
+        yield
+        if not all(each.is_done for each in machine.cores.values()):
+            writer.add_obstacle("the run was interrupted before its end")
+        writer.end(
+            frame_digests=frames.digests,
+            modules=sorted(loaded.own.modules),
+            firmware_digest=loaded.digest,
+        )
+
+
+@contextmanager
+def playing_work(
+    path: Path, machine: Board, identity: Identity, frames: DigestedFrames, loaded: LoadedFirmware
+) -> Iterator[None]:
+    """Have the cores of `machine` play what was recorded, in place of the firmware, in the `with` block.
+
+    Raises WorkError for a file that is no whole recorded run, or one of another recording, firmware or compiler, or that cannot be
+    played on this machine.
+    """
+    with opened(path) as reader:
+        _check(reader, machine, identity, frames.total)
+        kernels = _kernels(reader, loaded)
+        frames.expect(reader.recorded.frame_digests)
+        machine.firmware = replace(
+            machine.firmware, mains=dict.fromkeys(machine.firmware.mains, played_again), view=None
+        )
+        machine.core = partial(_replayed, reader, kernels)
+        yield
+
+
+def _replayed(
+    reader: WorkReader, kernels: dict[str, Kernel], env: Any, name: str, *arguments: Any, **named: Any
+) -> Core:
+    return ReplayedCore(env, name, *arguments, kernels=kernels, works=reader.works(name), **named)
+
+
+def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -> None:
+    path, recorded = reader.path, reader.recorded
+    if machine.fidelity is not Fidelity.FAST:
+        raise ConfigError("--work must go with --fidelity fast: only there the same buses play it again")
+    for field, what in SAME.items():
+        if recorded.identity.get(field) != getattr(identity, field):
+            raise WorkError(
+                f"{path} must be recorded with the same {what}, {getattr(identity, field)}, "
+                f"not with {recorded.identity.get(field)}: record it again"
+            )
+    if total != len(recorded.frame_digests):
+        raise WorkError(
+            f"{path} has {len(recorded.frame_digests)} frames and must be played for as many, not for {total}: see --frames"
+        )
+    if [list(each) for each in recorded.buffers] != [list(each) for each in machine.owners_of_memory]:
+        raise WorkError(f"{path} must be recorded with the same buffers: record it again")
+    if (recorded.is_bound or machine.is_bound_to_placement) and recorded.identity[
+        "ldf_digest"
+    ] != identity.ldf_digest:
+        raise WorkError(
+            f"{path} must be played with the LDF that it was recorded with, where one of the two has caches or code outside of L1: "
+            "what they fetch depends on where everything lies; record it with this LDF"
+        )
+    if recorded.obstacles:
+        raise WorkError(
+            f"{path} cannot be played on other hardware, for what the cores do depends on it: {'; '.join(recorded.obstacles)}"
+        )
+
+
+def _kernels(reader: WorkReader, loaded: LoadedFirmware) -> dict[str, Kernel]:
+    """Return the kernels of the firmware by symbol. Raises WorkError where its sources are not those that were recorded."""
+    with loaded.own.named():
+        for name in reader.recorded.modules:
+            if name not in loaded.own.modules:
+                importlib.import_module(name)
+    if loaded.digest != reader.recorded.firmware_digest:
+        raise WorkError(
+            f"{reader.path} must be recorded with the firmware as it is now, and its sources have changed: record it again"
+        )
+    named = (kernel for main in loaded.firmware.mains.values() for kernel in kernels_named(main))
+    return {each.function.symbol: each for each in (*named, *kernels_of(loaded.own))}

@@ -1,0 +1,195 @@
+"""The file of a recorded run: what its cores did, to be played again on other hardware. Opening it runs nothing.
+
+It is a ZIP file. `run.json` says what was run; each `CORE/NUMBER` is one `FrameWork`, a line of JSON and then the columns of its tables,
+each in the narrowest integers that hold it; `end.json`, written last, says what was known only then.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import zipfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from functools import cache
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.errors import WorkError
+from bfsim.kernel import keys
+from bfsim.machine.retiming.work import (
+    ACCESS_COLUMNS,
+    EVENT_COLUMNS,
+    OPERATION_COLUMNS,
+    FrameWork,
+    Place,
+    check,
+)
+
+FORMAT = 1
+WIDTHS = tuple(np.dtype(each) for each in ("<i1", "<i2", "<i4", "<i8"))
+TABLES = {"operations": OPERATION_COLUMNS, "accesses": ACCESS_COLUMNS, "events": EVENT_COLUMNS}
+IN_STEPS = {"accesses": (0, 3), "events": (1,)}
+"""Columns that are written as differences from row to row: stamps, bytes and counters, which go up in steps."""
+
+
+@cache
+def costs_digest() -> str:
+    """Digest of what the costs of kernels depend on besides kernel and profile: the sources of the compiler."""
+    return hashlib.sha256(b"".join(each.read_bytes() for each in keys.sources())).hexdigest()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Recorded:
+    """What was run. `identity` are fields of the run's `Identity`; `buffers` those of each owner of memory, by name and bytes.
+
+    `is_bound`: whether what is accessed depends on where everything lies. `frame_digests`: of the recording up to each frame.
+    `modules`: of the firmware. `obstacles`: why it cannot be played, in words.
+    """
+
+    identity: Mapping[str, Any]
+    buffers: Sequence[Sequence[Any]]
+    is_bound: bool
+    frame_digests: Sequence[str]
+    modules: Sequence[str]
+    firmware_digest: str
+    obstacles: Sequence[str]
+
+
+class WorkWriter:
+    """Writes a file as the run goes on."""
+
+    def __init__(self, stream: IO[bytes]) -> None:
+        self._zip = zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED)
+        self._counts: dict[str, int] = {}
+        self._obstacles: dict[str, None] = {}
+
+    def begin(self, **what: Any) -> None:
+        """Write what is known of the run before it begins."""
+        self._write("run.json", json.dumps({"format": FORMAT, "costs": costs_digest(), **what}).encode())
+
+    def add(self, work: FrameWork) -> None:
+        """Write what a core did in a frame."""
+        number = self._counts[work.core] = self._counts.get(work.core, 0) + 1
+        self._write(f"{work.core}/{number - 1:06}", _written(work))
+
+    def add_obstacle(self, text: str) -> None:
+        """Note why the run cannot be played again."""
+        self._obstacles[text] = None
+
+    def end(self, **what: Any) -> None:
+        """Write what is known at the end: the file is whole then."""
+        self._write("end.json", json.dumps({"obstacles": list(self._obstacles), **what}).encode())
+        self._zip.close()
+
+    def _write(self, name: str, content: bytes) -> None:
+        self._zip.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
+
+
+class WorkReader:
+    """A file that is whole, of this version."""
+
+    def __init__(self, path: Path, zipped: zipfile.ZipFile) -> None:
+        self.path = path
+        self._zip = zipped
+        run, end = self._json("run.json"), self._json("end.json")
+        if run.get("format") != FORMAT or run.get("costs") != costs_digest():
+            raise WorkError(
+                f"{path} must be recorded by this bfsim: another one may cost kernels otherwise; record it again"
+            )
+        try:
+            self.recorded = Recorded(
+                **{each: run[each] for each in run if each not in ("format", "costs")}, **end
+            )
+        except TypeError as error:
+            raise self._broken() from error
+
+    def works(self, core: str) -> Iterator[FrameWork]:
+        """Yield what a core did, frame by frame."""
+        names = [each for each in self._zip.namelist() if each.startswith(f"{core}/")]
+        for name in names:
+            try:
+                work = _read(core, self._zip.read(name))
+                check(work, len(self.recorded.buffers))
+            except (ValueError, KeyError, TypeError, IndexError, zipfile.BadZipFile, OSError) as error:
+                raise self._broken() from error
+            yield work
+
+    def _json(self, name: str) -> Any:
+        try:
+            return json.loads(self._zip.read(name))
+        except (KeyError, ValueError, zipfile.BadZipFile, OSError) as error:
+            raise self._broken() from error
+
+    def _broken(self) -> WorkError:
+        return WorkError(
+            f"{self.path} must be a whole file of `bfsim run --record-work`, and is none, or a part of one; record it again"
+        )
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[WorkReader]:
+    """Open a file. Raises WorkError for one that is cut or broken, is none, or was written by another version."""
+    try:
+        zipped = zipfile.ZipFile(path)
+    except OSError as error:
+        raise WorkError(f"{path} must be a file that can be read: {error.strerror}") from error
+    except zipfile.BadZipFile as error:
+        raise WorkError(
+            f"{path} must be a whole file of `bfsim run --record-work`, and is none, or a part of one; record it again"
+        ) from error
+    with zipped:
+        yield WorkReader(path, zipped)
+
+
+def _written(work: FrameWork) -> bytes:
+    columns: list[tuple[int, NDArray[Any]]] = []
+    for table in TABLES:
+        for number, column in enumerate(getattr(work, table).T):
+            steps = np.diff(column, prepend=0) if number in IN_STEPS.get(table, ()) else column
+            width = next(
+                each
+                for each in WIDTHS
+                if np.iinfo(each).min <= steps.min(initial=0) and steps.max(initial=0) <= np.iinfo(each).max
+            )
+            columns.append((WIDTHS.index(width), steps.astype(width)))
+    head = {
+        "calls": work.calls, "accounts": work.accounts, "copies": work.copies, "widths": [width for width, _ in columns],
+        "rows": {table: len(getattr(work, table)) for table in TABLES},
+    }  # fmt: skip
+    return json.dumps(head, default=asdict).encode() + b"\n" + b"".join(each.tobytes() for _, each in columns)
+
+
+def _read(core: str, content: bytes) -> FrameWork:
+    line = content.index(b"\n") + 1
+    head = json.loads(content[:line])
+    tables, at, widths = {}, line, iter(head["widths"])
+    for name, columns in TABLES.items():
+        rows = int(head["rows"][name])
+        table = tables[name] = np.empty((rows, columns), np.int64)
+        for number in range(columns):
+            width = WIDTHS[next(widths)]
+            table[:, number] = np.frombuffer(content, width, rows, at)
+            if number in IN_STEPS.get(name, ()):
+                np.cumsum(table[:, number], out=table[:, number])
+            at += rows * width.itemsize
+    return FrameWork(
+        core=core,
+        calls=tuple(
+            (name, tuple(_argument(each) for each in arguments)) for name, arguments in head["calls"]
+        ),
+        accounts=tuple(head["accounts"]),
+        copies=tuple(
+            (int(stream), Place(**source), Place(**destination))
+            for stream, source, destination in head["copies"]
+        ),
+        **tables,
+    )
+
+
+def _argument(each: Any) -> Any:
+    return Place(**each) if isinstance(each, dict) and each.keys() == {"owner", "first", "nbytes"} else each

@@ -1,0 +1,223 @@
+"""A recorded run that is played on other hardware is the run of the firmware there, to the cycle; else it is refused in words."""
+
+from __future__ import annotations
+
+import random
+import zipfile
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bfsim.errors import ConfigError, WorkError
+from bfsim.machine.bus import state as w
+from bfsim.machine.retiming.work import CALL, FrameWork, check
+from bfsim.result import Run
+from bfsim.run import Feed, Fidelity, simulate
+from tests.test_run import FIRMWARE, record
+
+FRAMES = 2
+HOSTS_OWN = {"events"}
+"""Fields of a run that say what it took the host; the ones below also say what was asked for."""
+
+
+def random_hardware(seed: int) -> dict[str, object]:
+    """Return numbers of a board to change: clocks, latencies, DMA and bus settings."""
+    among = random.Random(seed)
+    return {
+        "clocks.cclk_hz": among.choice([300e6, 450e6, 500e6, 600e6]),
+        "clocks.sclk_hz": among.choice([75e6, 100e6, 120e6]),
+        "sdram.nRP": among.randint(2, 5),
+        "sdram.nRCD": among.randint(2, 5),
+        "chip.l2.read_cclk": among.randint(5, 30),
+        "chip.events.mmr_write_cclk": among.randint(1, 9),
+        "dma_over_core": among.random() < 0.5,
+        "deb_period_transfers": among.choice([0, 3, 15]),
+        "mdma_period_transfers": among.choice([0, 5]),
+    }
+
+
+def differing(one: Run, other: Run) -> set[str]:
+    """Return the fields in which two runs differ."""
+    compared = [each.name for each in fields(one) if each.compare]
+    return {each for each in compared if getattr(one, each) != getattr(other, each)}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder for recorded runs."""
+    return tmp_path_factory.mktemp("work")
+
+
+@pytest.fixture(scope="module")
+def plain() -> Run:
+    """Return a run of the built-in firmware."""
+    return simulate(frames=FRAMES)
+
+
+@pytest.fixture(scope="module")
+def work(folder: Path, plain: Run) -> Path:
+    """Return the recorded work of that run; recording it changes nothing."""
+    path = folder / "thesis.work"
+    assert differing(plain, simulate(frames=FRAMES, record_work=path)) == set()
+    return path
+
+
+def test_a_recorded_run_is_played_as_it_was(work: Path, plain: Run) -> None:
+    """Every record is the same: frames, owners, stalls by site, traffic, results, messages, identity."""
+    assert differing(plain, simulate(frames=FRAMES, work=work)) <= HOSTS_OWN
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_it_is_the_run_of_other_hardware(work: Path, plain: Run, seed: int) -> None:
+    """Whatever the clocks, the latencies, and the settings of DMA and bus."""
+    settings = random_hardware(seed)
+    there = simulate(frames=FRAMES, settings=settings)
+    assert there.frames != plain.frames
+    assert differing(there, simulate(frames=FRAMES, work=work, settings=settings)) <= HOSTS_OWN
+
+
+def test_it_is_the_run_of_another_placement(folder: Path, plain: Run) -> None:
+    """What was recorded with buffers outside of L1 is played where they are in L1; the reverse is refused, with a buffer's name."""
+    path = folder / "l2.work"
+    elsewhere = simulate(frames=1, ldf=Path("l2"), record_work=path)
+    here = simulate(frames=1)
+    assert here.frames != elsewhere.frames
+    assert differing(here, simulate(frames=1, work=path)) <= HOSTS_OWN
+    with pytest.raises(WorkError, match=r"must be in L1, for it was when the run was recorded"):
+        simulate(frames=1, ldf=Path("sdram"), work=path)
+
+
+def test_caches_are_played_with_their_ldf(folder: Path) -> None:
+    """Which lines a cache fetches depends on addresses: another board is the same run, another LDF is refused."""
+    path, settings = folder / "cache.work", {"sdram.nRP": 5}
+    simulate(frames=1, ldf=Path("cache"), record_work=path)
+    there = simulate(frames=1, ldf=Path("cache"), settings=settings)
+    assert differing(there, simulate(frames=1, ldf=Path("cache"), work=path, settings=settings)) <= HOSTS_OWN
+    with pytest.raises(WorkError, match=r"must be played with the LDF that it was recorded with"):
+        simulate(frames=1, work=path)
+
+
+def test_missed_frames_are_said(folder: Path) -> None:
+    """Where slower cores miss a frame, they do something else than was recorded."""
+    path = folder / "recorded.work"
+    simulate(frames=5, feed=Feed.RECORDED, record_work=path)
+    with pytest.raises(WorkError, match=r"core [AB] gets .* where it got frame \d when the run was recorded"):
+        simulate(frames=5, feed=Feed.RECORDED, work=path, settings={"clocks.cclk_hz": 200e6})
+
+
+WITH_HANDLERS = """
+from dataclasses import replace
+
+from tinyphoon import tinyphoon
+
+
+def with_handler(main):
+    def handled(core):
+        core.on_interrupt("SPI_DMA", lambda _: None)
+        yield from main(core)
+
+    return handled
+
+
+interrupted = replace(tinyphoon, mains={core: with_handler(main) for core, main in tinyphoon.mains.items()})
+"""
+
+
+def test_handlers_of_interrupts_are_said(folder: Path) -> None:
+    """They come when the hardware has them, between other calls on other hardware."""
+    path, source = folder / "handlers.work", folder / "with_handlers.py"
+    source.write_text(WITH_HANDLERS)
+    firmware = f"{source}:interrupted"
+    simulate(firmware=firmware, frames=1, record_work=path)
+    with pytest.raises(WorkError, match="core A has a handler of the interrupt SPI_DMA"):
+        simulate(firmware=firmware, frames=1, work=path)
+
+
+@pytest.mark.parametrize(
+    ("what", "said"),
+    [
+        ({"frames": 1}, r"has 2 frames and must be played for as many, not for 1"),
+        (
+            {"frames": FRAMES, "profile": "gcc-O2"},
+            r"must be recorded with the same compiler, gcc-O2, not with vdsp-O2",
+        ),
+    ],
+)
+def test_another_run_is_refused(work: Path, what: dict[str, Any], said: str) -> None:
+    """Frames and compiler must be those of the recorded run."""
+    with pytest.raises(WorkError, match=said):
+        simulate(work=work, **what)
+
+
+def test_what_needs_more_than_cycles_is_refused(work: Path, folder: Path) -> None:
+    """There are no pictures, and no events of single words."""
+    with pytest.raises(ConfigError, match="--work must go without pictures"):
+        simulate(frames=FRAMES, work=work, on_seen=lambda _: None)
+    with pytest.raises(ConfigError, match="--work must go with --fidelity fast"):
+        simulate(frames=FRAMES, work=work, fidelity=Fidelity.DETAILED)
+    with pytest.raises(ConfigError, match="--record-work must go with --fidelity fast"):
+        simulate(frames=FRAMES, record_work=folder / "none.work", fidelity=Fidelity.DETAILED)
+    assert not (folder / "none.work").exists()
+
+
+@pytest.mark.parametrize("part", [0.0, 0.4, 0.999])
+def test_a_part_of_a_file_is_refused(work: Path, folder: Path, part: float) -> None:
+    """It is told at opening, before anything runs."""
+    octets = work.read_bytes()
+    cut = folder / "cut.work"
+    cut.write_bytes(octets[: int(len(octets) * part)])
+    with pytest.raises(WorkError, match=r"cut\.work must be a whole file"):
+        simulate(frames=FRAMES, work=cut)
+
+
+def test_another_version_is_refused(work: Path, folder: Path) -> None:
+    """Another bfsim may cost kernels otherwise."""
+    other = folder / "other.work"
+    with zipfile.ZipFile(work) as old, zipfile.ZipFile(other, "w") as new:
+        for name in old.namelist():
+            new.writestr(name, old.read(name).replace(b'"format": 1', b'"format": 0'))
+    with pytest.raises(WorkError, match="must be recorded by this bfsim"):
+        simulate(frames=FRAMES, work=other)
+
+
+def test_a_frame_takes_less_than_200_kb(work: Path) -> None:
+    """With the LDF of the built-in firmware."""
+    assert work.stat().st_size / FRAMES < 200_000
+
+
+NOTHING = FrameWork(
+    core="A",
+    operations=np.zeros((0, 5), np.int64),
+    accesses=np.zeros((0, 5), np.int64),
+    events=np.zeros((0, 3), np.int64),
+    calls=(),
+    accounts=(),
+    copies=(),
+)
+
+
+@pytest.mark.parametrize(
+    "operation",
+    [(CALL + 1, 0, 0, 0, 0), (w.RUN, -1, 0, 0, 0), (w.ACCESS, 1, 0, 1, 0), (w.SET_UP, 1, 0, w.MAX_ACCOUNTS, 0), (CALL, 0, 0, 0, 0)],
+)  # fmt: skip
+def test_numbers_that_the_bus_cannot_play_are_refused(operation: tuple[int, ...]) -> None:
+    """Kinds that there are not, negative cycles, accesses and calls that are missing, accounts that have no room."""
+    check(NOTHING, 3)
+    with pytest.raises(ValueError, match=r"out of its range|as many accesses and calls"):
+        check(replace(NOTHING, operations=np.array([operation], np.int64)), 3)
+
+
+def test_what_leaves_l1_is_refused_even_beside_what_was_outside(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A kernel with one array in L2 has accesses on record, but not those to its rows in L1, which `l2` puts outside."""
+    (tmp_path / "fw_mixed.py").write_text(FIRMWARE)
+    monkeypatch.chdir(tmp_path)
+    recording = record(tmp_path / "drive.mcap", 2)
+    path = tmp_path / "thesis.work"
+    simulate(recording, firmware="fw_mixed:eyes", record_work=path)
+    with pytest.raises(WorkError, match=r"ring \(A\), out \(A\) must be in L1"):
+        simulate(recording, firmware="fw_mixed:eyes", ldf=Path("l2"), work=path)
