@@ -8,14 +8,12 @@ from __future__ import annotations
 
 from collections import Counter as Tally
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
-from bfsim.kernel.ir_text import Entrance, Routine, SourceLine
-from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering import optimised, unoptimised
+from bfsim.kernel.ir_text import Entrance, SourceLine
+from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.charges import Access, Charge
-from bfsim.kernel.profile import CompilerProfile
 
 
 @dataclass(frozen=True)
@@ -58,6 +56,17 @@ class Counter:
         return tuple((line, issue[line], stall[line]) for line in sorted(issue))
 
     @cached_property
+    def line_operations(self) -> tuple[tuple[SourceLine, str, int, int], ...]:
+        """(source line, operation or routine of the run-time library, how many, issue cycles) per event."""
+        found: dict[tuple[SourceLine, str], list[Charge]] = {}
+        for each in self.charges:
+            found.setdefault((each.line, each.routine or each.op.value), []).append(each)
+        return tuple(
+            (line, name, _times(charges), sum(each.count * each.issue_cclk for each in charges))
+            for (line, name), charges in found.items()
+        )
+
+    @cached_property
     def issue_cclk(self) -> int:
         """Issue cycles per event."""
         return sum(issue for _, issue, _ in self.line_cclk)
@@ -68,49 +77,9 @@ class Counter:
         return sum(stall for _, _, stall in self.line_cclk)
 
 
-def cost(routine: Routine, profile: CompilerProfile) -> tuple[Counter, ...]:
-    """Cost every block of `routine`; one counter per block, and one per branch whose sides cost differently."""
-    lower = optimised.lower if profile.optimises else unoptimised.lower
-    blocks = lower(routine, profile)
-    flow = ControlFlow(routine)
-    known = _accesses(flow)
-    counters: list[Counter] = []
-    for block in routine.blocks:
-        found = blocks[block.label]
-        place, depth = (routine.symbol, block.label), len(flow.loops_of(block.label))
-        charges = _merged(found.charges)
-        accesses = (
-            *(known[id(each)] for each in found.accesses if id(each) in known),
-            *(known[id(each)]._replace(fills=True) for each in found.fills),
-        )
-        own = Entrance(routine.symbol, SourceLine(routine.symbol, 0))
-        enters = (*([own] if block is routine.blocks[0] else []), *block.enters)
-        if not charges and not accesses and not found.tests and not enters:
-            continue  # nothing to count: the block holds no code
-        counters.append(Counter(*place, None, None, charges, accesses, found.nbytes, depth, enters))
-        for test in found.tests:
-            charges = _merged(test.charges)
-            if any(each.issue_cclk for each in charges):
-                counters.append(Counter(*place, test.value, test.equals, charges, (), 0, depth))
-    return tuple(counters)
-
-
-def _merged(charges: Iterable[Charge]) -> tuple[Charge, ...]:
-    """Add up like charges; what cancels out is left out."""
-    counts: dict[Charge, int] = {}
+def _times(charges: Iterable[Charge]) -> int:
+    """Return how often an operation runs, or a routine: as often as the rarest of its operations, which each has once."""
+    counts: Tally[Op] = Tally()
     for each in charges:
-        one = replace(each, count=1)
-        counts[one] = counts.get(one, 0) + each.count
-    return tuple(replace(one, count=count) for one, count in counts.items() if count)
-
-
-def _accesses(flow: ControlFlow) -> dict[int, Access]:
-    """Every load and store of a routine, by the identity of its instruction; a compiler's own table is no array of the kernel."""
-    found = {}
-    for block in flow.routine.blocks:
-        rows = (each for each in block.instructions if each.opcode in ("load", "store"))
-        for number, each in enumerate(rows):
-            root = flow.root(each.operands[-1])
-            if not root.startswith("@"):
-                found[id(each)] = Access(root[1:], each.opcode == "store", block.label, number, each.line)
-    return found
+        counts[each.op] += each.count
+    return min(counts.values())

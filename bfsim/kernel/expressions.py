@@ -8,11 +8,12 @@ because the conversion is a call that should be seen.
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from bfsim.kernel import tree
-from bfsim.kernel.operators import BINARY, COMPARE, DIVISIONS, FOLD, ON_FLOATS, in_words
+from bfsim.kernel.operators import ALIKE, BINARY, COMPARE, DIVISIONS, FOLD, ON_FLOATS, in_words
 from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.types import (
     BOOL,
@@ -124,12 +125,17 @@ class Expressions:
             truth = tree.Const(int(node.value), i32, node.lineno)
             return tree.Compare("!=", truth, tree.Const(0, i32, node.lineno), BOOL, node.lineno)
         if type(node.value) is int:
-            return self._literal(node, node.value)
+            return replace(self._literal(node, node.value), written=self._hexadecimal(node))
         if type(node.value) is float:
             return tree.Const(f32(node.value), f32, node.lineno)
         self.source.refuse(node, f"a kernel cannot use the constant {node.value!r}", "use numbers")
 
-    def _literal(self, node: ast.expr, value: int) -> tree.Expr:
+    def _hexadecimal(self, node: ast.Constant) -> str:
+        """A hexadecimal number as it is written; '' for others."""
+        written = self.source.text_of(node).replace("_", "")
+        return written if re.fullmatch("0[xX][0-9a-fA-F]+", written) else ""
+
+    def _literal(self, node: ast.expr, value: int) -> tree.Const:
         if not i32.bounds[0] <= value <= u32.bounds[1]:
             self.source.refuse(
                 node, f"{value} does not fit in 32 bits", "use a value in -2147483648..4294967295"
@@ -152,9 +158,9 @@ class Expressions:
             )
         constant = self.outer.get(name)
         if type(constant) is int:
-            return self._literal(node, constant)
+            return replace(self._literal(node, constant), written=name)
         if type(constant) is float:
-            return tree.Const(f32(constant), f32, node.lineno)
+            return tree.Const(f32(constant), f32, node.lineno, written=name)
         if name not in self.outer:
             self.source.refuse(
                 node, f"the name {name} is not defined", "assign it first, or make it a parameter"
@@ -199,7 +205,8 @@ class Expressions:
     def _folded(self, node: ast.expr, op: str, left: tree.Expr, right: tree.Expr) -> tree.Expr:
         assert isinstance(left, tree.Const)
         assert isinstance(right, tree.Const)
-        return self._literal(node, FOLD[op](int(left.value), int(right.value)))
+        result = self._literal(node, FOLD[op](int(left.value), int(right.value)))
+        return replace(result, written=_written(op, left, right, result))
 
     def _float_arithmetic(self, node: ast.expr, op: str, left: tree.Expr, right: tree.Expr) -> tree.Expr:
         if left.type is not right.type:
@@ -333,3 +340,13 @@ class Expressions:
 
 def _are_ints(*values: tree.Expr) -> bool:
     return all(isinstance(each, tree.Const) for each in values)
+
+
+def _written(op: str, left: tree.Const, right: tree.Const, result: tree.Const) -> str:
+    """An operation on constants as it is written, if it names one, and C has the operator and room for the result."""
+    named = any(each.written and not each.written.startswith("0") for each in (left, right))
+    if op not in ALIKE or not named or any(each.type is not i32 for each in (left, right, result)):
+        return ""
+    sides = (each.written or str(each.value) for each in (left, right))
+    first, second = (each if each.isidentifier() or each.isdigit() else f"({each})" for each in sides)
+    return f"{first} {op} {second}"

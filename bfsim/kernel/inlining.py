@@ -19,6 +19,7 @@ from functools import cache
 from bfsim.kernel import tree
 from bfsim.kernel.emit import InlinedCall
 from bfsim.kernel.gimple_size import RETURN_TIME, Estimate, estimate
+from bfsim.kernel.keys import compiled_with
 from bfsim.kernel.profile import CompilerProfile, Inlines
 
 EARLY_STATEMENTS = 6  # [params.opt] early-inlining-insns
@@ -103,24 +104,6 @@ def inlined_calls(function: tree.Function, profile: CompilerProfile) -> frozense
     return frozenset(
         (each.caller, each.callee, each.line) for each in decisions(function, profile) if each.inlined
     )
-
-
-def compiled_with(function: tree.Function, profile: CompilerProfile) -> tuple[tree.Function, ...]:
-    """Return the kernels on which the code of `function` depends, callees first: its own program, and what else calls parts of it.
-
-    Where a compiler inlines within a file, other kernels of the file may call the same helpers.
-    """
-    program = (*function.callees(), function)
-    if profile.inlines is not Inlines.FILE:
-        return program
-    callers = {
-        each.symbol: each
-        for part in program
-        for each in part.siblings()
-        if not set(each.callees()).isdisjoint(program)
-    }
-    more = (callers[symbol] for symbol in sorted(callers))
-    return tuple(dict.fromkeys((*program, *(part for each in more for part in (*each.callees(), each)))))
 
 
 @dataclass

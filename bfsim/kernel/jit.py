@@ -13,14 +13,13 @@ from functools import cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from bfsim import store
 from bfsim.errors import KernelError
-from bfsim.kernel import crashes, failures, machine_code, store, tree
+from bfsim.kernel import crashes, keys, machine_code, tree
 from bfsim.kernel.call_paths import Program
-from bfsim.kernel.costs import Costs, costs_of, optimised
+from bfsim.kernel.costs import Costs, costs_of
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import cell_name, running_name
-from bfsim.kernel.guards import Guarded, note_name
-from bfsim.kernel.instrument import instrument
 from bfsim.kernel.profile import CompilerProfile
 
 ENTRY = ctypes.CFUNCTYPE(ctypes.c_int64)
@@ -61,12 +60,15 @@ def compile_kernel(
     (the floor that benchmarks compare with) and every call costs 0 cycles; without `checked` no index and no divisor
     is checked, which must be known to be right.
     """
-    key = store.key(function, profile, f"traced={traced} counted={counted} checked={checked}")
+    key = keys.key(function, profile, f"traced={traced} counted={counted} checked={checked}")
     entry = _entry_name(key)
     costs = costs_of(function, profile) if counted else Costs()
     program = Program(function.symbol, costs, function.array_names)
     code = store.load(key)
     if code is None:
+        from bfsim.kernel.costing import optimised  # most starts find all machine code
+        from bfsim.kernel.instrument import instrument
+
         text = instrument(
             optimised(function, profile), function, program, entry, traced=traced, checked=checked
         )
@@ -84,9 +86,13 @@ def compile_kernel(
 
 def _failure(function: tree.Function, profile: CompilerProfile, entry: str) -> KernelError:
     """Return what the guards of a loaded kernel have noted."""
+    from bfsim.kernel.costing import optimised  # few kernels fail
+    from bfsim.kernel.failures import failure
+    from bfsim.kernel.guards import Guarded, note_name
+
     guarded = Guarded(optimised(function, profile), entry)
     note = (ctypes.c_int64 * guarded.note_words).from_address(machine_code.address_of(note_name(entry)))
-    return failures.failure(function, guarded, list(note))
+    return failure(function, guarded, list(note))
 
 
 def _entry_name(key: str) -> str:

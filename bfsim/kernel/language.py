@@ -11,11 +11,9 @@ import ast
 import builtins
 import inspect
 import re
-from collections import Counter as Tally
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import cache
 from typing import Any
 
 from bfsim.errors import KernelError
@@ -23,6 +21,7 @@ from bfsim.kernel import tree
 from bfsim.kernel.operators import BINARY
 from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.scope import KernelScope
+from bfsim.kernel.source_files import file_of, marks_of, names_by_use
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, f32, i32, u32
 
 SCALARS = (i32, u32, f32)
@@ -69,39 +68,19 @@ def read_kernel(python: Callable[..., Any]) -> tree.Function:
 
 def _is_static(python: Callable[..., Any], definition: ast.FunctionDef) -> bool:
     """Whether other kernels of the file name this one, and nothing else there does."""
-    lines, _ = inspect.findsource(python)
-    marks = frozenset(ast.unparse(each) for each in definition.decorator_list)
-    by_kernels, by_others = _names_in("".join(lines), marks)
+    by_kernels, by_others = names_by_use(file_of(python), marks_of(definition))
     return by_kernels[definition.name] > 0 and definition.name not in by_others
-
-
-@cache
-def _names_in(text: str, marks: frozenset[str]) -> tuple[Tally[str], frozenset[str]]:
-    """Return the names that the kernels of a file use, and those that the rest of it uses; a kernel has one of `marks`."""
-    by_kernels, by_others = Tally[str](), set[str]()
-    for each in ast.parse(text).body:
-        names = {node.id for node in ast.walk(each) if isinstance(node, ast.Name)}
-        if isinstance(each, ast.FunctionDef) and any(
-            ast.unparse(mark) in marks for mark in each.decorator_list
-        ):
-            by_kernels.update(names)
-        else:
-            by_others |= names
-    return by_kernels, frozenset(by_others)
 
 
 def _definition(python: Callable[..., Any]) -> tuple[KernelSource, ast.FunctionDef]:
     if not inspect.isfunction(python) or hasattr(python, "__wrapped__"):
         raise KernelError(f"@kernel must stand directly above a plain `def`, not on {python!r}")
-    try:
-        lines, first_line = inspect.getsourcelines(python)
-    except OSError as reason:
-        raise KernelError(
-            f"{python!r} must be a function in a file, so that its source can be read"
-        ) from reason
-    text = "".join(lines)
-    source = KernelSource(inspect.getsourcefile(python) or "?", first_line, text)
-    if not isinstance(node := _parsed(text), ast.FunctionDef) or node.name != python.__name__:
+    code = python.__code__
+    text = file_of(python).text_from(code.co_firstlineno)
+    if not text:
+        raise KernelError(f"{python!r} must be a function in a file, so that its source can be read")
+    source = KernelSource(code.co_filename, code.co_firstlineno, text)
+    if not isinstance(node := _parsed(source.text), ast.FunctionDef) or node.name != python.__name__:
         source.refuse(node, "a kernel must be a plain `def`", "write def, not lambda or async def")
     return source, node
 
@@ -173,12 +152,17 @@ def _parameters(scope: KernelScope, definition: ast.FunctionDef) -> tuple[tree.P
     return tuple(parameters)
 
 
+def _is_all(index: ast.expr) -> bool:
+    """Whether an index is `:`."""
+    return isinstance(index, ast.Slice) and index.lower is index.upper is index.step is None
+
+
 def _annotation(outer: Mapping[str, object], node: ast.expr | None) -> Number | ArrayType | None:
     """Type named by an annotation, or None when it names none."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         with suppress(SyntaxError):
             node = ast.parse(node.value, mode="eval").body
-    if isinstance(node, ast.Subscript) and ast.unparse(node.slice) == ":":
+    if isinstance(node, ast.Subscript) and _is_all(node.slice):
         element = _annotation(outer, node.value)
         return ArrayType(element) if isinstance(element, (IntType, FloatType)) else None
     if isinstance(node, ast.Name) and isinstance(named := outer.get(node.id), (IntType, FloatType)):

@@ -18,7 +18,9 @@ from typing import Any, TypeVar
 
 import llvmlite.binding as llvm
 
-from bfsim.kernel import machine_code, store
+from bfsim import store
+from bfsim.kernel import machine_code
+from bfsim.kernel.keys import tools
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -86,7 +88,7 @@ def _loaded(each: NativeEntry) -> int:
 @cache
 def _key(symbol: str) -> str:
     package = Path(__file__).parent.parent
-    digest = hashlib.sha256(f"{symbol} {version('numba')} {store.tools()}".encode())
+    digest = hashlib.sha256(f"{symbol} {version('numba')} {tools()}".encode())
     for path in sorted(path for room in ROOMS for path in (package / room).rglob("*.py")):
         digest.update(path.read_bytes())
     return digest.hexdigest()

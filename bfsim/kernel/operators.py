@@ -26,6 +26,8 @@ OF_TWO: dict[Callable[..., object], str] = {
     quotient: "quotient",
     remainder: "remainder",
 }
+ALIKE = frozenset(["+", "-", "*", "<<", ">>", "&", "|", "^"])
+"""Operators on integers that mean the same in C, where nothing overflows."""
 DIVISIONS = ("//", "%", "quotient", "remainder")
 
 

@@ -14,9 +14,12 @@ from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, Value
 
 @dataclass(frozen=True, slots=True)
 class Const:
+    """A number. `written`: how the source has it, where that says more (`MASK`, `2 * WIDTH`, `0xFF`) and C reads it alike."""
+
     value: int | float
     type: Number
     line: int
+    written: str = field(default="", compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,22 +209,32 @@ class Parameter:
 class Function:
     """A whole kernel. `locals` gives the type of every local name; `symbol` is its name in the machine code.
 
-    `file`, `first_line` and `source` say where it stands, `names` what the names of its file mean; `repr` is without them.
+    `file`, `first_line` and `source` say where it stands, `names` what the names of its file mean.
     A kernel `is_static`, as C calls it, if other kernels of its file name it and nothing else there does: the file's main loops
     do not run it. Whether another file imports it is not looked at.
     """
 
     name: str
     symbol: str
-    file: str = field(repr=False)
-    first_line: int = field(repr=False)
-    source: str = field(repr=False)
-    names: Mapping[str, object] = field(repr=False)
+    file: str
+    first_line: int
+    source: str
+    names: Mapping[str, object]
     is_static: bool
     parameters: tuple[Parameter, ...]
     result: Number | None
     locals: tuple[tuple[str, Value], ...]
     body: tuple[Stmt, ...]
+
+    def __repr__(self) -> str:
+        """Return the symbol alone, which stands for it in the text of a call."""
+        return self.symbol
+
+    @property
+    def text(self) -> str:
+        """All that its code depends on but its callees, as text."""
+        parts = (self.name, self.symbol, self.is_static, self.parameters, self.result, self.locals, self.body)
+        return repr(parts)
 
     @property
     def array_names(self) -> tuple[str, ...]:
@@ -233,7 +246,7 @@ class Function:
         kinds = (Const, Local, Load, Binary, Unary, Choose, Cast, KernelCall)
         lines = [
             each.line
-            for each in _parts(self.body)
+            for each in parts(self.body)
             if isinstance(each, kinds) and isinstance(each.type, FloatType)
         ]
         in_head = any(
@@ -265,15 +278,15 @@ def _callees(function: Function) -> tuple[Function, ...]:
 
 def calls_in(node: object) -> list[KernelCall]:
     """Every call of a kernel in `node`, a part of a tree; the outer one of `f(g(x))` first."""
-    return [each for each in _parts(node) if isinstance(each, KernelCall)]
+    return [each for each in parts(node) if isinstance(each, KernelCall)]
 
 
 @cache
 def measured_arrays(function: Function) -> frozenset[str]:
     """Array parameters whose length `function` or a kernel called by it asks for: in C, they come with it."""
-    parts = list(_parts(function.body))
-    found = {each.array for each in parts if isinstance(each, Length)}
-    for call in parts:
+    nodes = list(parts(function.body))
+    found = {each.array for each in nodes if isinstance(each, Length)}
+    for call in nodes:
         if isinstance(call, KernelCall):
             inner = measured_arrays(call.callee)
             pairs = zip(call.callee.parameters, call.arguments, strict=True)
@@ -283,9 +296,9 @@ def measured_arrays(function: Function) -> frozenset[str]:
 
 def written_arrays(function: Function) -> frozenset[str]:
     """Array parameters that `function` or a kernel called by it stores into."""
-    parts = list(_parts(function.body))
-    written = {each.array for each in parts if isinstance(each, Store)}
-    for call in parts:
+    nodes = list(parts(function.body))
+    written = {each.array for each in nodes if isinstance(each, Store)}
+    for call in nodes:
         if isinstance(call, KernelCall):
             inner = written_arrays(call.callee)
             pairs = zip(call.callee.parameters, call.arguments, strict=True)
@@ -295,7 +308,7 @@ def written_arrays(function: Function) -> frozenset[str]:
     return frozenset(written)
 
 
-def _parts(node: object) -> Iterator[object]:
+def parts(node: object) -> Iterator[object]:
     """Walk over `node` and everything below it, in source order, without recursion: trees may be deep."""
     waiting = [node]
     while waiting:

@@ -13,8 +13,9 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+from bfsim import store
 from bfsim.errors import BfsimWarning
-from bfsim.kernel import VDSP_O2, Kernel, costs, jit, store
+from bfsim.kernel import VDSP_O2, Kernel, costing, instrument
 from tests.kernel.modules import HEADER, import_text
 from tests.kernel.running import CALLING_VDSP, cclk
 
@@ -22,11 +23,11 @@ TEXT = "@kernel\ndef f(a: u8[:], b: u8[:]):\n    for i in range(len(a)):\n      
 RUN = """
 import numpy as np
 from bfsim.errors import BfsimWarning
-from bfsim.kernel import VDSP_O2, jit
+from bfsim.kernel import VDSP_O2, instrument
 from program import f
 compiles = []
-instrument = jit.instrument
-jit.instrument = lambda *given, **named: compiles.append(1) or instrument(*given, **named)
+real = instrument.instrument
+instrument.instrument = lambda *given, **named: compiles.append(1) or real(*given, **named)
 a = np.arange(64, dtype=np.uint8); b = a.copy()
 code = f.compile(VDSP_O2)
 work = f.prepare(code, [a, b], code.new_totals()).run((a, b))
@@ -45,13 +46,13 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture
 def compiles(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """List the kernels that are really compiled for the host from now on."""
-    return _noted(monkeypatch, jit, "instrument", lambda _, function, *__, **___: function.name)
+    return _noted(monkeypatch, instrument, "instrument", lambda _, function, *__, **___: function.name)
 
 
 @pytest.fixture
 def costings(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """List the routines that are really costed from now on."""
-    return _noted(monkeypatch, costs, "cost", lambda routine, _: routine.symbol)
+    return _noted(monkeypatch, costing, "cost", lambda routine, _: routine.symbol)
 
 
 def _noted(

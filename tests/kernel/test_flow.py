@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from bfsim.kernel import VDSP_O2
 from bfsim.kernel.call_paths import Program
-from bfsim.kernel.costs import Costs, optimised
-from bfsim.kernel.counters import cost
+from bfsim.kernel.costing import cost, optimised
+from bfsim.kernel.costs import Costs
 from bfsim.kernel.instrument import instrument
 from bfsim.kernel.ir_text import Instruction, read_module
 from bfsim.kernel.loops import ControlFlow

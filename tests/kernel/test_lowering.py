@@ -11,7 +11,7 @@ import pytest
 from benchmarks.twins.lines import grow_segments
 from bfsim.errors import ConfigError
 from bfsim.kernel import GCC_O2, CompilerProfile, Kernel, profile_named
-from bfsim.kernel.costs import optimised
+from bfsim.kernel.costing import optimised
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.learnt import Learnt

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from bfsim.kernel import GCC_O2, VDSP_O2, store
+from bfsim.kernel import GCC_O2, VDSP_O2, keys
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.moves import _is_circular
 from tests.kernel.test_lowering import context, lowered
@@ -163,5 +163,5 @@ def test_a_first_address_that_depends_on_data_is_computed(first: str, products: 
 
 def test_the_cache_depends_on_the_lowering() -> None:
     """A rule of the lowering that changes must not meet kernels that were costed without it."""
-    assert {"select.py", "store.py"} <= {path.name for path in store.sources()}
+    assert {"select.py", "keys.py"} <= {path.name for path in keys.sources()}
     assert GCC_O2.library.fill is not None

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from bfsim.kernel import Kernel
-from bfsim.kernel.costs import optimised
+from bfsim.kernel.costing import optimised
 from bfsim.kernel.ir_text import Routine, read_module
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.charges import BlockCost, Charge

@@ -27,13 +27,14 @@ class Calls:
         self.label = ""
 
     def append(self, op: Op, each: Instruction, result: str | None, bank: RegisterBank, *uses: tuple[str, RegisterBank],
-             overwrites: tuple[str, ...] = (), cclk: int | None = None, nbytes: int | None = None, access: Instruction | None = None) -> None:  # fmt: skip
+             overwrites: tuple[str, ...] = (), cclk: int | None = None, nbytes: int | None = None, access: Instruction | None = None, routine: str = "") -> None:  # fmt: skip
         named = tuple(
             (value if value.startswith("#") else self.context.name(value), where) for value, where in uses
         )
         over = tuple(self.context.name(value) for value in overwrites)
         self.code.add(
-            self.label, MachineInstruction(op, each.line, result, bank, named, over, cclk, nbytes, access)
+            self.label,
+            MachineInstruction(op, each.line, result, bank, named, over, cclk, nbytes, access, routine),
         )
 
     def call(self, each: Instruction) -> None:
@@ -81,7 +82,7 @@ class Calls:
         routine = self.context.profile.library.divide_unsigned
         self._pass(each, list(each.operands[:1]) * 2)
         self.append(Op.CALL, each, each.result, DATA)
-        self._library(each, routine)
+        self._library(each, routine, "division")
 
     def _swap_bits(self, each: Instruction) -> None:
         """Halves are swapped over and over, as the source does from which LLVM has read the whole reversal."""
@@ -116,28 +117,31 @@ class Calls:
             cclk = fill.cclk if iterations is None else fill.of(iterations * nbytes)
             self.append(Op.LIBRARY, each, None, DATA, cclk=cclk, nbytes=0)
 
-    def _library(self, each: Instruction, routine: LibraryRoutine) -> None:
+    def _library(self, each: Instruction, routine: LibraryRoutine, name: str) -> None:
         if routine.mix:
             for op, count in routine.mix:
                 for _ in range(count):
-                    self.append(op, each, None, DATA, nbytes=0)
+                    self.append(op, each, None, DATA, nbytes=0, routine=name)
         else:
-            self.append(Op.LIBRARY, each, None, DATA, cclk=routine.cclk, nbytes=0)
+            self.append(Op.LIBRARY, each, None, DATA, cclk=routine.cclk, nbytes=0, routine=name)
 
     def float_operation(self, each: Instruction) -> None:
         """A call of the soft-float library."""
         library = self.context.profile.floats
         assert library is not None
-        routine = {
-            "fadd": library.add, "fsub": library.subtract, "fmul": library.multiply, "fdiv": library.divide,
-            "fcmp": library.compare, "sitofp": library.from_integer, "uitofp": library.from_integer,
-        }.get(each.opcode)  # fmt: skip
-        if routine is None:
-            routine = library.square_root if "@llvm.sqrt" in each.text else library.to_integer
+        if "@llvm.sqrt" in each.text:
+            routine, name = library.square_root, "float square root"
+        else:
+            routine, name = {
+                "fadd": (library.add, "float addition"), "fsub": (library.subtract, "float subtraction"),
+                "fmul": (library.multiply, "float multiplication"), "fdiv": (library.divide, "float division"),
+                "fcmp": (library.compare, "float comparison"), "sitofp": (library.from_integer, "conversion to float"),
+                "uitofp": (library.from_integer, "conversion to float"),
+            }.get(each.opcode, (library.to_integer, "conversion from float"))  # fmt: skip
         values = [operand for operand in each.operands if operand.startswith("%") or operand[:1].isdigit()]
         self._pass(each, values[: isa.REGISTER_ARGUMENTS])
         self.append(Op.CALL, each, each.result, DATA)
-        self._library(each, routine)
+        self._library(each, routine, name)
         if each.opcode == "fcmp":
             self.append(Op.COMPARE, each, None, DATA)  # of the integer that the library returns, with zero
 
@@ -167,7 +171,7 @@ class Calls:
             return
         self._pass(each, list(each.operands[:2]))
         self.append(Op.CALL, each, each.result, DATA)
-        self._library(each, routine)
+        self._library(each, routine, "division" if each.opcode.endswith("div") else "remainder")
 
     def _divide_by_power(self, each: Instruction) -> None:
         """The likelier way, of a dividend that is not negative, has no code in between."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from bfsim.kernel.ir_text import Instruction, SourceLine
@@ -21,6 +21,8 @@ class Charge:
     stall_cclk: int = 0
     """Interlock cycles of one execution (0 in profiles without interlocks)."""
     count: int = 1
+    routine: str = ""
+    """The routine of the run-time library that it is an operation of, such as "division"."""
 
 
 def charge(op: Op, line: SourceLine) -> Charge:
@@ -30,8 +32,7 @@ def charge(op: Op, line: SourceLine) -> Charge:
 
 def instead(side: Iterable[Charge], other: Iterable[Charge]) -> tuple[Charge, ...]:
     """Return the charges that turn the cost of `other` into that of `side`."""
-    taken_back = (Charge(each.op, each.line, each.issue_cclk, each.stall_cclk, -each.count) for each in other)
-    return (*side, *taken_back)
+    return (*side, *(replace(each, count=-each.count) for each in other))
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,6 +33,8 @@ class MachineInstruction:
     """Bytes of code, where they are not those of the operation."""
     access: Instruction | None = None
     """The access of the IR that it makes."""
+    routine: str = ""
+    """The routine of the run-time library that it is an operation of."""
 
     @property
     def code_bytes(self) -> int:

@@ -127,7 +127,13 @@ class _OptimisedLowering:
 
     def _charge(self, instruction: MachineInstruction, issue: Issue = ALONE) -> Charge:
         cclk = COSTS[instruction.op].cclk if instruction.cclk is None else instruction.cclk
-        return Charge(instruction.op, instruction.line, 0 if issue.paired else cclk, issue.stall_cclk)
+        return Charge(
+            instruction.op,
+            instruction.line,
+            0 if issue.paired else cclk,
+            issue.stall_cclk,
+            routine=instruction.routine,
+        )
 
     # Function
 

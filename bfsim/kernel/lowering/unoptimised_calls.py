@@ -44,9 +44,12 @@ def _library(code: ExpressionCode, op: str) -> list[Charge]:
         "sdiv": library.divide_signed, "udiv": library.divide_unsigned,
         "srem": library.remainder_signed, "urem": library.remainder_unsigned,
     }[op]  # fmt: skip
+    name = "division" if op.endswith("div") else "remainder"
     if not routine.mix:
-        return [Charge(Op.LIBRARY, code.line, routine.cclk)]
-    return [Charge(each, code.line, COSTS[each].cclk, count=count) for each, count in routine.mix]
+        return [Charge(Op.LIBRARY, code.line, routine.cclk, routine=name)]
+    return [
+        Charge(each, code.line, COSTS[each].cclk, count=count, routine=name) for each, count in routine.mix
+    ]
 
 
 def _arguments(code: ExpressionCode, given: tuple[Expr, ...]) -> None:

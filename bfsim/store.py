@@ -1,7 +1,7 @@
-"""The cache of compiled kernels on disk: machine code and counters, shared by every process of a user.
+"""The cache on disk: compiled kernels, their costs and what else takes long to make, shared by every process of a user.
 
-An entry's name is a digest of everything it depends on, so a changed source, profile, bfsim, LLVM or host
-processor never meets a stale one. Files are written aside and renamed: two processes may start at once.
+An entry's name is a digest of everything it depends on. Files are written aside and renamed: two processes may start at
+once.
 
 Entries are run as they are, so nobody else may write them: the folder and each entry belong to the user alone, and an
 entry's checksum is that of its name and its contents.
@@ -18,14 +18,9 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-import llvmlite
-import llvmlite.binding as llvm
 import platformdirs
 
 from bfsim.errors import BfsimWarning, shown
-from bfsim.kernel import tree
-from bfsim.kernel.inlining import compiled_with
-from bfsim.kernel.profile import CompilerProfile
 
 CHECKSUM_BYTES = 32
 PRIVATE = 0o700
@@ -35,46 +30,6 @@ def folder() -> Path:
     """Where compiled kernels are kept: $BFSIM_CACHE_DIR, or the user's cache folder."""
     named = os.environ.get("BFSIM_CACHE_DIR")
     return Path(named) if named else Path(platformdirs.user_cache_dir("bfsim"))
-
-
-def key(function: tree.Function, profile: CompilerProfile, variant: str) -> str:
-    """Digest of all that an entry about `function` depends on; `variant` says what it is."""
-    return hashlib.sha256(f"{variant}\0{_source(function, profile)}".encode()).hexdigest()
-
-
-@cache
-def _source(function: tree.Function, profile: CompilerProfile) -> str:
-    """Digest of what every entry about a kernel depends on."""
-    digest = hashlib.sha256()
-    for part in (tools(), repr(profile), *map(_text, (function, *compiled_with(function, profile)))):
-        digest.update(part.encode())
-        digest.update(b"\0")
-    return digest.hexdigest()
-
-
-@cache
-def _text(function: tree.Function) -> str:
-    return repr(function)
-
-
-def sources() -> list[Path]:
-    """Files that decide what a kernel becomes: all of this package."""
-    return sorted(Path(__file__).parent.rglob("*.py"))
-
-
-@cache
-def tools() -> str:
-    """The compiler's own sources, LLVM and the host's processor."""
-    digest = hashlib.sha256()
-    for path in sources():
-        digest.update(path.read_bytes())
-    host = (
-        llvm.get_host_cpu_name(),
-        llvm.get_host_cpu_features().flatten(),
-        llvmlite.__version__,
-        llvm.llvm_version_info,
-    )
-    return f"{digest.hexdigest()} {host}"
 
 
 def can_keep() -> bool:

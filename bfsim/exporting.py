@@ -1,0 +1,70 @@
+"""Kernels of firmware as a folder of C: for the robot's own firmware, and to be read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from bfsim.errors import ConfigError, FirmwareError
+from bfsim.kernel.c import CProgram, c_program
+from bfsim.loading import kernels_of, load_firmware
+from bfsim.report.save import write_text, writing
+
+MAKEFILE = """\
+# Exported by bfsim. `make` compiles the kernels for the Blackfin; `make CC=gcc CPU=` for this machine.
+CC = bfin-elf-gcc
+AR = $(CC:gcc=ar)
+CPU = -mcpu=bf561
+CFLAGS = -O2 -std=c99 -Wall -Wextra
+OBJECTS = {objects}
+
+libkernels.a: $(OBJECTS)
+\t$(AR) rcs $@ $(OBJECTS)
+
+%.o: %.c kernels.h operators.h
+\t$(CC) $(CPU) $(CFLAGS) -c $< -o $@
+
+clean:
+\trm -f $(OBJECTS) libkernels.a
+
+.PHONY: clean
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Export:
+    """What was written to `folder`: files by name, how many kernels, and how many lines of C."""
+
+    folder: Path
+    files: tuple[str, ...]
+    kernels: int
+    lines: int
+
+
+def export(firmware: str, folder: Path, *, line_directives: bool = False, force: bool = False) -> Export:
+    """Write the kernels of `firmware` as C99 to `folder`, with a header and a makefile.
+
+    Raises ConfigError if a file of that name is there and `force` is not set: somebody may have changed it. Raises
+    FirmwareError if the firmware has no kernels.
+    """
+    kernels = kernels_of(load_firmware(firmware).own)
+    if not kernels:
+        raise FirmwareError(
+            f"{firmware} must have kernels to be exported, but has none; see `bfsim explain --help`"
+        )
+    program = c_program((each.function for each in kernels), line_directives=line_directives)
+    files = {**program.files, "Makefile": _makefile(program)}
+    if not force and (there := [each for each in files if (folder / each).exists()]):
+        raise ConfigError(
+            f"{folder} must be without {there[0]}, which would be overwritten; take another folder, or --force"
+        )
+    with writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    for name, text in files.items():
+        write_text(folder / name, text)
+    lines = sum(text.count("\n") for name, text in program.files.items() if name.endswith(".c"))
+    return Export(folder, tuple(files), len(program.names), lines)
+
+
+def _makefile(program: CProgram) -> str:
+    return MAKEFILE.format(objects=" ".join(f"{each.removesuffix('.c')}.o" for each in program.sources))

@@ -1,0 +1,125 @@
+"""Costs a kernel: its code for a fixed generic target, what is counted in a run of it, and what that costs.
+
+This decides what the Blackfin would run and must not depend on the host. It is kept apart from the machine code: the linker
+asks for the size of kernels that are never called, and every build of a kernel has the same costs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import cache
+
+import llvmlite.binding as llvm
+
+from bfsim.kernel import generic, tree
+from bfsim.kernel.call_paths import calls_of
+from bfsim.kernel.costs import Costs
+from bfsim.kernel.counters import Counter
+from bfsim.kernel.emit import emit
+from bfsim.kernel.inlining import inlined_calls
+from bfsim.kernel.ir_text import Entrance, Routine, SourceLine, inlined_through, read_module
+from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering import optimised as optimising
+from bfsim.kernel.lowering import unoptimised
+from bfsim.kernel.lowering.charges import Access, Charge
+from bfsim.kernel.lowering.rewrites import rewritten
+from bfsim.kernel.lowering.unrolled import marked
+from bfsim.kernel.profile import CompilerProfile
+
+UNROLLED_NESTING = 3  # loops in loops that are written out, the inner ones first
+CLEANING = (
+    "instruction_combine", "new_gvn", "simplify_cfg", "instruction_combine", "aggressive_dce", "simplify_cfg",
+)  # fmt: skip
+PASSES = (
+    "sroa", "simplify_cfg", "jump_threading", "simplify_cfg", "instruction_combine", "loop_simplify", "lcssa",
+    "loop_rotate", "new_gvn", "jump_threading", "instruction_combine", "simplify_cfg", "loop_simplify", "lcssa",
+    "loop_rotate", "jump_threading", *CLEANING,
+)  # fmt: skip
+
+
+def costed(function: tree.Function, profile: CompilerProfile) -> Costs:
+    """Cost `function` and its callees."""
+    text = optimised(function, profile)
+    routines = read_module(text)
+    counters = tuple(each for routine in routines for each in cost(routine, profile))
+    return Costs(counters, calls_of(routines), inlined_through(text))
+
+
+@cache
+def optimised(function: tree.Function, profile: CompilerProfile) -> str:
+    """Return the optimised IR of `function` and its callees: the code that is costed and counted."""
+    inlined = inlined_calls(function, profile)
+    module = generic.parsed(emit(function, inlined))
+    if not profile.optimises:
+        return str(module)
+    if inlined:
+        _inline(module, function)
+    generic.run(PASSES, module)
+    text = str(module)
+    for _ in range(UNROLLED_NESTING):
+        if (unrolling := marked(text)) is None:
+            break
+        module = llvm.parse_assembly(unrolling)
+        generic.run(("loop_unroll", *CLEANING), module)
+        text = str(module)
+    return rewritten(text, profile)
+
+
+def _inline(module: llvm.ModuleRef, function: tree.Function) -> None:
+    """Inline the calls that are marked, and leave out what nothing calls any more, as a linker does."""
+    defined = [each for each in module.functions if not each.is_declaration and each.name != function.symbol]
+    for each in defined:
+        each.linkage = "internal"
+    generic.run(("always_inliner", "global_dead_code_eliminate"), module)
+    for each in module.functions:
+        if not each.is_declaration:
+            each.linkage = "external"
+
+
+def cost(routine: Routine, profile: CompilerProfile) -> tuple[Counter, ...]:
+    """Cost every block of `routine`; one counter per block, and one per branch whose sides cost differently."""
+    lower = optimising.lower if profile.optimises else unoptimised.lower
+    blocks = lower(routine, profile)
+    flow = ControlFlow(routine)
+    known = _accesses(flow)
+    counters: list[Counter] = []
+    for block in routine.blocks:
+        found = blocks[block.label]
+        place, depth = (routine.symbol, block.label), len(flow.loops_of(block.label))
+        charges = _merged(found.charges)
+        accesses = (
+            *(known[id(each)] for each in found.accesses if id(each) in known),
+            *(known[id(each)]._replace(fills=True) for each in found.fills),
+        )
+        own = Entrance(routine.symbol, SourceLine(routine.symbol, 0))
+        enters = (*([own] if block is routine.blocks[0] else []), *block.enters)
+        if not charges and not accesses and not found.tests and not enters:
+            continue  # nothing to count: the block holds no code
+        counters.append(Counter(*place, None, None, charges, accesses, found.nbytes, depth, enters))
+        for test in found.tests:
+            charges = _merged(test.charges)
+            if any(each.issue_cclk for each in charges):
+                counters.append(Counter(*place, test.value, test.equals, charges, (), 0, depth))
+    return tuple(counters)
+
+
+def _merged(charges: Iterable[Charge]) -> tuple[Charge, ...]:
+    """Add up like charges; what cancels out is left out."""
+    counts: dict[Charge, int] = {}
+    for each in charges:
+        one = replace(each, count=1)
+        counts[one] = counts.get(one, 0) + each.count
+    return tuple(replace(one, count=count) for one, count in counts.items() if count)
+
+
+def _accesses(flow: ControlFlow) -> dict[int, Access]:
+    """Every load and store of a routine, by the identity of its instruction; a compiler's own table is no array of the kernel."""
+    found = {}
+    for block in flow.routine.blocks:
+        rows = (each for each in block.instructions if each.opcode in ("load", "store"))
+        for number, each in enumerate(rows):
+            root = flow.root(each.operands[-1])
+            if not root.startswith("@"):
+                found[id(each)] = Access(root[1:], each.opcode == "store", block.label, number, each.line)
+    return found

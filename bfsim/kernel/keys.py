@@ -1,0 +1,75 @@
+"""The names of what the cache keeps of a kernel.
+
+A name is a digest of everything that the entry depends on, so a changed source, profile, bfsim, LLVM or host processor
+never meets a stale one.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cache
+from pathlib import Path
+
+import llvmlite
+import llvmlite.binding as llvm
+
+from bfsim.kernel import tree
+from bfsim.kernel.profile import CompilerProfile, Inlines
+
+
+def key(function: tree.Function, profile: CompilerProfile, variant: str) -> str:
+    """Digest of all that an entry about `function` depends on; `variant` says what it is."""
+    return hashlib.sha256(f"{variant}\0{_source(function, profile)}".encode()).hexdigest()
+
+
+@cache
+def _source(function: tree.Function, profile: CompilerProfile) -> str:
+    """Digest of what every entry about a kernel depends on."""
+    digest = hashlib.sha256()
+    for part in (tools(), repr(profile), *map(_text, (function, *compiled_with(function, profile)))):
+        digest.update(part.encode())
+        digest.update(b"\0")
+    return digest.hexdigest()
+
+
+def compiled_with(function: tree.Function, profile: CompilerProfile) -> tuple[tree.Function, ...]:
+    """Return the kernels on which the code of `function` depends, callees first: its own program, and what else calls parts of it.
+
+    Where a compiler inlines within a file, other kernels of the file may call the same helpers.
+    """
+    program = (*function.callees(), function)
+    if profile.inlines is not Inlines.FILE:
+        return program
+    callers = {
+        each.symbol: each
+        for part in program
+        for each in part.siblings()
+        if not set(each.callees()).isdisjoint(program)
+    }
+    more = (callers[symbol] for symbol in sorted(callers))
+    return tuple(dict.fromkeys((*program, *(part for each in more for part in (*each.callees(), each)))))
+
+
+@cache
+def _text(function: tree.Function) -> str:
+    return function.text
+
+
+def sources() -> list[Path]:
+    """Files that decide what a kernel becomes: all of this package."""
+    return sorted(Path(__file__).parent.rglob("*.py"))
+
+
+@cache
+def tools() -> str:
+    """The compiler's own sources, LLVM and the host's processor."""
+    digest = hashlib.sha256()
+    for path in sources():
+        digest.update(path.read_bytes())
+    host = (
+        llvm.get_host_cpu_name(),
+        llvm.get_host_cpu_features().flatten(),
+        llvmlite.__version__,
+        llvm.llvm_version_info,
+    )
+    return f"{digest.hexdigest()} {host}"

@@ -1,0 +1,59 @@
+"""`bfsim export`: kernels as C, for people."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from bfsim.cli import main
+from tests.kernel.host_c import COMPILER, STRICT, needs_compiler
+
+
+def ran(*arguments: object) -> tuple[int, str]:
+    result = CliRunner().invoke(main, ["export", *map(str, arguments)])
+    return result.exit_code, result.output
+
+
+@needs_compiler
+def test_the_built_in_firmware_compiles_without_a_warning(tmp_path: Path) -> None:
+    """Every kernel of the firmware, as C99, by this machine's compiler."""
+    code, output = ran("tinyphoon", tmp_path / "c")
+    assert code == 0
+    assert "kernels" in output
+    sources = sorted((tmp_path / "c").glob("*.c"))
+    assert {"edge_detection.c", "circle_fit.c"} < {each.name for each in sources}
+    command = [COMPILER, *STRICT, "-O1", "-fsyntax-only", *map(str, sources)]
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_nothing_is_overwritten_unless_asked(tmp_path: Path) -> None:
+    """A second export stops before it writes; --force writes."""
+    assert ran("one_eye", tmp_path)[0] == 0
+    (tmp_path / "kernels.h").write_text("mine")
+    code, output = ran("one_eye", tmp_path)
+    assert code == 2
+    assert "--force" in output
+    assert (tmp_path / "kernels.h").read_text() == "mine"
+    assert ran("one_eye", tmp_path, "--force")[0] == 0
+    assert (tmp_path / "kernels.h").read_text() != "mine"
+
+
+@pytest.mark.parametrize("wrong", ["nosuch", "nosuch.py:firmware"])
+def test_firmware_that_is_not_there_is_named(wrong: str, tmp_path: Path) -> None:
+    """The mistake is told, and no folder is made."""
+    code, output = ran(wrong, tmp_path / "c")
+    assert code == 2
+    assert "nosuch" in output
+    assert not (tmp_path / "c").exists()
+
+
+def test_a_file_in_the_folder_s_place(tmp_path: Path) -> None:
+    """A folder cannot be made where a file lies."""
+    (tmp_path / "c").write_text("")
+    code, output = ran("one_eye", tmp_path / "c")
+    assert code == 2
+    assert "must be" in output
