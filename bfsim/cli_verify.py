@@ -1,0 +1,78 @@
+"""`bfsim verify`: estimates beside the real compiler's code."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from bfsim.cli_running import simulated, takes_a_run
+from bfsim.terminal import print_report
+
+STDOUT = Path("-")
+
+
+@click.command(
+    short_help="Compare the estimated cycles with those of the real compiler's code.",
+    context_settings={"default_map": {"profile": "gcc-O2"}},
+)
+@takes_a_run
+@click.option(
+    "--calls",
+    metavar="N",
+    type=click.IntRange(min=1),
+    default=16,
+    show_default=True,
+    help="Play at most N calls of each kernel, spread evenly over the run.",
+)
+@click.option(
+    "--toolchain",
+    metavar="FOLDER",
+    type=click.Path(path_type=Path, exists=True, file_okay=False),
+    help="Where bfin-elf-gcc and bfin-elf-run are.  [default: the PATH]",
+)
+@click.option(
+    "--top", metavar="N", type=click.IntRange(min=1), default=20, show_default=True, help="Show N kernels."
+)
+@click.option(
+    "--json",
+    "json_path",
+    metavar="FILE",
+    type=click.Path(path_type=Path, allow_dash=True),
+    help="Write the comparison as JSON, too; - writes it to standard output instead of the table.",
+)
+def verify(calls: int, toolchain: Path | None, top: int, json_path: Path | None, **what: Any) -> None:
+    """Run RECORDING, then play the kernels' calls once more: by GCC's code for the Blackfin, under the GNU simulator.
+
+    Every kernel is written as C (see `bfsim export`) and compiled by bfin-elf-gcc at the level of --profile. Its cycles are counted
+    by the simulator, without memory, caches and interlocks, and compared with the issue cycles that the run estimates; what it
+    leaves is compared bit for bit. Exit code 1 if a bit differs.
+
+    \b
+    Examples:
+      bfsim verify --frames 2
+      bfsim verify drive.mcap --firmware my_robot.py:firmware --profile gcc-O0
+    """
+    from bfsim.hardware import find_profile
+    from bfsim.report.save import require_place, write_text
+    from bfsim.report.verification import as_json, verification_report
+    from bfsim.verifying import Sampler, blackfin_toolchain, require_compiler
+    from bfsim.verifying import verify as verified
+
+    if json_path and json_path != STDOUT:
+        require_place(json_path)
+    profile = find_profile(what["profile"]).value
+    require_compiler(profile)
+    tools = blackfin_toolchain(toolchain)
+    sampler = Sampler(calls)
+    done = simulated(on_call=sampler.see, **what)
+    found = verified(sampler, len(done.frames), profile, tools)
+    if json_path == STDOUT:
+        click.echo(as_json(found))
+    else:
+        print_report(verification_report(found, top))
+        if json_path:
+            write_text(json_path, as_json(found) + "\n")
+    if found.different:
+        raise SystemExit(1)

@@ -1,0 +1,153 @@
+"""`bfsim verify`: estimates beside the compiler's code, and the sample of calls that both play."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from bfsim.cli import main
+from bfsim.errors import ConfigError
+from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, Kernel
+from bfsim.report.verification import verdict
+from bfsim.run import simulate
+from bfsim.verified import Verification, VerifiedKernel
+from bfsim.verifying import Sampler, blackfin_toolchain, verify
+from bfsim.verifying.player import FACTOR, checksum
+from bfsim.verifying.sample import Sample
+from bfsim.verifying.toolchain import GCC, SIMULATOR, Toolchain
+from tests.kernel import c_kernels
+from tests.kernel.host_c import COMPILER, needs_compiler
+from tests.kernel.test_c import drawn
+
+WITHOUT_OVERFLOW = ("last_of_loop", "moving_stop", "left_first", "sometimes", "floats", "choices", "unsigned")
+SANITIZED = ("-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+
+
+def sampled(*kernels: Kernel) -> Sampler:
+    """A sample of calls with arguments at random."""
+    random = np.random.default_rng(3)
+    sampler = Sampler(20)
+    for each in kernels:
+        sampler.of[each] = Sample(40, 2, [tuple(drawn(each, random)) for _ in range(20)])
+    return sampler
+
+
+def test_a_sample_is_spread_evenly_and_bounded() -> None:
+    """Of 100 calls every sixteenth is kept, since every eighth would be more than seven."""
+    sampler = Sampler(7)
+    for number in range(100):
+        sampler.see(c_kernels.take, (number,))
+    (sample,) = sampler.of.values()
+    assert sample.seen == 100
+    assert [number for (number,) in sample.kept] == list(range(0, 100, 16))
+
+
+def test_a_sample_is_taken_before_the_call() -> None:
+    """What a run sees of a kernel are its arguments as they were, and a single frame has as many calls as it counts."""
+    sampler = Sampler(4)
+    done = simulate(frames=1, on_call=sampler.see)
+    (rows,) = (sample for kernel, sample in sampler.of.items() if kernel.name == "gauss3_row")
+    assert rows.seen == sum(each.calls for each in done.kernels if each.kernel == "gauss3_row")
+    assert len(rows.kept) <= 4
+    assert not rows.kept[0][3].any()  # the row that the first call is to fill
+
+
+@needs_compiler
+def test_the_program_leaves_the_same_bits_under_sanitizers() -> None:
+    """Played by this machine's compiler, no call leaves other bits, leaves an array or does what C leaves open."""
+    kernels = [getattr(c_kernels, each) for each in WITHOUT_OVERFLOW]
+    found = verify(sampled(*kernels), 1, GCC_O2, Toolchain((COMPILER or "", *SANITIZED)))
+    assert (found.different, len(found.kernels)) == (0, len(kernels))
+    assert all(each.calls == 40 and each.played == 20 and each.estimated_cclk > 0 for each in found.kernels)
+
+
+@needs_compiler
+def test_other_bits_are_told() -> None:
+    """A program that leaves something else is found out: here it tells 0 of each call."""
+    liar = Toolchain((COMPILER or "",), ("sh", "-c", '"$0" | sed "s/ .*/ 0/"'))
+    found = verify(sampled(c_kernels.narrowed), 1, GCC_O2, liar)
+    assert found.different == 20
+    assert "20 calls leave OTHER BITS, of narrowed." in verdict(found)
+
+
+def test_the_checksum_is_a_polynomial_of_the_words() -> None:
+    """Words of the arrays in turn, the last one filled up with zeros, then the result."""
+    arrays = [np.array([1, 2, 3, 4, 5], np.uint8), np.array([-1], np.int32)]
+    value = 0
+    for word in (0x04030201, 5, 0xFFFFFFFF, 7):
+        value = (value * FACTOR + word) % 2**32
+    assert checksum([*arrays, 12], 7) == value
+
+
+@pytest.mark.toolchain
+@pytest.mark.skipif(COMPILER is None, reason="no C compiler on PATH")
+@pytest.mark.parametrize("profile", [GCC_O2, GCC_O0])
+def test_gcc_s_code_leaves_the_same_bits(profile: Any) -> None:
+    """Played by GCC's code for the Blackfin; the estimate is within a third of its cycles."""
+    try:
+        tools = blackfin_toolchain()
+    except ConfigError:
+        pytest.skip("no bfin-elf toolchain on PATH")
+    kernels = [getattr(c_kernels, each) for each in WITHOUT_OVERFLOW if each != "floats"]
+    found = verify(sampled(*kernels), 1, profile, tools)
+    assert found.different == 0
+    assert abs(found.signed_error) < 1 / 3
+
+
+def test_errors_are_signed_and_by_share() -> None:
+    """+10 % of 100 cycles and -10 % of 300 are -5 % together, 10 % by share."""
+    rows = [
+        VerifiedKernel("a", "a.py", 1, 1, 1, 110, 100, 0),
+        VerifiedKernel("b", "b.py", 1, 1, 1, 270, 300, 0),
+    ]
+    found = Verification("gcc-O2", "12.2.0", 1, tuple(rows))
+    assert found.signed_error == pytest.approx(-0.05)
+    assert found.error_by_share == pytest.approx(0.1)
+    assert "-5.0 %" in verdict(found)
+    assert "10.0 %" in verdict(found)
+
+
+def test_a_profile_without_a_compiler_is_refused() -> None:
+    """Nobody here has VisualDSP++."""
+    with pytest.raises(ConfigError, match="gcc-O2 or gcc-O0"):
+        verify(Sampler(1), 1, VDSP_O2, Toolchain(("cc",)))
+
+
+def test_a_run_without_kernels_is_refused() -> None:
+    """There is nothing to compare."""
+    with pytest.raises(ConfigError, match="must call a kernel"):
+        verify(Sampler(1), 1, GCC_O2, Toolchain(("cc",)))
+
+
+def test_a_missing_toolchain_is_told_before_the_run(tmp_path: Path) -> None:
+    """The command says what is missing, where, and how one is built."""
+    result = CliRunner().invoke(main, ["verify", "--toolchain", str(tmp_path)])
+    assert result.exit_code == 2
+    assert f"{GCC} must be in {tmp_path}" in " ".join(result.output.split())
+
+
+FAKE_GCC = """#!/bin/sh
+case "$1" in -dumpfullversion) echo 99.0; exit 0;; esac
+shift 2
+exec {compiler} "$@"
+"""
+
+
+@needs_compiler
+def test_the_command_prints_the_comparison(tmp_path: Path) -> None:
+    """A stand-in toolchain that compiles for this machine: the JSON has every kernel, and no bit is different."""
+    for name, text in ((GCC, FAKE_GCC.format(compiler=COMPILER)), (SIMULATOR, '#!/bin/sh\nexec "$@"\n')):
+        (tmp_path / name).write_text(text)
+        (tmp_path / name).chmod(0o755)
+    what = ["verify", "--frames", "1", "--calls", "2", "--toolchain", str(tmp_path)]
+    result = CliRunner().invoke(main, [*what, "--json", str(tmp_path / "found.json")])
+    assert result.exit_code == 0, result.output
+    assert "GCC 99.0's code takes" in " ".join(result.output.split())
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert (found["schema"], found["different"]) == ("bfsim.verify/1", 0)
+    assert {"kernel", "estimated_cclk", "measured_cclk"} <= set(found["kernels"][0])
