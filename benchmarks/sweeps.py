@@ -1,0 +1,162 @@
+"""What a sweep of 8 configurations costs in time and memory: worker processes of this machine against a Dask cluster on it.
+
+The processes play what they can from a recorded run, as `bfsim sweep` does; the cluster runs all.
+
+    python benchmarks/sweeps.py                  1000 frames: half an hour on two cores
+    python benchmarks/sweeps.py --frames 40
+    python benchmarks/sweeps.py --json
+
+The frames are those of the built-in recording over and over; the configurations two placements times two clocks times two
+SDRAM timings. Each way runs in a process of its own, with as many workers. CPU seconds are those of all processes
+together: they say what it costs on a machine that is busy with other things, too.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import logging
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import cycle, islice
+from pathlib import Path
+from time import perf_counter
+
+from rich.console import Console
+from rich.table import Table
+
+from bfsim.recording import RecordingReader, RecordingWriter
+from bfsim.shipped import RECORDING
+from bfsim.sweeping.cluster import Cluster
+from bfsim.sweeping.running import Outcome, code_digest
+from bfsim.sweeping.store import Store
+from bfsim.sweeping.sweep import Planned, Sweep, Workers
+from bfsim.sweeping.workers import Pool
+
+PERIOD_NS = 40_000_000
+FILE = """\
+base.recording = "long.mcap"
+[axes]
+ldf = ["thesis", "l2"]
+set.clocks.cclk_hz = [600e6, 500e6]
+set.sdram.nRP = [2, 4]
+"""
+
+
+def record(path: Path, frames: int) -> None:
+    """Write a recording of so many frames."""
+    with RecordingReader(RECORDING) as reader:
+        pictures = list(reader.frames())
+        with RecordingWriter(path, width=reader.width, height=reader.height) as writer:
+            for number, frame in enumerate(islice(cycle(pictures), frames)):
+                writer.add(frame.left, frame.right, number * PERIOD_NS, number * PERIOD_NS)
+
+
+@contextmanager
+def dask(workers: int) -> Iterator[Workers]:
+    """Yield the workers of a cluster on this machine."""
+    import distributed
+
+    warnings.simplefilter("ignore")
+    with (
+        distributed.LocalCluster(
+            n_workers=workers, threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
+        ) as cluster,
+        Cluster(cluster.scheduler_address, code_digest()) as ours,
+    ):
+        yield ours
+
+
+WAYS: dict[str, Callable[[int], object]] = {"pool": Pool, "dask": dask}
+
+
+def sweep_in(folder: Path, way: str, workers: int) -> dict[str, float]:
+    """Sweep in one way; seconds of the whole, of all runs together, and MB of the largest process."""
+    file = folder / "sweep.toml"
+    file.write_text(FILE)
+    began = perf_counter()
+    seconds: list[float] = []
+
+    def tell(_planned: Planned, outcome: Outcome) -> None:
+        assert not outcome.error, outcome.error
+        seconds.append(outcome.seconds)
+
+    with WAYS[way](workers) as crew:  # type: ignore[attr-defined]
+        sweep = Sweep(file, Store(folder / way))
+        sweep.plan(crew, lambda _done, _all: None)
+        planned_s = perf_counter() - began
+        sweep.run(crew, tell)
+    own, others = resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN)
+    return {
+        "points": len(seconds),
+        "whole_s": perf_counter() - began,
+        "checked_s": planned_s,
+        "runs_s": sum(seconds),
+        "cpu_s": sum(each.ru_utime + each.ru_stime for each in (own, others)),
+        "largest_worker_mb": others.ru_maxrss / 1000,  # the system counts in kilobytes
+    }
+
+
+def main() -> None:
+    """Measure each way, and print them beside each other."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--frames", type=int, default=1000)
+    parser.add_argument("--workers", type=int, default=len(os.sched_getaffinity(0)))
+    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--in", dest="folder", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--way", choices=WAYS, help=argparse.SUPPRESS)
+    given = parser.parse_args()
+    if given.way:
+        sys.stdout.write(json.dumps(sweep_in(given.folder, given.way, given.workers)))
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        record(Path(folder) / "long.mcap", given.frames)
+        found = {way: measured(way, folder, given.workers) for way in WAYS}
+    if given.json:
+        print(json.dumps({"frames": given.frames, "workers": given.workers, "ways": found}, indent=2))
+        return
+    table = Table(
+        title=f"{given.frames} frames x 8 configurations, {given.workers} workers", title_justify="left"
+    )
+    for head in ("way", "s", "of it checks, s", "all runs, s", "CPU s", "MB a worker"):
+        table.add_column(head, justify="left" if head == "way" else "right")
+    for way, each in found.items():
+        numbers = (
+            each["whole_s"],
+            each["checked_s"],
+            each["runs_s"],
+            each["cpu_s"],
+            each["largest_worker_mb"],
+        )
+        table.add_row(way, *(f"{number:.1f}" for number in numbers))
+    Console().print(table)
+
+
+def measured(way: str, folder: str, workers: int) -> dict[str, float]:
+    """Sweep in a process of its own."""
+    command = [
+        sys.executable,
+        "-m",
+        "benchmarks.sweeps",
+        "--way",
+        way,
+        "--in",
+        folder,
+        "--workers",
+        str(workers),
+    ]
+    done = subprocess.run(command, check=True, stdout=subprocess.PIPE)
+    found: dict[str, float] = json.loads(done.stdout)
+    return found
+
+
+if __name__ == "__main__":
+    main()

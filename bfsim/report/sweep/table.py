@@ -1,0 +1,47 @@
+"""The table of a sweep: a row for each point, as CSV and Parquet."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from bfsim.report.save import growing_file
+
+Cell = str | int | float | None
+Row = Mapping[str, Cell]
+"""The cells of a point by their columns; one that is not there is empty."""
+
+
+def columns_of(rows: Sequence[Row]) -> dict[str, list[Cell]]:
+    """Return the columns of all rows in the order in which they first come; each holds either numbers or text."""
+    names = dict.fromkeys(name for row in rows for name in row)
+    columns = {name: [row.get(name) for row in rows] for name in names}
+    return {name: _of_one_type(cells) for name, cells in columns.items()}
+
+
+def _of_one_type(cells: list[Cell]) -> list[Cell]:
+    found = {type(each) for each in cells if each is not None}
+    if found == {int, float}:
+        return [None if each is None else float(each) for each in cells]
+    return [None if each is None else str(each) for each in cells] if len(found) > 1 else cells
+
+
+def csv_of(rows: Sequence[Row]) -> str:
+    """Return the table as CSV with a line of names."""
+    columns, text = columns_of(rows), io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(zip(*columns.values(), strict=True))
+    return text.getvalue()
+
+
+def write_parquet(path: Path, rows: Sequence[Row]) -> None:
+    """Write the table as Parquet. Raises ImportError where pyarrow is not installed."""
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    table = pa.table(columns_of(rows))
+    with growing_file(path) as stream:
+        parquet.write_table(table, stream)

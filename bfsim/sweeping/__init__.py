@@ -1,0 +1,1 @@
+"""Sweeps: many runs with options from one TOML file, each done once."""

@@ -1,0 +1,77 @@
+"""Who runs the points: the workers of a Dask scheduler, on any number of machines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from contextlib import AbstractContextManager
+from typing import Any
+
+from bfsim.errors import ConfigError, cut
+from bfsim.sweeping.running import code_digest
+
+CONNECT_S = 10
+QUEUED = 2
+"""Calls on their way for each thread of the workers: one that runs, and one that waits so that it need not."""
+
+
+class Cluster(AbstractContextManager["Cluster"]):
+    """The workers that a scheduler has, and those that it gets while the sweep runs.
+
+    Every worker must have this bfsim, and must find the files under the paths that they have here. If one dies, the
+    scheduler gives its points to others.
+    """
+
+    def __init__(self, address: str, code: str) -> None:
+        """Connect to workers whose bfsim has the digest `code`. Raises ConfigError where nobody answers, or a worker has another bfsim."""
+        try:
+            from distributed import Client, KilledWorker
+        except ImportError:
+            raise ConfigError(
+                "--scheduler must have Dask installed: pip install 'bfsim[sweep]'; without it, this machine alone runs them"
+            ) from None
+        self.deaths: tuple[type[Exception], ...] = (KilledWorker,)
+        self.is_here = False
+        self.tries = 1
+        """The scheduler has tried often enough."""
+        try:
+            self._client = Client(address, timeout=CONNECT_S, set_as_default=False)
+        except (OSError, ValueError, TypeError) as error:
+            raise ConfigError(
+                f"--scheduler must be the address of a Dask scheduler that answers, such as tcp://10.0.0.1:8786, not "
+                f"{cut(address)} ({cut(str(error))})"
+            ) from None
+        self._executor = self._client.get_executor(pure=False)
+        try:
+            self._require_code(code)
+        except BaseException:
+            self.__exit__()
+            raise
+
+    def room(self) -> int:
+        """Return how many calls may be on their way at a time: one also where there is no worker yet."""
+        threads: dict[str, int] = self._client.nthreads()
+        return max(QUEUED * sum(threads.values()), 1)
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any) -> Future[Any]:
+        """Call a function somewhere."""
+        future: Future[Any] = self._executor.submit(fn, *args)
+        return future
+
+    def __exit__(self, *_: object) -> None:
+        """Let go of the workers; a point that one of them is at is finished there, for nobody."""
+        self._executor.shutdown(wait=False)
+        self._client.close()
+
+    def _require_code(self, code: str) -> None:
+        try:
+            digests = self._client.run(code_digest)
+        except Exception as error:
+            raise ConfigError(
+                f"every Dask worker must have this bfsim installed: {type(error).__name__}: {cut(str(error))}"
+            ) from error
+        others = [address for address, digest in digests.items() if digest != code]
+        if others:
+            raise ConfigError(
+                f"every Dask worker must have the same bfsim as this machine, but {cut(', '.join(others))} has another"
+            )

@@ -1,0 +1,173 @@
+"""The file of a sweep: TOML with `[base]`, `[axes]` and `[[point]]`, read as points. Each is a run with options."""
+
+from __future__ import annotations
+
+import glob
+import math
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from bfsim.errors import ConfigError, cut, shown
+from bfsim.file_content import read_bounded
+from bfsim.report.check.baseline import Configuration
+from bfsim.sweeping.options import SCRIPT, Options, configured, flattened, merged, written
+
+MOST_POINTS = 100_000
+"""More would take years."""
+
+BASE, AXES, POINT = "base", "axes", "point"
+RECORDING, CONFIGURATION, NAME = "recording", "configuration", "name"
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """One run of a sweep: `options` are what the file says of it.
+
+    `setting` tells it from the others with the same recording, in words, and `recording` from the others in the same
+    setting; either is empty where there is one only.
+    """
+
+    configuration: Configuration
+    options: Options
+    setting: str
+    recording: str
+
+    @property
+    def name(self) -> str:
+        """What people call it."""
+        return " ".join(filter(None, [self.recording, self.setting])) or BASE
+
+
+@dataclass(frozen=True, slots=True)
+class _Choice:
+    """A value of an axis, or a point of its own: what it adds to the base, and its words."""
+
+    options: Options
+    words: str
+
+
+def read_sweep(path: Path, scripts: Path) -> list[Point]:
+    """Return the points of a file: those of the axes, the last axis turning fastest, and then each `[[point]]`.
+
+    Paths in it are relative to it. A script that stands in the file itself is written to the folder `scripts`. Raises
+    ConfigError that names file and key.
+    """
+    try:
+        plain = tomllib.loads(read_bounded(path).decode())
+    except OSError as error:
+        raise ConfigError(f"{path} must be a readable file: {error.strerror}") from error
+    except (ValueError, RecursionError) as error:
+        raise ConfigError(f"{path} must be TOML: {cut(str(error))}") from error
+    try:
+        return list(_points(plain, path.parent, scripts))
+    except ConfigError as error:
+        raise ConfigError(f"{path}: {error}") from error
+
+
+def _points(plain: Mapping[str, Any], folder: Path, scripts: Path) -> Iterator[Point]:
+    for key in plain:
+        if key not in {BASE, AXES, POINT}:
+            raise ConfigError(f"{cut(key)} must not be there; known are [{BASE}], [{AXES}] and [[{POINT}]]")
+    base = flattened(plain.get(BASE, {}), BASE)
+    axes = dict(_axes(plain.get(AXES, {}), folder))
+    own = [*_tables(plain.get(POINT, []), POINT)]
+    if not axes and not own:
+        raise ConfigError(f"there must be a list in [{AXES}], or a [[{POINT}]]")
+    count = len(own) + (math.prod(map(len, axes.values())) if axes else 0)
+    if count > MOST_POINTS:
+        raise ConfigError(f"there must be at most {MOST_POINTS:,} points, not {count:,}")
+    for choices in product(*axes.values()) if axes else ():
+        yield _point(base, dict(zip(axes, choices, strict=True)), axes, folder, scripts)
+    for choice in own:
+        yield _point(base, {POINT: choice}, {POINT: own, **axes}, folder, scripts)
+
+
+def _point(
+    base: Options,
+    chosen: Mapping[str, _Choice],
+    axes: Mapping[str, Sequence[_Choice]],
+    folder: Path,
+    scripts: Path,
+) -> Point:
+    options, by = base, dict[str, str]()
+    for key in sorted(chosen, key=lambda each: each.count(".")):
+        for path in chosen[key].options:
+            if by.setdefault(path, key) != key:
+                raise ConfigError(f"{cut(path)} must be in one axis, not in both {by[path]} and {cut(key)}")
+        options = merged(options, chosen[key].options)
+    words = {key: each.words for key, each in chosen.items() if len(axes[key]) > 1 or key == POINT}
+    recording = words.pop(RECORDING, "")
+    return Point(configured(options, folder, scripts), options, " ".join(words.values()), recording)
+
+
+def _axes(table: object, folder: Path) -> Iterator[tuple[str, list[_Choice]]]:
+    """Yield the choices of each axis by its path."""
+    if not isinstance(table, dict):
+        raise ConfigError(f"{AXES} must be a table of lists, not {shown(table)}")
+    rest = {key: value for key, value in table.items() if key != CONFIGURATION}
+    axes = flattened(rest, AXES)
+    short = dict(zip(axes, _short(list(axes)), strict=True))
+    for path, values in axes.items():
+        if not isinstance(values, list) or not values:
+            raise ConfigError(f"{AXES}.{cut(path)} must be a list of values, not {shown(values)}")
+        found = _files(values, folder) if path == RECORDING else values
+        yield path, [_Choice(_one(path, value), _words(path, short[path], value)) for value in found]
+    if CONFIGURATION in table:
+        yield CONFIGURATION, [*_tables(table[CONFIGURATION], f"{AXES}.{CONFIGURATION}")]
+
+
+def _one(path: str, value: object) -> Options:
+    """Return the options that one value of an axis stands for; a table below `script` is as good as its entries."""
+    if isinstance(value, dict) and path == SCRIPT:
+        return {f"{SCRIPT}.{key}": each for key, each in value.items()}
+    return {path: value}
+
+
+def _words(path: str, short: str, value: object) -> str:
+    return written(value) if path == RECORDING else f"{short}={written(value)}"
+
+
+def _short(paths: Sequence[str]) -> Iterator[str]:
+    """Yield of each path its end, with as many names as tell it from the others."""
+    for path in paths:
+        names = path.split(".")
+        ends = [".".join(names[-count:]) for count in range(1, len(names) + 1)]
+        yield next(
+            end
+            for end in ends
+            if end == path or not any(f".{other}".endswith(f".{end}") for other in paths if other != path)
+        )
+
+
+def _tables(tables: object, where: str) -> Iterator[_Choice]:
+    """Yield what a list of tables says; each may have a name."""
+    if not isinstance(tables, list):
+        raise ConfigError(f"{where} must be a list of tables, [[{where}]], not {shown(tables)}")
+    for number, table in enumerate(tables, 1):
+        name = table.get(NAME, "") if isinstance(table, dict) else ""
+        if not isinstance(name, str):
+            raise ConfigError(f"{where}.{number}.{NAME} must be text, not {shown(name)}")
+        rest = (
+            {key: value for key, value in table.items() if key != NAME} if isinstance(table, dict) else table
+        )
+        options = flattened(rest, f"{where}.{number}")
+        said = " ".join(f"{key.removeprefix('set.')}={written(value)}" for key, value in options.items())
+        yield _Choice(options, name or said or BASE)
+
+
+def _files(patterns: Sequence[object], folder: Path) -> list[object]:
+    """Return files for patterns such as drives/*.mcap, sorted; what is no pattern stays as it is."""
+    files: list[object] = []
+    for each in patterns:
+        if not isinstance(each, str) or not glob.has_magic(each) or (folder / each).exists():
+            files.append(each)
+            continue
+        found = sorted(glob.glob(each, root_dir=folder, recursive=True))  # noqa: PTH207 - takes absolute ones, too
+        if not found:
+            raise ConfigError(f"{AXES}.{RECORDING} must match a file, and {shown(each)} matches none")
+        files += found
+    return files

@@ -1,0 +1,159 @@
+"""The options of a point: by paths as a sweep's file has them, and as the configuration that runs.
+
+They are those of `bfsim run`, called as `bfsim check` calls them. Below `set`, `define` and `script` they are named by a
+path, such as set.sdram.nRP or script.send.0.mode.area.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from bfsim.device_script import read_script
+from bfsim.errors import ConfigError, cut, shown
+from bfsim.report.check.baseline import Configuration
+from bfsim.report.save import write_text
+
+Options = Mapping[str, Any]
+"""Values by their paths. Of two that lead to the same place the later one holds."""
+
+SCRIPT = "script"
+TREES = ("set", "define", SCRIPT)
+"""What holds tables."""
+
+LONGEST_INDEX = 6
+"""Digits of the number of an entry in a list."""
+
+
+def flattened(table: Any, where: str) -> dict[str, Any]:
+    """Return a table of options by their paths. Raises ConfigError for a key that is no option."""
+    if not isinstance(table, dict):
+        raise ConfigError(f"{where} must be a table of options, not {shown(table)}")
+    for key, value in table.items():
+        if key not in Configuration.model_fields:
+            known = ", ".join(Configuration.model_fields)
+            raise ConfigError(f"{where}.{cut(key)} must not be there; known keys are {known}")
+        if key in TREES and key != SCRIPT and not isinstance(value, dict):
+            raise ConfigError(f"{where}.{key} must be a table of names and values, not {shown(value)}")
+    return dict(_leaves(table, ""))
+
+
+def _leaves(table: Mapping[str, Any], above: str) -> Iterator[tuple[str, Any]]:
+    for key, value in table.items():
+        path = above + key
+        if isinstance(value, dict) and path.partition(".")[0] in TREES:
+            yield from _leaves(value, f"{path}.")
+        else:
+            yield path, value
+
+
+def merged(first: Options, second: Options) -> Options:
+    """Return the options of both; what the second one sets takes the place of all that the first one has there and below."""
+    kept = {
+        path: value
+        for path, value in first.items()
+        if not any(path == each or path.startswith(f"{each}.") for each in second)
+    }
+    return {**kept, **second}
+
+
+def configured(options: Options, folder: Path, scripts: Path) -> Configuration:
+    """Return what runs. A script that is not a file alone is written to the folder `scripts`; paths are relative to `folder`.
+
+    Raises ConfigError with the key.
+    """
+    plain: dict[str, Any] = {}
+    orders: dict[str, Any] = {}
+    for path, value in options.items():
+        key, dot, rest = path.partition(".")
+        if not dot:
+            plain[key] = value
+        elif key == SCRIPT:
+            orders[rest] = value
+        else:
+            plain.setdefault(key, {})[rest] = _text(value, path)
+    if orders:
+        plain[SCRIPT] = str(_script_file(plain.get(SCRIPT), orders, folder, scripts))
+    try:
+        return Configuration.model_validate(plain)
+    except ValidationError as error:
+        first = error.errors()[0]
+        must_be = first["msg"].replace("Input should", "must")
+        where = cut(".".join(map(str, first["loc"])))
+        raise ConfigError(f"{where} {must_be}, not {shown(first['input'])}") from error
+
+
+def _text(value: object, path: str) -> str:
+    """Return a number of the board, or a macro, as `--set` and `-D` have it."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, int | float | str):
+        return written(value)
+    raise ConfigError(f"{cut(path)} must be a number, text, or true or false, not {shown(value)}")
+
+
+def written(value: object) -> str:
+    """Return a value in words: numbers and text as they are, the rest as JSON."""
+    if isinstance(value, float) and value.is_integer():
+        return str(int(value))
+    return str(value) if isinstance(value, int | float | str) else json.dumps(value, default=str)
+
+
+def _script_file(base: object, orders: Options, folder: Path, scripts: Path) -> Path:
+    """Write a script with other values at some paths, under a name that its content has, and return where."""
+    if base is not None and not isinstance(base, str):
+        raise ConfigError(f"{SCRIPT} must be a file or a table, not {shown(base)}")
+    tree: Any = dict(read_script(folder / base)[0]) if base else {}
+    for path in sorted(orders, key=lambda each: each.count(".")):
+        _put(tree, path.split("."), orders[path], f"{SCRIPT}.{path}")
+    try:
+        text = json.dumps(tree, indent=1, sort_keys=True, allow_nan=False) + "\n"
+    except (TypeError, ValueError, RecursionError) as error:
+        raise ConfigError(f"{SCRIPT} must be numbers, text, lists and tables: {error}") from error
+    file = scripts / f"{hashlib.sha256(text.encode()).hexdigest()[:16]}.json"
+    if not file.exists():
+        scripts.mkdir(parents=True, exist_ok=True)
+        write_text(file, text)
+    return file.absolute()
+
+
+def _put(tree: Any, names: list[str], value: object, where: str) -> None:
+    """Set what a path leads to, through tables, which are made if they are not there, and through lists by number."""
+    *way, last = names
+    for name, after in zip(way, names[1:], strict=True):
+        key, below = _key(tree, name, where), list[Any]() if _is_index(after) else dict[str, Any]()
+        if isinstance(tree, dict):
+            tree.setdefault(key, below)
+        elif key == len(tree):
+            tree.append(below)
+        tree = tree[key]
+    key = _key(tree, last, where)
+    if isinstance(tree, list) and key == len(tree):
+        tree.append(value)
+    else:
+        tree[key] = value
+
+
+def _key(tree: object, name: str, where: str) -> Any:
+    """Return the key of a table, or the index of a list, that a name of a path stands for."""
+    if isinstance(tree, dict):
+        return name
+    if not isinstance(tree, list):
+        raise ConfigError(
+            f"{cut(where)} must lead through tables and lists, and {shown(name)} is below {shown(tree)}"
+        )
+    index = int(name) if _is_index(name) else len(tree) + 1
+    if index > len(tree):
+        raise ConfigError(
+            f"{cut(where)}: {shown(name)} must be the number of one of the list's {len(tree)} entries, or of a new one behind them"
+        )
+    return index
+
+
+def _is_index(name: str) -> bool:
+    return name.isascii() and name.isdigit() and len(name) <= LONGEST_INDEX

@@ -1,0 +1,278 @@
+"""A sweep: what is known of its points before one runs, what ran before, and how the rest runs."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections import Counter, deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import dataclass, replace
+from itertools import islice
+from pathlib import Path
+from typing import Any, Protocol, TypeVar
+
+from bfsim.checking import arguments_of
+from bfsim.errors import ConfigError
+from bfsim.report.check.baseline import Configuration
+from bfsim.shipped import RECORDING
+from bfsim.sweeping.file import Point, read_sweep
+from bfsim.sweeping.running import Outcome, code_digest, digest_recording, plan_point, run_point
+from bfsim.sweeping.store import Store, key_of
+from bfsim.trace import Identity
+
+POLL_S = 1.0
+"""So often is asked whether another sweep has done a point that it has taken."""
+
+NOT_KEPT = (
+    "not kept: the recording, or a file of the firmware, the board or the compiler, was changed while it ran, or the firmware "
+    "imported one more"
+)
+
+GONE = (
+    "the scheduler must be within reach until all points are done, but is no more; what is done is kept, and the same command "
+    "goes on with the rest"
+)
+
+WORKS = "works"
+"""Folder of the store with recorded work."""
+
+Task = TypeVar("Task")
+
+
+class Workers(Protocol):
+    """Who runs points. `deaths` are what a future raises whose process died; so many `tries` has a point. `is_here`: they see the store."""
+
+    deaths: tuple[type[Exception], ...]
+    tries: int
+    is_here: bool
+
+    def room(self) -> int:
+        """Return how many calls may be on their way at a time."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any) -> Future[Any]:
+        """Call a function elsewhere."""
+
+
+@dataclass(frozen=True, slots=True)
+class Planned:
+    """A point as it is known before it runs: all that its result depends on, and the `key` of that; or the `error` that it is."""
+
+    point: Point
+    identity: Identity | None = None
+    frames: int = 0
+    key: str = ""
+    error: str = ""
+
+    @property
+    def work(self) -> int:
+        """How much there is to simulate: pixels."""
+        return self.frames * self.identity.width_px * self.identity.height_px if self.identity else 0
+
+
+class Works:
+    """Where the work of runs is recorded, so that what differs in the board alone is played and not run again.
+
+    What several points have in common is kept until the last of them is done.
+    """
+
+    def __init__(self, folder: Path, points: Iterable[Planned]) -> None:
+        self._folder = folder
+        names = {each.key: _work_of(each) for each in points if each.point.configuration.fidelity == "fast"}
+        self._left = Counter(names.values())
+        self._names = {key: name for key, name in names.items() if self._left[name] > 1}
+
+    def of(self, key: str) -> Path | None:
+        """Return the place for a point; None if it has nothing in common with another one."""
+        if key not in self._names:
+            return None
+        self._folder.mkdir(parents=True, exist_ok=True)
+        return self._folder / f"{self._names[key]}.work"
+
+    def done(self, key: str) -> None:
+        """Forget what no point needs any more."""
+        name = self._names.get(key)
+        if name is not None:
+            self._left[name] -= 1
+            if not self._left[name]:
+                for each in sorted(self._folder.glob(f"{name}.*")):  # what says that it is whole goes first
+                    each.unlink(missing_ok=True)
+
+
+class Sweep:
+    """The points of a file, what is `planned` of them, and the `outcomes` of those that are done, by their keys."""
+
+    def __init__(self, file: Path, store: Store) -> None:
+        """Read the file, and what it says alone. Raises ConfigError."""
+        self.file = file
+        self.store = store
+        self.points = read_sweep(file, store.scripts)
+        store.open()
+        self.planned: list[Planned] = []
+        self.outcomes: dict[str, Outcome] = {}
+        self._folder = file.absolute().parent
+
+    @property
+    def todo(self) -> list[Planned]:
+        """Points that can run and are not done; of several that are the same, one."""
+        points = {each.key: each for each in self.planned if each.key and each.key not in self.outcomes}
+        return [*points.values()]
+
+    def error_of(self, planned: Planned) -> str:
+        """Return why a point cannot run, or failed; nothing if it did neither."""
+        outcome = self.outcomes.get(planned.key)
+        return planned.error or (outcome.error if outcome else "")
+
+    def plan(self, workers: Workers, tell: Callable[[int, int], None]) -> None:
+        """Read and check all that the points need, and find what was done before. Nothing is simulated.
+
+        `tell` gets how many are checked, and of how many.
+        """
+        found: dict[int, tuple[Identity, int] | str] = {}
+        calls = ((each, plan_point, self._call(point)) for each, point in enumerate(self.points))
+        for number, future in _results(calls, workers):
+            found[number] = (
+                "the process that read it died"
+                if isinstance(future.exception(), workers.deaths)
+                else future.result()
+            )
+            tell(len(found), len(self.points))
+        recordings = [self._recording(point) for point in self.points]
+        digests = self._digests(
+            {(recordings[each], known[1]) for each, known in found.items() if not isinstance(known, str)},
+            workers,
+        )
+        self.planned = [
+            _planned(point, found[number], digests, recordings[number])
+            for number, point in enumerate(self.points)
+        ]
+        keys = {each.key for each in self.planned if each.key}
+        self.outcomes = {key: known for key in keys if (known := self.store.outcome(key))}
+
+    def run(self, workers: Workers, tell: Callable[[Planned, Outcome], None]) -> None:
+        """Run the points that are not done; each is kept, and then told, as soon as it is.
+
+        What another sweep is at in the same store is waited for, and told as if it had been done here.
+        """
+        waiting, tries = deque(self.todo), Counter[str]()
+        running: dict[Future[Any], Planned] = {}
+        works = Works(self.store.folder / WORKS, waiting if workers.is_here else ())
+        while waiting or running:
+            for _ in range(len(waiting)):
+                if len(running) >= workers.room():
+                    break
+                each = waiting.popleft()
+                if not self.store.claim(each.key):
+                    waiting.append(each)
+                elif known := self.store.outcome(each.key):
+                    works.done(each.key)
+                    self._done(each, known, tell)
+                else:
+                    call = (*self._call(each.point), code_digest(), works.of(each.key))
+                    running[workers.submit(run_point, *call)] = each
+            if waiting and not running:
+                time.sleep(POLL_S)
+            for future in wait(running, POLL_S, FIRST_COMPLETED).done if running else ():
+                each = running.pop(future)
+                outcome = _outcome(future, each, workers, tries)
+                if outcome is None:
+                    self.store.release(each.key)
+                    waiting.append(each)
+                    continue
+                if outcome.is_final:
+                    self.store.keep(each.key, outcome)
+                works.done(each.key)
+                self._done(each, outcome, tell)
+
+    def try_out(self, planned: Planned, frames: int, workers: Workers) -> Outcome:
+        """Run the first frames of a point, twice, so that its kernels are compiled; nothing is kept."""
+        trial = replace(
+            planned.point, configuration=planned.point.configuration.model_copy(update={"frames": frames})
+        )
+        for _ in range(2):
+            outcome: Outcome = workers.submit(run_point, *self._call(trial), code_digest()).result()
+        return outcome
+
+    def _done(self, planned: Planned, outcome: Outcome, tell: Callable[[Planned, Outcome], None]) -> None:
+        self.store.release(planned.key)
+        self.outcomes[planned.key] = outcome
+        tell(planned, outcome)
+
+    def _call(self, point: Point) -> tuple[Configuration, Path]:
+        return point.configuration, self._folder
+
+    def _recording(self, point: Point) -> Path:
+        return Path(arguments_of(*self._call(point)).get("recording", RECORDING))
+
+    def _digests(self, recordings: set[tuple[Path, int]], workers: Workers) -> dict[tuple[Path, int], str]:
+        """Return the digests of the first frames of recordings; those that were read before are in the store."""
+        digests = {each: self.store.recording_digest(*each) for each in sorted(recordings)}
+        unread = [each for each, digest in digests.items() if not digest]
+        for each, future in _results(((each, digest_recording, each) for each in unread), workers):
+            digests[each] = "" if isinstance(future.exception(), workers.deaths) else future.result()
+            if digests[each]:
+                self.store.keep_recording_digest(*each, digests[each])
+        return digests
+
+
+def _work_of(planned: Planned) -> str:
+    """Return a digest of all that the work of a run depends on: the identity but for the board, and bfsim's code."""
+    identity = planned.identity
+    assert identity
+    parts = (
+        identity.recording_digest,
+        identity.firmware,
+        identity.firmware_digest,
+        identity.compiler,
+        identity.compiler_digest,
+        identity.script_digest,
+        identity.ldf_digest,  # what lies outside of L1 is another work
+        identity.feed,
+        identity.llvm_version,
+        code_digest(),
+    )
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
+
+
+def _planned(
+    point: Point, known: tuple[Identity, int] | str, digests: dict[tuple[Path, int], str], recording: Path
+) -> Planned:
+    if isinstance(known, str):
+        return Planned(point, error=known)
+    identity, frames = known
+    digest = digests[recording, frames]
+    if not digest:
+        return Planned(point, error=f"{recording} must have {frames} frames that can be read")
+    identity = replace(identity, recording_digest=digest)
+    return Planned(point, identity, frames, key_of(identity, code_digest()))
+
+
+def _results(
+    calls: Iterable[tuple[Task, Callable[..., Any], tuple[Any, ...]]], workers: Workers
+) -> Iterator[tuple[Task, Future[Any]]]:
+    """Make the calls, and yield their futures as they are done."""
+    running: dict[Future[Any], Task] = {}
+    calls = iter(calls)
+    while True:
+        for task, function, arguments in islice(calls, max(workers.room() - len(running), 0)):
+            running[workers.submit(function, *arguments)] = task
+        if not running:
+            return
+        for future in wait(running, return_when=FIRST_COMPLETED).done:
+            yield running.pop(future), future
+
+
+def _outcome(future: Future[Any], planned: Planned, workers: Workers, tries: Counter[str]) -> Outcome | None:
+    """Return what became of a point; None if its process died and it is to be tried once more."""
+    if future.cancelled():
+        raise ConfigError(GONE)
+    if isinstance(future.exception(), workers.deaths):
+        tries[planned.key] += 1
+        if tries[planned.key] < workers.tries:
+            return None
+        times = f" {workers.tries} times" if workers.tries > 1 else ""
+        return Outcome(error=f"the process that ran it died{times}", is_final=False)
+    outcome: Outcome = future.result()
+    if outcome.identity and key_of(outcome.identity, code_digest()) != planned.key:
+        return replace(outcome, warnings=(*outcome.warnings, NOT_KEPT), is_final=False)
+    return outcome

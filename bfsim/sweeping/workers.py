@@ -1,0 +1,87 @@
+"""Who runs the points: processes of this machine."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
+from functools import partial
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from threading import Thread
+from typing import Any
+
+
+class Pool(Executor):
+    """Worker processes, each with a pool of its own: one that dies takes nothing with it but the point that it ran.
+
+    They end with this process, however that ends.
+    """
+
+    deaths: tuple[type[Exception], ...] = (BrokenProcessPool,)
+    """What a future raises whose process died."""
+    is_here = True
+    tries = 2
+    """A process may have been killed for reasons of its own, such as want of memory: so often is a point tried."""
+
+    def __init__(self, processes: int) -> None:
+        self._processes = processes
+        self._context = get_context("spawn")
+        self._leash, self._hand = self._context.Pipe(duplex=False)
+        self._all: list[Executor] = []
+        self._free: list[Executor] = []
+
+    def room(self) -> int:
+        """Return how many calls may be on their way at a time."""
+        return self._processes
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Call a function in a process that has nothing to do, or in a new one."""
+        while True:
+            process = self._free.pop() if self._free else self._new()
+            with _deaf(), suppress(BrokenProcessPool):  # it died of boredom
+                future = process.submit(fn, *args, **kwargs)
+                future.add_done_callback(partial(self._done, process))
+                return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:  # noqa: FBT002 - as Executor has it
+        """End all processes, whatever they are at."""
+        self._hand.close()
+        self._leash.close()
+        for each in self._all:
+            each.shutdown(wait, cancel_futures=cancel_futures)
+
+    def _new(self) -> Executor:
+        process = ProcessPoolExecutor(1, self._context, _begin, (self._leash,))
+        self._all.append(process)
+        return process
+
+    def _done(self, process: Executor, future: Future[Any]) -> None:
+        if not isinstance(future.exception(), BrokenProcessPool):
+            self._free.append(process)
+
+
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Let processes that are started in the `with` block hear no Ctrl-C: their parent hears it, and ends them."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _begin(leash: Connection) -> None:
+    """Make this process a worker: what firmware prints goes nowhere, and the process ends when its parent lets go."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    Thread(target=_end_with, args=(leash,), daemon=True).start()
+
+
+def _end_with(leash: Connection) -> None:
+    with suppress(EOFError, OSError):
+        leash.recv()
+    os._exit(1)

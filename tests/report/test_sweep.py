@@ -1,0 +1,75 @@
+"""What a sweep's table is made of: columns of one type, the Pareto front, and lines over recordings."""
+
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bfsim.report.sweep.front import front, sign_of
+from bfsim.report.sweep.screen import Shown, failures, lines_of
+from bfsim.report.sweep.table import columns_of, csv_of
+
+PLACES = st.lists(st.tuples(st.integers(0, 8), st.integers(0, 8)), max_size=20)
+
+
+@given(PLACES)
+def test_the_front_is_what_nothing_else_is_better_than(places: list[tuple[int, int]]) -> None:
+    """Found by comparing every place with every other."""
+    naive = {
+        index
+        for index, (x, y) in enumerate(places)
+        if not any(a <= x and b <= y and (a, b) != (x, y) for a, b in places)
+    }
+    found = front(places)
+    assert set(found) == naive
+    assert [places[each] for each in found] == sorted(places[each] for each in found)
+
+
+def test_more_is_better_of_a_rate_alone() -> None:
+    """Of what firmware publishes, and of options, nobody can say."""
+    names = ("frame.max ms", "memory.L2 B", "idle.A %", "missed", "frame_rate Hz", "results.x.total", "ldf")
+    assert list(map(sign_of, names)) == [1, 1, 1, 1, -1, 0, 0]
+
+
+def test_a_column_is_numbers_or_text() -> None:
+    """In the order in which they first come; what a row does not have is empty."""
+    rows = [{"a": 1, "b": 'x,"y"'}, {"a": 2.5, "c": None}, {"b": 3, "c": 4}]
+    assert columns_of(rows) == {"a": [1.0, 2.5, None], "b": ['x,"y"', None, "3"], "c": [None, None, 4]}
+    assert csv_of(rows) == 'a,b,c\n1.0,"x,""y""",\n2.5,,\n,3,4\n'
+
+
+def test_a_line_is_a_setting_over_its_recordings() -> None:
+    """The least rate, the lower median of medians, the worst of the rest, and all that was missed."""
+
+    def row(rate: float, frame: float, missed: int) -> dict[str, float]:
+        return {
+            "frame_rate Hz": rate,
+            "frame.median ms": frame,
+            "frame.max ms": 2 * frame,
+            "latency.median ms": frame + 1,
+            "on_chip B": 1024,
+            "missed": missed,
+        }
+
+    points = [
+        Shown("slow", "a", row(10, 5, 1)),
+        Shown("slow", "b", row(8, 7, 2)),
+        Shown("fast", "a", row(9, 6, 0)),
+    ]
+    fast, slow = lines_of(points)
+    assert (fast.name, fast.recordings, fast.frame_rate_hz) == ("fast", 1, 9)
+    found = (
+        slow.frame_rate_hz,
+        slow.frame_ms,
+        slow.worst_ms,
+        slow.latency_ms,
+        slow.on_chip_bytes,
+        slow.missed,
+    )
+    assert found == (8, 5, 14, 6, 1024, 3)
+
+
+def test_failures_are_told_once_each() -> None:
+    """The most frequent first, with some of the names."""
+    said = failures([("a", "late"), ("b", "no room"), ("c", "no room"), ("d", "no room"), ("e", "no room")])
+    assert said == "4 points failed (b, c, d, …): no room\n1 point failed (a): late"

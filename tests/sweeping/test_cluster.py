@@ -1,0 +1,74 @@
+"""A sweep on a Dask cluster of this machine, one process of which is killed; skipped where Dask is not installed."""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from bfsim.errors import ConfigError
+from bfsim.sweeping import running
+from bfsim.sweeping.cluster import Cluster
+from tests.sweeping.rig import BASE, home_in, planned, swept
+from tests.test_run import FIRMWARE
+
+distributed = pytest.importorskip("distributed")
+
+DIES_ONCE = FIRMWARE.replace(
+    "def main(core):\n",
+    """\
+def main(core):
+    import os, signal
+    from pathlib import Path
+    if not Path(__file__).with_name("killed").exists():
+        Path(__file__).with_name("killed").touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+""",
+)
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    """A scheduler with two worker processes."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the cluster's own
+        with distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
+        ) as cluster:
+            yield cluster.scheduler_address
+
+
+def test_a_worker_that_is_killed_takes_nothing_along(address: str, tmp_path: Path) -> None:
+    """Its point goes to another one; all figures are those of a sweep without a cluster."""
+    file = home_in(tmp_path / "cluster", f"{BASE}[axes]\nframes = [1, 2]\nset.sdram.nRP = [2, 3, 4]\n")
+    file.with_name("fw_eyes.py").write_text(DIES_ONCE)
+    sweep = planned(file)
+    with Cluster(address, running.code_digest()) as cluster:
+        assert cluster.room() == 4
+        sweep.run(cluster, lambda _point, _outcome: None)
+    assert file.with_name("killed").exists()
+    assert not any(map(sweep.error_of, sweep.planned))
+    again, ran = swept(file)
+    assert ran == []
+    alone, _ = swept(home_in(tmp_path / "alone", file.read_text()))
+    assert [each.figures for each in again.values()] == [each.figures for each in alone.values()]
+
+
+def test_a_worker_with_another_bfsim_is_refused(address: str) -> None:
+    """At once, and by its own check if it comes later."""
+    with pytest.raises(ConfigError, match="must have the same bfsim as this machine, but tcp:"):
+        Cluster(address, "another")
+    outcome = running.run_point(None, Path(), "another")  # type: ignore[arg-type]
+    assert "must have the same bfsim" in outcome.error
+    assert not outcome.is_final
+
+
+@pytest.mark.parametrize("address", ["nowhere", "tcp://127.0.0.1:1", "tcp://", ""])
+def test_an_address_without_a_scheduler(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a sentence."""
+    monkeypatch.setattr("bfsim.sweeping.cluster.CONNECT_S", 0.2)
+    with pytest.raises(ConfigError, match="--scheduler must be the address of a Dask scheduler that answers"):
+        Cluster(address, "")
