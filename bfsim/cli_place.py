@@ -1,0 +1,81 @@
+"""`bfsim place`: the placement of buffers and code with the shortest frame."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run
+from bfsim.errors import ConfigError
+from bfsim.terminal import print_report
+
+if TYPE_CHECKING:
+    from bfsim.trace import RunRecord
+
+
+@click.command(short_help="Find the placement of buffers and code with the shortest frame.")
+@takes_a_run
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Write the placement as an LDF; `bfsim run --ldf FILE` runs it.",
+)
+@click.option("--force", is_flag=True, help="Overwrite the LDF if it exists.")
+@click.option(
+    "--top",
+    metavar="N",
+    type=click.IntRange(min=0),
+    default=12,
+    show_default=True,
+    help="Show the N moves that save most.",
+)
+@click.option(
+    "--json", "as_json", is_flag=True, help="Print JSON instead of the tables: every buffer, with why."
+)
+def place(output: Path | None, force: bool, top: int, as_json: bool, **what: Any) -> None:
+    """Run RECORDING, and find where buffers and code must lie for the shortest frame.
+
+    The run tells who accesses what how often, and what waits for it. An integer programme then gives each buffer the
+    memory that makes the slower core's frame shortest, within the memories of the LDF; that is run, and done again from
+    what it measured, as long as it gets faster. Code moves where some of it lies outside L1. Segments, reserves, stack,
+    heap and caches stay as the LDF has them: --ldf cache finds the best placement with caches.
+
+    \b
+    Examples:
+      bfsim place -o placed.ldf
+      bfsim place drive.mcap --ldf sdram --frames 4 -o placed.ldf
+      bfsim place drive.mcap --firmware mine.py:firmware --board bf561-ezkit
+      bfsim run drive.mcap --ldf placed.ldf
+      bfsim ldf placed.ldf --picture placed.png
+    """
+    from bfsim.placing.search import place as found_by
+    from bfsim.placing.tables import placed_json, placed_report
+    from bfsim.report.save import files_of_run, require_apart, require_place, write_text
+
+    if output:
+        require_place(output)
+        require_apart(output, files_of_run(what))
+        if output.exists() and not force:
+            raise ConfigError(f"{output} must not exist yet; --force overwrites it")
+    placed = found_by(simulate=_whole_run, **what)
+    if output and placed.ldf:
+        write_text(output, placed.ldf)
+    if as_json:
+        click.echo(placed_json(placed), nl=False)
+        return
+    print_report(placed_report(placed, top))
+    if output and placed.ldf:
+        click.echo(f"Written: `bfsim run --ldf {output}` runs it, `bfsim ldf {output}` draws it.")
+    elif output:
+        click.echo(f"{output} was not written: {placed.start} is as good.")
+
+
+def _whole_run(**what: Any) -> RunRecord:
+    """Run the simulation to its end."""
+    done = simulated(**what)
+    exit_if_interrupted(done)
+    return done

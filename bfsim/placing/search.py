@@ -1,0 +1,201 @@
+"""Measure, solve, write, run; and again from what that run measured, as long as the model finds something better."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from types import MappingProxyType
+from typing import Any
+
+from bfsim.hardware import find_board, find_profile
+from bfsim.loading import load_firmware
+from bfsim.machine.board import require_cores, symbols_of
+from bfsim.machine.program import FrameSize
+from bfsim.placing.ldf import LdfWriter
+from bfsim.placing.measured import Measured, busy_of, frame_cclk
+from bfsim.placing.model import Model
+from bfsim.placing.placed import Fill, Placed, PlacedPart, Trial
+from bfsim.placing.reasons import about, accesses_of, cost_ms, reason
+from bfsim.recording import RecordingReader
+from bfsim.report.budget import milliseconds
+from bfsim.run import BUILT_IN_RECORDING
+from bfsim.run_inputs import calibration_of, read_placement
+from bfsim.trace import RunRecord
+
+ROUNDS = 4
+"""Placements that are run at most, beside the first."""
+WORTH = 0.001
+"""Another placement is run if the model says that it saves more than this share of the frame."""
+LEAST = 0.0001
+"""A placement that saves less than this share is no better."""
+
+BUSY_WEIGHT = 0.01
+"""What a cycle of the busiest core counts beside one of the frame: where the cameras bound the frame, less work is better."""
+
+Places = tuple[int, ...]
+Homes = tuple[int | None, ...]
+"""The stretch of each part; as the LDF had it, some may be in none."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Try:
+    """A placement that was run, and the cycles of a frame that the model had predicted."""
+
+    places: Places
+    predicted_cclk: float
+    run: RunRecord
+
+
+def place(
+    recording: Path | None = None,
+    *,
+    firmware: str,
+    board: str,
+    settings: Mapping[str, object] = MappingProxyType({}),
+    ldf: Path | None = None,
+    defines: Mapping[str, str] = MappingProxyType({}),
+    include_dirs: Sequence[Path] = (),
+    profile: str,
+    simulate: Callable[..., RunRecord],
+    **how: Any,
+) -> Placed:
+    """Return the fastest placement of `firmware` into the memories of an LDF that was found and run.
+
+    The arguments are those of `bfsim.run.simulate`, which `simulate` is, or stands for. Raises NoRoomError, with what lacks
+    how many bytes, where no placement has room, and a BfsimError as a run does.
+    """
+    spec, compiler = find_board(board, settings).value, find_profile(profile).value
+    loaded = load_firmware(firmware)
+    require_cores(loaded.firmware, spec)
+    script = read_placement(ldf, spec, defines, include_dirs)
+    with RecordingReader(recording or BUILT_IN_RECORDING) as reader, loaded.own.named():
+        size = FrameSize(reader.width, reader.height)
+        symbols = symbols_of(loaded.firmware.calibrated(calibration_of(reader)), size, compiler)
+    model, measured = Model(spec, script, symbols), Measured()
+    writer = LdfWriter(script, model.stretches)
+    what = {"firmware": firmware, "board": board, "settings": settings, "profile": profile, **how}
+    with TemporaryDirectory() as folder:
+
+        def run(places: Places) -> RunRecord:
+            path = Path(folder) / "placed.ldf"
+            path.write_text(writer.text(model.parts, places, {}, ()), encoding="utf-8")
+            return simulate(recording=recording, ldf=path, **what)
+
+        moved_in = (
+            None if model.is_linked else model.best(measured)
+        )  # with nothing measured: the fewest moves
+        if moved_in:
+            first = run(moved_in)
+        else:
+            first = simulate(recording=recording, ldf=ldf, defines=defines, include_dirs=include_dirs, **what)
+        homes: Homes = moved_in or tuple(each.home for each in model.parts)
+        measured.add(first, model.code_levels(homes))
+        camera_cclk = float(spec.clocks.cclk_hz / spec.sensor.mode(size.width_px, size.height_px).frame_hz)
+        tries = list(_tries(model, measured, first, homes, camera_cclk, run))
+    return _placed(model, measured, first, moved_in, tries, writer, camera_cclk)
+
+
+def _tries(
+    model: Model,
+    measured: Measured,
+    first: RunRecord,
+    homes: Homes,
+    camera_cclk: float,
+    run: Callable[[Places], RunRecord],
+) -> Iterator[_Try]:
+    """Run the best placement by what was measured until then, and yield it, as long as it is new and worth it."""
+    last, best_cclk, seen = first, math.inf, {homes}
+    for _ in range(ROUNDS):
+        places = model.best(measured)
+        busy_cclk = max(model.busy_cclk(places, measured).values())
+        saved = max(busy_of(last).values()) - busy_cclk
+        predicted_cclk = max(frame_cclk(last) - saved, min(camera_cclk, frame_cclk(last)))
+        if places in seen or predicted_cclk + BUSY_WEIGHT * busy_cclk > (1 - WORTH) * best_cclk:
+            return
+        seen.add(places)
+        last = run(places)
+        measured.add(last, model.code_levels(places))
+        best_cclk = min(best_cclk, _score_cclk(last))
+        yield _Try(places, predicted_cclk, last)
+
+
+def _score_cclk(run: RunRecord) -> float:
+    """Return what makes one placement better than another."""
+    return frame_cclk(run) + BUSY_WEIGHT * max(busy_of(run).values())
+
+
+def _placed(
+    model: Model,
+    measured: Measured,
+    first: RunRecord,
+    moved_in: Places | None,
+    tries: Sequence[_Try],
+    writer: LdfWriter,
+    camera_cclk: float,
+) -> Placed:
+    """Return the records of the best placement that was run. `moved_in`: the first one, where the LDF had no room."""
+    hz = first.identity.cclk_hz
+    better = [each for each in tries if _score_cclk(each.run) < (1 - LEAST) * _score_cclk(first)]
+    best = min(better, key=lambda each: _score_cclk(each.run), default=None)
+    after, places = (best.run, best.places) if best else (first, moved_in)
+    homes: Homes = moved_in or tuple(each.home for each in model.parts)
+    parts = tuple(_parts(model, measured, homes, places)) if places else ()
+    found = Placed(
+        identity=first.identity,
+        start=model.script.path.name,
+        linked=model.is_linked,
+        frames=len(first.frames),
+        before_ms=milliseconds(frame_cclk(first), hz),
+        before_busy_ms=milliseconds(max(busy_of(first).values()), hz),
+        camera_ms=milliseconds(camera_cclk, hz),
+        trials=tuple(
+            Trial(
+                predicted_ms=milliseconds(each.predicted_cclk, hz),
+                simulated_ms=milliseconds(frame_cclk(each.run), hz),
+                busy_ms=milliseconds(max(busy_of(each.run).values()), hz),
+            )
+            for each in tries
+        ),
+        best=tries.index(best) if best else None,
+        parts=parts,
+        fills=tuple(_fills(first, after)) if places else (),
+        ldf="",
+    )
+    if not places:
+        return found
+    why = {label: each.why for label, each in zip((part.label for part in model.parts), parts, strict=True)}
+    return replace(found, ldf=writer.text(model.parts, places, why, about(found)))
+
+
+def _parts(model: Model, measured: Measured, homes: Homes, places: Places) -> Iterator[PlacedPart]:
+    for part, home, stretch in zip(model.parts, homes, places, strict=True):
+        made = accesses_of(model, part, measured)
+        after_ms = cost_ms(model, part, stretch, measured)
+        before_ms = after_ms if home is None else cost_ms(model, part, home, measured)
+        yield PlacedPart(
+            name=part.symbol.name,
+            core=part.owner,
+            is_code=part.is_code,
+            nbytes=part.symbol.nbytes,
+            before=part.segment or ("" if home is None else model.stretches[home].segment.name),
+            after=model.stretches[stretch].segment.name,
+            reads=made.reads,
+            writes=made.writes,
+            streamed=part.name in measured.streamed,
+            saved_ms=before_ms - after_ms,
+            why=reason(model, part, stretch, measured),
+        )
+
+
+def _fills(before: RunRecord, after: RunRecord) -> Iterator[Fill]:
+    used = {each.memory: each.used_bytes for each in before.memories}
+    for each in after.memories:
+        yield Fill(
+            memory=each.memory,
+            nbytes=each.nbytes,
+            before_bytes=used.get(each.memory, 0),
+            after_bytes=each.used_bytes,
+        )
