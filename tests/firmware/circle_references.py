@@ -23,6 +23,8 @@ Point = tuple[int, int]
 
 FINE = 64
 
+Circle = tuple[int, int, int]  # centre and radius in 1/64 px
+
 
 def turn(angle: int, reference: int) -> int:
     """The 8-bit angle from one to another, without a sign."""
@@ -36,19 +38,37 @@ def selected(
     box: tuple[int, int, int, int],
     mass: Point,
     angle_range: int,
-    dark_too: bool,
-) -> list[Edge]:
-    """The edges in a box (left, right, top, bottom) that pass both filters."""
-    covered = references.erode((opened & colours != 0).astype(np.uint32)) != 0
+    beside_colour: bool,
+) -> tuple[list[Edge], list[bool], int]:
+    """The edges in a box (left, right, top, bottom) that pass both filters, which look away, and how many pass the first one."""
+    coloured = (opened & colours != 0).astype(np.uint32)
+    covered = references.erode(coloured) != 0
+    around = np.pad(coloured, ((1, 1), (2, 2)), mode="edge")
+    near = sliding_window_view(around, (3, 5)).any(axis=(2, 3))
     left, right, top, bottom = box
-    kept = []
+    kept, away, bordering = [], [], 0
     for x, y, direction in edges:
-        if left <= x <= right and top <= y <= bottom and not covered[y, x]:
+        within = left <= x <= right and top <= y <= bottom
+        if within and not covered[y, x]:
+            bordering += 1
             to_mass = int(references.angle(np.array([mass[0] - x]), np.array([mass[1] - y]))[0])
             off = turn(direction, to_mass)
-            if off <= angle_range or (dark_too and off >= 128 - angle_range):
+            if off <= angle_range or (off >= 128 - angle_range and (near[y, x] or not beside_colour)):
                 kept.append((x, y, direction))
-    return kept
+                away.append(off > angle_range)
+    return kept, away, bordering
+
+
+def agreeing_on_side(edges: Sequence[Edge], away: Sequence[bool], mass: Point, reach: int) -> list[Edge]:
+    """The edges without those that look another way than most, unless three quarters of these are near the circle of all."""
+    side = 2 * sum(away) > len(edges)
+    others = [edge for edge, each in zip(edges, away, strict=True) if each != side]
+    if not others:
+        return list(edges)
+    circle, _ = consensus(edges, mass, reach, None)
+    if circle and circle[2] > 0 and 4 * sum(is_near(each, circle) for each in others) >= 3 * len(others):
+        return list(edges)
+    return [edge for edge, each in zip(edges, away, strict=True) if each == side]
 
 
 def is_steep(direction: int) -> bool:
@@ -119,44 +139,110 @@ def radius_peak(counts: Sequence[int], reach: int) -> tuple[int, int, int]:
     return radius, max(sums), FINE * radius + mean_offset(wide[radius : radius + 2 * reach + 1])
 
 
-def outline_offset(profile: Sequence[int]) -> int:
-    """Where the greatest step of a profile lies, in 1/64 px from its middle, slopes taken off; 4 values before, 5 behind."""
+def outline_offset(profile: Sequence[int]) -> tuple[int, int, int]:
+    """Where the outline crosses a profile, in 1/64 px from its middle, how steep it is and how wide its flanks; 7 values before, 8 behind."""
     rises = [int(after) - int(before) for before, after in pairwise(profile)]
-    place = max(range(2, 6), key=lambda each: rises[each])  # of equal ones the first
-    dark, before, middle, after, bright = rises[place - 2 : place + 3]
-    dark, bright = max(dark, 0), max(bright, 0)
-    before, after = max(before - dark, 0), max(after - bright, 0)
-    whole = before + after + max(middle - (dark + bright) // 2, 0)
-    aside = (2 * FINE * (after - before) + whole) // (2 * whole) if whole else 0
-    return FINE * (place - 4) + FINE // 2 + aside
+    place = max(
+        range(5, 9), key=lambda each: sum(rises[each - 1 : each + 2]) + rises[each]
+    )  # of equal ones the first
+    before, after = (
+        next((each for each in (1, 2, 3) if 2 * rises[place + way * each] <= rises[place]), 4)
+        for way in (-1, 1)
+    )
+    dark, bright = max(rises[place - before - 1], 0), max(rises[place + after + 1], 0)
+    steps = range(-before, after + 1)
+    slopes = [dark if step < 0 else bright if step > 0 else (dark + bright) // 2 for step in steps]
+    parts = [max(rises[place + step] - slope, 0) for step, slope in zip(steps, slopes, strict=True)]
+    moment = sum(step * part for step, part in zip(steps, parts, strict=True))
+    aside = (2 * FINE * moment + sum(parts)) // (2 * sum(parts)) if sum(parts) else 0
+    return FINE * (place - 7) + FINE // 2 + aside, max(rises[place], 0), (before + after + 1) // 2
 
 
-def point_of(edge: Edge, luma: Picture) -> Point:
-    """The point on the outline at an edge, in 1/64 px."""
+Flank = tuple[int, int]  # how steep, how wide
+
+
+def point_of(edge: Edge, luma: Picture) -> tuple[Point, Flank]:
+    """The point on the outline at an edge, in 1/64 px, and its flank."""
     x, y, direction = edge
     steep = is_steep(direction)
     way = (1 if direction < 128 else -1) if steep else (1 if direction < 64 or direction >= 192 else -1)
-    steps = way * np.arange(-4, 6)
+    steps = way * np.arange(-7, 9)
     height, width = luma.shape
+    profile = (
+        luma[np.clip(y + steps, 0, height - 1), x] if steep else luma[y, np.clip(x + steps, 0, width - 1)]
+    )
+    offset, *flank = outline_offset(profile.tolist())
     if steep:
-        profile = luma[np.clip(y + steps, 0, height - 1), x]
-        return FINE * x, max(FINE * y + way * outline_offset(profile.tolist()), 0)
-    profile = luma[y, np.clip(x + steps, 0, width - 1)]
-    return max(FINE * x + way * outline_offset(profile.tolist()), 0), FINE * y
+        return (FINE * x, max(FINE * y + way * offset, 0)), (flank[0], flank[1])
+    return (max(FINE * x + way * offset, 0), FINE * y), (flank[0], flank[1])
 
 
-Circle = tuple[int, int, int]  # centre and radius in 1/64 px
+def near_of(radius: int) -> int:
+    """How far from a circle its points may be: a pixel or a sixteenth of its radius."""
+    return max(FINE, radius // 16)
 
 
-def refined(circle: Circle, points: Sequence[Point], limit: int) -> Circle:
-    """One round of the fit over the points not further than `limit` from the circle."""
+def is_near(edge: Edge, circle: Circle) -> bool:
+    """Whether an edge is near a circle."""
+    x, y, radius = circle
+    near = near_of(radius)
+    off = (FINE * edge[0] - x) ** 2 + (FINE * edge[1] - y) ** 2
+    return max(radius - near, 0) ** 2 <= off <= (radius + near) ** 2
+
+
+def consensus(
+    edges: Sequence[Edge], mass: Point, reach: int, start: Circle | None
+) -> tuple[Circle | None, int]:
+    """The circle that most edges agree on, from one to begin with and those through 48 triples, and their share in 1/256."""
+    judges = edges[:: -(-len(edges) // 64)]
+
+    def share(circle: Circle) -> int:
+        return 256 * sum(is_near(each, circle) for each in judges) // len(judges)
+
+    best = (share(start), start) if start and start[2] > 0 else (0, None)
+    count = len(edges)
+    for number in range(48):
+        first = number * count // 48
+        second, third = (first + count // 3 + number) % count, (first + 2 * count // 3 + 3 * number) % count
+        found = through(*(edges[each][:2] for each in (first, second, third)))
+        if found and all(
+            abs(each // FINE - middle) <= reach for each, middle in zip(found, mass, strict=False)
+        ):
+            best = max(best, (share(found), found), key=lambda each: each[0])
+    return best[1], best[0]
+
+
+def through(one: Point, two: Point, three: Point) -> Circle | None:
+    """The circle through three points of whole pixels, rounded down from the first one on; none if they lie on a line."""
+    (x2, y2), (x3, y3) = ((each[0] - one[0], each[1] - one[1]) for each in (two, three))
+    twice = 2 * (x2 * y3 - y2 * x3)
+    if twice == 0:
+        return None
+    right = y3 * (x2**2 + y2**2) - y2 * (x3**2 + y3**2)
+    down = x2 * (x3**2 + y3**2) - x3 * (x2**2 + y2**2)
+    dx, dy = (FINE * each // twice for each in (right, down))
+    return FINE * one[0] + dx, FINE * one[1] + dy, isqrt(dx**2 + dy**2)
+
+
+def weights(flanks: Sequence[Flank]) -> list[int]:
+    """What points count, by their flanks."""
+    steep = sum(each for each, _ in flanks)
+    blur = (2 * sum(each * wide for each, wide in flanks) + steep) // max(2 * steep, 1)
+    square = max(steep // max(len(flanks), 1), 1) ** 2
+    return [min((2 * each**2 + square // 2) // square, 8) if wide <= blur else 0 for each, wide in flanks]
+
+
+def refined(circle: Circle, points: Sequence[Point], counts: Sequence[int], limit: int) -> Circle:
+    """One round of the fit over the points nearer to the circle than `limit`: the nearer, the more they count, up to 4."""
     x, y, radius = circle
     rows = []
-    for point in points:
+    for point, count in zip(points, counts, strict=True):
         away = distance(point, (x, y))
-        if away and abs(away - radius) <= limit:
-            nx, ny = (point[0] - x) * 256 // away, (point[1] - y) * 256 // away
-            rows.append((8 if away > radius else 1, nx, ny, away - radius))
+        off = away - radius
+        if away and abs(off) < limit:
+            nx, ny = (point[0] - x) * 128 // away, (point[1] - y) * 128 // away
+            near = ((limit**2 - off**2) * ((4 << 16) // limit**2) + (1 << 15)) >> 16
+            rows.append((near * count * (3 if off > 0 else 1), nx, ny, off))
     weight = sum(row[0] for row in rows)
     if not weight:
         return circle
@@ -167,14 +253,14 @@ def refined(circle: Circle, points: Sequence[Point], limit: int) -> Circle:
     def spread(first: int, second: int) -> int:
         return (total(first, second) - total(first) * total(second) // weight) // weight
 
-    xx, xy, yy = spread(1, 1) >> 4, spread(1, 2) >> 4, spread(2, 2) >> 4
-    xe, ye = spread(1, 3), spread(2, 3)
+    xx, xy, yy = spread(1, 1) >> 2, spread(1, 2) >> 2, spread(2, 2) >> 2
+    xe, ye = 2 * spread(1, 3), 2 * spread(2, 3)
     size = (xx * yy - xy * xy) >> 4
     dx = dy = 0
     if size >= 1024:
         dx = min(max((xe * yy - ye * xy + size // 2) // size, -limit), limit)
         dy = min(max((ye * xx - xe * xy + size // 2) // size, -limit), limit)
-    towards = (total(1) * dx + total(2) * dy) >> 8
+    towards = ((total(1) >> 1) * dx + (total(2) >> 1) * dy) >> 6
     return x + dx, y + dy, radius + (2 * (total(3) - towards) + weight) // (2 * weight)
 
 
@@ -233,38 +319,54 @@ def circle(
         middle((left, right), bottom - top + 1, width, blob.mass[0]),
         middle((top, bottom), right - left + 1, height, blob.mass[1]),
     )
-    found = selected(edges, opened, colours, wide, mass, limits.angle_range, limits.dark_balls)
+    found, away, bordering = selected(
+        edges, opened, colours, wide, mass, limits.angle_range, limits.beside_colour
+    )
     found = found[: 3 * width]
+    reach = min((max(right - left, bottom - top) + 1) // 2, limits.patch_reach)
+    if limits.fit_rounds:
+        found = agreeing_on_side(found, away[: 3 * width], mass, reach)
     record = [(32 * each + blob.pixels) // (2 * blob.pixels) for each in blob.sums]
     record += [0, number, len(found), 0, 0, 0, 0]
     if len(found) < max(limits.min_edges, 1):
         return record
-    reach = min((max(right - left, bottom - top) + 1) // 2, limits.patch_reach)
     around = min(limits.peak_reach, reach)
     patch = votes(found, mass, reach)
     row, column, size = peak(patch, around)
     record[5] = min(256 * size // (len(found) * (2 * around + 1)), 255)
-    if not size or record[5] < limits.centre_share:
+    found_circle = None
+    if size and record[5] >= limits.centre_share:
+        square = patch[row - around : row + around + 1, column - around : column + around + 1]
+        x = FINE * (mass[0] - reach + column) + mean_offset(square.sum(axis=0).tolist())
+        y = FINE * (mass[1] - reach + row) + mean_offset(square.sum(axis=1).tolist())
+        record[7] = 1
+        _, size, radius = radius_peak(histogram(found, (x, y), width), limits.peak_reach)
+        record[6] = min(256 * size // len(found), 255)
+        if size and size >= limits.min_peak and record[6] >= limits.radius_share:
+            record[7] = 3
+            found_circle = x, y, radius
+        record[:3] = [(each + 2) // 4 for each in (x, y, radius)]
+    if not limits.fit_rounds:
         return record
-    square = patch[row - around : row + around + 1, column - around : column + around + 1]
-    x = FINE * (mass[0] - reach + column) + mean_offset(square.sum(axis=0).tolist())
-    y = FINE * (mass[1] - reach + row) + mean_offset(square.sum(axis=1).tolist())
-    record[7] = 1
-    _, size, radius = radius_peak(histogram(found, (x, y), width), limits.peak_reach)
-    record[6] = min(256 * size // len(found), 255)
-    if size and size >= limits.min_peak and record[6] >= limits.radius_share:
-        record[7] = 3
-        if limits.fit_rounds:
-            limit = FINE * limits.fit_range
-            close = [
-                edge
-                for edge in found
-                if abs(distance((FINE * edge[0], FINE * edge[1]), (x, y)) - radius) <= limit
-            ]
-            points = [point_of(edge, luma) for edge in close]
-            for _ in range(limits.fit_rounds):
-                x, y, radius = refined((x, y, radius), points, limit)
-                limit = max(limit // 2, FINE)
-            record[8] = arc((x, y, radius), points)
-    record[:3] = [(each + 2) // 4 for each in (x, y, radius)]
-    return record
+    agreed, share = consensus(found, mass, reach, found_circle)
+    share = share * len(found) // bordering
+    if agreed is None or (record[7] != 3 and share <= limits.consensus_share):
+        return record
+    record[7] = 3
+    fitted, arc_seen = fit(agreed, found, luma, limits)
+    return [*((each + 2) // 4 for each in fitted), *record[3:8], arc_seen]
+
+
+def fit(circle: Circle, edges: Sequence[Edge], luma: Picture, limits: Any) -> tuple[Circle, int]:
+    """The circle that fits the outline at the edges near one, and how much of it is seen."""
+    x, y, radius = circle
+    limit = FINE * limits.fit_range
+    away = [distance((FINE * edge[0], FINE * edge[1]), (x, y)) for edge in edges]
+    close = [edge for edge, each in zip(edges, away, strict=True) if abs(each - radius) <= limit]
+    outline = [point_of(edge, luma) for edge in close]
+    points = [point for point, _ in outline]
+    counts = weights([flank for _, flank in outline])
+    for _ in range(limits.fit_rounds):
+        circle = refined(circle, points, counts, limit)
+        limit = max(limit // 2, min(near_of(circle[2]), limit))
+    return circle, arc(circle, points)

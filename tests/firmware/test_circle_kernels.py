@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import erf
 
 import numpy as np
 import pytest
@@ -12,17 +13,34 @@ from hypothesis import strategies as st
 from tests.firmware import circle_references as expected
 from tests.firmware.circle_references import Edge
 from tests.firmware.pictures import random_uyvy
+from tinyphoon.stages.circle_consensus import agree_on_side, find_consensus
 from tinyphoon.stages.circle_detection import share_of, sixteenths
 from tinyphoon.stages.circle_edges import (
     AREA_WORDS,
-    looks_at,
+    BORDERING,
+    REACH,
+    edge_x,
+    edge_y,
+    is_near_colour,
+    looks_along,
+    looks_away,
     middle_beyond,
     next_blob,
     open_area,
     select_edges_row,
 )
-from tinyphoon.stages.circle_fit import FIT_WORDS, REFINED, arc_of, fit_circle
-from tinyphoon.stages.circle_outline import LUMA_LINES, clear_points, luma_row, refine_row
+from tinyphoon.stages.circle_fit import FIT_WORDS, FLANK_BITS, REFINED, STEEPEST, arc_of, fit_circle
+from tinyphoon.stages.circle_outline import (
+    LUMA_LINES,
+    REACH_LINES,
+    RISES,
+    clear_points,
+    flank,
+    luma_row,
+    outline_offset,
+    refine_row,
+    steepest,
+)
 from tinyphoon.stages.circle_radius import edges_round, fill_histogram, find_radius, mean_radius
 from tinyphoon.stages.circle_votes import (
     clear_votes,
@@ -50,21 +68,33 @@ def words(edges: Sequence[Edge]) -> np.ndarray:
 
 def area_of(box: tuple[int, int, int, int], mass: tuple[int, int], reach: int) -> np.ndarray:
     """The words of an area."""
-    return np.array([*box, *mass, reach], np.int32)
+    return np.array([*box, *mass, reach, 0], np.int32)
 
 
 @given(st.integers(0, 255), st.integers(-SIZE, SIZE), st.integers(-SIZE, SIZE), st.integers(0, 64))
-def test_a_gradient_looks_at_a_place_within_the_range(direction: int, dx: int, dy: int, limit: int) -> None:
-    """All quadrants and the wrap of angles; the other way round only where dark balls count."""
+def test_a_gradient_looks_along_the_way_to_a_place(direction: int, dx: int, dy: int, limit: int) -> None:
+    """All quadrants and the wrap of angles, towards the place and away from it."""
     to_place = int(expected.references.angle(np.array([dx]), np.array([dy]))[0])
     off = expected.turn(direction, to_place)
-    assert looks_at(direction, dx, dy, limit, 0, ATAN) == (off <= limit)
-    assert looks_at(direction, dx, dy, limit, 1, ATAN) == (off <= limit or off >= 128 - limit)
+    assert looks_along(direction, dx, dy, limit, ATAN) == (
+        1 if off <= limit else -1 if off >= 128 - limit else 0
+    )
+
+
+def test_colour_is_near_up_to_two_columns_away() -> None:
+    """A single coloured pixel in each row and column in turn; at the ends of a row nothing beyond it is read."""
+    for row in range(3):
+        for column in range(9):
+            lines = np.zeros((3, 9), np.uint32)
+            lines[row, column] = 4
+            near = [is_near_colour(*lines, x, 6) for x in range(9)]
+            assert near == [abs(x - column) <= 2 for x in range(9)]
+            assert is_near_colour(*lines, column, 3) == 0
 
 
 @settings(max_examples=40)
 @given(edges_in_picture, st.integers(0, 2**32 - 1), places, places, st.booleans(), st.integers(0, 60))
-def test_selected_edges(edges: list[Edge], seed: int, x: int, y: int, dark_too: bool, room: int) -> None:
+def test_selected_edges(edges: list[Edge], seed: int, x: int, y: int, near: bool, room: int) -> None:
     """Every row of a picture of chance: the first ones are stored, all are counted."""
     opened = np.random.default_rng(seed).choice(
         np.array([2, 4, 6, 8], np.uint32), (SIZE, SIZE), p=[0.45, 0.5, 0, 0.05]
@@ -77,13 +107,41 @@ def test_selected_edges(edges: list[Edge], seed: int, x: int, y: int, dark_too: 
         counts.astype(np.uint16),
     )
     selected, found = np.zeros(room, np.uint32), 0
+    area = area_of(box, (x, y), 9)
     for row in range(SIZE):
-        near = [opened[min(max(each, 0), SIZE - 1)] for each in (row - 1, row, row + 1)]
-        filters = area_of(box, (x, y), 9), 40, int(dark_too), ATAN
-        found = select_edges_row(*store, row, *near, 6, *filters, selected, found)
-    wanted = expected.selected(edges, opened, 6, box, (x, y), 40, dark_too)
-    assert found == len(wanted)
-    assert selected[:found].tolist() == words(wanted)[:-1][:room].tolist()
+        lines = [opened[min(max(each, 0), SIZE - 1)] for each in (row - 1, row, row + 1)]
+        found = select_edges_row(*store, row, *lines, 6, area, 40, int(near), ATAN, selected, found)
+    wanted, away, bordering = expected.selected(edges, opened, 6, box, (x, y), 40, near)
+    assert (found, area[BORDERING]) == (len(wanted), bordering)
+    stored = min(found, room)
+    assert [(edge_x(each), edge_y(each)) for each in selected[:stored]] == [
+        each[:2] for each in wanted[:room]
+    ]
+    assert [looks_away(each) for each in selected[:stored]] == away[:room]
+    left = agree_on_side(selected, stored, area, np.zeros(FIT_WORDS, np.int32))
+    kept = expected.agreeing_on_side(wanted[:room], away[:room], (x, y), 9)
+    assert [(edge_x(each), edge_y(each)) for each in selected[:left]] == [each[:2] for each in kept]
+
+
+@pytest.mark.parametrize(("stray", "left"), [(0, 40), (2, 40), (3, 32), (8, 32)])
+def test_three_quarters_of_the_other_side_decide(stray: int, left: int) -> None:
+    """Eight of forty look the other way: with two of them off the circle of all they stay, with three they are left out."""
+    turns = 2 * np.pi * np.arange(40) / 40
+    places = np.rint(30 + 20 * np.array([np.cos(turns), np.sin(turns)])).astype(int).T.tolist()
+    other = set(range(16, 24))
+    for number in range(16, 16 + stray):
+        places[number] = [25, 30 + number - 16]
+    edges = sorted((y, x, number in other) for number, (x, y) in enumerate(places))
+    selected = np.array([x << 20 | away << 19 | y << 8 for y, x, away in edges], np.uint32)
+    assert (
+        agree_on_side(selected, 40, area_of((0, 0, 0, 0), (30, 30), 9), np.zeros(FIT_WORDS, np.int32)) == left
+    )
+
+
+def test_without_a_circle_one_side_is_left() -> None:
+    """Edges in a column have no circle: of 15, 6 look away, and 9 stay."""
+    edges = np.array([3 << 20 | (number < 6) << 19 | number << 8 for number in range(15)], np.uint32)
+    assert agree_on_side(edges, 15, area_of((0, 0, 0, 0), (3, 7), 9), np.zeros(FIT_WORDS, np.int32)) == 9
 
 
 def test_slopes_of_all_directions() -> None:
@@ -140,35 +198,49 @@ def test_points_on_the_outline(edges: list[Edge], seed: int, x: int, y: int, rad
     fit[:3] = 64 * x + 7, 64 * y - 9, 64 * radius
     clear_points(fit)
     selected, luma = words(edges), np.full(LUMA_LINES * SIZE, 77, np.uint8)
-    for ahead in range(SIZE + 4):
+    rises, flanks = np.zeros(RISES, np.int32), np.full(len(edges), 77, np.uint16)
+    for ahead in range(SIZE + REACH_LINES):
         if ahead < SIZE:
             luma_row(uyvy[ahead], luma, ahead, area_of((0, SIZE - 1, 0, SIZE - 1), (x, y), 9))
-        if ahead >= 4:
-            refine_row(selected, len(edges), ahead - 4, luma, SIZE, fit, 3)
+        if ahead >= REACH_LINES:
+            refine_row(selected, len(edges), ahead - REACH_LINES, luma, SIZE, fit, 3, rises, flanks)
     away = [expected.distance((64 * each[0], 64 * each[1]), (64 * x + 7, 64 * y - 9)) for each in edges]
     close = [edge for edge, each in zip(edges, away, strict=True) if abs(each - 64 * radius) <= 192]
     wanted = [expected.point_of(edge, expected.references.luma(uyvy)) for edge in close]
-    assert [(word & 0xFFFF, word >> 16) for word in selected[: fit[REFINED]].tolist()] == wanted
+    assert [(word & 0xFFFF, word >> 16) for word in selected[: fit[REFINED]].tolist()] == [
+        point for point, _ in wanted
+    ]
+    assert [(word & STEEPEST, word >> FLANK_BITS) for word in flanks[: fit[REFINED]].tolist()] == [
+        flank for _, flank in wanted
+    ]
 
 
-points_near = st.lists(st.tuples(st.floats(0, 6.28), st.integers(-250, 250)), min_size=0, max_size=80)
+points_near = st.lists(
+    st.tuples(st.floats(0, 6.28), st.integers(-250, 250), st.integers(0, 255), st.integers(1, 4)), max_size=80
+)
+EVEN = 100 | 1 << FLANK_BITS
 
 
 @given(points_near, st.integers(1, 100), st.integers(0, 4))
-def test_rounds_of_the_fit(around: list[tuple[float, int]], radius: int, rounds: int) -> None:
+def test_rounds_of_the_fit(around: list[tuple[float, int, int, int]], radius: int, rounds: int) -> None:
     """Scattered points, arcs, a single point and none."""
     points = [
         (int(8000 + (64 * radius + off) * np.cos(angle)), int(7900 + (64 * radius + off) * np.sin(angle)))
-        for angle, off in around
+        for angle, off, _, _ in around
     ]
+    flanks = [(steep, wide) for _, _, steep, wide in around]
     fit = np.zeros(FIT_WORDS, np.int32)
     fit[:3] = 8010, 7890, 64 * radius
     fit[REFINED] = len(points)
-    fit_circle(np.array([x | y << 16 for x, y in points] or [0], np.uint32), fit, 3, rounds)
+    words = np.array([x | y << 16 for x, y in points] or [0], np.uint32)
+    counts = np.array([steep | wide << FLANK_BITS for steep, wide in flanks] or [0], np.uint16)
+    fit_circle(words, counts, fit, 3, rounds)
     circle, limit = (8010, 7890, 64 * radius), 192
+    wanted = expected.weights(flanks)
+    assert counts[: len(points)].tolist() == wanted
     for _ in range(rounds):
-        circle = expected.refined(circle, points, limit)
-        limit = max(limit // 2, 64)
+        circle = expected.refined(circle, points, wanted, limit)
+        limit = max(limit // 2, min(expected.near_of(circle[2]), limit))
     assert tuple(fit[:3].tolist()) == circle
 
 
@@ -181,20 +253,66 @@ def test_the_fit_goes_to_the_circle(x: float, y: float, radius: float, start: fl
     fit = np.zeros(FIT_WORDS, np.int32)
     fit[:3] = 64 * (x + 1), 64 * (y - 1), 64 * (radius - 0.5)
     fit[REFINED] = points.shape[1]
-    fit_circle((points[0] | points[1] << 16).astype(np.uint32), fit, 3, 12)
+    flanks = np.full(points.shape[1], EVEN, np.uint16)
+    fit_circle((points[0] | points[1] << 16).astype(np.uint32), flanks, fit, 3, 12)
     assert np.abs(fit[:3] / 64 - (x, y, radius)).max() < 0.15
 
 
-def test_sums_of_the_largest_picture_stay_in_32_bits() -> None:
-    """All edges that a picture 640 wide has room for, 8 px outside a circle as far as it can be."""
+@pytest.mark.parametrize("off", [1, 64, 148, 250])
+def test_sums_of_the_largest_picture_stay_in_32_bits(off: int) -> None:
+    """All edges that a picture 640 wide has room for, outside a circle as far as it can be, with nearly the largest weight."""
     count = 1920
     points = np.full(count, 40_900 | 30_600 << 16, np.uint32)
+    flanks = [(255, 1) if number % 2 else (1, 4) for number in range(count)]
+    counts = expected.weights(flanks)
+    assert set(counts) == {8, 0}
     fit = np.zeros(FIT_WORDS, np.int32)
     fit[REFINED] = count
-    fit[2] = expected.distance((40_900, 30_600), (0, 0)) - 512
-    circle = expected.refined((0, 0, int(fit[2])), [(40_900, 30_600)] * count, 512)
-    fit_circle(points, fit, 8, 1)
+    start = 0, 0, expected.distance((40_900, 30_600), (0, 0)) - off
+    fit[:3] = start
+    circle = expected.refined(start, [(40_900, 30_600)] * count, counts, 256)
+    fit_circle(points, np.array([steep | wide << FLANK_BITS for steep, wide in flanks], np.uint16), fit, 4, 1)
     assert tuple(fit[:3].tolist()) == circle
+    fit[:3] = start
+    fit_circle(points, np.full(count, EVEN, np.uint16), fit, 4, 1)
+    assert tuple(fit[:3].tolist()) == expected.refined(start, [(40_900, 30_600)] * count, [2] * count, 256)
+
+
+@settings(max_examples=60)
+@given(
+    edges_in_picture.filter(lambda edges: len(edges) > 2),
+    places,
+    places,
+    st.integers(0, 32),
+    st.integers(0, 2000),
+)
+def test_the_consensus(edges: list[Edge], x: int, y: int, reach: int, radius: int) -> None:
+    """Edges of chance and on a circle, with and without a circle to begin with, and a patch that leaves centres out."""
+    on_circle = [
+        (round(30 + 20 * np.cos(each)), round(33 + 20 * np.sin(each)), 0) for each in np.arange(0, 6.2, 0.2)
+    ]
+    for every in (edges, sorted(edges + on_circle, key=lambda edge: edge[1])):
+        fit = np.zeros(FIT_WORDS, np.int32)
+        fit[:3] = 64 * 31, 64 * 30, radius
+        share = find_consensus(words(every), len(every), area_of((0, 0, 0, 0), (x, y), reach), fit)
+        start = (64 * 31, 64 * 30, radius) if radius else None
+        circle, wanted = expected.consensus(every, (x, y), reach, start)
+        assert share == wanted
+        if circle:
+            assert tuple(fit[:3].tolist()) == circle
+
+
+@pytest.mark.parametrize("sigma", [0.3, 0.7, 1.5, 2.5])
+@pytest.mark.parametrize("shift", [-1.3, -0.5, -0.1, 0.0, 0.25, 0.7, 1.4])
+def test_a_blurred_step_is_found_where_it_is(sigma: float, shift: float) -> None:
+    """To a third of a pixel, wherever it lies between pixels, and on a slope."""
+    places = np.arange(-7, 9)
+    step = np.array([0.5 * (1 + erf((place - shift) / (sigma * 2**0.5))) for place in places])
+    for slope in (0.0, 2.0):
+        rises = np.diff(np.rint(40 + 120 * step + slope * places).astype(np.int32))
+        at = steepest(rises)
+        off = outline_offset(rises, at, flank(rises, at, -1), flank(rises, at, 1)) / 64 - shift
+        assert abs(off) < 0.3
 
 
 @pytest.mark.parametrize(("part", "whole", "share"), [(0, 5, 0), (1, 2, 128), (5, 5, 255), (9, 3, 255)])
@@ -221,9 +339,9 @@ def test_areas_end_at_the_picture() -> None:
     assert next_blob(records, 2, 3, 4) == -1
     area = np.zeros(AREA_WORDS, np.int32)
     assert open_area(records, 1, area, 4, 32, 43, 31) == 0 | 30 << 16
-    assert area.tolist() == [0, 42, 0, 30, 20, 15, 19]
+    assert area.tolist() == [0, 42, 0, 30, 20, 15, 19, 0]
     open_area(records, 1, area, 4, 7, 43, 31)
-    assert area[-1] == 7
+    assert area[REACH] == 7
 
 
 @settings(max_examples=80, deadline=None)

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING, calibration_of
+from bfsim.run import BUILT_IN_RECORDING
+from bfsim.run_inputs import calibration_of
 from tests.firmware.object_rig import as_dicts
 from tests.firmware.test_areas import run
 from tests.firmware.whole_pictures import buffer

@@ -15,7 +15,8 @@ from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.scenes.chessboard import write_chessboards
 from bfsim.recording.scenes.lens import Lens, Misfit
-from bfsim.run import calibration_of, simulate
+from bfsim.run import simulate
+from bfsim.run_inputs import calibration_of
 from tests.firmware.lenses import rectified, sighted
 from tests.firmware.whole_pictures import buffer, check_core, run
 from tinyphoon import tinyphoon

@@ -13,7 +13,8 @@ import pytest
 from bfsim.api import Core
 from bfsim.errors import LinkError
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING, calibration_of
+from bfsim.run import BUILT_IN_RECORDING
+from bfsim.run_inputs import calibration_of
 from tests.firmware.lenses import rectified, sighted
 from tests.firmware.pictures import EXTREMES
 from tests.firmware.whole_pictures import (

@@ -1,7 +1,8 @@
 """Circle detection (T §5.2.4): centre and radius of the ball that a blob may be, from the edges round it.
 
-Votes along the gradients find the centre, a histogram of distances the radius; two tests judge them. Where a ball
-is hidden in part, or cut by the picture's border, the edges that are left decide. The sphere's image is taken as a circle.
+Votes along the gradients find the centre, a histogram of distances the radius; two tests judge them. [ours] is what
+follows: the circle that most edges agree on, and a fit to the outline finer than a pixel. Where a ball is hidden in part, or cut
+by the picture's border, the edges that are left decide. The sphere's image is taken as a circle.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ from typing import Any
 from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel, u8, u16, u32
 from tinyphoon.fields import allowed
 from tinyphoon.scan_lines import window
+from tinyphoon.stages.circle_consensus import agree_on_side, find_consensus
 from tinyphoon.stages.circle_edges import (
     AREA_WORDS,
+    BORDERING,
     FINE,
     MASS_X,
     MASS_Y,
@@ -26,7 +29,7 @@ from tinyphoon.stages.circle_edges import (
     select_edges_row,
 )
 from tinyphoon.stages.circle_fit import CENTRE_X, CENTRE_Y, FIT_WORDS, RADIUS, arc_of, fit_circle
-from tinyphoon.stages.circle_outline import LUMA_LINES, REACH_LINES, clear_points, luma_row, refine_row
+from tinyphoon.stages.circle_outline import LUMA_LINES, REACH_LINES, RISES, clear_points, luma_row, refine_row
 from tinyphoon.stages.circle_radius import edges_round, fill_histogram, find_radius, mean_radius
 from tinyphoon.stages.circle_votes import clear_votes, draw_lines, find_peak, mean_offset, votes_round
 from tinyphoon.stores.blobs import BLOB_WORDS, PIXELS, SUM_X, SUM_Y, box_of
@@ -50,7 +53,7 @@ from tinyphoon.tables import tangent_table
 
 CIRCLE_CAPACITY = 64  # 1 KB; as many as there are blobs in the modes
 LARGEST_REACH = 32  # of the patch: 65 x 65 votes lie over the segments of the line detection
-LARGEST_FIT_RANGE = 8  # the fit's sums over all edges of a picture 640 wide have 32 bits
+LARGEST_FIT_RANGE = 4  # the fit's sums over all edges of a picture 640 wide have 32 bits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,23 +61,26 @@ class CircleThresholds:
     """Thresholds of the circle detection. Angles in 1/256 of a turn, lengths in pixels, shares of all edges in 1/256.
 
     `border`: how far from the blob's rectangle edges are taken. `angle_range`: how far a gradient may point past
-    the centre of mass (eps_angle). `dark_balls`: gradients may point away from it too. `patch_reach`: how far
-    the centre is looked for to each side of the centre of mass, 0..32, and not further than half the blob.
+    the centre of mass, or away from it (eps_angle). `beside_colour`: where the ball's side of an edge is
+    the dark one, the blob's colour must be near it.
+    `patch_reach`: how far the centre is looked for to each side of the centre of mass, 0..32, and not further than half the blob.
     `peak_reach`: how many cells round a peak belong to it; 0 is the thesis, whole pixels.
     `min_edges`, `centre_share`: of the centre test T_c (T Eq. 5.6). `min_peak`, `radius_share`: of the radius test
-    T_r (T Eq. 5.7). `fit_rounds`: how often centre and radius are fitted to the outline; 0 is the thesis.
-    `fit_range`: how far from the circle that is looked for, 1..8.
+    T_r (T Eq. 5.7). `consensus_share`: if more of the edges agree on a circle, it has passed both tests.
+    `fit_rounds`: how often centre and radius are fitted to the outline; 0 is the thesis, without consensus.
+    `fit_range`: how far from the circle the outline is looked for, 1..4.
     """
 
     border: int = allowed(0, 64)
     angle_range: int = allowed(0, 128)
-    dark_balls: bool
+    beside_colour: bool
     patch_reach: int = allowed(0, LARGEST_REACH)
     peak_reach: int = allowed(0, LARGEST_REACH, at_most="patch_reach")
     min_edges: int = allowed(1, EDGE_CAPACITY)
     centre_share: int = allowed(0, 256)
     min_peak: int = allowed(1, EDGE_CAPACITY)
     radius_share: int = allowed(0, 256)
+    consensus_share: int = allowed(0, 256)
     fit_rounds: int = allowed(0, 16)
     fit_range: int = allowed(1, LARGEST_FIT_RANGE)
 
@@ -94,6 +100,7 @@ def circle_buffers() -> Sequence[Buffer]:
         Buffer("tangents", u16, 33, "L1_data", values=tangent_table()),
         Buffer("circle_area", i32, AREA_WORDS, "L1_scratch"),
         Buffer("circle_fit", i32, FIT_WORDS, "L1_scratch"),
+        Buffer("circle_rises", i32, RISES, "L1_scratch"),
     )
 
 
@@ -190,6 +197,30 @@ def judge_radius(
 
 
 @kernel
+def judge_consensus(
+    selected: u32[:],
+    count: i32,
+    area: i32[:],
+    consensus_share: i32,
+    passed: i32,
+    fit: i32[:],
+    circles: i16[:],
+    number: i32,
+) -> i32:
+    """Find the circle that most of `count` edges agree on, and return 1 if the circle has passed T_c and T_r, or does by that.
+
+    Edges at the blob's border that look elsewhere agree on nothing, and count as well.
+    """
+    if passed == 0:
+        fit[RADIUS] = 0
+    share = find_consensus(selected, count, area, fit) * count // area[BORDERING]
+    if passed == 0 and share <= consensus_share:
+        return 0
+    circles[number * CIRCLE_WORDS + CIRCLE_TESTS] = CENTRE_PASSED | RADIUS_PASSED
+    return 1
+
+
+@kernel
 def judge_arc(points: u32[:], fit: i32[:], atan: u8[:], circles: i16[:], number: i32) -> None:
     """Store how much of a circle has outline on it."""
     circles[number * CIRCLE_WORDS + CIRCLE_ARC] = arc_of(points, fit, atan)
@@ -224,6 +255,10 @@ def circle_detection(
             found = yield from _select_edges(core, frame, blob, colours, thresholds, selected)
             count = min(found, room)
             edges_lost += found - count
+            if thresholds.fit_rounds:
+                count = yield core.run(
+                    agree_on_side, selected, count, core.array("circle_area"), core.array("circle_fit")
+                )
             yield core.run(open_circle, blob_data, blob, count, circles, number)
             if count >= max(thresholds.min_edges, 1):
                 yield from _measure(core, frame, selected, count, thresholds, number)
@@ -247,7 +282,7 @@ def _select_edges(
     image = core.rows("opened_image")[first : min(bottom + 2, frame.height)]
     lines = core.input_ring(image, "colour_ring")
     store = edge_store(core)
-    filters = area, thresholds.angle_range, int(thresholds.dark_balls), atan
+    filters = area, thresholds.angle_range, int(thresholds.beside_colour), atan
     found = 0
     for ahead in range(first, bottom + 2):
         if ahead < frame.height:
@@ -270,21 +305,30 @@ def _measure(
     yield core.run(clear_votes, votes, area)
     yield core.run(draw_lines, selected, count, votes, area, core.array("tangents"))
     result = fit, circles, number
-    if (yield core.run(judge_centre, votes, area, count, reach, thresholds.centre_share, *result)):
+    passed = yield core.run(judge_centre, votes, area, count, reach, thresholds.centre_share, *result)
+    if passed:
         yield core.run(fill_histogram, selected, count, fit, histogram)
         judged = histogram, count, reach, thresholds.min_peak, thresholds.radius_share
         passed = yield core.run(judge_radius, *judged, *result)
-        if passed and thresholds.fit_rounds:
-            yield from _refine(core, frame, selected, count, thresholds)
-            yield core.run(judge_arc, selected, fit, core.array("atan"), circles, number)
         yield core.run(close_circle, *result)
+    if thresholds.fit_rounds:
+        shares = thresholds.consensus_share, passed
+        passed = yield core.run(judge_consensus, selected, count, area, *shares, *result)
+        if passed:
+            yield from _refine(core, frame, selected, count, votes, thresholds)
+            yield core.run(judge_arc, selected, fit, core.array("atan"), circles, number)
+            yield core.run(close_circle, *result)
 
 
 def _refine(
-    core: Core, frame: Frame, selected: Row, count: int, thresholds: CircleThresholds
+    core: Core, frame: Frame, selected: Row, count: int, flanks: Row, thresholds: CircleThresholds
 ) -> Generator[Any, Any, None]:
-    """Fit centre and radius to the outline in the camera's lines, which come through the ring of the edge detection."""
+    """Fit centre and radius to the outline in the camera's lines, which come through the ring of the edge detection.
+
+    `flanks` is room for as many words as there are edges.
+    """
     area, fit = core.array("circle_area"), core.array("circle_fit")
+    profile = fit, thresholds.fit_range, core.array("circle_rises"), flanks
     luma = core.overlay("colour_ring", u8, LUMA_LINES * frame.width)[0]
     top, bottom = ends((yield core.run(rows_of, area)))
     first, height = max(top - REACH_LINES, 0), frame.height
@@ -296,8 +340,8 @@ def _refine(
             yield core.run(luma_row, line, luma, ahead, area)
         y = ahead - REACH_LINES
         if top <= y:
-            yield core.run(refine_row, selected, count, y, luma, height, fit, thresholds.fit_range)
-    yield core.run(fit_circle, selected, fit, thresholds.fit_range, thresholds.fit_rounds)
+            yield core.run(refine_row, selected, count, y, luma, height, *profile)
+    yield core.run(fit_circle, selected, flanks, fit, thresholds.fit_range, thresholds.fit_rounds)
 
 
 def ends(rows: int) -> tuple[int, int]:

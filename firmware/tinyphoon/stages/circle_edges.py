@@ -4,7 +4,7 @@ Filter 1 needs the erosion of the opened image at each edge. Nobody has made tha
 So DMA brings the blob's lines of the opened image back, and the filter erodes it only where there is an edge. That is a
 tenth of the pixels at most, and nothing is written.
 
-A selected edge is one word: direction in bits 0..7, y in 8..19, x in 20..31.
+A selected edge is one word: direction in bits 0..7, y in 8..18, whether it looks away from the ball in 19, x in 20..31.
 """
 
 from __future__ import annotations
@@ -36,9 +36,11 @@ BOTTOM = 3
 MASS_X = 4  # blob.cc, or where the middle is of a disc that the picture shows less than half of
 MASS_Y = 5
 REACH = 6  # the centre is looked for so far from there to each side
-AREA_WORDS = 7
+BORDERING = 7  # edges that pass filter 1, whatever they look at
+AREA_WORDS = 8
 
 HALF_TURN = 128
+AWAY_BIT = 19
 
 
 @kernel
@@ -50,7 +52,13 @@ def edge_x(edge: u32) -> i32:
 @kernel
 def edge_y(edge: u32) -> i32:
     """Return the row of a selected edge."""
-    return i32(edge >> 8 & 0xFFF)
+    return i32(edge >> 8 & 0x7FF)
+
+
+@kernel
+def looks_away(edge: u32) -> i32:
+    """Return 1 if the gradient of a selected edge looks away from the ball; else 0."""
+    return i32(edge >> AWAY_BIT & 1)
 
 
 @kernel
@@ -104,6 +112,7 @@ def open_area(
     centre = blob_data[blob * BLOB_WORDS + CENTRE]
     area[MASS_X] = middle_beyond(across, extent_of(down), width, i32(centre & 0xFFFF))
     area[MASS_Y] = middle_beyond(down, extent_of(across), height, i32(centre >> 16))
+    area[BORDERING] = 0
     area[REACH] = min(max(right - left, bottom - top) + 1 >> 1, patch_reach)
     return rows_of(area)
 
@@ -121,17 +130,27 @@ def is_overlaid(above: u32[:], here: u32[:], below: u32[:], x: i32, colours: u32
 
 
 @kernel
-def looks_at(direction: i32, dx: i32, dy: i32, angle_range: i32, dark_too: i32, atan: u8[:]) -> i32:
-    """Return 1 if a gradient points to what lies (dx, dy) from it, to `angle_range` 1/256 of a turn; else 0 (filter 2).
+def is_near_colour(above: u32[:], here: u32[:], below: u32[:], x: i32, colours: u32) -> i32:
+    """Return 1 if a pixel beside `x` has one of `colours`; else 0: the border of a shadow has the floor on both sides.
 
-    That is a bright ball on a dark ground; with `dark_too` it may also point the other way.
+    Up to two columns away, since pairs of pixels share their chroma.
+    """
+    for column in range(max(x - 2, 0), min(x + 3, len(here))):
+        if (above[column] | here[column] | below[column]) & colours != 0:
+            return 1
+    return 0
+
+
+@kernel
+def looks_along(direction: i32, dx: i32, dy: i32, angle_range: i32, atan: u8[:]) -> i32:
+    """Return 1 if a gradient points to what lies (dx, dy) from it, to `angle_range` 1/256 of a turn, -1 if away from it; else 0.
+
+    That is filter 2 for a ball that is brighter than what is behind it, or darker, or each in part.
     """
     turn = abs(turn_between(direction, angle8(dx, dy, atan)))
     if turn <= angle_range:
         return 1
-    if dark_too != 0 and turn >= HALF_TURN - angle_range:
-        return 1
-    return 0
+    return -1 if turn >= HALF_TURN - angle_range else 0
 
 
 @kernel
@@ -146,14 +165,15 @@ def select_edges_row(
     colours: u32,
     area: i32[:],
     angle_range: i32,
-    dark_too: i32,
+    beside_colour: i32,
     atan: u8[:],
     selected: u32[:],
     found: i32,
 ) -> i32:
     """Append the edges of row `y` that pass both filters to the `found` ones before; returns how many there are then.
 
-    `above`, `here` and `below` are lines of the opened image. Edges beyond the length of `selected` are counted,
+    `above`, `here` and `below` are lines of the opened image. With `beside_colour` an edge that looks away from the ball passes
+    only near `colours`: what is dark and has not its colour is a shadow. Edges beyond the length of `selected` are counted,
     not stored.
     """
     first = i32(edge_index[y])
@@ -161,11 +181,16 @@ def select_edges_row(
         edge = edge_data[position]
         x = i32(edge >> 16)
         if area[LEFT] <= x <= area[RIGHT] and is_overlaid(above, here, below, x, colours) == 0:
+            area[BORDERING] = area[BORDERING] + 1
             direction = edge >> 8 & 255
             dx = area[MASS_X] - x
             dy = area[MASS_Y] - y
-            if looks_at(i32(direction), dx, dy, angle_range, dark_too, atan) != 0:
+            looks = looks_along(i32(direction), dx, dy, angle_range, atan)
+            if looks < 0 and beside_colour != 0 and is_near_colour(above, here, below, x, colours) == 0:
+                looks = 0
+            if looks != 0:
                 if found < len(selected):
-                    selected[found] = direction | u32(y << 8) | u32(x << 20)
+                    away = 1 if looks < 0 else 0
+                    selected[found] = direction | u32(y << 8 | away << AWAY_BIT) | u32(x << 20)
                 found = found + 1
     return found

@@ -1,14 +1,18 @@
 """A fit of centre and radius to the outline of a ball, finer than the thesis has them [ours].
 
 Rounds of least squares over the points near the circle: each moves centre and radius by what their distances and
-directions ask for (Gauss-Newton). Light falls off towards the outline of a ball, and where it is lost in shade the edges
-lie further in, never further out. So a point outside the circle counts OUTSIDE times as much as one inside: the circle
-settles on the outermost points that agree. On a disc of one colour, whose points scatter evenly, this costs 0.01 px.
+directions ask for (Gauss-Newton). Points count by how sharp the outline is there. An error of place is as large as the noise
+is beside the steepness, so the weight is its square. And a lens blurs all of an outline alike: where the flank is wider than
+elsewhere, light falls off along the ball, or is lost in shade.
+
+There edges lie further in, never further out. So a point outside the circle counts OUTSIDE times as much as one inside: the
+circle settles on the outermost points that agree. And a point counts the less the further it is from the circle, down to
+nothing (Beaton and Tukey's weights): what lies beside the ball, or on it, does not pull it over.
 """
 
 from __future__ import annotations
 
-from bfsim.api import i32, kernel, u8, u32
+from bfsim.api import i32, kernel, u8, u16, u32
 from tinyphoon.arithmetic import angle8, isqrt32
 from tinyphoon.stages.circle_edges import FINE
 from tinyphoon.stages.line_fit import spread
@@ -18,7 +22,7 @@ CENTRE_X = 0  # 1/64 px
 CENTRE_Y = 1
 RADIUS = 2
 WEIGHT = 3  # of the points near the circle; below, weighted sums over them
-SUM_NX = 4  # of their unit vectors from the centre, 1/256
+SUM_NX = 4  # of their unit vectors from the centre, 1/128
 SUM_NY = 5
 SUM_NXX = 6
 SUM_NXY = 7
@@ -30,13 +34,24 @@ NEXT_EDGE = 12  # how many selected edges have been refined
 REFINED = 13  # how many of them became points
 FIT_WORDS = 14
 
-OUTSIDE = 8
-NORMAL_BITS = 8
+# A flank: how steep the outline is at a point, and how wide, in the bits above.
+FLANK_BITS = 8
+STEEPEST = 255
+
+OUTSIDE = 3
+MEAN_WEIGHT = 2
+MOST_WEIGHT = 8
+TAPER = 4  # so much counts a point on the circle, inside it
+TAPER_BITS = 16
+NORMAL_BITS = 7
+
+# Edges stand on whole pixels, and smoothing moves them by up to one; perspective makes ellipses of near balls.
+NEAR = FINE
+NEAR_BITS = 4  # a sixteenth of the radius
 
 # The product of the variances of the unit vectors, along and across, is 1/4 on a whole circle and 1/1000 on an arc of
 # 80 degrees. A shorter one hardly tells a far centre from a near one: it moves the radius only.
 SHORTEST_ARC = 1 << 10  # in parts of 1 << 20
-
 
 SECTOR_BITS = 3  # of the 8 of an angle: a circle has 32 sectors of 8
 
@@ -50,8 +65,38 @@ def distance(x: i32, y: i32, fit: i32[:]) -> i32:
 
 
 @kernel
-def sum_up(points: u32[:], count: i32, fit: i32[:], fit_range: i32) -> None:
-    """Sum up what the fit needs of the points not further than `fit_range` 1/64 px from the circle."""
+def near_of(radius: i32) -> i32:
+    """Return how far from a circle its points may be, in 1/64 px."""
+    return max(NEAR, radius >> NEAR_BITS)
+
+
+@kernel
+def weigh(flanks: u16[:], fit: i32[:]) -> None:
+    """Make weights of the flanks of all points: MEAN_WEIGHT by the square of how steep each is over the mean, 0 if it is too wide.
+
+    That is wider by half a pixel than they are in the mean, steep ones counting more.
+    """
+    count = fit[REFINED]
+    steep = 0
+    wide = 0
+    for number in range(count):
+        each = i32(flanks[number])
+        steep = steep + (each & STEEPEST)
+        wide = wide + (each & STEEPEST) * (each >> FLANK_BITS)
+    widest = (2 * wide + steep) // max(2 * steep, 1)
+    mean = max(steep // max(count, 1), 1)
+    for number in range(count):
+        each = i32(flanks[number])
+        part = each & STEEPEST
+        weight = min((MEAN_WEIGHT * part * part + (mean * mean >> 1)) // (mean * mean), MOST_WEIGHT)
+        flanks[number] = weight if each >> FLANK_BITS <= widest else 0
+
+
+@kernel
+def sum_up(points: u32[:], weights: u16[:], count: i32, fit: i32[:], fit_range: i32) -> None:
+    """Sum up what the fit needs of the points nearer to the circle than `fit_range` 1/64 px."""
+    widest = fit_range * fit_range
+    scale = (TAPER << TAPER_BITS) // widest
     for word in range(WEIGHT, SUM_NYE + 1):
         fit[word] = 0
     for number in range(count):
@@ -59,8 +104,11 @@ def sum_up(points: u32[:], count: i32, fit: i32[:], fit_range: i32) -> None:
         y = i32(points[number] >> 16)
         away = distance(x, y, fit)
         outside = away - fit[RADIUS]
-        if away > 0 and abs(outside) <= fit_range:
-            weight = OUTSIDE if outside > 0 else 1
+        if away > 0 and abs(outside) < fit_range:
+            near = (widest - outside * outside) * scale + (1 << TAPER_BITS - 1) >> TAPER_BITS
+            weight = near * weights[number]
+            if outside > 0:
+                weight = OUTSIDE * weight
             nx = (x - fit[CENTRE_X] << NORMAL_BITS) // away
             ny = (y - fit[CENTRE_Y] << NORMAL_BITS) // away
             fit[WEIGHT] = fit[WEIGHT] + weight
@@ -84,11 +132,11 @@ def move_circle(fit: i32[:], fit_range: i32) -> None:
     if weight == 0:
         return
     # the mean products of unit vectors in 1/4096, those with distances in 1/256 of 1/64 px
-    xx = spread(fit[SUM_NXX], fit[SUM_NX], fit[SUM_NX], weight) // weight >> 4
-    xy = spread(fit[SUM_NXY], fit[SUM_NX], fit[SUM_NY], weight) // weight >> 4
-    yy = spread(fit[SUM_NYY], fit[SUM_NY], fit[SUM_NY], weight) // weight >> 4
-    xe = spread(fit[SUM_NXE], fit[SUM_NX], fit[SUM_E], weight) // weight
-    ye = spread(fit[SUM_NYE], fit[SUM_NY], fit[SUM_E], weight) // weight
+    xx = spread(fit[SUM_NXX], fit[SUM_NX], fit[SUM_NX], weight) // weight >> 2
+    xy = spread(fit[SUM_NXY], fit[SUM_NX], fit[SUM_NY], weight) // weight >> 2
+    yy = spread(fit[SUM_NYY], fit[SUM_NY], fit[SUM_NY], weight) // weight >> 2
+    xe = 2 * (spread(fit[SUM_NXE], fit[SUM_NX], fit[SUM_E], weight) // weight)
+    ye = 2 * (spread(fit[SUM_NYE], fit[SUM_NY], fit[SUM_E], weight) // weight)
     size = xx * yy - xy * xy >> 4
     along_x = 0
     along_y = 0
@@ -99,21 +147,23 @@ def move_circle(fit: i32[:], fit_range: i32) -> None:
         along_y = min(max(along_y, -fit_range), fit_range)
         fit[CENTRE_X] = fit[CENTRE_X] + along_x
         fit[CENTRE_Y] = fit[CENTRE_Y] + along_y
-    towards = fit[SUM_NX] * along_x + fit[SUM_NY] * along_y >> NORMAL_BITS
+    # halves of the sums: their products with four pixels stay in 32 bits
+    towards = (fit[SUM_NX] >> 1) * along_x + (fit[SUM_NY] >> 1) * along_y >> NORMAL_BITS - 1
     fit[RADIUS] = fit[RADIUS] + (2 * (fit[SUM_E] - towards) + weight) // (2 * weight)
 
 
 @kernel
-def fit_circle(points: u32[:], fit: i32[:], fit_range: i32, rounds: i32) -> None:
-    """Fit centre and radius to the points near the circle, `rounds` times.
+def fit_circle(points: u32[:], weights: u16[:], fit: i32[:], fit_range: i32, rounds: i32) -> None:
+    """Fit centre and radius to the points near the circle, `rounds` times. `weights` has their flanks before.
 
-    Near is `fit_range` pixels at first, then half as far each time, but a pixel at least.
+    Near is `fit_range` pixels at first, then half as far each time, but not less than points of a circle may be.
     """
+    weigh(weights, fit)
     near = FINE * fit_range
     for _ in range(rounds):
-        sum_up(points, fit[REFINED], fit, near)
+        sum_up(points, weights, fit[REFINED], fit, near)
         move_circle(fit, near)
-        near = max(near >> 1, FINE)
+        near = max(near >> 1, min(near_of(fit[RADIUS]), near))
 
 
 @kernel

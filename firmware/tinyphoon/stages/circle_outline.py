@@ -1,9 +1,9 @@
 """The outline of a ball finer than a pixel [ours]: where the luma steps, beside the edges near the circle.
 
 The smoothing before the edge detection moves an edge by more than half a pixel where the ball's luma falls off towards
-it. So each edge is looked up again in the camera's lines, along the axis that is nearer to its gradient. The greatest step
-of luma from pixel to pixel and the two steps beside it say where the outline is; before that, the slope that the luma has
-on either side is taken off all three.
+it. So each edge is looked up again in the camera's lines, along the axis that is nearer to its gradient. The greatest rise
+of luma from pixel to pixel and its flanks, the rises beside it, say where the outline is: their centre, after the slope that the
+luma has on either side is taken off all. A blurred outline has wider flanks, and all of them count.
 
 The luma of the latest LUMA_LINES lines lies in one array, line y in place y modulo LUMA_LINES. A point is one word, x
 in the low half and y in the high one, in 1/64 px.
@@ -11,13 +11,20 @@ in the low half and y in the high one, in 1/64 px.
 
 from __future__ import annotations
 
-from bfsim.api import i32, kernel, u8, u32
+from bfsim.api import i32, kernel, u8, u16, u32
 from tinyphoon.stages.circle_edges import FINE, LEFT, RIGHT, edge_x, edge_y
-from tinyphoon.stages.circle_fit import NEXT_EDGE, RADIUS, REFINED, distance
+from tinyphoon.stages.circle_fit import FLANK_BITS, NEXT_EDGE, RADIUS, REFINED, distance
 from tinyphoon.stages.line_segments import is_flat
 
 LUMA_LINES = 16
-REACH_LINES = 4  # of a profile to each side
+REACH_LINES = 8  # of a profile, behind its edge; before it is one less
+BEFORE = REACH_LINES - 1
+
+# The rises of a profile: from pixel BEFORE before the edge to the next one, and so on.
+RISES = 2 * REACH_LINES - 1
+FIRST_PLACE = BEFORE - 2  # where the greatest is looked for: two pixels to each side of the edge
+LAST_PLACE = BEFORE + 1
+MOST_BESIDE = 4
 
 
 @kernel
@@ -48,40 +55,79 @@ def profile_pixel(luma: u8[:], x: i32, y: i32, step: i32, flat: i32, height: i32
 
 
 @kernel
-def step_at(luma: u8[:], x: i32, y: i32, at: i32, way: i32, flat: i32, height: i32) -> i32:
-    """Return by how much the luma rises from place `at` of a profile to the next; `way` is 1 or -1."""
-    here = profile_pixel(luma, x, y, way * at, flat, height)
-    return profile_pixel(luma, x, y, way * (at + 1), flat, height) - here
+def fill_rises(luma: u8[:], x: i32, y: i32, way: i32, flat: i32, height: i32, rises: i32[:]) -> None:
+    """Take by how much the luma rises from pixel to pixel along the profile through (x, y); `way` is 1 or -1."""
+    here = profile_pixel(luma, x, y, -way * BEFORE, flat, height)
+    for place in range(RISES):
+        ahead = profile_pixel(luma, x, y, way * (place + 1 - BEFORE), flat, height)
+        rises[place] = ahead - here
+        here = ahead
 
 
 @kernel
-def outline_offset(luma: u8[:], x: i32, y: i32, way: i32, flat: i32, height: i32) -> i32:
-    """Return how far towards the bright side of an edge the luma steps, in 1/64 px."""
-    best = -2
-    middle = step_at(luma, x, y, best, way, flat, height)
-    for at in range(-1, 2):
-        rise = step_at(luma, x, y, at, way, flat, height)
-        if rise > middle:
-            middle = rise
-            best = at
-    dark_slope = max(step_at(luma, x, y, best - 2, way, flat, height), 0)
-    bright_slope = max(step_at(luma, x, y, best + 2, way, flat, height), 0)
-    before = max(step_at(luma, x, y, best - 1, way, flat, height) - dark_slope, 0)
-    after = max(step_at(luma, x, y, best + 1, way, flat, height) - bright_slope, 0)
-    whole = before + after + max(middle - (dark_slope + bright_slope >> 1), 0)
-    offset = FINE * best + FINE // 2
+def steepest(rises: i32[:]) -> i32:
+    """Return the place of the greatest rise near the edge, with half of each rise beside it; of equal ones the first."""
+    best = FIRST_PLACE
+    most = rises[best - 1] + 2 * rises[best] + rises[best + 1]
+    for place in range(FIRST_PLACE + 1, LAST_PLACE + 1):
+        rise = rises[place - 1] + 2 * rises[place] + rises[place + 1]
+        if rise > most:
+            most = rise
+            best = place
+    return best
+
+
+@kernel
+def flank(rises: i32[:], at: i32, way: i32) -> i32:
+    """Return how many rises beside the one at a place are of one outline with it: those above half of it, and the next one.
+
+    `way` is 1 or -1; MOST_BESIDE at most.
+    """
+    beside = 1
+    while beside < MOST_BESIDE and 2 * rises[at + way * beside] > rises[at]:
+        beside = beside + 1
+    return beside
+
+
+@kernel
+def outline_offset(rises: i32[:], at: i32, before: i32, after: i32) -> i32:
+    """Return how far towards the bright side of an edge the luma steps, in 1/64 px.
+
+    That is the centre of the rise at place `at`, `before` rises before it and `after` behind.
+    """
+    dark_slope = max(rises[at - before - 1], 0)
+    bright_slope = max(rises[at + after + 1], 0)
+    whole = max(rises[at] - (dark_slope + bright_slope >> 1), 0)
+    moment = 0
+    for step in range(1, before + 1):
+        rise = max(rises[at - step] - dark_slope, 0)
+        whole = whole + rise
+        moment = moment - step * rise
+    for step in range(1, after + 1):
+        rise = max(rises[at + step] - bright_slope, 0)
+        whole = whole + rise
+        moment = moment + step * rise
+    offset = FINE * (at - BEFORE) + FINE // 2
     if whole > 0:
-        offset = offset + (2 * FINE * (after - before) + whole) // (2 * whole)
+        offset = offset + (2 * FINE * moment + whole) // (2 * whole)
     return offset
 
 
 @kernel
 def refine_row(
-    selected: u32[:], count: i32, y: i32, luma: u8[:], height: i32, fit: i32[:], fit_range: i32
+    selected: u32[:],
+    count: i32,
+    y: i32,
+    luma: u8[:],
+    height: i32,
+    fit: i32[:],
+    fit_range: i32,
+    rises: i32[:],
+    flanks: u16[:],
 ) -> None:
     """Make points of the selected edges of row `y` that are not further than `fit_range` pixels from the circle.
 
-    The points take the place of edges that came before, from the first on.
+    The points take the place of edges that came before, from the first on; `flanks` gets how steep and wide the outline is there.
     """
     number = fit[NEXT_EDGE]
     while number < count and edge_y(selected[number]) == y:
@@ -92,10 +138,16 @@ def refine_row(
             flat = is_flat(direction)
             # on a flat line the gradient looks down or up, else to the right or to the left
             way = 1 if direction - 64 * flat + 64 & 128 == 0 else -1
-            offset = way * outline_offset(luma, edge_x(edge), y, way, flat, height)
+            fill_rises(luma, edge_x(edge), y, way, flat, height, rises)
+            at = steepest(rises)
+            before = flank(rises, at, -1)
+            after = flank(rises, at, 1)
+            offset = way * outline_offset(rises, at, before, after)
             across = max(offset * (1 - flat) + x, 0)
             down = max(offset * flat + FINE * y, 0)
-            selected[fit[REFINED]] = u32(across | down << 16)
-            fit[REFINED] = fit[REFINED] + 1
+            point = fit[REFINED]
+            selected[point] = u32(across | down << 16)
+            flanks[point] = max(rises[at], 0) | (before + after + 1 >> 1) << FLANK_BITS
+            fit[REFINED] = point + 1
         number = number + 1
     fit[NEXT_EDGE] = number

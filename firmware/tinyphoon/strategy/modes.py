@@ -63,8 +63,8 @@ FITTED_CIRCLES = CircleThresholds(
     border=4,
     # 34 degrees. The centre of mass of half a disc lies 0.42 of the radius off the centre: seen from the outline up to 25.
     angle_range=24,
-    # The floor is dark and the ball is lit: gradients that point away from it are those of mirror images and goals.
-    dark_balls=False,
+    # A ball that stands on a bright floor has a shadow there, with a border as sharp as its own.
+    beside_colour=True,
     # So far off its centre of mass is the centre of a ball of 6 cm that is hidden by half, 150 mm away.
     patch_reach=32,
     peak_reach=1,
@@ -75,6 +75,8 @@ FITTED_CIRCLES = CircleThresholds(
     min_peak=12,
     # Of the rendered balls that came out right all but one of 58 have 106 and more.
     radius_share=96,
+    # Five eighths. Of the edges of squares and bars not half lie on one circle; of balls cut by the border three quarters do.
+    consensus_share=160,
     fit_rounds=4,
     # The circle from the peaks is off by up to 2 px where the ball is dark at the bottom, and its edges lie as far in.
     fit_range=3,
@@ -83,6 +85,7 @@ FITTED_CIRCLES = CircleThresholds(
 
 PLAIN_CIRCLES = replace(
     FITTED_CIRCLES,
+    beside_colour=False,
     peak_reach=0,
     # Single cells and bins have about a third of what three have.
     centre_share=21,

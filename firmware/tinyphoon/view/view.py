@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -34,8 +32,6 @@ from tinyphoon.strategy.orders import mode_in
 from tinyphoon.view.colours import colour_of
 from tinyphoon.view.objects import objects_of
 
-CAMERAS: Mapping[str, str] = {"A": "left", "B": "right"}
-
 CIRCLE_TESTS = {"centre": c.CENTRE_PASSED, "radius": c.RADIUS_PASSED}
 SIDES = {
     "left": r.RECTANGLE_LEFT,
@@ -51,7 +47,7 @@ def view(readout: Readout) -> Seen:
     area = area_in(readout.frame, mode.area)
     picture = _picture(readout, area)
     return Seen(
-        camera=CAMERAS[readout.core],
+        camera=readout.camera,
         picture=picture,
         corner_px=(area.x, area.y),
         geometry=_geometry(readout, picture),
