@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import fields
 from typing import Any
 
 from pydantic_core import to_jsonable_python
@@ -34,7 +35,8 @@ def as_json(run: RunRecord) -> dict[str, Any]:
 
     Keys are the field names of `bfsim.trace` and `bfsim.report.budget`, so each carries its unit.
     """
-    plain: dict[str, Any] = to_jsonable_python(run, fallback=_plain)
+    records = {each.name: getattr(run, each.name) for each in fields(RunRecord)}
+    plain: dict[str, Any] = to_jsonable_python(records, fallback=_plain)
     for core in (core for frame in plain["frames"] for core in frame["cores"]):
         del core["owners"]  # `owners` has them, frame by frame
     budget = to_jsonable_python(budget_of(run), fallback=dict)

@@ -10,6 +10,7 @@ from pathlib import PurePath
 from typing import NamedTuple
 
 from bfsim.report.budget import latency_cclk, milliseconds
+from bfsim.report.profile.buffers import buffers_of
 from bfsim.spans import Span
 from bfsim.trace import RunRecord
 
@@ -126,6 +127,23 @@ class LineCells(NamedTuple):
     stall_cclk: int
 
 
+class BufferCells(NamedTuple):
+    """A buffer that was used: accesses by kernels, bytes and SDRAM pages of all masters on its bus, and what was waited for it."""
+
+    buffer: str
+    memory: str
+    nbytes: int
+    reads: int
+    writes: int
+    fills: int
+    core_bytes: int
+    dma_bytes: int
+    page_hits: int
+    page_misses: int
+    page_conflicts: int
+    stall_cclk: int
+
+
 class TrafficCells(NamedTuple):
     """What a master moved to and from a buffer over the whole run."""
 
@@ -171,6 +189,7 @@ def tables_of(run: RunRecord, spans: Iterable[Span] = ()) -> dict[str, Columns]:
         "owners": _columns(OwnerCells, _owners(run)),
         "accesses": _columns(AccessCells, _accesses(run)),
         "paths": _columns(PathCells, _paths(run)),
+        "buffers": _columns(BufferCells, _buffers(run)),
         "traffic": _columns(TrafficCells, _traffic(run)),
         "spans": _columns(SpanCells, map(_span, spans)),
     }
@@ -300,6 +319,12 @@ def _lines(run: RunRecord) -> Iterator[LineCells]:
                 line.issue_cclk,
                 sum(line.stall_cclk.values()),
             )
+
+
+def _buffers(run: RunRecord) -> Iterator[BufferCells]:
+    for each in buffers_of(run) if run.frames else ():
+        counts = {name: getattr(each, name) for name in BufferCells._fields[:-1]}
+        yield BufferCells(**counts, stall_cclk=each.stalled_cclk)
 
 
 def _traffic(run: RunRecord) -> Iterator[TrafficCells]:

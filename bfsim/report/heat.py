@@ -8,14 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from bfsim.seen import Seen, SeenFrame, SeenHeat
+from bfsim.seen import CAMERAS, Seen, SeenFrame, SeenHeat
 from bfsim.spans import Place, Span, SpanKind
 from bfsim.trace import REST, BudgetRow, Identity
 
 Cycles = Mapping[tuple[str, Place | None], int]
 """The cycles of a core in a frame by stage and place; None is no place."""
 
-CORES = {"left": "core A", "right": "core B"}
+CORES = {camera: f"core {core}" for core, camera in CAMERAS.items()}
 """Who looks at the pictures of each camera."""
 
 _FILLING = {SpanKind.CALL, SpanKind.WORK, SpanKind.STALL, SpanKind.IDLE}

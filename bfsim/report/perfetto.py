@@ -25,6 +25,8 @@ from bfsim.trace import StallReason
 
 _CLOCK, _BOOTTIME = 64, proto.BUILTIN_CLOCK_BOOTTIME
 _LEVEL = 1  # of zlib: fast
+_CALLED, _MOVED = ("issue_cclk", "interlocks_cclk"), ("bytes",)
+"""Names of what a slice says besides its time."""
 _TOGETHER = 1 << 14
 """Packets that are compressed together."""
 _MOST_KNOWN = 1 << 14
@@ -124,6 +126,7 @@ class _Track:
         self._ns_of = _NS * cclk_hz.denominator, cclk_hz.numerator
         self._ns = 0
         self._iids: dict[tuple[str, str], int] = {}
+        self._beginnings: dict[tuple[str, tuple[str, ...]], Any] = {}
         self._known: dict[tuple[object, ...], bytes] = {}
         self._end = self._packet(type=proto.TrackEvent.TYPE_SLICE_END).SerializeToString()
         clocks = [
@@ -139,21 +142,36 @@ class _Track:
         first.trace_packet_defaults.track_event_defaults.track_uuid = uuid
         write(_framed(first))
 
-    def begin(self, cclk: int, name: str, flow: int = 0, **arguments: int) -> None:
+    def begin(
+        self,
+        cclk: int,
+        name: str,
+        flow: int = 0,
+        arguments: tuple[str, ...] = (),
+        values: tuple[int, ...] = (),
+    ) -> None:
         """Begin a slice at a cycle. `flow`: a number that it shares with another slice, or 0; only few have one."""
-        key = name, *arguments.items()
+        key = name, values
         octets = None if flow else self._known.get(key)
         if octets is None:
-            packet = self._packet(
+            packet = self._beginning(name, arguments)
+            for annotation, value in zip(packet.track_event.debug_annotations, values, strict=True):
+                annotation.uint_value = value
+            packet.track_event.flow_ids[:] = [flow] if flow else []
+            octets = packet.SerializeToString() if flow else self._keep(key, packet)
+        self._append(octets, cclk)
+
+    def _beginning(self, name: str, arguments: tuple[str, ...]) -> Any:
+        """Return the packet that begins a slice of this name, to be filled in."""
+        packet = self._beginnings.get((name, arguments))
+        if packet is None:
+            packet = self._beginnings[name, arguments] = self._packet(
                 type=proto.TrackEvent.TYPE_SLICE_BEGIN, name_iid=self._iid("event_names", name)
             )
-            for argument, value in arguments.items():
-                iid = self._iid("debug_annotation_names", argument)
-                packet.track_event.debug_annotations.add(name_iid=iid, uint_value=value)
-            if flow:
-                packet.track_event.flow_ids.append(flow)
-            octets = self._keep(key, packet) if not flow else packet.SerializeToString()
-        self._append(octets, cclk)
+            for each in arguments:
+                iid = self._iid("debug_annotation_names", each)
+                packet.track_event.debug_annotations.add(name_iid=iid)
+        return packet
 
     def end(self, cclk: int) -> None:
         """End the slice that began last."""
@@ -208,14 +226,14 @@ def _slice(track: _Track, span: Span) -> None:
 
 
 def _moving(track: _Track, span: Span) -> None:
-    track.begin(span.begin_cclk, span.name, span.flow, bytes=span.value)
+    track.begin(span.begin_cclk, span.name, span.flow, _MOVED, (span.value,))
     track.end(span.end_cclk)
 
 
 def _call(track: _Track, span: Span) -> None:
     """Write a call, and its waits for memories as slices at its end."""
     interlocks_cclk = span.stall_cclk.get(StallReason.INTERLOCK, 0)
-    track.begin(span.begin_cclk, span.name, issue_cclk=span.issue_cclk, interlocks_cclk=interlocks_cclk)
+    track.begin(span.begin_cclk, span.name, 0, _CALLED, (span.issue_cclk, interlocks_cclk))
     at_cclk = span.begin_cclk + span.issue_cclk + interlocks_cclk
     if at_cclk < span.end_cclk:
         for reason, cclk in span.stall_cclk.items():

@@ -12,6 +12,7 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 
 from bfsim.errors import ConfigError, cut, shown
+from bfsim.file_content import read_bounded
 from bfsim.report.as_json import SCHEMA
 from bfsim.report.owners import OwnerFrames, owner_frames
 from bfsim.trace import RunRecord, WarningKind
@@ -59,7 +60,7 @@ def read_result(path: Path) -> Result:
 
 def _plain(path: Path) -> dict[str, Any]:
     try:
-        plain = json.loads(path.read_text(encoding="utf-8"))
+        plain = json.loads(read_bounded(path, most_mb=512))
     except FileNotFoundError:
         raise ConfigError(
             f"{path} must be a result of `bfsim run --json`, but there is no such file"

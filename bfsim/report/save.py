@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 from bfsim.drafts import draft_folder
 from bfsim.errors import ConfigError
@@ -29,6 +29,11 @@ def require_apart(path: Path, others: Iterable[Path | None]) -> None:
         raise ConfigError(
             f"{path} must be a file of its own to be written, not one that is read or written, too"
         )
+
+
+def files_of_run(what: Mapping[str, Any]) -> tuple[Path | None, ...]:
+    """Return the files that a run with the arguments `what` of `simulate` reads, and the one in which it records its work."""
+    return tuple(what.get(name) for name in ("recording", "ldf", "script", "work", "record_work"))
 
 
 def write_text(path: Path, text: str | Iterable[str]) -> None:

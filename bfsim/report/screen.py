@@ -23,6 +23,7 @@ from bfsim.report.budget import (
 from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.report.start_up import start_up_cclk, without_start_up
 from bfsim.report.tables import missed, named, new_table, percent, stacked
+from bfsim.report.target import Target, target_words
 from bfsim.report.units import mhz
 from bfsim.report.warnings import warnings_of
 from bfsim.trace import REST, FrameRecord, RunRecord
@@ -40,11 +41,14 @@ MUCH_STALL = 0.1
 """From this share of a frame on, a reader should look at the memories first."""
 
 
-def screen(run: RunRecord) -> RenderableType:
-    """Return the report of a run of at least one frame on one screen. Its medians and shares are without the start-up."""
+def screen(run: RunRecord, target: Target | None = None) -> RenderableType:
+    """Return the report of a run of at least one frame on one screen, beside a target if there is one.
+
+    Its medians and shares are without the start-up.
+    """
     budget = budget_of(without_start_up(run))
     bound = bound_of(budget)
-    return stacked(verdict(run), _table(run, budget, bound), _notes(run, budget, bound))
+    return stacked(verdict(run), _table(run, budget, bound), _notes(run, budget, bound, target))
 
 
 def verdict(run: RunRecord) -> Text:
@@ -113,13 +117,15 @@ def bar(row: StageRow, core: CoreBudget) -> Text:
     return text
 
 
-def _notes(run: RunRecord, budget: Budget, bound: Bound) -> Table:
+def _notes(run: RunRecord, budget: Budget, bound: Bound, target: Target | None) -> Table:
     """Return the warnings, and what to know beside the numbers, in one grid."""
     table = Table.grid(padding=(0, 2))
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
     for each in warnings_of(run):
         table.add_row("Warning", f"{each.kind}: {each.text}", style="yellow")
+    if target is not None:
+        table.add_row("Target", target_words(run, target))
     for name, text in _facts(run, budget, bound):
         table.add_row(name, text)
     for name, text in _next(bound):

@@ -75,6 +75,16 @@ def seen_json(frame: SeenFrame, *, with_features: bool) -> dict[str, Any]:
     return found
 
 
+def name_of_object(seen: Mapping[str, Any]) -> str:
+    """Return what an object of `seen_json` is called: what is only remembered, or only known by its direction, is another thing."""
+    notes = [
+        what
+        for key, what in (("is_direction", "direction only"), ("age_frames", "remembered"))
+        if seen.get(key)
+    ]
+    return f"{seen['name']} ({', '.join(notes)})" if notes else str(seen["name"])
+
+
 def _features(seen: Seen) -> dict[str, Any]:
     area = {"corner_px": seen.corner_px, "width_px": seen.width_px, "height_px": seen.height_px}
     edges = _plain(seen.edges, seen.corner_px)

@@ -1,53 +1,51 @@
 """Where the cycles went as a flame graph that https://www.speedscope.app opens: a profile for each core, its weights in cycles.
 
-A stack is the stage, within the one that it is a part of, and the kernel; beside the kernels stand the waits of the stage by
-reason, its other work and its idle time, so that each stage is as wide as its row of the budget.
+A stack is the stage, within the one that it is a part of, then the kernel and those that it calls, or what else the core was
+busy with: a ring, a semaphore, an interrupt. Waits stand in what had them, by reason. Each stage is as wide as its row of
+the budget.
 """
 
 from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from bfsim import __version__
 from bfsim.report.budget import budget_rows
-from bfsim.trace import RunRecord, StageCost
+from bfsim.trace import OwnerCost, RunRecord, StallReason
 
 SCHEMA = "https://www.speedscope.app/file-format-schema.json"
-OTHER_WORK, IDLE = "other work", "idle"
+IDLE = "idle"
 
 Stack = tuple[str, ...]
 
 
 def stacks_of(run: RunRecord, core: str) -> dict[Stack, int]:
-    """Return the cycles of one core over all frames, by stage and what it did there."""
-    within = {row.stage: row.within for row in budget_rows(run) if row.within}
+    """Return the cycles of one core over all frames, by stage and what it did there; kernels are named by their symbols."""
+    within = {row.stage: (row.within,) for row in budget_rows(run) if row.within}
     sums: Counter[Stack] = Counter()
-    issued: Counter[str] = Counter()
-    for record in run.kernels:
-        if record.core == core and record.issue_cclk:
-            sums[record.stage, record.kernel] += record.issue_cclk
-            issued[record.stage] += record.issue_cclk
-    for cost in _costs(run, core):
-        sums[cost.stage, OTHER_WORK] += cost.issue_cclk
-        sums[cost.stage, IDLE] += cost.idle_cclk
-        for reason, cclk in cost.stall_cclk.items():
-            sums[cost.stage, reason.value] += cclk
-    for stage, cclk in issued.items():
-        sums[stage, OTHER_WORK] -= cclk
-    return {
-        (*((within[stage],) if stage in within else ()), stage, what): cclk
-        for (stage, what), cclk in sums.items()
-        if cclk > 0
-    }
+
+    def add(stack: Stack, issue_cclk: int, stall_cclk: Mapping[StallReason, int], idle_cclk: int = 0) -> None:
+        sums[stack] += issue_cclk
+        sums[*stack, IDLE] += idle_cclk
+        for reason, cclk in stall_cclk.items():
+            sums[*stack, reason.value] += cclk
+
+    for path in run.paths:
+        if path.core == core:
+            add((*within.get(path.stage, ()), path.stage, *path.path), path.issue_cclk, path.stall_cclk)
+    for cost in _of_no_kernel(run, core):
+        stack = (*within.get(cost.stage, ()), cost.stage, cost.owner)
+        add(stack, cost.issue_cclk, cost.stall_cclk, cost.idle_cclk)
+    return +sums
 
 
-def _costs(run: RunRecord, core: str) -> Iterator[StageCost]:
+def _of_no_kernel(run: RunRecord, core: str) -> Iterator[OwnerCost]:
     for frame in run.frames:
         for each in frame.cores:
             if each.core == core:
-                yield from each.stages
+                yield from (cost for cost in each.owners if not cost.symbol)
 
 
 def speedscope_json(run: RunRecord) -> str:
@@ -67,13 +65,16 @@ def speedscope_json(run: RunRecord) -> str:
                 "weights": list(stacks.values()),
             }
         )
-    places = {record.kernel: {"file": record.file, "line": record.first_line} for record in run.kernels}
+    kernels = {
+        record.symbol: {"name": record.kernel, "file": record.file, "line": record.first_line}
+        for record in run.kernels
+    }
     identity = run.identity
     content = {
         "$schema": SCHEMA,
         "exporter": f"bfsim {__version__}",
         "name": f"{identity.firmware} on {identity.recording}",
-        "shared": {"frames": [{"name": name, **places.get(name, {})} for name in frames]},
+        "shared": {"frames": [kernels.get(each, {"name": each}) for each in frames]},
         "profiles": profiles,
     }
     return json.dumps(content, ensure_ascii=False, separators=(",", ":")) + "\n"

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from statistics import median_low
 
-from bfsim.trace import CoreFrame, FrameRecord, RunRecord, StageCost
+from bfsim.trace import CoreFrame, FrameRecord, OwnerCost, RunRecord, StageCost
 
 
 def start_up_cclk(run: RunRecord) -> int:
@@ -33,7 +33,20 @@ def without_start_up(run: RunRecord) -> RunRecord:
 def _settled(core: CoreFrame, others: list[CoreFrame]) -> CoreFrame:
     stages = tuple(_idling_as(others, cost) for cost in core.stages)
     cclk = sum(cost.elapsed_cclk for cost in stages)
-    return replace(core, begin_cclk=core.end_cclk - cclk, stages=stages)
+    idles = {
+        after.stage: before.idle_cclk - after.idle_cclk
+        for before, after in zip(core.stages, stages, strict=True)
+    }
+    owners = tuple(_idling_less(core.owners, idles))
+    return replace(core, begin_cclk=core.end_cclk - cclk, stages=stages, owners=owners)
+
+
+def _idling_less(owners: Sequence[OwnerCost], cclk: dict[str, int]) -> Iterator[OwnerCost]:
+    """Yield the owners without so many cycles of idling in each stage."""
+    for each in owners:
+        less_cclk = min(each.idle_cclk, cclk[each.stage])
+        cclk[each.stage] -= less_cclk
+        yield replace(each, idle_cclk=each.idle_cclk - less_cclk)
 
 
 def _idling_as(others: list[CoreFrame], cost: StageCost) -> StageCost:

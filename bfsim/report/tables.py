@@ -26,6 +26,7 @@ from bfsim.report.budget import (
 )
 from bfsim.report.configuration import configuration_of
 from bfsim.report.split_table import SplitTable
+from bfsim.report.target import Target, target_words
 from bfsim.report.warnings import MISSED_LISTED, warnings_of
 from bfsim.trace import REST, BudgetRow, FrameRecord, RunRecord, StallReason
 
@@ -36,12 +37,13 @@ REMARKS_LISTED = 20
 """Different remarks that are listed."""
 
 
-def run_report(run: RunRecord) -> RenderableType:
-    """Return the report of a run of at least one frame, the most wanted numbers first."""
+def run_report(run: RunRecord, target: Target | None = None) -> RenderableType:
+    """Return the report of a run of at least one frame, the most wanted numbers first, beside a target if there is one."""
     budget = budget_of(run)
     hz = run.identity.cclk_hz
     return stacked(
         headline(run, budget),
+        *([] if target is None else [Text(f"Target {target_words(run, target)}")]),
         *(_budget_table(run, core) for core in budget.cores),
         *_p95_note(run),
         *_reference_note(run),

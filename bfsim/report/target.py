@@ -6,9 +6,11 @@ import re
 from dataclasses import dataclass
 
 from bfsim.errors import ConfigError, shown
-from bfsim.report.budget import Spread, milliseconds
-from bfsim.trace import CoreFrame, RunRecord
+from bfsim.report.budget import Spread, budget_rows, costs_of, milliseconds
+from bfsim.trace import CoreFrame, FrameRecord, RunRecord, StallReason
 
+STAGES_TOLD = 3
+WAIT = "waits for the other core"
 _TARGET = re.compile(r"(\d{1,9}(?:\.\d{1,9})?) ?(Hz|ms)", re.ASCII | re.IGNORECASE)
 
 
@@ -83,3 +85,38 @@ def kept_frames(run: RunRecord, target: Target) -> int:
         all(milliseconds(used_cclk(core), hz) <= target.frame_ms for core in frame.cores)
         for frame in run.frames
     )
+
+
+def target_words(run: RunRecord, target: Target) -> str:
+    """Say of a run of at least one frame how it keeps a target, and of its worst frame what is left or must be saved, and where."""
+    hz, frames = run.identity.cclk_hz, len(run.frames)
+    worst = max(run.frames, key=lambda frame: max(used_cclk(core) for core in frame.cores))
+    core = _own_core(worst)
+    slack_ms = target.frame_ms - max(milliseconds(used_cclk(each), hz) for each in worst.cores)
+    kept = f"{target}: kept by {kept_frames(run, target):,} of {frames:,} frame{'s' if frames > 1 else ''}"
+    if slack_ms >= 0:
+        return f"{kept}; the worst, frame {worst.index}, has {slack_ms:.2f} ms left."
+    told = ", ".join(f"{name} {ms:.2f}" for name, ms in _dearest(run, core))
+    return f"{kept}; the worst, frame {worst.index}, must save {-slack_ms:.2f} ms. Most of it, on core {core.core}: {told}."
+
+
+def _own_core(frame: FrameRecord) -> CoreFrame:
+    """Return the core that used most of a frame for itself: the other one waited for it."""
+    return max(frame.cores, key=lambda core: used_cclk(core) - _waited_cclk(core))
+
+
+def _waited_cclk(frame: CoreFrame) -> int:
+    return sum(cost.stall_cclk.get(StallReason.SEMAPHORE, 0) for cost in frame.stages)
+
+
+def _dearest(run: RunRecord, core: CoreFrame) -> list[tuple[str, float]]:
+    """Return what took a core longest in a frame, in ms: stages without their waits for the other core, and these."""
+    rows = budget_rows(run)
+    parts = {WAIT: _waited_cclk(core)}
+    for row in rows:
+        if row.within is None:
+            costs = costs_of(core, row, rows)
+            waited_cclk = sum(cost.stall_cclk.get(StallReason.SEMAPHORE, 0) for cost in costs)
+            parts[row.stage] = sum(cost.elapsed_cclk - cost.idle_cclk for cost in costs) - waited_cclk
+    dearest = sorted(parts.items(), key=lambda each: -each[1])[:STAGES_TOLD]
+    return [(name, milliseconds(cclk, run.identity.cclk_hz)) for name, cclk in dearest if cclk]

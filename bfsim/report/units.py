@@ -19,6 +19,11 @@ def mhz(hz: float) -> str:
     return f"{hz / 1e6:.6g} MHz"
 
 
+def milliseconds_of(cclk: float, hz: float) -> str:
+    """Return a time in ms, to a microsecond: 74.344 ms."""
+    return f"{cclk * 1000 / hz:.3f} ms"
+
+
 def counted(number: int, *, sign: bool = False) -> str:
     """Return a count with thousands apart, from ten millions on in millions: 1,843,200 and 303.54 M; with its `sign` also if positive."""
     plus = "+" if sign else ""

@@ -2,28 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from bfsim.report.check.baseline import Case, read_baseline
 from bfsim.report.check.judge import Outcome, judge
 from bfsim.report.check.update import updated, write_cases
+from bfsim.report.result_file import Result, result_of
 from bfsim.trace import MemoryRecord, RunRecord
 from tests.report.records import edge_run
 
 
-def measured(path: Path, run: RunRecord, reason: str = "because", **changes: object) -> Case:
+def result(run: RunRecord, *objects: Sequence[str]) -> Result:
+    """Give a run what is seen in each of its frames, if anything is said of it."""
+    seen = {
+        each.index: {"objects": [seen_object(name) for name in names]}
+        for each, names in zip(run.frames, objects, strict=False)
+    }
+    return result_of(run, seen)
+
+
+def seen_object(name: str, distance_mm: int = 300) -> dict[str, object]:
+    """What `seen_json` has of an object; one at no distance is known by its direction alone."""
+    return {"name": name, "is_direction": not distance_mm, "age_frames": 0, "place_mm": [0, 0, distance_mm]}
+
+
+def measured(path: Path, run: RunRecord | Result, reason: str = "because", **changes: object) -> Case:
     """Make the numbers of a run the limits of "drive" in a file; `changes` are of what a person writes there."""
     before = {case.name: case for case in read_baseline(path).run} if path.exists() else {}
     case = before.get("drive", Case(name="drive")).model_copy(update=changes)
-    write_cases(path, {"drive": updated(case, run, reason, path)})
+    write_cases(path, {"drive": updated(case, _result(run), reason, path)})
     return read_baseline(path).run[0]
 
 
-def hold(run: RunRecord, path: Path) -> Outcome:
+def hold(run: RunRecord | Result, path: Path) -> Outcome:
     """Hold a run against "drive" in a file."""
-    return judge(read_baseline(path).run[0], run, path)
+    return judge(read_baseline(path).run[0], _result(run), path)
+
+
+def _result(run: RunRecord | Result) -> Result:
+    return run if isinstance(run, Result) else result(run)
 
 
 def broken(outcome: Outcome) -> list[str]:
@@ -49,4 +68,4 @@ def replace_in(path: Path, old: str, new: str) -> None:
     path.write_text(text.replace(old, new, 1))
 
 
-__all__ = ["broken", "edge_run", "hold", "measured", "replace_in", "with_memory", "with_results"]
+__all__ = ["broken", "edge_run", "hold", "measured", "replace_in", "result", "with_memory", "with_results"]

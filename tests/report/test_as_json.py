@@ -28,7 +28,7 @@ def test_json_keeps_every_record_and_adds_the_budget() -> None:
     assert plain["frames"][1]["cores"][0]["stages"][0]["issue_cclk"] == 200
     assert plain["budget"]["cores"][0]["frame"]["elapsed_cclk"]["total"] == 400
     assert plain["kernels"][0]["lines"] == [
-        {"line": 10, "executions": 4, "issue_cclk": 40, "stall_cclk": {"interlocks": 2}}
+        {"line": 10, "executions": 4, "issue_cclk": 40, "stall_cclk": {"interlocks": 2}, "operations": {}}
     ]
     assert plain["traffic"][0]["master"] == "MDMA1"
     assert plain["missed"] == [2]

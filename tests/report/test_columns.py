@@ -7,7 +7,7 @@ from dataclasses import replace
 from bfsim.report.columns import tables_of
 from bfsim.spans import Span, SpanKind
 from bfsim.trace import REST, LineCost, RunRecord, StallReason
-from tests.report.records import core_frame, cost, edge_run, frame, kernel, run_of, traffic
+from tests.report.records import access, buffer, core_frame, cost, edge_run, frame, kernel, run_of, traffic
 
 
 def stalled_run() -> RunRecord:
@@ -72,6 +72,36 @@ def test_results_kernels_lines_and_traffic_are_those_of_the_records() -> None:
     assert (lines["line"], lines["text"], lines["executions"]) == ([11], ["total += row[x]"], [4])
     assert (lines["file"], lines["stall_cclk"]) == (["edges.py"], [3])
     assert tables["traffic"]["busy_cclk"] == [9]
+
+
+def test_buffers_have_accesses_traffic_and_waits() -> None:
+    """One row each; where bytes crossed no bus and nobody waited, zeros."""
+    table = tables_of(
+        replace(
+            stalled_run(),
+            buffers=(buffer("row", "L2"),),
+            accesses=(access("Edge detection", "sobel_row", "row", 40, 20),),
+        )
+    )["buffers"]
+    assert {name: column[table["buffer"].index("row")] for name, column in table.items()} == {
+        "buffer": "row",
+        "memory": "L2",
+        "nbytes": buffer("row", "L2").nbytes,
+        "reads": 40,
+        "writes": 20,
+        **dict.fromkeys(
+            (
+                "fills",
+                "core_bytes",
+                "dma_bytes",
+                "page_hits",
+                "page_misses",
+                "page_conflicts",
+                "stall_cclk",
+            ),
+            0,
+        ),
+    }
 
 
 def test_spans_are_rows_with_their_stalls_added_up() -> None:

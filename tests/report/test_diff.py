@@ -16,7 +16,8 @@ from bfsim.report.diff.compare import difference_of
 from bfsim.report.diff.difference import Contribution, Difference, Kind
 from bfsim.report.diff.line_causes import line_causes
 from bfsim.report.diff.markdown import diff_markdown
-from bfsim.report.diff.sentences import clock, reason, verdict
+from bfsim.report.diff.sentences import clock, reason, verdict, work
+from bfsim.report.diff.side import Line, Stall
 from bfsim.report.result_file import Result, result_of
 from bfsim.trace import CoreFrame, FrameRecord, KernelRecord, LineCost, OwnerCost, RunRecord, StallReason
 from tests.report.records import IDENTITY, cost, frame, run_of
@@ -104,20 +105,52 @@ def test_a_line_that_takes_longer_is_named_with_its_cause() -> None:
     after = run(kernel(line(12, 100, 500), line(13, 100, 100)))
     found = difference_of(before, after)
     assert found.cclk == 300
-    assert leaves(found) == {"+3 cycles x 100 times": 300}
+    assert leaves(found) == {"operations: 2 → 5 cycles x 100": 300}
     assert reason(found) == (
         "The largest part, in cycles of both cores: Blur +300; in it blur (mine.py:10) +300; in it line 12 +300; "
-        "in it +3 cycles x 100 times +300."
+        "in it operations: 2 → 5 cycles x 100 +300."
     )
 
 
 def test_running_more_often_and_taking_longer_are_told_apart() -> None:
     """From 10 times 4 cycles to 15 times 6: 5 x 4 are for the times, 15 x 2 for the cycles."""
-    causes = line_causes(line(12, 10, 40), line(12, 15, 90))
+    old = Line(text="", times=10, operations={"alu": (10, 10), "mul32": (10, 30)})
+    new = Line(text="", times=15, operations={"alu": (45, 45), "mul32": (15, 45)})
+    causes = line_causes(old, new, {}, {})
     assert [(each.name, each.cclk) for each in causes] == [
-        ("+2 cycles x 15 times", 30),
+        ("addition or logic: +2 x 15 x 1 cycles", 30),
         ("+5 times x 4 cycles", 20),
     ]
+
+
+def test_operations_that_were_not_there() -> None:
+    """The line of issue 15: two library divisions; branches that the chip does not expect are called so."""
+    old = Line(text="", times=100, operations={"alu": (200, 200), "branch_taken_bp": (90, 450)})
+    more = {"division": (200, 9400), "branch_taken_bp": (80, 400), "branch_not_taken_bp": (10, 90)}
+    new = Line(text="", times=100, operations={"alu": (200, 200), **more})
+    assert [(each.name, each.cclk) for each in line_causes(old, new, {}, {})] == [
+        ("library division: +2 x 100 x 47 cycles", 9400),
+        ("branch mispredicted: +10 x 9 cycles", 90),
+        ("branch taken as predicted: -10 x 5 cycles", -50),
+    ]
+
+
+def test_a_loop_of_another_kind_has_not_run_more_often() -> None:
+    """A hardware loop is entered 10 times; without it each of 1000 turns costs. The smaller numbers explain it."""
+    old = Line(text="", times=10, operations={"loop_setup": (10, 10), "alu": (10, 10)})
+    new = Line(text="", times=1000, operations={"compare": (1000, 1000), "alu": (10, 10)})
+    assert [(each.name, each.cclk) for each in line_causes(old, new, {}, {})] == [
+        ("comparison: +1 x 1,000 x 1 cycles", 1000),
+        ("set-up of a hardware loop: -10 x 1 cycles", -10),
+    ]
+
+
+def test_a_buffer_that_moved_is_named_with_both_memories() -> None:
+    """Loads from L2 where they were from L1."""
+    old = Line(text="", times=10, operations={"load32": (10, 10)})
+    new = Line(text="", times=10, operations={"load32": (10, 10)}, stalls={Stall("L2 latency", "table"): 70})
+    causes = line_causes(old, new, {"table": "COREA_L1_DATA_A"}, {"table": "L2"})
+    assert [each.name for each in causes] == ["stall: L2 latency, table in L2, was in COREA_L1_DATA_A"]
 
 
 def test_stalls_are_causes_by_reason() -> None:
@@ -133,7 +166,7 @@ def test_lines_are_found_again_where_they_moved() -> None:
     longer = (*TEXT[:2], "    # why\n", "    spare = 0\n", *TEXT[2:])
     before = run(kernel(line(12, 10, 20), line(13, 10, 30)))
     after = run(kernel(line(13, 10, 5), line(14, 10, 20), line(15, 10, 30), text=longer))
-    assert leaves(difference_of(before, after)) == {"new: 10 times x 0.5 cycles": 5}
+    assert leaves(difference_of(before, after)) == {"now 10 times x 0.5 cycles": 5}
 
 
 def test_waits_for_others_only_follow() -> None:
@@ -149,8 +182,11 @@ def test_waits_for_others_only_follow() -> None:
     )
     found = difference_of(before, after)
     check_sums(found.stages, 20 + 850 + 90)
-    kinds = {part.kind: part.cclk for stage in found.stages if stage.name == "Blur" for part in stage.parts}
-    assert kinds == {Kind.FOLLOWS: 850, Kind.KERNEL: 20}
+    assert [(each.name, each.kind, each.cclk) for each in found.stages] == [
+        ("Blur", Kind.STAGE, 20),
+        ("waits for the other core and the cameras", Kind.FOLLOWS, 850 + 90),
+    ]
+    assert work(found).endswith("the cores take 0.01 → 0.03 ms a frame together.")
     assert "line 12 +20" in reason(found)
 
 
@@ -220,6 +256,34 @@ def test_lines_are_aligned_in_their_order() -> None:
         LinePair(1, 1),
         LinePair(2, 2),
         LinePair(None, 3),
+    ]
+
+
+def test_a_line_that_was_rewritten_is_the_one_most_like_it() -> None:
+    """Not the one that happens to stand in its place."""
+    assert list(aligned(["a", "out[x] = left + right", "z"], ["a", "n = 0", "out[x] = left // 3", "z"])) == [
+        LinePair(0, 0),
+        LinePair(None, 1),
+        LinePair(1, 2),
+        LinePair(2, 3),
+    ]
+
+
+@given(st.lists(st.sampled_from("abcd"), max_size=6), st.lists(st.sampled_from("abcd"), max_size=6))
+def test_every_line_is_in_one_pair_in_order(old: list[str], new: list[str]) -> None:
+    """Whatever the texts are."""
+    pairs = list(aligned(old, new))
+    assert [each.old for each in pairs if each.old is not None] == list(range(len(old)))
+    assert [each.new for each in pairs if each.new is not None] == list(range(len(new)))
+
+
+def test_kernels_of_one_name_are_the_same_in_another_file() -> None:
+    """Firmware that was copied to be edited: the symbol has the name of its file."""
+    before = run(kernel(line(12, 1, 10)))
+    copy = replace(kernel(line(12, 1, 14)), symbol="copy_blur", file="/home/me/copy.py")
+    found = difference_of(before, run(copy))
+    assert [(each.name, each.place, each.cclk) for each in found.stages[0].parts] == [
+        ("blur", "copy.py:10", 4)
     ]
 
 

@@ -39,7 +39,8 @@ def test_cycle_digest_leaves_published_results_out() -> None:
 
 def test_identity_digest_sees_every_field() -> None:
     """Another value in any field is another identity."""
-    others = {"board_files": ("mine.py",), "compiler_files": ("mine.py",), "compiler_digest": "6" * 64}
+    tuples = ("board_files", "compiler_files", "board_numbers", "compiler_numbers")
+    others = {**dict.fromkeys(tuples, ("mine",)), "compiler_digest": "6" * 64}
     changed = [
         replace(IDENTITY, **{name: others.get(name) or getattr(IDENTITY, name) * 2})
         for name in IDENTITY.__dataclass_fields__

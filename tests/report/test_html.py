@@ -16,13 +16,33 @@ from bfsim.report.budget import budget_of
 from bfsim.report.html import charts, frames
 from bfsim.report.html.frames import facts_of, told_of, worst_of
 from bfsim.report.html.gantt import SLICES, Gantts
-from bfsim.report.html.pictures import PAGE_BYTES, Pictures, webp_of
+from bfsim.report.html.pictures import Pictures, webp_of
 from bfsim.report.html.sources import dearest_sources
 from bfsim.report.target import Target
 from bfsim.spans import Span, SpanKind
-from bfsim.trace import REST, FrameRecord, LineCost, RunRecord, RunWarning, StallReason, WarningKind
+from bfsim.trace import (
+    REST,
+    BudgetRow,
+    FrameRecord,
+    LineCost,
+    RunRecord,
+    RunWarning,
+    StallReason,
+    WarningKind,
+)
 from tests.report.pages_by_hand import page_of
-from tests.report.records import core_frame, cost, edge_run, frame, kernel, run_of, runs, traffic
+from tests.report.records import (
+    access,
+    buffer,
+    core_frame,
+    cost,
+    edge_run,
+    frame,
+    kernel,
+    run_of,
+    runs,
+    traffic,
+)
 from tests.seen_frames import frame as seen_frame
 
 EVIL = "<script>pwned=1</script><img src=x onerror=pwned=1>'\"&{{7*7}}"
@@ -80,6 +100,18 @@ def test_a_time_series_has_all_that_was_used() -> None:
     ]
 
 
+def test_a_stage_has_one_colour_on_the_whole_page() -> None:
+    """Also where one before it is a part of another and has no bar of its own."""
+    rows = (BudgetRow(stage="Edges"), BudgetRow(stage="Blur", within="Edges"), BudgetRow(stage="Lines"))
+    stages = (cost(row.stage, 10) for row in rows)
+    run = replace(run_of([frame(0, core_frame("A", 0, *stages, cost(REST, 1)))]), rows=rows)
+    colours = charts.row_colours(run)
+    assert list(colours) == ["Edges", "Lines", REST]
+    for spec in (charts.time_series(run, 0, None), charts.gantt(run, ["core A stages"])):
+        scale = spec["encoding"]["color"]["scale"]
+        assert colours.items() <= dict(zip(scale["domain"], scale["range"], strict=True)).items()
+
+
 def test_a_long_time_series_shows_the_worst_of_neighbours(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two frames a bar from the first one on for which there is no bar."""
     monkeypatch.setattr(charts, "MOST_BARS", 3)
@@ -104,30 +136,27 @@ def test_a_cycle_stack_sums_to_the_mean_frame(run: RunRecord) -> None:
 
 
 def test_sources_add_up_over_the_cores() -> None:
-    """Lines without a cost stand where they are; the dearest kernel comes first."""
+    """Lines without a cost stand where they are; the dearest kernel comes first, and what it waited counts."""
     line = LineCost(line=11, executions=5, issue_cclk=30, stall_cclk={StallReason.INTERLOCK: 10})
+    waits = {StallReason.L2_LATENCY: 15, StallReason.INTERLOCK: 5}
     run = replace(
         run_of([frame(0, core_frame("A", 0, cost(REST, 1)))]),
         kernels=(
-            kernel("Edge detection", "cheap", replace(line, issue_cclk=20)),
-            kernel("Edge detection", "dear", line),
-            kernel("Edge detection", "dear", line, core="B"),
+            kernel("Edge detection", "works", replace(line, issue_cclk=60, stall_cclk={})),
+            kernel("Edge detection", "waits", line),
+            kernel("Edge detection", "waits", replace(line, stall_cclk=waits), core="B"),
         ),
     )
-    dear, cheap = dearest_sources(run)
-    assert (dear.kernel, dear.place, dear.calls, dear.issue_cclk, dear.share) == (
-        "dear",
-        "edges.py:10",
-        2,
-        60,
-        0.75,
-    )
-    assert [(each.line, each.executions, each.issue_cclk, each.stall_cclk, each.share) for each in dear.lines] == [
-        (10, 0, 0, 0, 0.0),
-        (11, 10, 60, 20, 1.0),
+    waiting, working = dearest_sources(run)
+    assert (waiting.kernel, waiting.place, waiting.calls) == ("waits", "edges.py:10", 2)
+    assert (waiting.cost.issue_cclk, waiting.cost.elapsed_cclk, waiting.share) == (60, 90, 0.6)
+    assert waiting.cost.stall_cclk == {StallReason.INTERLOCK: 15, StallReason.L2_LATENCY: 15}
+    assert [(each.line, each.executions, each.issue_share, each.share) for each in waiting.lines] == [
+        (10, 0, 0.0, 0.0),
+        (11, 10, 60 / 90, 1.0),
     ]  # fmt: skip
-    assert dearest_sources(run, 1) == (dear,)
-    assert cheap.share == 0.25
+    assert dearest_sources(run, 1) == (waiting,)
+    assert (working.share, working.cost.stalled_cclk) == (0.4, 0)
 
 
 def noise(width: int = 1980, height: int = 810) -> Image.Image:
@@ -140,7 +169,8 @@ def test_a_picture_is_as_small_as_is_asked() -> None:
     plain = Image.new("RGB", (1980, 810))
     with Image.open(BytesIO(webp_of(plain, 100_000))) as image:
         assert image.size == (1980, 810)
-    assert len(webp_of(noise(), 60_000)) <= 60_000
+    for nbytes in (60_000, 10_000):
+        assert len(webp_of(noise(), nbytes)) <= nbytes
 
 
 def restless(record: FrameRecord) -> list[Span]:
@@ -155,21 +185,20 @@ def restless(record: FrameRecord) -> list[Span]:
     return [*spans, Span(SpanKind.FRAME, "core A", f"frame {record.index}", begin, end)]
 
 
-def test_a_page_of_a_hundred_noisy_frames_has_at_most_8_mb(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Pictures that nothing compresses: every one is as large as it may be; and no slice of time is like the one before."""
-    content = webp_of(noise(), PAGE_BYTES * 3 // 4 // frames.MOST)
-    assert len(content) > 20_000
-    monkeypatch.setattr("bfsim.report.html.pictures.webp_of", lambda _image, _nbytes: content)
+def test_a_page_of_a_hundred_full_frames_has_at_most_8_mb(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every picture is as large as it may be, and no slice of time is like the one before."""
+    monkeypatch.setattr("bfsim.report.html.pictures.webp_of", lambda _image, nbytes: bytes(nbytes))
     with Pictures() as pictures, Gantts() as gantts:
         pictures.frames = frames.MOST
         run = edge_run(*range(1000, 1000 + frames.MOST))
         for each in run.frames:
             pictures.add(seen_frame(each.index))
+            pictures.add_heat(seen_frame(each.index))
             gantts.add(restless(each))
         gantts.finish()
         text = page_of(run, pictures, Target(1), gantts)
     assert 7_000_000 < len(text.encode()) < 8_000_000
-    assert text.count("data:image/webp") == frames.MOST
+    assert text.count("data:image/webp") == 2 * frames.MOST
 
 
 class Elements(HTMLParser):
@@ -213,7 +242,9 @@ def evil_run() -> RunRecord:
         assumptions=(RunWarning(kind=WarningKind.GEOMETRY, text=EVIL),),
         reference=replace(run.reference, name=EVIL, about=EVIL),
         kernels=(kernel(EVIL, EVIL, LineCost(line=10, executions=1, issue_cclk=1, stall_cclk={}), text=(EVIL,), file=EVIL),),
-        traffic=(traffic(EVIL, EVIL, 5),),
+        buffers=(buffer(EVIL, EVIL),),
+        accesses=(access(EVIL, EVIL, EVIL, 3, 4),),
+        traffic=(replace(traffic(EVIL, EVIL, 5), buffer=EVIL),),
         interrupts={EVIL: 2},
     )  # fmt: skip
 
@@ -226,5 +257,5 @@ def test_names_are_words_and_no_markup() -> None:
         evil = Elements(page_of(evil_run(), pictures))
     assert evil.names.count("script") == plain.names.count("script") == 3
     assert evil.names.count("img") == 1
-    assert evil.words.count(EVIL) >= 10
+    assert evil.words.count(EVIL) >= 12
     assert all(each.startswith(("#", "data:")) for each in plain.addresses + evil.addresses)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from bfsim.report.html.gantt import SLICES, Gantts, chart_of
 from bfsim.run import simulate
 from bfsim.spans import Span, SpanKind
+from bfsim.trace import StallReason
 from tests.report.records import IDENTITY
 
 HZ = 1_000_000.0
@@ -64,6 +65,18 @@ def test_a_device_shows_how_busy_it_was(busy: int, quarters: int) -> None:
     """To the nearest quarter of a slice, and never nothing."""
     spans = [Span(SpanKind.TRANSFER, "MDMA1 stream 0", "a → b", 100, 100 + busy)]
     assert bars_of(spans, 0, SLICES * 100) == [("MDMA1 stream 0", "busy", "a → b", 1, 1, quarters)]
+
+
+def test_waits_inside_of_calls_have_a_track_of_their_own() -> None:
+    """By reason, spread evenly over the call; less than an eighth of a slice is not drawn, half of one pale."""
+    stalls = {StallReason.L2_LATENCY: 500, StallReason.INTERLOCK: 100}
+    waits = call(0, 1000)._replace(stall_cclk=stalls)
+    hardly = call(1000, 100 * SLICES, "blur")._replace(stall_cclk={StallReason.L2_PORT: 1200})
+    assert bars_of([waits, hardly], 0, 100 * SLICES) == [
+        ("core A waits", "L2 latency", "sobel", 0, 9, 2),
+        ("core A work", "work", "sobel", 0, 9, 4),
+        ("core A work", "work", "blur", 10, SLICES - 1, 4),
+    ]
 
 
 def test_what_reaches_over_the_ends_of_a_frame_is_cut() -> None:

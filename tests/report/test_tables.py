@@ -13,7 +13,7 @@ from rich.console import Console, RenderableType
 
 from bfsim.report.check.tables import check_report
 from bfsim.report.digest import cycle_digest
-from bfsim.report.profile_tables import profile_report
+from bfsim.report.profile.tables import profile_report
 from bfsim.report.tables import run_report
 from bfsim.trace import REST, BudgetRow, LineCost, RunRecord, RunWarning, StallReason, WarningKind
 from tests.report.check_rig import hold, measured
@@ -163,29 +163,6 @@ def test_reports_fit_with_all_seven_rows(width: int) -> None:
     assert max(map(len, lines)) <= width
     assert not any("\x1b" in line for line in lines)
     assert row_of(lines, "Edge detection").split()[2:5] == ["166.65"] * 3
-
-
-def test_profile_shows_dear_lines_in_their_kernel_and_sums_the_others() -> None:
-    """Of two lines only the dearest is shown; brackets in source text are no markup."""
-    dear, cheap = (
-        LineCost(line=11, executions=4, issue_cclk=75, stall_cclk={}),
-        LineCost(line=10, executions=5, issue_cclk=25, stall_cclk={}),
-    )
-    run = replace(edge_run(100), kernels=(kernel("Edge detection", "sobel_row", cheap, dear, calls=2),))
-    lines = printed(profile_report(run, core="A", top=1))
-    table = lines[lines.index("Core A: issue cycles by stage, kernel and source line") + 3 :]
-    assert [line.split() for line in table[:4]] == [
-        ["Edge", "detection", "100", "100.0"],
-        ["sobel_row", "(edges.py:10)", "2", "100", "50.0", "100.0"],
-        ["11", "total", "+=", "row[x]", "4", "75", "18.8", "75.0"],
-        ["(its", "other", "lines)", "25", "25.0"],
-    ]
-
-
-def test_profile_shows_memories() -> None:
-    """Who moved how much, how often the page was the right one, and how long the bus was held."""
-    run = replace(edge_run(950), traffic=(traffic("SDRAM", "MDMA1", 250),))
-    assert "SDRAM MDMA1 2.0 kB 1.0 kB 90 4 6 25.0" in map(squeezed, printed(profile_report(run)))
 
 
 def test_remarks_are_summed_up() -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from bfsim.errors import ConfigError
-from bfsim.report.target import Target, kept_frames, slacks_of, target_of, used_cclk
+from bfsim.report.target import Target, kept_frames, slacks_of, target_of, target_words, used_cclk
 from bfsim.trace import StallReason
 from tests.report.records import core_frame, cost, edge_run, frame, run_of
 
@@ -59,3 +59,25 @@ def test_a_frame_keeps_a_target_only_if_both_cores_do() -> None:
     run = replace(run, identity=replace(run.identity, cclk_hz=1000.0))
     assert [each.kept for each in slacks_of(run, Target(10))] == [2, 2]
     assert kept_frames(run, Target(10)) == 1
+
+
+def test_the_words_of_a_kept_target_say_what_is_left() -> None:
+    """Up to the last cycle; in the frame that used most."""
+    run = edge_run(80_000, 90_000)
+    assert target_words(run, Target(90)) == (
+        "11.1111 Hz, 90.00 ms a frame: kept by 2 of 2 frames; the worst, frame 1, has 0.00 ms left."
+    )
+
+
+def test_the_words_of_a_broken_target_say_what_must_be_saved_and_where() -> None:
+    """On the core that works: the other one waits for it; parts of a stage count to it, and idling is nothing to save."""
+    waits = cost("Edge detection", 10_000, {StallReason.SEMAPHORE: 50_000})
+    works = (
+        cost("Edge detection", 40_000),
+        cost("Open & closing", 15_000, {StallReason.SEMAPHORE: 2_000}, 900),
+    )
+    run = run_of([frame(3, core_frame("A", 0, waits), core_frame("B", 0, *works))])
+    assert target_words(run, Target(50)) == (
+        "20 Hz, 50.00 ms a frame: kept by 0 of 1 frame; the worst, frame 3, must save 10.00 ms. Most of it, on core B: "
+        "Edge detection 40.00, Open & closing 15.00, waits for the other core 2.00."
+    )

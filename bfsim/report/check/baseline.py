@@ -1,6 +1,6 @@
 """The baseline file: TOML, one `[[run]]` for each configuration that is checked.
 
-`require` is written by a person. `limits`, `kernels` and `measured_on` are written by `--update`, whole.
+`require` is written by a person. `limits`, `costs` and `measured_on` are written by `--update`, whole.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from tomlkit import TOMLDocument
 from tomlkit.exceptions import TOMLKitError
 
 from bfsim.errors import ConfigError, cut, shown
+from bfsim.file_content import read_bounded
 from bfsim.report.check.requirement import Requirement, parse_requirement
 from bfsim.trace import Identity
 
@@ -61,6 +62,51 @@ class MeasuredOn(_Table):
     ldf: str
     bfsim_version: str
     llvm_version: str
+    board_numbers: list[str] = []
+    compiler_numbers: list[str] = []
+
+    def differs_in(self, key: str, other: MeasuredOn) -> bool:
+        """Whether a key of COMPARABLE is another one's. A board or compiler with equal numbers is the same, whatever its file says."""
+        if getattr(self, key) == getattr(other, key):
+            return False
+        numbers = f"{key}_numbers"
+        are_known = numbers in MeasuredOn.model_fields and self.bfsim_version == other.bfsim_version
+        return not (
+            are_known and getattr(self, numbers) and getattr(self, numbers) == getattr(other, numbers)
+        )
+
+
+class KeptLine(_Table):
+    """A source line of a kernel; its fields are those of `diff.side.Line`, a stall is called REASON or REASON, BUFFER."""
+
+    text: str
+    times: int
+    operations: dict[str, Annotated[list[int], Field(min_length=2, max_length=2)]] = {}
+    stalls: dict[str, int] = {}
+
+
+class KeptOwner(_Table):
+    """An owner of cycles in a stage; its fields are those of `diff.side.Owner` and `Source`."""
+
+    stage: str
+    owner: str
+    symbol: str = ""
+    place: str = ""
+    cclk: int
+    lines: list[KeptLine] = []
+
+
+class Costs(_Table):
+    """What the run cost when its limits were measured: with it a failure is explained. Its fields are those of `diff.side.Side`."""
+
+    frames: Annotated[int, Field(ge=1)]
+    frame_ms: Annotated[float, Field(gt=0, allow_inf_nan=False)]
+    cclk_hz: Annotated[float, Field(gt=0, allow_inf_nan=False)]
+    least_cclk: int
+    frame_cclk: dict[Annotated[str, Field(pattern=r"^\d{1,9}$")], int] = {}
+    waits: dict[str, int] = {}
+    memories: dict[str, list[str]] = {}
+    of: list[KeptOwner] = []
 
 
 class Case(Configuration):
@@ -72,8 +118,13 @@ class Case(Configuration):
     require: list[str] = []
     limits: list[str] = []
     loosened: list[str] = []
-    kernels: dict[str, dict[str, dict[str, int]]] = {}
     measured_on: MeasuredOn | None = None
+    costs: Costs | None = None
+
+    @property
+    def has_costs(self) -> bool:
+        """Whether it is kept what the run cost when its limits were measured."""
+        return self.costs is not None and self.measured_on is not None
 
     @property
     def configuration(self) -> Configuration:
@@ -94,6 +145,23 @@ def read_baseline(path: Path) -> Baseline:
     return validated(parsed(path), path)
 
 
+def measured_case(path: Path, name: str) -> Case:
+    """Return the run of that name in a baseline file, or its only one. Raises ConfigError if there is none, or it has no limits yet."""
+    cases = read_baseline(path).run
+    named = [case for case in cases if case.name == name or not name]
+    if len(named) != 1:
+        known = ", ".join(shown(case.name) for case in cases) or "none"
+        what = (
+            f"{path} must have a run called {shown(name)}"
+            if name
+            else f"{path}:NAME must name one of its runs"
+        )
+        raise ConfigError(f"{what}; they are {known}")
+    if not named[0].has_costs:
+        raise ConfigError(f"{path}: run {shown(named[0].name)} must have been measured: --update does that")
+    return named[0]
+
+
 def measured_on(identity: Identity, frames: int) -> MeasuredOn:
     """Return what a run of so many frames, missed ones included, is measured on."""
     return MeasuredOn(
@@ -106,13 +174,15 @@ def measured_on(identity: Identity, frames: int) -> MeasuredOn:
         ldf=identity.ldf_digest,
         bfsim_version=identity.bfsim_version,
         llvm_version=identity.llvm_version,
+        board_numbers=list(identity.board_numbers),
+        compiler_numbers=list(identity.compiler_numbers),
     )
 
 
 def parsed(path: Path) -> TOMLDocument:
     """Return a file as TOML. Raises ConfigError."""
     try:
-        return tomlkit.parse(path.read_text(encoding="utf-8"))
+        return tomlkit.parse(read_bounded(path).decode())
     except (TOMLKitError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} must be TOML: {cut(str(error))}") from error
     except OSError as error:
@@ -122,7 +192,9 @@ def parsed(path: Path) -> TOMLDocument:
 def validated(document: TOMLDocument, path: Path) -> Baseline:
     """Return the baseline in a document from `path`, with every sentence in it read once."""
     plain = document.unwrap()
-    if set(plain) & OLD_KEYS:
+    runs = plain.get("run")
+    cases = [each for each in runs if isinstance(each, dict)] if isinstance(runs, list) else []
+    if set(plain) & OLD_KEYS or any("kernels" in each for each in cases):
         raise ConfigError(
             f"{path} was written by an older bfsim, and must be made anew: move it away, run `bfsim check --baseline {path} "
             "--update` with your options, and copy your comments"

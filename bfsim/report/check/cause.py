@@ -1,77 +1,84 @@
-"""Where the time went that a run takes more than its limits: by stage and core, and the kernels in them that grew."""
+"""Why a run breaks its limits: its difference to when they were measured, or, where they never were, what takes most."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Collection, Iterator
 
-from bfsim.report.check.baseline import requirements_of
-from bfsim.report.check.figures import FRAME, MEMORY, RESULTS, Unit, kernel_cclk
 from bfsim.report.check.judge import Outcome
+from bfsim.report.check.kept import kept_side, whole_side
+from bfsim.report.diff.compare import difference_between
+from bfsim.report.diff.difference import Difference
+from bfsim.report.diff.line_causes import line_text
+from bfsim.report.diff.sentences import reason, work
+from bfsim.report.diff.side import Side
+from bfsim.report.diff.tables import cells, frames_compared, labelled, scope, seen_lines, shown
+from bfsim.report.units import milliseconds_of
 
-NAMED_SHARE = 0.02
-"""A stage or a kernel is named if it has this share of the frame's growth."""
-KEPT_SHARE = 0.001
-"""A kernel is kept in the baseline if it takes this share of a frame."""
-
-Kernels = dict[str, dict[str, dict[str, int]]]
-"""Cycles a frame by stage, core and kernel."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StageGrowth:
-    """How many cycles the median of a stage grew on a core, and by how many a frame its kernels did, the most first."""
-
-    stage: str
-    core: str
-    cclk: float
-    kernels: tuple[tuple[str, int], ...]
+CAUSES = 8
+"""So many causes are shown of a failure."""
+DEAREST = 3
+"""So many kernels of a stage, and lines of each, are shown where there is nothing to compare with."""
+FRAMES_NAMED = 5
+"""So many frames are named whose results differ."""
 
 
-def growths(outcome: Outcome, path: Path) -> tuple[StageGrowth, ...]:
-    """Return the stages that grew beyond what is hardly seen in a frame, the most first."""
-    least = NAMED_SHARE * _grown_in_all(outcome, path)
-    found = [
-        StageGrowth(stage=stage, core=core, cclk=cclk, kernels=_kernels(outcome, stage, core, least))
-        for (stage, core), cclk in _grown(outcome, path).items()
-        if cclk > least
-    ]
-    return tuple(sorted(found, key=lambda each: -each.cclk))
+def difference_of_outcome(outcome: Outcome) -> Difference | None:
+    """Return the difference to the run whose limits they are; None where none were measured."""
+    if not outcome.case.has_costs:
+        return None
+    return difference_between(kept_side(outcome.case), whole_side(outcome.result))
 
 
-def kernels_of(outcome: Outcome) -> Kernels:
-    """Return what kernels cost a frame, as the baseline keeps it: those that are seen in a frame."""
-    least = KEPT_SHARE * max(outcome.figures[FRAME].values)
-    kept: Kernels = {}
-    for (stage, core, kernel), cclk in sorted(kernel_cclk(outcome.run).items(), key=lambda each: -each[1]):
-        if cclk >= least:
-            kept.setdefault(stage, {}).setdefault(core, {})[kernel] = cclk
-    return kept
+def explanation(outcome: Outcome) -> Iterator[str]:
+    """Yield why limits are broken, in lines: stages, kernels, source lines and causes, results, and what was seen."""
+    difference = difference_of_outcome(outcome)
+    if difference is None:
+        yield from dearest(whole_side(outcome.result), stages_of(outcome))
+        return
+    yield from filter(None, (work(difference), reason(difference), *scope(difference)))
+    rows = shown(difference, CAUSES)
+    if rows:
+        yield f"Cycles of both cores in {frames_compared(difference)}, before and now:"
+    for depth, each in rows:
+        before, after, more = cells(each)
+        yield f"{'  ' * (depth + 1)}{labelled(each)}: {f'{before} → {after}, ' if before else ''}{more}"
+    yield from counts_that_differ(outcome)
+    yield from seen_lines(difference)
 
 
-def _grown(outcome: Outcome, path: Path) -> Mapping[tuple[str, str], float]:
-    """Return by how many cycles the medians of the stages grew that have a limit."""
-    _, limits = requirements_of(outcome.case, path)
-    hz = outcome.run.identity.cclk_hz
-    return {
-        (each.name[0], each.name[1]): each.measured(figure) - each.limit(figure, hz)
-        for each in limits
-        if len(each.name) == 2 and each.name[0] not in {MEMORY, RESULTS} and each.statistic == "median"
-        if (figure := outcome.figures[each.name]).unit is Unit.CCLK
-    }
+def counts_that_differ(outcome: Outcome) -> Iterator[str]:
+    """Yield in which frames a result is another."""
+    for verdict in outcome.broken:
+        if verdict.frames:
+            named = ", ".join(map(str, verdict.frames[:FRAMES_NAMED]))
+            more = ", …" if len(verdict.frames) > FRAMES_NAMED else ""
+            yield f"{verdict.requirement.dotted} is another in frames {named}{more}"
 
 
-def _grown_in_all(outcome: Outcome, path: Path) -> float:
-    return sum(max(cclk, 0) for cclk in _grown(outcome, path).values())
+def stages_of(outcome: Outcome) -> Collection[str]:
+    """Return the stages whose limits are broken."""
+    known = {owner.stage for owner in whole_side(outcome.result).owners}
+    return known & {each.requirement.name[0] for each in outcome.broken}
 
 
-def _kernels(outcome: Outcome, stage: str, core: str, least: float) -> tuple[tuple[str, int], ...]:
-    then = outcome.case.kernels.get(stage, {}).get(core, {})
-    now = {
-        name: cclk for (of, on, name), cclk in kernel_cclk(outcome.run).items() if (of, on) == (stage, core)
-    }
-    grown = {name: cclk - then.get(name, 0) for name, cclk in now.items()}
-    return tuple(
-        sorted(((name, cclk) for name, cclk in grown.items() if cclk > least), key=lambda each: -each[1])
-    )
+def dearest(side: Side, stages: Collection[str]) -> Iterator[str]:
+    """Yield which kernels and lines of these stages take most, or of the two dearest ones if none is named."""
+    by_stage: dict[str, int] = {}
+    for owner, cclk in side.owners.items():
+        by_stage[owner.stage] = by_stage.get(owner.stage, 0) + cclk
+    largest = sorted(by_stage, key=lambda each: -by_stage[each])
+    for stage in [each for each in largest if each in stages] or largest[:2]:
+        yield f"{stage} takes {_ms(by_stage[stage], side)} a frame, both cores together:"
+        owners = sorted(
+            (each for each in side.owners if each.stage == stage), key=lambda each: -side.owners[each]
+        )
+        for owner in owners[:DEAREST]:
+            source = side.sources.get(owner)
+            yield f"  {owner.name}{f' ({source.place})' if source else ''}: {_ms(side.owners[owner], side)}"
+            lines = sorted(source.lines if source else (), key=lambda each: -each.cclk)
+            for line in lines[:DEAREST]:
+                yield f"    {line.number}  {line.text}: {_ms(line.cclk, side)}, {line_text(line)}"
+
+
+def _ms(cclk: int, side: Side) -> str:
+    return milliseconds_of(cclk / len(side.frames), side.cclk_hz)

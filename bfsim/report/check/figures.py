@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from math import hypot
+from typing import Any
 
 from bfsim.report.budget import (
     Spread,
@@ -17,13 +19,19 @@ from bfsim.report.budget import (
     frame_rate_hz,
     latency_cclk,
 )
+from bfsim.report.result_file import Result
+from bfsim.report.seen_json import name_of_object
 from bfsim.trace import REST, RunRecord, StageCost, StallReason
 
 Name = tuple[str, ...]
 """Such as ("frame_rate",), ("Thinning", "A") or ("memory", "L2"); the parts of a dotted key of TOML."""
 
 FRAME_RATE, MISSED, LATENCY, FRAME = ("frame_rate",), ("missed",), ("latency",), ("frame",)
-MEMORY, RESULTS = "memory", "results"
+MEMORY, RESULTS, OBJECTS, DISTANCES = "memory", "results", "objects", "distance_mm"
+SEEN = {OBJECTS, DISTANCES}
+"""What the firmware sees: how many of a kind, and how far the nearest of them is."""
+COUNTS = {RESULTS, *SEEN}
+"""What there is a whole number of for each frame: what the firmware publishes, and what it sees."""
 
 
 class Unit(Enum):
@@ -60,17 +68,18 @@ def unit_of(name: Name) -> Unit:
     """Return what the figure of that name is counted in."""
     if name == FRAME_RATE:
         return Unit.HZ
-    if name == MISSED or name[0] == RESULTS:
+    if name == MISSED or name[0] in COUNTS:
         return Unit.COUNT
     return Unit.BYTES if name[0] == MEMORY else Unit.CCLK
 
 
-def figures_of(run: RunRecord) -> dict[Name, Figure]:
+def figures_of(result: Result) -> dict[Name, Figure]:
     """Return every figure of a run of at least one frame.
 
     A stage is there for each core, and without a core as the longer of them in each frame. A stage that is called like
     another figure, such as `frame`, is there by its cores alone.
     """
+    run = result.run
     figures: dict[Name, Figure] = {
         FRAME_RATE: _figure(FRAME_RATE, frame_rate_hz(run.frames, run.identity.cclk_hz)),
         MISSED: _figure(MISSED, len(run.missed)),
@@ -86,16 +95,28 @@ def figures_of(run: RunRecord) -> dict[Name, Figure]:
         figures[RESULTS, each] = _figure(
             (RESULTS, each), *(frame.results.get(each, 0) for frame in run.frames)
         )
+    figures |= {name: _figure(name, *values) for name, values in _seen(result)}
     return figures
 
 
-def kernel_cclk(run: RunRecord) -> Mapping[tuple[str, str, str], int]:
-    """Return the cycles a frame of each kernel, its stalls included, by stage, core and kernel: means over the run."""
-    totals: dict[tuple[str, str, str], int] = {}
-    for each in run.kernels:
-        key = (each.stage, each.core, each.kernel)
-        totals[key] = totals.get(key, 0) + each.elapsed_cclk
-    return {key: total // len(run.frames) for key, total in totals.items()}
+def _seen(result: Result) -> Iterator[tuple[Name, list[int]]]:
+    """Yield how many objects of each kind were seen in each frame, and how far the nearest of them was, 0 for none."""
+    indexes = [frame.index for frame in result.run.frames if frame.index in result.seen]
+    far: list[dict[str, list[int]]] = []
+    for index in indexes:
+        far.append({})
+        for each in result.seen[index]["objects"]:
+            far[-1].setdefault(name_of_object(each), []).append(_distance_mm(each))
+    for kind in dict.fromkeys(kind for each in far for kind in each):
+        yield (OBJECTS, kind), [len(each.get(kind, ())) for each in far]
+        distances = [min(each.get(kind, (0,))) for each in far]
+        if any(distances):
+            yield (DISTANCES, kind), distances
+
+
+def _distance_mm(seen: Mapping[str, Any]) -> int:
+    """Return how far an object is from the left camera; 0 where only its direction is known."""
+    return 0 if seen["is_direction"] else round(hypot(*seen["place_mm"]))
 
 
 def _figure(name: Name, *values: float) -> Figure:

@@ -10,6 +10,7 @@ from typing import Any
 from rich.table import Table
 
 from bfsim.errors import ConfigError
+from bfsim.file_content import read_bounded
 from bfsim.report.check.judge import Outcome
 from bfsim.report.check.outputs import figures_json
 from bfsim.report.tables import new_table
@@ -46,7 +47,7 @@ def read_history(path: Path) -> list[dict[str, Any]]:
     if not path.exists():
         return []
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        lines = read_bounded(path).decode().splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} must be a readable history of `bfsim check`: {error}") from error
     return [_entry(line, f"{path}:{number}") for number, line in enumerate(lines, 1) if line.strip()]

@@ -9,8 +9,9 @@ from pathlib import Path
 
 from bfsim.errors import ConfigError
 from bfsim.report.check.baseline import Case, requirements_of
-from bfsim.report.check.figures import RESULTS, Figure, Name, Unit, figures_of
-from bfsim.report.check.requirement import Requirement, dotted, nearest_of
+from bfsim.report.check.figures import COUNTS, OBJECTS, SEEN, Figure, Name, Unit, figures_of
+from bfsim.report.check.requirement import Requirement, dotted, nearest_of, parse_requirement
+from bfsim.report.result_file import Result
 from bfsim.trace import RunRecord
 
 FRAME_SHARE = 10
@@ -47,9 +48,14 @@ class Outcome:
     """What came out for one run of the baseline file."""
 
     case: Case
-    run: RunRecord
+    result: Result
     figures: Mapping[Name, Figure]
     verdicts: tuple[Verdict, ...]
+
+    @property
+    def run(self) -> RunRecord:
+        """The records of the run."""
+        return self.result.run
 
     @property
     def passed(self) -> bool:
@@ -67,10 +73,16 @@ class Outcome:
         return tuple(each for each in self.verdicts if each.better)
 
 
-def judge(case: Case, run: RunRecord, path: Path) -> Outcome:
+def judge(case: Case, result: Result, path: Path) -> Outcome:
     """Hold a run of at least one frame against what `path` has for it. Raises ConfigError for a figure that it does not have."""
     required, limits = requirements_of(case, path)
-    figures = figures_of(run)
+    run, figures = result.run, figures_of(result)
+    if result.seen:
+        none = Figure(values=(0,) * len(run.frames), unit=Unit.COUNT)
+        named = {each.name for each in (*required, *limits) if each.name[0] in SEEN}
+        figures |= {name: none for name in named if name not in figures}
+        new = [name for name in figures if name[0] == OBJECTS and name not in named]
+        limits += [_nothing_of(name) for name in new if limits]
     tolerance = Fraction(str(case.tolerance_percent)) / 100
     results_tolerance = Fraction(str(case.results_tolerance_percent)) / 100
     frame = max(figures["frame",].values)
@@ -79,11 +91,16 @@ def judge(case: Case, run: RunRecord, path: Path) -> Outcome:
         for each in required
     ]
     for each in limits:
-        share = results_tolerance if each.name[0] == RESULTS else tolerance
+        share = results_tolerance if each.name[0] in COUNTS else tolerance
         floor = frame / FRAME_SHARE
         figure = _figure(each, figures, case, path)
         verdicts.append(_verdict(each, figure, run, share, floor, is_persons=False))
-    return Outcome(case=case, run=run, figures=figures, verdicts=tuple(verdicts))
+    return Outcome(case=case, result=result, figures=figures, verdicts=tuple(verdicts))
+
+
+def _nothing_of(name: Name) -> Requirement:
+    """Return that nothing is seen of a kind that there was nothing of when the limits were measured."""
+    return parse_requirement(f"{dotted((*name, 'max'))} == 0", "")
 
 
 def _figure(requirement: Requirement, figures: Mapping[Name, Figure], case: Case, path: Path) -> Figure:

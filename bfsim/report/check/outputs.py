@@ -3,25 +3,35 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 
-from bfsim.report.check.figures import RESULTS, Unit, statistic
+from bfsim.report.check.cause import CAUSES, counts_that_differ, difference_of_outcome, explanation
+from bfsim.report.check.figures import COUNTS, Figure, Name, Unit, statistic
 from bfsim.report.check.judge import Outcome, Verdict, worst_of_each
 from bfsim.report.check.requirement import dotted
-from bfsim.report.check.tables import amount, changes, explanation, tighten_command, verdict_line
+from bfsim.report.check.tables import amount, changes, tighten_command, verdict_line
+from bfsim.report.diff.as_json import diff_json
+from bfsim.report.diff.markdown import contribution_rows
+from bfsim.report.diff.sentences import reason, work
+from bfsim.report.diff.tables import seen_lines
 
 SCHEMA = "bfsim.check/1"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
 
 
 def figures_json(outcome: Outcome) -> dict[str, float]:
+    """Return the figures of a run, as `figures_by_name`."""
+    return figures_by_name(outcome.figures, outcome.run.identity.cclk_hz)
+
+
+def figures_by_name(figures: Mapping[Name, Figure], hz: float) -> dict[str, float]:
     """Return median and maximum of every figure but results in a unit that its name ends in, by name."""
-    hz, found = outcome.run.identity.cclk_hz, {}
-    for name, figure in outcome.figures.items():
-        if name[0] == RESULTS:
+    found = {}
+    for name, figure in figures.items():
+        if name[0] in COUNTS:
             continue
         if figure.unit is Unit.CCLK:
             for each in ("median", "max"):
@@ -31,7 +41,7 @@ def figures_json(outcome: Outcome) -> dict[str, float]:
     return found
 
 
-def check_json(outcomes: Sequence[Outcome], path: Path) -> str:
+def check_json(outcomes: Sequence[Outcome]) -> str:
     """Return every verdict and figure as JSON. Times are in cycles, in the figures in ms."""
     runs = [
         {
@@ -41,7 +51,8 @@ def check_json(outcomes: Sequence[Outcome], path: Path) -> str:
             "firmware_digest": outcome.run.identity.firmware_digest,
             "figures": figures_json(outcome),
             "verdicts": [_verdict(each) for each in outcome.verdicts],
-            "why": list(explanation(outcome, path)),
+            "why": list(explanation(outcome)) if outcome.broken else [],
+            "difference": _difference(outcome),
             "notes": list(changes(outcome)),
         }
         for outcome in outcomes
@@ -58,7 +69,7 @@ def junit_xml(outcomes: Sequence[Outcome], path: Path) -> str:
         case = ET.SubElement(suite, "testcase", classname=_xml(str(path)), name=_xml(outcome.case.name))
         if not outcome.passed:
             failure = ET.SubElement(case, "failure", message=_xml(verdict_line(outcome)))
-            failure.text = _xml("\n".join([*broken_lines(outcome), *explanation(outcome, path)]))
+            failure.text = _xml("\n".join([*broken_lines(outcome), "", *explanation(outcome)]))
     root = ET.Element("testsuites")
     root.append(suite)
     ET.indent(root)
@@ -85,8 +96,7 @@ def benchmark_json(outcomes: Sequence[Outcome]) -> str:
 def broken_lines(outcome: Outcome) -> Iterator[str]:
     """Yield a line for each figure whose limits are broken."""
     for each in worst_of_each(outcome.broken):
-        name, hz = dotted(each.requirement.name), outcome.run.identity.cclk_hz
-        label = f"{name}.{each.requirement.statistic}" if each.requirement.statistic else name
+        label, hz = each.requirement.dotted, outcome.run.identity.cclk_hz
         measured = amount(each.measured, each.unit, hz)
         limit = f"{each.requirement.comparison} {amount(each.allowed, each.unit, hz)}"
         yield f"{label} must be {limit}, not {measured} ({each.by_percent:+.2f} %)"
@@ -113,17 +123,32 @@ def _markdown(outcome: Outcome, path: Path) -> Iterator[str]:
     if rows:
         yield "| | limit | measured | % |\n|---|--:|--:|--:|"
         for each in rows:
-            name = dotted((*each.requirement.name, *filter(None, [each.requirement.statistic])))
+            name = each.requirement.dotted
             mark = "❌" if each.broken else "faster" if each.unit is Unit.CCLK else "better"
             limit = f"{each.requirement.comparison} {amount(each.allowed, each.unit, hz)}"
             measured = amount(each.measured, each.unit, hz)
             yield f"| {_cell(name)} {mark} | {limit} | {measured} | {each.by_percent:+.2f} |"
         yield ""
-    for line in explanation(outcome, path) if outcome.broken else ():
-        yield f"- {_cell(line)}"
+    yield from _why(outcome) if outcome.broken else ()
     if outcome.better:
         yield f"\nTo keep what became better: `{tighten_command(outcome, path)}`"
     yield ""
+
+
+def _why(outcome: Outcome) -> Iterator[str]:
+    difference = difference_of_outcome(outcome)
+    if difference is None:
+        yield from ("```", *explanation(outcome), "```")
+        return
+    yield from (f"{_cell(each)}\n" for each in (work(difference), reason(difference)) if each)
+    yield from contribution_rows(difference, CAUSES)
+    for line in (*counts_that_differ(outcome), *seen_lines(difference)):
+        yield f"- {_cell(line)}"
+
+
+def _difference(outcome: Outcome) -> Any:
+    difference = difference_of_outcome(outcome)
+    return json.loads(diff_json(difference)) if difference else None
 
 
 def _cell(text: str) -> str:

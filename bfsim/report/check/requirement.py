@@ -18,12 +18,12 @@ from typing import NoReturn
 
 from bfsim.errors import ConfigError, cut, shown
 from bfsim.report.check.figures import (
+    COUNTS,
     FRAME,
     FRAME_RATE,
     LATENCY,
     MEMORY,
     MISSED,
-    RESULTS,
     STATISTICS,
     Figure,
     Name,
@@ -45,7 +45,6 @@ UNITS: dict[Unit, dict[str, Fraction | None]] = {
 }
 """The units of each kind of figure, and how much of the kind's own unit they are."""
 
-COMPARISONS = ("<=", ">=", "==")
 MS_DIGITS = 6
 """Digits by which a limit in ms says each cycle of a clock up to 1 GHz."""
 
@@ -65,6 +64,11 @@ class Requirement:
     numbers: tuple[Fraction, ...]
     unit: str
     text: str
+
+    @property
+    def dotted(self) -> str:
+        """What it is about, as it is written."""
+        return dotted((*self.name, self.statistic) if self.statistic else self.name)
 
     def limit(self, figure: Figure, cclk_hz: float) -> float:
         """Return the number in the unit of the figure: whole cycles or bytes, Hz, or a count."""
@@ -124,7 +128,7 @@ def limit_text(name: Name, value: float, cclk_hz: float, stands_for: str = "") -
         case Unit.BYTES:
             return f"{key} <= {value:.0f} B"
         case Unit.COUNT:
-            return f"{key} {'==' if name[0] == RESULTS else '<='} {value:.0f}"
+            return f"{key} {'==' if name[0] in COUNTS else '<='} {value:.0f}"
 
 
 def counts_text(name: Name, values: Sequence[float]) -> str:
@@ -161,7 +165,7 @@ def _parts(text: str, where: str) -> tuple[list[tuple[int, str]], int]:
 
 def _require_name(name: Name, parts: Sequence[tuple[int, str]], text: str, where: str) -> None:
     most = 2 if (name[:1]) not in {FRAME_RATE, MISSED, LATENCY, FRAME} else 1
-    least = 2 if name[0] in {MEMORY, RESULTS} else 1
+    least = 2 if name[0] in {MEMORY, *COUNTS} else 1
     if len(name) > most:
         what = f"{', '.join(STATISTICS[:-1])} or {STATISTICS[-1]}"
         _fail(f"{dotted(name[:most])} must be followed by {what}, or nothing", text, parts[most][0], where)

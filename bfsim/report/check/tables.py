@@ -9,15 +9,13 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from bfsim.report.check.cause import StageGrowth, growths
+from bfsim.report.check.cause import CAUSES, counts_that_differ, difference_of_outcome, explanation
 from bfsim.report.check.figures import Unit
 from bfsim.report.check.judge import Outcome, Verdict, worst_of_each
-from bfsim.report.check.requirement import dotted
+from bfsim.report.diff.sentences import reason, work
+from bfsim.report.diff.tables import contribution_table, scope, seen_lines
 from bfsim.report.tables import new_table, stacked, warning_table
-from bfsim.report.units import size
-
-FRAMES_NAMED = 5
-"""As many frames are named whose results differ."""
+from bfsim.report.units import milliseconds_of, size
 
 
 def check_report(outcome: Outcome, path: Path) -> RenderableType:
@@ -25,8 +23,7 @@ def check_report(outcome: Outcome, path: Path) -> RenderableType:
     parts: list[RenderableType] = [Text(verdict_line(outcome))]
     if outcome.broken:
         parts.append(_table("Broken limit", outcome.broken, outcome))
-        why = "\n".join(explanation(outcome, path))
-        parts += [Text(why)] if why else []
+        parts += _why(outcome)
     if outcome.better:
         parts.append(_table("Better than", outcome.better, outcome))
         parts.append(Text(f"To keep it: {tighten_command(outcome, path)}"))
@@ -43,16 +40,15 @@ def verdict_line(outcome: Outcome) -> str:
     return f"{word}: {outcome.case.name}: {kept if outcome.passed else count}, {rate:.2f} frames/s."
 
 
-def explanation(outcome: Outcome, path: Path) -> Iterator[str]:
-    """Yield a line for each stage that grew, with the kernels that did, and for results that differ where they do."""
-    hz = outcome.run.identity.cclk_hz
-    for each in growths(outcome, path):
-        yield f"{_ms(each.cclk, hz)} a frame in {each.stage} on core {each.core}{_kernels(each, hz)}"
-    for verdict in worst_of_each(outcome.broken):
-        if verdict.frames:
-            named = ", ".join(map(str, verdict.frames[:FRAMES_NAMED]))
-            more = ", …" if len(verdict.frames) > FRAMES_NAMED else ""
-            yield f"{dotted(verdict.requirement.name)} is another in frames {named}{more}"
+def _why(outcome: Outcome) -> Iterator[RenderableType]:
+    difference = difference_of_outcome(outcome)
+    if difference is None:
+        yield Text("\n".join(explanation(outcome)))
+        return
+    told = [*filter(None, (work(difference), reason(difference))), *scope(difference)]
+    counts = [*counts_that_differ(outcome), *seen_lines(difference)]
+    yield from (Text("\n".join(each)) for each in (told, counts) if each)
+    yield from contribution_table(difference, CAUSES)
 
 
 def tighten_command(outcome: Outcome, path: Path) -> str:
@@ -84,7 +80,7 @@ def amount(value: float, unit: Unit, cclk_hz: float) -> str:
         case Unit.HZ:
             return f"{value:.2f} Hz"
         case Unit.CCLK:
-            return f"{value * 1000 / cclk_hz:.3f} ms"
+            return milliseconds_of(value, cclk_hz)
         case Unit.BYTES:
             return size(round(value))
         case Unit.COUNT:
@@ -95,20 +91,10 @@ def _table(title: str, verdicts: Sequence[Verdict], outcome: Outcome) -> Table:
     table = new_table("", title, "Limit", "Measured", "%")
     hz = outcome.run.identity.cclk_hz
     for each in worst_of_each(verdicts):
-        name, stands_for = dotted(each.requirement.name), each.requirement.statistic
         table.add_row(
-            f"{name}.{stands_for}" if stands_for else name,
+            each.requirement.dotted,
             f"{each.requirement.comparison} {amount(each.allowed, each.unit, hz)}",
             amount(each.measured, each.unit, hz),
             f"{each.by_percent:+.2f}",
         )
     return table
-
-
-def _kernels(growth: StageGrowth, hz: float) -> str:
-    named = ", ".join(f"{name} {_ms(cclk, hz)}" for name, cclk in growth.kernels)
-    return f": {named}" if named else ", in waits or small kernels"
-
-
-def _ms(cclk: float, hz: float) -> str:
-    return f"{cclk * 1000 / hz:+.3f} ms"

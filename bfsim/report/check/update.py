@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
 
 import tomlkit
-from tomlkit.items import AoT, Array, Table
+from tomlkit.items import AoT, Table
 
 from bfsim.report.check.baseline import (
     COMPARABLE,
@@ -18,10 +17,12 @@ from bfsim.report.check.baseline import (
     requirements_of,
     validated,
 )
-from bfsim.report.check.cause import kernels_of
-from bfsim.report.check.figures import MISSED, RESULTS, STATISTICS, Name, Unit, figures_of, statistic
+from bfsim.report.check.figures import COUNTS, MISSED, SEEN, STATISTICS, Name, Unit, figures_of, statistic
 from bfsim.report.check.judge import Outcome, Verdict, judge
+from bfsim.report.check.kept import kept_costs, whole_side
 from bfsim.report.check.requirement import counts_text, limit_text
+from bfsim.report.check.toml_items import toml_item
+from bfsim.report.result_file import Result
 from bfsim.report.save import write_text
 from bfsim.trace import RunRecord
 
@@ -29,38 +30,39 @@ NEW_FILE = """\
 # What `bfsim check` holds every run against; `bfsim check --help` says how to use it.
 # Yours: name, what to run, tolerances, comments, and `require`, such as
 #     require = ["frame_rate >= 15 Hz", '"Look for lines".max <= 80 ms', "memory.L2 <= 90 %", "results.balls >= 1"]
-# Written by `--update`: limits, kernels (cycles a frame: they tell what grew, and limit nothing) and measured_on.
+#     require = ["objects.ball == 1", "distance_mm.ball <= 900", "results.lines_A.min >= 20"]
+# Written by `--update`: limits; measured_on; and costs, which explain what grew, and limit nothing.
 
 """
 DEFAULT_TOLERANCE_PERCENT = 1
 """Of new runs: each change of one stage moves others a little, by what they wait for memory."""
-FRAMES_LISTED = 20
-"""Results are kept frame by frame of so many frames; of more, their total, least and most."""
+MOST_COUNTS = 22
+"""Results are kept frame by frame where their sentence has no more words, 20 of them counts such as 1*200; else their total, least and most."""
 
 
-def loosened(case: Case, run: RunRecord, path: Path) -> list[str]:
+def loosened(case: Case, result: Result, path: Path) -> list[str]:
     """Return in words which limits of a run `--update` would loosen."""
     return [
-        f"{each.requirement.text}, measured {_number(each, run)}"
-        for each in _held(case, run, path).verdicts
+        f"{each.requirement.text}, measured {_number(each, result.run)}"
+        for each in _held(case, result, path).verdicts
         if each.broken and not each.is_persons
     ]
 
 
-def updated(case: Case, run: RunRecord, reason: str, path: Path) -> Case:
+def updated(case: Case, result: Result, reason: str, path: Path) -> Case:
     """Return a run of the file with the limits that were measured. A `reason` is kept with what it loosened."""
-    outcome = _held(case, run, path)
+    outcome = _held(case, result, path)
     kept = {
         (each.requirement.name, each.requirement.statistic): each.requirement.text
         for each in outcome.verdicts
         if not each.is_persons and not each.broken and not each.better
     }
-    loose = loosened(case, run, path)
+    loose = loosened(case, result, path)
     values = {
         "limits": [kept.get(key, text) for key, text in _limits(outcome)],
         "loosened": [*case.loosened, *([f"{reason}: {'; '.join(loose)}"] if loose else [])],
-        "kernels": kernels_of(outcome),
-        "measured_on": _on(run),
+        "measured_on": _on(result.run),
+        "costs": kept_costs(whole_side(result)),
     }
     return case.model_copy(update=values)
 
@@ -86,13 +88,14 @@ def write_cases(path: Path, cases: Mapping[str, Case]) -> None:
     write_text(path, text)
 
 
-def _held(case: Case, run: RunRecord, path: Path) -> Outcome:
+def _held(case: Case, result: Result, path: Path) -> Outcome:
     """Hold a run against those of its limits that are about the same pictures and hardware, and what there still is."""
-    then, now, figures = case.measured_on, _on(run), figures_of(run)
-    is_same = then is not None and all(getattr(then, key) == getattr(now, key) for key in COMPARABLE)
+    then, now, figures = case.measured_on, _on(result.run), figures_of(result)
+    is_same = then is not None and not any(then.differs_in(key, now) for key in COMPARABLE)
     _, limits = requirements_of(case, path)
-    texts = [each.text for each in limits if is_same and each.name in figures]
-    return judge(case.model_copy(update={"limits": texts}), run, path)
+    there = {each.name for each in limits if each.name in figures or (result.seen and each.name[0] in SEEN)}
+    texts = [each.text for each in limits if is_same and each.name in there]
+    return judge(case.model_copy(update={"limits": texts}), result, path)
 
 
 def _on(run: RunRecord) -> MeasuredOn:
@@ -106,12 +109,12 @@ def _limits(outcome: Outcome) -> Iterator[tuple[tuple[Name, str], str]]:
         is_of_all_cores = any(
             len(each) > 1 and each[0] == name[0] for each in outcome.figures if each != name
         )
-        is_nothing = not any(figure.values) and name != MISSED and name[0] != RESULTS
+        is_nothing = not any(figure.values) and name != MISSED and name[0] not in COUNTS
         if is_nothing or (len(name) == 1 and is_of_all_cores):
             continue
-        if name[0] == RESULTS and len(figure.values) <= FRAMES_LISTED:
+        if name[0] in COUNTS and len(counts_text(name, figure.values).split()) <= MOST_COUNTS:
             yield (name, ""), counts_text(name, figure.values)
-        elif name[0] == RESULTS:
+        elif name[0] in COUNTS:
             for each in STATISTICS:
                 if each != "median":
                     yield (name, each), limit_text(name, statistic(figure, each), cclk_hz, each)
@@ -135,25 +138,4 @@ def _fill(table: Table, case: Case) -> None:
             if key in table:
                 del table[key]
         elif key not in table or table[key] != plain[key]:
-            table[key] = _item(plain[key])
-
-
-def _item(value: Any) -> Any:
-    if isinstance(value, list):
-        return _lines(value)
-    if isinstance(value, dict):
-        table = tomlkit.table()
-        for key, each in value.items():
-            table[key] = _item(each)
-        return table
-    if isinstance(value, float) and value.is_integer():
-        value = int(value)
-    return tomlkit.integer(f"{value:_}") if type(value) is int else value
-
-
-def _lines(values: list[str]) -> Array:
-    """Return an array of one line for each of its sentences, in quotes that leave theirs alone."""
-    array = tomlkit.array()
-    for each in values:
-        array.append(tomlkit.string(each, literal="'" not in each and each.isprintable()))
-    return array.multiline(multiline=True)
+            table[key] = toml_item(plain[key])

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
+
+NAMES = re.compile(r"\w+|[^\w\s]+")
+ANY = 0.01
+"""What a pair of lines with nothing in common counts beside one of equal lines."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,16 +21,43 @@ class LinePair:
 
 
 def aligned(old: Sequence[str], new: Sequence[str]) -> Iterator[LinePair]:
-    """Pair the lines of two texts, in their order: equal ones, then those that were rewritten one for one.
+    """Pair the lines of two texts, in their order: equal ones, and of those that were rewritten the most alike.
 
     Indentation is no difference.
     """
     matcher = SequenceMatcher(
         None, [each.strip() for each in old], [each.strip() for each in new], autojunk=False
     )
-    for _, old_begin, old_end, new_begin, new_end in matcher.get_opcodes():
-        for step in range(max(old_end - old_begin, new_end - new_begin)):
-            yield LinePair(
-                old_begin + step if old_begin + step < old_end else None,
-                new_begin + step if new_begin + step < new_end else None,
-            )
+    for tag, old_begin, old_end, new_begin, new_end in matcher.get_opcodes():
+        if tag == "equal":
+            pairs = list(zip(range(old_begin, old_end), range(new_begin, new_end), strict=True))
+        else:
+            alike = _alike(old[old_begin:old_end], new[new_begin:new_end])
+            pairs = [(old_begin + one, new_begin + other) for one, other in alike]
+        old_at, new_at = old_begin, new_begin
+        for one, other in [*pairs, (old_end, new_end)]:
+            yield from (LinePair(place, None) for place in range(old_at, one))
+            yield from (LinePair(None, place) for place in range(new_at, other))
+            if one < old_end:
+                yield LinePair(one, other)
+            old_at, new_at = one + 1, other + 1
+
+
+def _alike(old: Sequence[str], new: Sequence[str]) -> list[tuple[int, int]]:
+    """Return as many pairs as there can be, in order, that are most alike in all."""
+    best = [[0.0] * (len(new) + 1) for _ in range(len(old) + 1)]
+    words = [set(NAMES.findall(each)) for each in old], [set(NAMES.findall(each)) for each in new]
+    scores = [[ANY + len(one & other) / (len(one | other) or 1) for other in words[1]] for one in words[0]]
+    for i in reversed(range(len(old))):
+        for j in reversed(range(len(new))):
+            best[i][j] = max(best[i + 1][j], best[i][j + 1], best[i + 1][j + 1] + scores[i][j])
+    pairs, i, j = list[tuple[int, int]](), 0, 0
+    while i < len(old) and j < len(new):
+        if best[i][j] == best[i + 1][j + 1] + scores[i][j]:
+            pairs.append((i, j))
+            i, j = i + 1, j + 1
+        elif best[i][j] == best[i + 1][j]:
+            i += 1
+        else:
+            j += 1
+    return pairs

@@ -2,111 +2,108 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Mapping
-from dataclasses import fields
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
 
 from bfsim.errors import ConfigError
-from bfsim.report.budget import budget_of
-from bfsim.report.diff.contributions import stage_contributions
+from bfsim.report.diff.contributions import contributions_of
 from bfsim.report.diff.difference import Change, Difference, FrameChange, SeenChange
+from bfsim.report.diff.result_side import result_side
+from bfsim.report.diff.side import SEPARATOR, Side
 from bfsim.report.result_file import Result
-from bfsim.trace import FrameRecord, Identity
 
 DIGEST_SHOWN = 12
 """Digits of a digest that are shown."""
+CONTENT = ": content"
 
 
 def difference_of(before: Result, after: Result) -> Difference:
     """Compare two runs in the frames that both have; raise ConfigError if they have none."""
-    old, new = before.run, after.run
-    frames = [each.index for each in new.frames if each.index in {frame.index for frame in old.frames}]
+    frames = {each.index for each in before.run.frames} & {each.index for each in after.run.frames}
     if not frames:
         raise ConfigError("the two runs must have frames of the same number to be compared, and have none")
-    has_lines = len(frames) == len(old.frames) == len(new.frames)
-    olds, news = _chosen(old.frames, frames), _chosen(new.frames, frames)
-    stages = stage_contributions(before, after, frames, has_lines=has_lines)
+    return difference_between(result_side(before, frames), result_side(after, frames))
+
+
+def difference_between(before: Side, after: Side) -> Difference:
+    """Compare two sides; where one has more frames, as many cycles of the first as it would have in those of the second."""
+    measured = len(before.frames)
+    if measured != len(after.frames):
+        before = before.scaled(Fraction(len(after.frames), measured))
+    has_lines = bool(before.sources and after.sources) or not (before.sources or after.sources)
+    if not has_lines:
+        before, after = before.without_lines(), after.without_lines()
+    parts = contributions_of(before, after)
     return Difference(
-        configuration=tuple(_configuration(old.identity, new.identity)),
-        frames=tuple(frames),
+        configuration=(*_configuration(before, after), *_moved(before.memories, after.memories)),
+        frames=after.frames,
+        measured_frames=measured,
         has_lines=has_lines,
-        before_ms=1000 / budget_of(old).frame_rate_hz,
-        after_ms=1000 / budget_of(new).frame_rate_hz,
-        before_hz=old.identity.cclk_hz,
-        after_hz=new.identity.cclk_hz,
-        before_cclk=sum(_cclk(each) for each in olds),
-        after_cclk=sum(_cclk(each) for each in news),
-        stages=tuple(each for each in stages if each.cclk or each.parts),
-        changed_frames=_changed_frames(olds, news),
-        results=tuple(_results(olds, news)),
-        seen=tuple(_seen(before.seen, after.seen, frames)),
+        before_ms=before.frame_ms,
+        after_ms=after.frame_ms,
+        before_hz=before.cclk_hz,
+        after_hz=after.cclk_hz,
+        before_cclk=before.cclk,
+        after_cclk=after.cclk,
+        stages=tuple(each for each in parts if each.cclk or each.parts),
+        changed_frames=_changed_frames(before.frame_cclk, after.frame_cclk),
+        results=tuple(_results(before.results, after.results)),
+        seen=tuple(_seen(before, after)),
     )
 
 
-def _chosen(frames: tuple[FrameRecord, ...], indexes: list[int]) -> list[FrameRecord]:
-    return [each for each in frames if each.index in set(indexes)]
-
-
-def _cclk(frame: FrameRecord) -> int:
-    return sum(core.end_cclk - core.begin_cclk for core in frame.cores)
-
-
-def _longest_cclk(frame: FrameRecord) -> int:
-    return max(core.end_cclk - core.begin_cclk for core in frame.cores)
-
-
-def _configuration(before: Identity, after: Identity) -> Iterator[Change]:
-    for field in fields(Identity):
-        old, new = getattr(before, field.name), getattr(after, field.name)
+def _configuration(before: Side, after: Side) -> Iterator[Change]:
+    for what, text in before.configuration.items():
+        old, new = text, after.configuration.get(what, text)
         if old == new:
             continue
-        if field.name == "firmware_files":
-            old, new = (
-                ", ".join(sorted(set(one) - set(other))) or "-" for one, other in ((old, new), (new, old))
-            )
-        what = field.name.replace("_digest", ": content").replace("_", " ")
-        cut = DIGEST_SHOWN if field.name.endswith("_digest") else None
-        yield Change(what=what, before=str(old)[:cut] or "-", after=str(new)[:cut] or "-")
+        if what.endswith(("files", "numbers")):
+            one, other = old.split(SEPARATOR), new.split(SEPARATOR)
+            old = SEPARATOR.join(each for each in one if each not in other)
+            new = SEPARATOR.join(each for each in other if each not in one)
+        cut = DIGEST_SHOWN if what.endswith(CONTENT) else None
+        yield Change(what=what, before=old[:cut] or "-", after=new[:cut] or "-")
 
 
-def _changed_frames(olds: list[FrameRecord], news: list[FrameRecord]) -> tuple[FrameChange, ...]:
+def _moved(before: Mapping[str, str], after: Mapping[str, str]) -> Iterator[Change]:
+    """Yield the buffers that lie elsewhere."""
+    for buffer, memory in before.items():
+        if after.get(buffer, memory) != memory:
+            yield Change(what=f"buffer {buffer}", before=memory, after=after[buffer])
+
+
+def _changed_frames(olds: Mapping[int, int], news: Mapping[int, int]) -> tuple[FrameChange, ...]:
     """Return the frames that changed, the one that changed most first."""
-    pairs = zip(olds, news, strict=True)
-    changes = [
-        FrameChange(index=new.index, before_cclk=_longest_cclk(old), after_cclk=_longest_cclk(new))
-        for old, new in pairs
+    changed = [
+        FrameChange(index=index, before_cclk=old, after_cclk=news[index])
+        for index, old in olds.items()
+        if news.get(index, old) != old
     ]
-    changed = [each for each in changes if each.before_cclk != each.after_cclk]
     return tuple(sorted(changed, key=lambda each: (-abs(each.after_cclk - each.before_cclk), each.index)))
 
 
-def _results(olds: list[FrameRecord], news: list[FrameRecord]) -> Iterator[Change]:
-    names = dict.fromkeys(name for frame in (*olds, *news) for name in frame.results)
-    for name in names:
-        old, new = ([frame.results.get(name) for frame in frames] for frames in (olds, news))
-        if old != new:
+def _results(
+    before: Mapping[str, Sequence[int | None]], after: Mapping[str, Sequence[int | None]]
+) -> Iterator[Change]:
+    for name in dict.fromkeys([*before, *after]):
+        old, new = before.get(name, []), after.get(name, [])
+        is_other = list(old) != list(new) if len(old) == len(new) else _total(old) != _total(new)
+        if is_other:
             yield Change(what=name, before=_total(old), after=_total(new))
 
 
-def _total(values: list[int | None]) -> str:
+def _total(values: Sequence[int | None]) -> str:
     known = [each for each in values if each is not None]
     return f"{sum(known):,}" if known else "-"
 
 
-def _seen(
-    before: Mapping[int, Mapping[str, Any]], after: Mapping[int, Mapping[str, Any]], frames: list[int]
-) -> Iterator[SeenChange]:
+def _seen(before: Side, after: Side) -> Iterator[SeenChange]:
     """Yield what only one of the runs saw, where both tell."""
-    told = [index for index in frames if index in before and index in after]
+    told = sorted(set(before.seen) & set(after.seen))
     for gone, one, other in ((True, before, after), (False, after, before)):
         found: dict[str, list[int]] = {}
         for index in told:
-            for name, count in (_names(one[index]) - _names(other[index])).items():
+            for name, count in (one.seen[index] - other.seen[index]).items():
                 found.setdefault(name, []).extend([index] * bool(count))
         for name, where in found.items():
             yield SeenChange(name=name, gone=gone, frames=len(where), first=where[0])
-
-
-def _names(seen: Mapping[str, Any]) -> Counter[str]:
-    return Counter(each["name"] for each in seen["objects"])

@@ -1,136 +1,131 @@
-"""The tree of contributions: stage, then kernel or wait, then source line, then cause."""
+"""The tree of contributions: stage, then kernel, then source line, then cause; and last the waits that follow from them."""
 
 from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import PurePath
 
-from bfsim.report.diff.alignment import aligned
+from bfsim.report.diff.alignment import LinePair, aligned
 from bfsim.report.diff.difference import Contribution, Kind
 from bfsim.report.diff.line_causes import line_causes
-from bfsim.report.result_file import Result
-from bfsim.trace import KernelRecord, LineCost, RunRecord
+from bfsim.report.diff.side import Line, Owner, Side, Source
 
 WAITS = "waits for the other core and the cameras"
+SMALL = "what is too small to be kept"
+"""All owners of a stage, or lines of a kernel, that a baseline does not have."""
+NO_LINE = "not of a line"
+
+Pair = tuple[Owner | None, Owner | None]
 
 
-@dataclass(frozen=True, slots=True)
-class _Owner:
-    """What cycles are compared by: a kernel by its symbol, anything else by its name; what follows from the rest apart."""
+def contributions_of(before: Side, after: Side) -> tuple[Contribution, ...]:
+    """Return what each stage contributes to the difference of two runs, the largest first, and at the end the waits.
 
-    stage: str
-    name: str
-    symbol: str
-    follows: bool = False
-
-
-def stage_contributions(
-    before: Result, after: Result, frames: Iterable[int], *, has_lines: bool
-) -> tuple[Contribution, ...]:
-    """Return what each stage contributes to the difference of two runs in these frames, the largest first."""
-    chosen = set(frames)
-    old, new = _costs(before, chosen), _costs(after, chosen)
-    kernels = _Kernels(before.run, after.run) if has_lines else None
+    They sum to the difference, as the parts of each do to their whole.
+    """
     parts: defaultdict[str, list[Contribution]] = defaultdict(list)
-    for owner in dict.fromkeys([*old, *new]):
-        parts[owner.stage].append(_owner(owner, old[owner], new[owner], kernels))
-    return _by_size(_sum(Kind.STAGE, stage, each) for stage, each in parts.items())
+    before, after = _kept_alike(before, after), _kept_alike(after, before)
+    for old, new in _pairs(before.owners, after.owners):
+        owner = new or old
+        assert owner is not None
+        parts[owner.stage].append(_of_owner(old, new, before, after))
+    stages = _by_size(_sum(Kind.STAGE, stage, each) for stage, each in parts.items())
+    waits = [
+        _contribution(Kind.FOLLOWS, stage, "", before.waits.get(stage, 0), after.waits.get(stage, 0))
+        for stage in dict.fromkeys([*before.waits, *after.waits])
+    ]
+    return (*stages, _sum(Kind.FOLLOWS, WAITS, waits))
 
 
-def _costs(result: Result, chosen: set[int]) -> Counter[_Owner]:
-    """Return the cycles of each owner on all cores."""
-    found: Counter[_Owner] = Counter()
-    places = [place for place, frame in enumerate(result.run.frames) if frame.index in chosen]
-    for each in result.owners:
-        waiting = sum(each.waiting_cclk[place] for place in places)
-        elapsed = sum(each.elapsed_cclk[place] for place in places)
-        found[_Owner(each.stage, each.owner, each.symbol)] += elapsed - waiting
-        found[_Owner(each.stage, WAITS, "", follows=True)] += waiting
+def walk(contributions: Iterable[Contribution], depth: int = 0) -> Iterator[tuple[int, Contribution]]:
+    """Yield each contribution with its depth, parts after their whole."""
+    for each in contributions:
+        yield depth, each
+        yield from walk(each.parts, depth + 1)
+
+
+def _kept_alike(side: Side, other: Side) -> Side:
+    """Return a side without owners that the other one did not keep because they are small."""
+    if not other.least_cclk:
+        return side
+    owners = Counter[Owner]()
+    known = {(each.stage, each.name) for each in other.owners}
+    for owner, cclk in side.owners.items():
+        is_small = cclk < other.least_cclk and (owner.stage, owner.name) not in known
+        owners[Owner(owner.stage, SMALL, "") if is_small else owner] += cclk
+    return side.with_owners(owners)
+
+
+def _pairs(before: Mapping[Owner, int], after: Mapping[Owner, int]) -> Iterator[Pair]:
+    """Pair the owners of two runs: those that are the same, and those of one name where each run has one alone.
+
+    The symbol of a kernel has the name of its file, which may be another one.
+    """
+    gone, come = _by_name(set(before) - set(after)), _by_name(set(after) - set(before))
+    renamed = {
+        olds[0]: come[name][0]
+        for name, olds in gone.items()
+        if len(olds) == 1 and len(come.get(name, [])) == 1
+    }
+    for owner in before:
+        yield owner, renamed.get(owner, owner if owner in after else None)
+    yield from ((None, owner) for owner in after if owner not in before and owner not in renamed.values())
+
+
+def _by_name(owners: Iterable[Owner]) -> Mapping[tuple[str, str], list[Owner]]:
+    found: defaultdict[tuple[str, str], list[Owner]] = defaultdict(list)
+    for each in owners:
+        found[each.stage, each.name].append(each)
     return found
 
 
-def _owner(owner: _Owner, before: int, after: int, kernels: _Kernels | None) -> Contribution:
-    kind = Kind.FOLLOWS if owner.follows else Kind.KERNEL if owner.symbol else Kind.OTHER
-    place, lines = "", tuple[Contribution, ...]()
-    if kernels is not None and owner.symbol:
-        place, lines = kernels.place(owner), kernels.lines(owner)
-    missing = after - before - sum(each.cclk for each in lines)
+def _of_owner(old: Owner | None, new: Owner | None, before: Side, after: Side) -> Contribution:
+    olds, news = before.sources.get(old) if old else None, after.sources.get(new) if new else None
+    was, now = before.owners[old] if old else 0, after.owners[new] if new else 0
+    shown, source = new or old, news or olds
+    assert shown is not None
+    lines = tuple(_lines(olds, news, before, after)) if source else ()
+    missing = now - was - sum(each.cclk for each in lines)
     if lines and missing:
-        lines = (*lines, _contribution(Kind.OTHER, "not of a line", "", None, None, missing))
-    return _contribution(kind, owner.name, place, before, after, after - before, _by_size(lines))
+        is_cut = before.least_cclk or after.least_cclk
+        lines = (
+            *lines,
+            _contribution(Kind.OTHER, SMALL if is_cut else NO_LINE, "", None, None, cclk=missing),
+        )
+    kind, place = Kind.KERNEL if shown.symbol else Kind.OTHER, source.place if source else ""
+    return _contribution(kind, shown.name, place, was, now, _by_size(lines))
 
 
-class _Kernels:
-    """The source lines of both runs' kernels."""
-
-    def __init__(self, before: RunRecord, after: RunRecord) -> None:
-        self._old, self._new = _records(before.kernels), _records(after.kernels)
-
-    def place(self, owner: _Owner) -> str:
-        record = (self._new.get(owner) or self._old[owner])[0]
-        return f"{PurePath(record.file).name}:{record.first_line}"
-
-    def lines(self, owner: _Owner) -> tuple[Contribution, ...]:
-        """Return what the kernel's lines contribute; lines are the same where their text is."""
-        old, new = self._old.get(owner, []), self._new.get(owner, [])
-        olds, news = _line_costs(old), _line_costs(new)
-        found = []
-        for pair in aligned(old[0].text if old else (), new[0].text if new else ()):
-            before = olds.get(pair.old + old[0].first_line) if pair.old is not None else None
-            after = news.get(pair.new + new[0].first_line) if pair.new is not None else None
-            causes = line_causes(before, after)
-            if causes:
-                found.append(_line(new or old, before, after, causes))
-        return tuple(found)
+def _lines(old: Source | None, new: Source | None, before: Side, after: Side) -> Iterator[Contribution]:
+    """Yield what the lines of a kernel contribute; lines are the same where their text is, or almost."""
+    olds, news = old.lines if old else (), new.lines if new else ()
+    for pair in aligned([each.text for each in olds], [each.text for each in news]):
+        was, now = _at(pair, olds, news)
+        if (was is None and now and now.cclk < before.least_cclk) or (
+            now is None and was and was.cclk < after.least_cclk
+        ):
+            continue
+        causes = line_causes(was, now, before.memories, after.memories)
+        shown = now or was
+        assert shown is not None
+        if causes:
+            file = (new or old).place.rpartition(":")[0]  # type: ignore[union-attr]  # one of them is there
+            place = f"{file}:{shown.number}" if shown.number else file
+            cclks = was.cclk if was else 0, now.cclk if now else 0
+            yield _contribution(Kind.LINE, shown.text, place, *cclks, causes)
 
 
-def _line(
-    records: Sequence[KernelRecord],
-    before: LineCost | None,
-    after: LineCost | None,
-    causes: tuple[Contribution, ...],
-) -> Contribution:
-    shown = after or before
-    assert shown is not None  # or there would be no causes
-    first = records[0]
-    text = dict(enumerate(first.text, start=first.first_line)).get(shown.line, "").strip()
-    old, new = (each.elapsed_cclk if each else 0 for each in (before, after))
-    place = f"{PurePath(first.file).name}:{shown.line}"
-    return _contribution(Kind.LINE, text, place, old, new, new - old, causes)
-
-
-def _records(kernels: Iterable[KernelRecord]) -> Mapping[_Owner, list[KernelRecord]]:
-    found: defaultdict[_Owner, list[KernelRecord]] = defaultdict(list)
-    for each in kernels:
-        found[_Owner(each.stage, each.kernel, each.symbol)].append(each)
-    return dict(found)
-
-
-def _line_costs(records: Iterable[KernelRecord]) -> dict[int, LineCost]:
-    """Add up the lines of one kernel on different cores."""
-    found: dict[int, LineCost] = {}
-    for line in (line for record in records for line in record.lines):
-        other = found.get(line.line)
-        found[line.line] = line if other is None else _added(line, other)
-    return found
-
-
-def _added(one: LineCost, other: LineCost) -> LineCost:
-    return LineCost(
-        line=one.line,
-        executions=one.executions + other.executions,
-        issue_cclk=one.issue_cclk + other.issue_cclk,
-        stall_cclk=Counter(one.stall_cclk) + Counter(other.stall_cclk),
+def _at(pair: LinePair, olds: Sequence[Line], news: Sequence[Line]) -> tuple[Line | None, Line | None]:
+    return (
+        olds[pair.old] if pair.old is not None else None,
+        news[pair.new] if pair.new is not None else None,
     )
 
 
 def _sum(kind: Kind, name: str, parts: Sequence[Contribution]) -> Contribution:
     before = sum(each.before_cclk or 0 for each in parts)
     after = sum(each.after_cclk or 0 for each in parts)
-    changed = _by_size(each for each in parts if each.cclk)
-    return _contribution(kind, name, "", before, after, after - before, changed)
+    return _contribution(kind, name, "", before, after, _by_size(each for each in parts if each.cclk))
 
 
 def _by_size(parts: Iterable[Contribution]) -> tuple[Contribution, ...]:
@@ -143,8 +138,9 @@ def _contribution(
     place: str,
     before_cclk: int | None,
     after_cclk: int | None,
-    cclk: int,
     parts: tuple[Contribution, ...] = (),
+    *,
+    cclk: int | None = None,
 ) -> Contribution:
     return Contribution(
         kind=kind,
@@ -152,13 +148,6 @@ def _contribution(
         place=place,
         before_cclk=before_cclk,
         after_cclk=after_cclk,
-        cclk=cclk,
+        cclk=(after_cclk or 0) - (before_cclk or 0) if cclk is None else cclk,
         parts=parts,
     )
-
-
-def walk(contributions: Iterable[Contribution], depth: int = 0) -> Iterator[tuple[int, Contribution]]:
-    """Yield each contribution with its depth, parts after their whole."""
-    for each in contributions:
-        yield depth, each
-        yield from walk(each.parts, depth + 1)

@@ -22,8 +22,8 @@ class Contribution:
     """Part of a difference, in CCLK cycles of both cores over all compared frames. The `parts`, if any, sum to `cclk`.
 
     `place` is FILE:LINE of the new run, or of the old one for what is gone. `before_cclk` and `after_cclk` are None for a cause,
-    which is a difference alone. Waits for the other core or for the cameras are of kind FOLLOWS: they grow and shrink with what
-    the rest of the firmware takes.
+    which is a difference alone. Waits for the other core or for the cameras are of kind FOLLOWS, with the stages that they are
+    in as parts: they grow and shrink with what the rest of the firmware takes, which is without them.
     """
 
     kind: Kind
@@ -70,13 +70,17 @@ class SeenChange:
 class Difference:
     """Two runs beside each other. `frames` are those that both have; cycles are of these alone.
 
-    The `stages` sum to `after_cclk - before_cclk`, the largest contribution first. They have source lines only where both runs
+    A baseline has cycles of all of its frames together: beside one, all frames are compared, with lines, and those of another
+    number of frames, `measured_frames`, in proportion.
+
+    The `stages` sum to `after_cclk - before_cclk`, the largest contribution first, and last the waits (FOLLOWS). They have source lines only where both runs
     have the same frames (`has_lines`), since lines are counted over a whole run. `before_ms` and `after_ms` are of a frame on
     average, at the core clocks `before_hz` and `after_hz`. `results` are the firmware's published numbers, summed over the frames.
     """
 
     configuration: tuple[Change, ...]
     frames: tuple[int, ...]
+    measured_frames: int
     has_lines: bool
     before_ms: float
     after_ms: float

@@ -30,6 +30,27 @@ def clock(difference: Difference) -> str:
     return f"The core clock went from {mhz(before)} to {mhz(after)}, which alone makes {alone_ms:+.2f} ms a frame."
 
 
+def work(difference: Difference) -> str:
+    """Say what the cores do beside waiting for each other and for the cameras; nothing where that is as before."""
+    waits = next((each for each in difference.stages if each.kind is Kind.FOLLOWS), None)
+    if waits is None:
+        return ""
+    frames = len(difference.frames)
+    before, after = (
+        (cclk - (waited or 0)) * 1000 / (hz * frames)
+        for cclk, waited, hz in (
+            (difference.before_cclk, waits.before_cclk, difference.before_hz),
+            (difference.after_cclk, waits.after_cclk, difference.after_hz),
+        )
+    )
+    if f"{before:.2f}" == f"{after:.2f}":
+        return ""
+    return (
+        f"Without waits for each other and for the cameras, the cores take {before:.2f} → {after:.2f} ms a frame "
+        "together."
+    )
+
+
 def reason(difference: Difference) -> str:
     """Say where the largest contribution is, from the stage down to the cause; nothing where there is no difference."""
     parts = [f"{_named(each)} {counted(each.cclk, sign=True)}" for each in _largest(difference.stages)]
@@ -46,12 +67,6 @@ def _largest(parts: Sequence[Contribution]) -> Iterator[Contribution]:
     """Yield the largest contribution that follows from no other, and in it the largest again."""
     own = [each for each in parts if each.kind is not Kind.FOLLOWS and each.cclk]
     if own:
-        largest = max(own, key=lambda each: abs(_own_cclk(each)))
+        largest = max(own, key=lambda each: abs(each.cclk))
         yield largest
         yield from _largest(largest.parts)
-
-
-def _own_cclk(contribution: Contribution) -> int:
-    """Cycles without the waits that follow from others."""
-    following = sum(each.cclk for each in contribution.parts if each.kind is Kind.FOLLOWS)
-    return contribution.cclk - following

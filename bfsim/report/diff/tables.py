@@ -10,7 +10,7 @@ from rich.text import Text
 
 from bfsim.report.diff.contributions import walk
 from bfsim.report.diff.difference import Change, Contribution, Difference, Kind
-from bfsim.report.diff.sentences import clock, reason, verdict
+from bfsim.report.diff.sentences import clock, reason, verdict, work
 from bfsim.report.tables import new_table, stacked
 from bfsim.report.units import counted
 
@@ -23,11 +23,17 @@ RESULTS_LISTED = 10
 
 def diff_report(difference: Difference, top: int) -> RenderableType:
     """Return the difference: what it is, what was compared, the `top` contributions, frames, results and what was seen."""
-    lines = [verdict(difference), clock(difference), reason(difference), *_scope(difference)]
+    lines = [
+        verdict(difference),
+        clock(difference),
+        work(difference),
+        reason(difference),
+        *scope(difference),
+    ]
     return stacked(
         Text("\n".join(each for each in lines if each)),
         *_change_table("What differs in the configuration", "What", difference.configuration),
-        *_contribution_table(difference, top),
+        *contribution_table(difference, top),
         *_frame_table(difference),
         *_change_table(
             "Published numbers, all frames together", "Number", difference.results, RESULTS_LISTED
@@ -36,7 +42,13 @@ def diff_report(difference: Difference, top: int) -> RenderableType:
     )
 
 
-def _scope(difference: Difference) -> Iterator[str]:
+def scope(difference: Difference) -> Iterator[str]:
+    """Yield what is to be known of frames that are not the same."""
+    if difference.measured_frames != len(difference.frames):
+        yield (
+            f"The first side is of {difference.measured_frames} frames, the second of {len(difference.frames)}: cycles of "
+            "the first are in proportion."
+        )
     if not difference.has_lines:
         yield (
             f"The runs do not have the same frames: {len(difference.frames)} are in both, and cycles are of these, "
@@ -58,7 +70,8 @@ def _change_table(
         yield table
 
 
-def _contribution_table(difference: Difference, top: int) -> Iterator[Table]:
+def contribution_table(difference: Difference, top: int) -> Iterator[Table]:
+    """Yield the `top` contributions as a table, if there are any."""
     rows = shown(difference, top)
     if not rows:
         return
@@ -97,11 +110,15 @@ def cells(contribution: Contribution) -> tuple[str, str, str]:
 
 
 def shown(difference: Difference, top: int) -> list[tuple[int, Contribution]]:
-    """Return the `top` largest contributions that have no parts, and what they are parts of, with their depths."""
-    rows = list(walk(difference.stages))
+    """Return the `top` largest contributions that have no parts, and what they are parts of, with their depths.
+
+    Waits that follow from the rest are the last row.
+    """
+    rows = list(walk(each for each in difference.stages if each.kind is not Kind.FOLLOWS))
     leaves = [each for _, each in rows if not each.parts and each.cclk]
     wanted = {id(each) for each in sorted(leaves, key=lambda each: -abs(each.cclk))[:top]}
-    return [(depth, each) for depth, each in rows if wanted & set(_ids(each))]
+    found = [(depth, each) for depth, each in rows if wanted & set(_ids(each))]
+    return [*found, *((0, each) for each in difference.stages if each.kind is Kind.FOLLOWS)]
 
 
 def _ids(contribution: Contribution) -> Iterable[int]:

@@ -36,8 +36,7 @@ def frames_a_bar(run: RunRecord) -> int:
 
 def time_series(run: RunRecord, number: int, target: Target | None) -> Spec:
     """Return what the core at `number` used of each frame, stage by stage, beside a target."""
-    rows = [row for row in budget_rows(run) if row.within is None]
-    colours = stage_colours(row.stage for row in rows)
+    colours = row_colours(run)
     most_cclk = max(used_cclk(core) for frame in run.frames for core in frame.cores)
     top_ms = 1.05 * max(milliseconds(most_cclk, run.identity.cclk_hz), target.frame_ms if target else 0)
     bars = (
@@ -107,7 +106,8 @@ def cycle_stack(run: RunRecord, budget: Budget, core: CoreBudget) -> Spec:
 
 def gantt(run: RunRecord, tracks: list[str]) -> Spec:
     """Return what each core and device did in a frame; its bars, `BARS`, are filled in when a frame is chosen."""
-    colours = {**stage_colours(row.stage for row in budget_rows(run)), **MEANINGS}
+    stages = stage_colours(row.stage for row in budget_rows(run))
+    colours = {**stages, **part_colours(), **MEANINGS}
     bars = (
         alt.Chart(alt.NamedData(BARS))
         .mark_bar(height=0.8 * _TRACK_HEIGHT)
@@ -124,6 +124,13 @@ def gantt(run: RunRecord, tracks: list[str]) -> Spec:
         )
     )  # fmt: skip
     return _spec(bars, _TRACK_HEIGHT * len(tracks))
+
+
+def row_colours(run: RunRecord) -> dict[str, str]:
+    """Return the colours of the rows of the budget that are no part of another: the same as in a Gantt chart."""
+    rows = budget_rows(run)
+    colours = stage_colours(row.stage for row in rows)
+    return {row.stage: colours[row.stage] for row in rows if row.within is None}
 
 
 def part_colours() -> dict[str, str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
 
@@ -25,6 +25,8 @@ _MEANING = {
     SpanKind.TRANSFER: BUSY, SpanKind.LINE: BUSY, SpanKind.MESSAGE: BUSY, SpanKind.LOCK: BUSY,
 }  # fmt: skip
 _QUARTERS = 4
+WAITS = " waits"
+"""What the track of a core's waits is called behind its name. It has those that take an eighth of a slice or more."""
 _LEFT_OUT = {SpanKind.FRAME, SpanKind.LEVEL}
 
 Key = tuple[str, str]
@@ -51,6 +53,7 @@ class Gantts:
 
     def __init__(self) -> None:
         self.tracks: tuple[str, ...] = ()
+        self.meanings: set[str] = set()
         self._cclk_hz = 1.0
         self._cores: set[str] = set()
         self._spans: list[Span] = []
@@ -101,6 +104,7 @@ class Gantts:
         inside = [span for span in self._spans if span.begin_cclk < window.end_cclk]
         chart = chart_of(inside, window.begin_cclk, window.end_cclk, self._cclk_hz)
         self.tracks = tuple(sorted({*self.tracks, *chart["tracks"]}, key=_order))
+        self.meanings.update(meaning for meaning, _ in chart["keys"])
         self._spool.put(index, json.dumps(chart, separators=(",", ":")).encode())
         following = min((each.begin_cclk for each in self._windows.values()), default=window.end_cclk)
         self._spans = [span for span in self._spans if span.end_cclk > following]
@@ -121,15 +125,15 @@ def chart_of(
         end = (min(span.end_cclk, end_cclk) - begin_cclk) * slices
         if end <= begin:
             continue
-        track = sliced[_track(span)]
-        key = (_MEANING.get(span.kind, span.name), span.name)
-        for number in range(begin // length_cclk, -(-end // length_cclk)):
-            overlap = min(end, (number + 1) * length_cclk) - max(begin, number * length_cclk)
-            track[number][key] += overlap
+        for track, key, cclk in _shares(span):
+            for number in range(begin // length_cclk, -(-end // length_cclk)):
+                overlap = min(end, (number + 1) * length_cclk) - max(begin, number * length_cclk)
+                sliced[track][number][key] += overlap * cclk // span.elapsed_cclk
     tracks, keys = sorted(sliced, key=_order), dict[Key, int]()
     bars: list[Bar] = []
     for place, name in enumerate(tracks):
-        bars += _bars(place, sliced[name], keys, length_cclk)
+        least = 0 if name.endswith(WAITS) else 1
+        bars += _bars(place, sliced[name], keys, length_cclk, least)
     if len(bars) > MOST_BARS and slices > 1:
         return chart_of(spans, begin_cclk, end_cclk, cclk_hz, slices // 2)
     return {
@@ -140,13 +144,24 @@ def chart_of(
     }
 
 
-def _bars(place: int, slices: dict[int, Counter[Key]], keys: dict[Key, int], slice_parts: int) -> list[Bar]:
-    """Return the bars of a track: neighbours that are alike become one."""
+def _shares(span: Span) -> Iterator[tuple[str, Key, int]]:
+    """Yield the tracks that a span lies on, as what, and with how many of its cycles: its own, and that of its core's waits."""
+    yield _track(span), (_MEANING.get(span.kind, span.name), span.name), span.elapsed_cclk
+    for reason, cclk in span.stall_cclk.items():
+        yield f"{span.where}{WAITS}", (reason.value, span.name), cclk
+
+
+def _bars(
+    place: int, slices: dict[int, Counter[Key]], keys: dict[Key, int], slice_parts: int, least: int
+) -> list[Bar]:
+    """Return the bars of a track, of at least so many quarters: neighbours that are alike become one."""
     bars: list[Bar] = []
     for number in sorted(slices):
         key = _most(slices[number])
         busy = sum(slices[number].values()) / slice_parts
-        quarters = min(_QUARTERS, max(1, round(busy * _QUARTERS)))
+        quarters = min(_QUARTERS, max(least, round(busy * _QUARTERS)))
+        if not quarters:
+            continue
         name = keys.setdefault(key, len(keys))
         if bars and (bars[-1][1], *bars[-1][3:]) == (name, number - 1, quarters):
             bars[-1] = (place, name, bars[-1][2], number, quarters)

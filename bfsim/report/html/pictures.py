@@ -1,4 +1,4 @@
-"""What was seen, as pictures that are small enough for a page."""
+"""What was seen, and where in the picture the time went, as pictures that are small enough for a page."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ from typing import Self
 
 from PIL import Image
 
+from bfsim.report.overlay.layers import UNDER_HEAT
 from bfsim.report.overlay.overlay import overlay_of
 from bfsim.report.spool import Spool
 from bfsim.seen import SeenFrame
 
 PAGE_BYTES = 4_000_000
 """Of all pictures of a page together: with 100 frames in it, what is around them leaves so much of 8 MB."""
+HEAT_SHARE = 0.35
+"""Of these for the heat maps: they have smooth colours and few words."""
 
 _PIXELS_A_BYTE = 25
 """A picture has at most so many: then most are small enough at the first quality, and words can be read."""
@@ -23,28 +26,54 @@ _LEAST_WIDTH = 480  # px: nothing smaller is a picture of a frame
 
 
 class Pictures:
-    """The overlay of each frame of a run, as small as a page of `frames` of them needs it. A context manager.
+    """The overlay of each frame of a run and its heat map, as small as a page of `frames` of them needs it. A context manager.
 
     In memory there is one at a time. Raises ConfigError where there is no room for its file.
     """
 
     def __init__(self) -> None:
         self.frames = 1
-        self._spool = Spool()
+        self._overlays = Spool()
+        self._heats = Spool()
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_error: object) -> None:
-        self._spool.__exit__()
+        self._overlays.__exit__()
+        self._heats.__exit__()
 
     def add(self, frame: SeenFrame) -> None:
-        """Draw a frame."""
-        self._spool.put(frame.index, webp_of(overlay_of(frame), PAGE_BYTES * 3 // 4 // self.frames))
+        """Draw what was seen in a frame."""
+        self._overlays.put(frame.index, webp_of(overlay_of(frame), self._room_bytes(1 - HEAT_SHARE)))
 
-    def uri(self, index: int) -> str:
-        """Return the picture of a frame as an address that holds it."""
-        return f"data:image/webp;base64,{b64encode(self._spool[index]).decode()}"
+    def add_heat(self, frame: SeenFrame) -> None:
+        """Draw the heat of a frame whose cameras have theirs."""
+        self._heats.put(frame.index, webp_of(overlay_of(frame, UNDER_HEAT), self._room_bytes(HEAT_SHARE)))
+
+    def has_overlay(self, index: int) -> bool:
+        """Whether a frame was seen."""
+        return index in self._overlays
+
+    def overlay_uri(self, index: int) -> str:
+        """Return what was seen in a frame as an address that holds the picture."""
+        return _uri(self._overlays[index])
+
+    def has_heat(self, index: int) -> bool:
+        """Whether there is a heat map of a frame: there is none of one that was cut short."""
+        return index in self._heats
+
+    def heat_uri(self, index: int) -> str:
+        """Return the heat map of a frame as an address that holds the picture."""
+        return _uri(self._heats[index])
+
+    def _room_bytes(self, share: float) -> int:
+        """Return how large a picture may be; as an address it is a third larger."""
+        return int(share * PAGE_BYTES * 3 // 4 // self.frames)
+
+
+def _uri(content: bytes) -> str:
+    return f"data:image/webp;base64,{b64encode(content).decode()}"
 
 
 def webp_of(image: Image.Image, nbytes: int) -> bytes:

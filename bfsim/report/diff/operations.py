@@ -1,0 +1,52 @@
+"""What the operations of the Blackfin (`bfsim.kernel.isa.Op`) and the routines of its run-time library are called in sentences."""
+
+from __future__ import annotations
+
+PREDICTED, MISPREDICTED = "branch taken as predicted", "branch mispredicted"
+
+WORDS = {
+    "load8": "load of 8 bits",
+    "load16": "load of 16 bits",
+    "load32": "load of 32 bits",
+    "store8": "store of 8 bits",
+    "store16": "store of 16 bits",
+    "store32": "store of 32 bits",
+    "alu": "addition or logic",
+    "dsp_alu": "minimum, maximum or magnitude",
+    "shift": "shift",
+    "add_shift": "addition with shift",
+    "mul16": "multiplication of 16 bits",
+    "mac": "multiplication and addition",
+    "mul32": "multiplication of 32 bits",
+    "move": "move",
+    "imm": "constant",
+    "imm32": "constant of 32 bits",
+    "extend": "extension to 32 bits",
+    "compare": "comparison",
+    "bit_test": "test of a bit",
+    "cond_move": "conditional move",
+    "cc_move": "move of a condition",
+    "loop_setup": "set-up of a hardware loop",
+    "branch_taken": MISPREDICTED,
+    "branch_not_taken": "branch not taken, as predicted",
+    "branch_taken_bp": PREDICTED,
+    "branch_not_taken_bp": MISPREDICTED,
+    "jump": "jump",
+    "call": "call",
+    "tail_call": "call at the end",
+    "nop": "NOP",
+    "library": "fill by the library",
+    "ret": "return",
+    "link": "set-up of a stack frame",
+    "unlink": "end of a stack frame",
+    "push": "push",
+    "pop": "pop",
+    "push_multiple": "push of several registers",
+    "pop_multiple": "pop of several registers",
+}
+"""By `Op`; a branch that is taken against what the chip expects costs as much as one that is not."""
+
+
+def words(name: str) -> str:
+    """Return what an operation is called; one that has no entry is a routine of the library."""
+    return WORDS.get(name) or (f"library {name}" if name else "operations")

@@ -1,0 +1,124 @@
+"""A run, or a result that was read back, as a side of a comparison."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import fields
+from pathlib import PurePath
+
+from bfsim.report.budget import frame_rate_hz
+from bfsim.report.diff.side import SEPARATOR, Line, Owner, Side, Source, Stall
+from bfsim.report.result_file import Result
+from bfsim.report.seen_json import name_of_object
+from bfsim.trace import FrameRecord, Identity, KernelRecord, LineCost, RunRecord
+
+Place = tuple[str, str, int]
+"""Stage, symbol and line."""
+
+
+def result_side(result: Result, chosen: Collection[int]) -> Side:
+    """Return a run in those of its frames that are chosen by their index; lines are counted over a whole run alone."""
+    run = result.run
+    frames = [each for each in run.frames if each.index in chosen]
+    places = [place for place, each in enumerate(run.frames) if each.index in chosen]
+    owners, waits = Counter[Owner](), Counter[str]()
+    for each in result.owners:
+        waiting = sum(each.waiting_cclk[place] for place in places)
+        elapsed = sum(each.elapsed_cclk[place] for place in places)
+        owners[Owner(each.stage, each.owner, each.symbol)] += elapsed - waiting
+        waits[each.stage] += waiting
+    names = dict.fromkeys(name for frame in frames for name in frame.results)
+    return Side(
+        configuration=configuration_of(run.identity),
+        cclk_hz=run.identity.cclk_hz,
+        frame_ms=1000 / frame_rate_hz(run.frames, run.identity.cclk_hz),
+        frames=tuple(each.index for each in frames),
+        owners=owners,
+        waits=waits,
+        sources=_sources(run) if len(frames) == len(run.frames) else {},
+        memories={each.buffer: each.memory for each in run.buffers},
+        frame_cclk={each.index: _longest_cclk(each) for each in frames},
+        results={name: [frame.results.get(name) for frame in frames] for name in names},
+        seen={
+            index: Counter(map(name_of_object, result.seen[index]["objects"]))
+            for index in sorted(set(result.seen) & {each.index for each in frames})
+        },
+    )
+
+
+def configuration_of(identity: Identity) -> dict[str, str]:
+    """Return what a result depends on, by what people call it."""
+    values = {field.name: getattr(identity, field.name) for field in fields(Identity)}
+    return {
+        name.replace("_digest", ": content").replace("_", " "): SEPARATOR.join(value)
+        if isinstance(value, tuple)
+        else str(value)
+        for name, value in values.items()
+    }
+
+
+def _longest_cclk(frame: FrameRecord) -> int:
+    return max(core.end_cclk - core.begin_cclk for core in frame.cores)
+
+
+def _sources(run: RunRecord) -> Mapping[Owner, Source]:
+    """Return the lines of each kernel with what they cost on all cores."""
+    records: defaultdict[Owner, list[KernelRecord]] = defaultdict(list)
+    for each in run.kernels:
+        records[Owner(each.stage, each.kernel, each.symbol)].append(each)
+    stalls = _stalls(run)
+    return {owner: _source(owner, same, stalls) for owner, same in records.items()}
+
+
+def _stalls(run: RunRecord) -> Mapping[Place, Counter[Stall]]:
+    """Return what lines waited for that is in a buffer."""
+    found: defaultdict[Place, Counter[Stall]] = defaultdict(Counter)
+    for each in run.accesses:
+        for reason, cclk in each.stall_cclk.items():
+            if each.buffer:
+                found[each.stage, each.symbol, each.line][Stall(reason.value, each.buffer)] += cclk
+    return found
+
+
+def _source(owner: Owner, records: Iterable[KernelRecord], stalls: Mapping[Place, Counter[Stall]]) -> Source:
+    costs: defaultdict[int, list[LineCost]] = defaultdict(list)
+    for line in (line for record in records for line in record.lines):
+        costs[line.line].append(line)
+    first = next(iter(records))
+    lines = (
+        _line(text, number, costs[number], stalls.get((owner.stage, owner.symbol, number), Counter()))
+        for number, text in enumerate(first.text, first.first_line)
+    )
+    return Source(place=f"{PurePath(first.file).name}:{first.first_line}", lines=tuple(lines))
+
+
+def _line(text: str, number: int, costs: Iterable[LineCost], of_buffers: Counter[Stall]) -> Line:
+    """Return a line of the costs that it has on each core. A wait for a buffer is that alone, of all for its reason."""
+    times, operations, stalls = 0, dict[str, tuple[int, int]](), Counter(of_buffers)
+    for each in costs:
+        times += each.executions
+        for name, count, cclk in _operations(each):
+            had_count, had_cclk = operations.get(name, (0, 0))
+            operations[name] = had_count + count, had_cclk + cclk
+        for reason, cclk in each.stall_cclk.items():
+            stalls[Stall(reason.value, "")] += cclk
+    for stall, cclk in of_buffers.items():
+        stalls[Stall(stall.reason, "")] -= cclk
+    return Line(
+        text=text.strip(),
+        number=number,
+        times=times,
+        operations=operations,
+        stalls={stall: cclk for stall, cclk in stalls.items() if cclk},
+    )
+
+
+def _operations(cost: LineCost) -> Iterator[tuple[str, int, int]]:
+    """Yield the operations of a line; those that are not told apart are one."""
+    told = 0
+    for name, (count, cclk) in cost.operations.items():
+        told += cclk
+        yield name, count, cclk
+    if told != cost.issue_cclk:
+        yield "", cost.executions, cost.issue_cclk - told

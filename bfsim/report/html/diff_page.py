@@ -1,0 +1,62 @@
+"""The page of a difference: from the stage to the cause, and the frames that changed most with their pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from bfsim.report.budget import milliseconds
+from bfsim.report.diff.difference import Difference
+from bfsim.report.diff.sentences import clock, reason, verdict, work
+from bfsim.report.diff.tables import cells, frames_compared, labelled, scope, seen_lines
+from bfsim.report.html.pictures import Pictures
+from bfsim.report.html.rendering import rendered
+
+FRAMES = 5
+"""So many of the frames that changed most are shown."""
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """What was compared: its name, and its pictures if it was run for that. What was read from a file has none."""
+
+    name: str
+    pictures: Pictures | None
+
+    def picture_uri(self, index: int) -> str:
+        """Return what was seen in a frame as an address that holds the picture; nothing where there is none."""
+        if self.pictures is None or not self.pictures.has_overlay(index):
+            return ""
+        return self.pictures.overlay_uri(index)
+
+
+@dataclass(frozen=True, slots=True)
+class DiffPage:
+    """All that a page shows of two runs beside each other."""
+
+    difference: Difference
+    before: Side
+    after: Side
+
+    def chunks(self) -> Iterator[str]:
+        """Yield the page as HTML, piece by piece."""
+        difference = self.difference
+        largest_cclk = max((abs(each.cclk) for each in difference.stages), default=0)
+        return rendered(
+            "diff.html",
+            {
+                "difference": difference,
+                "sides": {"before": self.before, "after": self.after},
+                "verdict": verdict(difference),
+                "why": [each for each in (clock(difference), work(difference), reason(difference)) if each],
+                "scope": list(scope(difference)),
+                "compared": frames_compared(difference),
+                "labelled": labelled,
+                "cells": cells,
+                "half": lambda cclk: f"{50 * abs(cclk) / largest_cclk:.2f}" if largest_cclk else "0",
+                "frames": difference.changed_frames[:FRAMES],
+                "before_ms": lambda cclk: milliseconds(cclk, difference.before_hz),
+                "after_ms": lambda cclk: milliseconds(cclk, difference.after_hz),
+                "seen": list(seen_lines(difference)),
+            },
+        )

@@ -1,0 +1,97 @@
+"""Buffers: who accessed them, and what was waited for them; and what every master moved over each bus."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rich.filesize import decimal
+from rich.table import Table
+
+from bfsim.report.profile.buffers import BufferProfile, buffers_of, traffic_of
+from bfsim.report.profile.view import View, others_row
+from bfsim.report.tables import new_table, percent
+
+
+def buffer_tables(view: View) -> Iterator[Table]:
+    """Yield the buffers that were waited for most or moved most, then the buses."""
+    buffers = buffers_of(view.run, view.core, view.stage)
+    title = view.title("buffer")
+    table = new_table(title, "Buffer", "Memory", "Reads", "Writes", "Cached%", "ms", "%", "Waits")
+    table.columns[1].justify = table.columns[-1].justify = "left"
+    table.columns[-1].no_wrap = False
+    accessed = [each for each in buffers if each.reads or each.writes or each.stalled_cclk]
+    for each in accessed[: view.top]:
+        hits = each.cache_hits
+        table.add_row(
+            each.buffer,
+            each.memory,
+            f"{each.reads:,}",
+            f"{each.writes:,}",
+            "" if hits is None else percent(hits, 1),
+            view.ms(each.stalled_cclk),
+            view.share(each.stalled_cclk),
+            max(each.stall_cclk, key=lambda reason: each.stall_cclk[reason]).value
+            if each.stalled_cclk
+            else "",
+        )
+    _add_the_rest(table, view, accessed)
+    yield table
+    moved = new_table(
+        "Buffers on the buses, all masters",
+        "Buffer",
+        "By cores",
+        "By DMA",
+        "Page hits",
+        "misses",
+        "conflicts",
+    )
+    on_bus = sorted(buffers, key=lambda each: -each.core_bytes - each.dma_bytes)
+    for each in on_bus[: view.top]:
+        if each.core_bytes or each.dma_bytes:
+            pages = (each.page_hits, each.page_misses, each.page_conflicts)
+            moves = decimal(each.core_bytes), decimal(each.dma_bytes)
+            moved.add_row(each.buffer, *moves, *(f"{count:,}" for count in pages))
+    if moved.row_count:
+        yield moved
+    yield from traffic_tables(view)
+
+
+def _add_the_rest(table: Table, view: View, buffers: Sequence[BufferProfile]) -> None:
+    """Add what no buffer that is shown was waited for, so that the rows add up to the frames."""
+    cost, others = view.profile.cost, buffers[view.top :]
+    waited = sum(each.stalled_cclk for each in buffers)
+    left = {
+        others_row(len(others)): sum(each.stalled_cclk for each in others),
+        "(work)": cost.issue_cclk,
+        "(other waits)": cost.stalled_cclk - waited,
+        "(idle)": cost.idle_cclk,
+    }
+    table.add_section()
+    for name, cclk in left.items():
+        if cclk:
+            table.add_row(name, "", "", "", "", view.ms(cclk), view.share(cclk), "")
+    table.add_section()
+    cclk = cost.elapsed_cclk
+    table.add_row(view.all, "", "", "", "", view.ms(cclk), view.share(cclk), "", style="bold")
+
+
+def traffic_tables(view: View) -> Iterator[Table]:
+    """Yield what every master moved, if any did."""
+    traffic = traffic_of(view.run)
+    pages = "Page hits", "misses", "conflicts"
+    table = new_table("Memories, all masters", "Memory", "Master", "Read", "Written", *pages, "Bus busy %")
+    table.columns[1].justify = "left"
+    for each in sorted(traffic, key=lambda each: (each.traffic.memory, -each.busy_share)):
+        moved = each.traffic
+        table.add_row(
+            moved.memory,
+            moved.master,
+            decimal(moved.read_bytes),
+            decimal(moved.written_bytes),
+            f"{moved.page_hits:,}",
+            f"{moved.page_misses:,}",
+            f"{moved.page_conflicts:,}",
+            percent(each.busy_share, 1),
+        )
+    if traffic:
+        yield table

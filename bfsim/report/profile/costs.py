@@ -1,0 +1,167 @@
+"""Where the cycles go: stage, owner and source line. Each level adds up to the one above, and all of it to the frames."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import PurePath
+
+from bfsim.report.budget import budget_rows, stage_names
+from bfsim.report.start_up import without_start_up
+from bfsim.trace import CoreFrame, KernelRecord, OwnerCost, RunRecord, StallReason
+
+
+@dataclass(slots=True)
+class Cost:
+    """Cycles that add up: issue + stall + idle = elapsed."""
+
+    issue_cclk: int = 0
+    stall_cclk: Counter[StallReason] = field(default_factory=Counter)
+    idle_cclk: int = 0
+
+    @property
+    def stalled_cclk(self) -> int:
+        """Stalls for whatever reason."""
+        return sum(self.stall_cclk.values())
+
+    @property
+    def elapsed_cclk(self) -> int:
+        """All cycles."""
+        return self.issue_cclk + self.stalled_cclk + self.idle_cclk
+
+    def add(self, issue_cclk: int, stall_cclk: Mapping[StallReason, int], idle_cclk: int = 0) -> None:
+        """Add cycles of each kind."""
+        self.issue_cclk += issue_cclk
+        self.stall_cclk.update(stall_cclk)
+        self.idle_cclk += idle_cclk
+
+
+@dataclass(slots=True, kw_only=True)
+class LineProfile:
+    """One source line of a kernel; `text` is the line as it is in the file."""
+
+    line: int
+    text: str
+    executions: int = 0
+    cost: Cost = field(default_factory=Cost)
+
+
+@dataclass(slots=True, kw_only=True)
+class OwnerProfile:
+    """One owner in one stage: a kernel without its callees, or without a `symbol` what no kernel does. `place` is file:line."""
+
+    owner: str
+    symbol: str
+    place: str = ""
+    calls: int = 0
+    cost: Cost = field(default_factory=Cost)
+    lines: tuple[LineProfile, ...] = ()
+
+
+@dataclass(slots=True, kw_only=True)
+class StageProfile:
+    """The owners of one stage, the dearest first."""
+
+    stage: str
+    cost: Cost
+    owners: tuple[OwnerProfile, ...]
+
+
+@dataclass(slots=True, kw_only=True)
+class Profile:
+    """The frames of some cores broken down. `whole` is what all shares are of: these frames, on all of these cores together.
+
+    `cost` is what the `stages` add up to: the whole, or one row of the budget with its parts.
+    """
+
+    cores: tuple[str, ...]
+    frames: int
+    whole: Cost
+    stages: tuple[StageProfile, ...]
+
+    @property
+    def cost(self) -> Cost:
+        """What the stages add up to."""
+        return sum_of(each.cost for each in self.stages)
+
+    def share(self, cclk: int) -> float:
+        """Return the part of the whole that some cycles are, 0..1."""
+        return cclk / self.whole.elapsed_cclk if self.whole.elapsed_cclk else 0.0
+
+
+def sum_of(costs: Iterable[Cost]) -> Cost:
+    """Return all costs together."""
+    result = Cost()
+    for each in costs:
+        result.add(each.issue_cclk, each.stall_cclk, each.idle_cclk)
+    return result
+
+
+def stages_in(run: RunRecord, stage: str | None) -> tuple[str, ...]:
+    """Return the stages that a row of the budget holds, itself and its parts; without a name all of them."""
+    within = {each.stage: each.within for each in budget_rows(run)}
+    return tuple(each for each in stage_names(run) if stage in (None, each, within.get(each)))
+
+
+def cores_of(run: RunRecord, core: str | None = None) -> tuple[str, ...]:
+    """Return the cores of a run, or the one that is asked for."""
+    return tuple(each.core for each in run.frames[0].cores) if core is None else (core,)
+
+
+def core_frames(run: RunRecord, cores: Sequence[str]) -> Iterator[CoreFrame]:
+    """Yield what the frames of a run were on these cores, without the start-up."""
+    for frame in without_start_up(run).frames:
+        yield from (each for each in frame.cores if each.core in cores)
+
+
+def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None) -> Profile:
+    """Break a run of at least one frame down, for one core or for all together, and for one stage or all of them."""
+    cores = cores_of(run, core)
+    owners: dict[str, dict[tuple[str, str], OwnerProfile]] = {}
+    costs: dict[str, Cost] = {}
+    whole = Cost()
+    for frame in core_frames(run, cores):
+        for each in frame.stages:
+            whole.add(each.issue_cclk, each.stall_cclk, each.idle_cclk)
+            costs.setdefault(each.stage, Cost()).add(each.issue_cclk, each.stall_cclk, each.idle_cclk)
+        for owner in frame.owners:
+            _add_owner(owners.setdefault(owner.stage, {}), owner)
+    for record in run.kernels:
+        if record.core in cores and record.symbol:
+            found = owners.get(record.stage, {}).get((record.kernel, record.symbol))
+            if found:
+                _add_lines(found, record)
+    return Profile(
+        cores=cores,
+        frames=len(run.frames),
+        whole=whole,
+        stages=tuple(
+            StageProfile(stage=each, cost=costs[each], owners=_dearest(owners.get(each, {}).values()))
+            for each in stages_in(run, stage)
+            if each in costs and costs[each].elapsed_cclk
+        ),
+    )
+
+
+def _dearest(owners: Iterable[OwnerProfile]) -> tuple[OwnerProfile, ...]:
+    return tuple(sorted(owners, key=lambda each: -each.cost.elapsed_cclk))
+
+
+def _add_owner(owners: dict[tuple[str, str], OwnerProfile], cost: OwnerCost) -> None:
+    key = cost.owner, cost.symbol
+    found = owners.setdefault(key, OwnerProfile(owner=cost.owner, symbol=cost.symbol))
+    found.calls += cost.calls
+    found.cost.add(cost.issue_cclk, cost.stall_cclk, cost.idle_cclk)
+
+
+def _add_lines(found: OwnerProfile, record: KernelRecord) -> None:
+    """Add the lines of a kernel on one core to those on others."""
+    text = dict(enumerate(record.text, start=record.first_line))
+    lines = {each.line: each for each in found.lines}
+    for cost in record.lines:
+        line = lines.setdefault(cost.line, LineProfile(line=cost.line, text=text.get(cost.line, "")))
+        line.executions += cost.executions
+        line.cost.add(cost.issue_cclk, cost.stall_cclk)
+    found.place = f"{PurePath(record.file).name}:{record.first_line}"
+    found.lines = tuple(lines[number] for number in sorted(lines))

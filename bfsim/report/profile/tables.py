@@ -1,0 +1,48 @@
+"""The profile of a run as rich tables that fit 80 columns, behind the three sentences that matter most."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from bfsim.report.profile.buffer_tables import buffer_tables
+from bfsim.report.profile.caller_tables import caller_tables
+from bfsim.report.profile.frame_tables import frame_tables
+from bfsim.report.profile.kernel_tables import kernel_tables, line_tables
+from bfsim.report.profile.reason_tables import reason_tables
+from bfsim.report.profile.sentences import sentences_of
+from bfsim.report.profile.view import View
+from bfsim.report.tables import configuration, stacked, warning_table
+from bfsim.trace import RunRecord
+
+VIEWS: Mapping[str, Callable[[View], Iterator[Table]]] = {
+    "kernel": kernel_tables,
+    "line": line_tables,
+    "buffer": buffer_tables,
+    "reason": reason_tables,
+    "frame": frame_tables,
+    "caller": caller_tables,
+}
+"""What a profile can be by; the first is what is shown unasked."""
+
+
+def profile_report(
+    run: RunRecord, core: str | None = None, top: int = 20, by: str = "kernel", stage: str | None = None
+) -> RenderableType:
+    """Return the profile of a run of at least one frame by one of `VIEWS`, for one core or all, one stage or all.
+
+    `top`: how many lines, buffers or callers are shown.
+    """
+    view = View.of(run, core, stage, top)
+    return stacked(
+        Text("\n".join(sentences_of(run, core, stage)), style="bold"),
+        *VIEWS[by](view),
+        Text(
+            f"Also: --by {', '.join(each for each in VIEWS if each != by)}; --stage, --core, --top, --json."
+        ),
+        configuration(run),
+        *warning_table(run),
+    )

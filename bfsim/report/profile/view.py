@@ -1,0 +1,93 @@
+"""What every table of a profile is of, and the cells that they share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rich.table import Table
+from rich.text import Text
+
+from bfsim.report.budget import milliseconds
+from bfsim.report.profile.costs import Cost, Profile, profile_of, sum_of
+from bfsim.report.tables import percent
+from bfsim.trace import RunRecord
+
+NO_KERNEL = "(no kernel)"
+"""The row of what rings, semaphores, interrupts and the cameras have."""
+BAR = 10
+"""Characters that stand for the whole."""
+WORK, STALL, IDLE = ("█", "cyan"), ("▓", "red"), ("░", "bright_black")
+"""How they are drawn, and in which colour where there are colours: as in the report of a run."""
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """A profile of one core or all, one stage or all; `top` is how many rows of a kind are shown."""
+
+    run: RunRecord
+    core: str | None
+    stage: str | None
+    top: int
+    profile: Profile
+
+    @classmethod
+    def of(cls, run: RunRecord, core: str | None, stage: str | None, top: int) -> View:
+        """Look at a run of at least one frame."""
+        return cls(run, core, stage, top, profile_of(run, core, stage))
+
+    def title(self, by: str) -> str:
+        """Return the title of a table."""
+        cores = " + ".join(self.profile.cores)
+        return f"Core {cores}{f', {self.stage}' if self.stage else ''}: cycles by {by}"
+
+    @property
+    def all(self) -> str:
+        """What the last row is called, which the others add up to."""
+        return "All" if self.stage is None else f"All of {self.stage}"
+
+    def of_no_kernel(self) -> Cost:
+        """Return what rings, semaphores, interrupts and the cameras have of it."""
+        owners = (owner for stage in self.profile.stages for owner in stage.owners)
+        return sum_of(each.cost for each in owners if not each.symbol)
+
+    def ms(self, cclk: int) -> str:
+        """Return cycles of the whole run as milliseconds a frame."""
+        return f"{milliseconds(cclk, self.run.identity.cclk_hz) / self.profile.frames:.2f}"
+
+    def share(self, cclk: int) -> str:
+        """Return the percentage of the whole."""
+        return percent(self.profile.share(cclk), 1)
+
+    def bar(self, cost: Cost) -> Text:
+        """Return work, stalls and idling as parts of the whole."""
+        text, cclk = Text(), 0
+        for part, (sign, style) in (
+            (cost.issue_cclk, WORK),
+            (cost.stalled_cclk, STALL),
+            (cost.idle_cclk, IDLE),
+        ):
+            cclk += part
+            text.append(sign * (round(BAR * self.profile.share(cclk)) - len(text)), style)
+        return text
+
+    def cost_cells(self, cost: Cost) -> tuple[str, str, str, Text]:
+        """Return ms, stall %, share and bar of a cost."""
+        cclk = cost.elapsed_cclk
+        return self.ms(cclk), percent(cost.stalled_cclk, cclk), self.share(cclk), self.bar(cost)
+
+
+def others_row(count: int) -> str:
+    """Return what the row of all that is not shown is called."""
+    return f"({count:,} {'other' if count == 1 else 'others'})"
+
+
+COST_HEADS = "ms", "stall%", "%"
+"""Heads of `View.cost_cells`; the bar has none."""
+
+
+def with_bar(table: Table) -> Table:
+    """Give a table the column for bars; where room is short its names give way, never a number."""
+    key = Text.assemble(*(part for each in (WORK, STALL, IDLE) for part in (each,)))
+    table.add_column(key, no_wrap=True, min_width=BAR)
+    table.expand, table.columns[0].ratio = True, 1
+    return table

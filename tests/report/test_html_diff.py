@@ -1,0 +1,106 @@
+"""The page of a difference: all of its contributions, pictures where there are some, and nobody's markup but its own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from bfsim.report.diff.contributions import walk
+from bfsim.report.diff.difference import Change, Contribution, Difference, FrameChange, Kind, SeenChange
+from bfsim.report.html.diff_page import FRAMES, DiffPage, Side
+from bfsim.report.html.pictures import Pictures
+from tests.report.test_html import EVIL, Elements
+from tests.seen_frames import frame as seen_frame
+
+
+def contribution(kind: Kind, name: str, cclk: int, *parts: Contribution) -> Contribution:
+    """A part of a difference, of 1000 cycles before."""
+    return Contribution(
+        kind=kind,
+        name=name,
+        place="",
+        before_cclk=1000,
+        after_cclk=1000 + cclk,
+        cclk=cclk,
+        parts=parts,
+    )
+
+
+CAUSE = replace(contribution(Kind.CAUSE, "stall: L2 port", 700), before_cclk=None, after_cclk=None)
+LINE = contribution(Kind.LINE, "row[x] += by", 700, CAUSE)
+STAGES = (
+    contribution(Kind.STAGE, "Edges", 700, contribution(Kind.KERNEL, "blur", 700, LINE)),
+    contribution(Kind.STAGE, "Lines", -350, contribution(Kind.FOLLOWS, "waits", -350)),
+)
+DIFFERENCE = Difference(
+    configuration=(Change(what="ldf", before="l2.ldf", after="thesis.ldf"),),
+    frames=(4, 5),
+    measured_frames=2,
+    has_lines=True,
+    before_ms=10.0,
+    after_ms=10.5,
+    before_hz=1e6,
+    after_hz=2e6,
+    before_cclk=2000,
+    after_cclk=2350,
+    stages=STAGES,
+    changed_frames=tuple(
+        FrameChange(index=4 + each, before_cclk=9000, after_cclk=9500) for each in range(FRAMES + 1)
+    ),
+    results=(Change(what="edges", before="5", after="6"),),
+    seen=(SeenChange(name="ball", gone=True, frames=1, first=4),),
+)
+
+
+def page(difference: Difference, pictures: Pictures | None = None, name: str = "now") -> Elements:
+    """The page of a difference to a result that was read."""
+    return Elements("".join(DiffPage(difference, Side("old.json", None), Side(name, pictures)).chunks()))
+
+
+def test_the_whole_tree_is_there() -> None:
+    """Every contribution with its cycles, what has parts as something to open; the bars are parts of the largest stage."""
+    found = page(DIFFERENCE)
+    for _, each in walk(STAGES):
+        assert f"{each.cclk:+,}" in found.words
+        assert each.name in found.words
+    assert found.names.count("summary") == 4 + FRAMES
+    text = "".join(DiffPage(DIFFERENCE, Side("a", None), Side("b", None)).chunks())
+    assert text.count("width:50.00%") == 4
+    assert text.count("width:25.00%") == 2
+
+
+def test_the_frames_that_changed_most_have_the_pictures_that_there_are() -> None:
+    """Each in the clock of its own run; a result that was read has none, and says so."""
+    with Pictures() as pictures:
+        pictures.add(seen_frame(4))
+        found = page(DIFFERENCE, pictures)
+    words = " ".join(found.words.split())
+    assert "Frame 4 9.00 → 4.75 ms" in words
+    assert found.names.count("img") == 1
+    assert words.count("No picture: old.json was read") == FRAMES
+    assert f"{FRAMES + 1} of 2 changed" in words
+
+
+def test_what_is_not_there_has_no_part_of_the_page() -> None:
+    """Two runs that are the same: a sentence, and nothing to click."""
+    same = replace(
+        DIFFERENCE, configuration=(), after_hz=1e6, after_ms=10.0, after_cclk=2000,
+        stages=(), changed_frames=(), results=(), seen=(),
+    )  # fmt: skip
+    found = page(same)
+    assert "No difference: 10.00 ms a frame" in found.words
+    assert "section" not in found.names
+
+
+def test_names_are_words_and_no_markup() -> None:
+    """Of firmware, lines, numbers, objects and of the runs themselves; the page has no script at all."""
+    evil = contribution(Kind.STAGE, EVIL, 5, replace(LINE, name=EVIL, place=EVIL))
+    change = Change(what=EVIL, before=EVIL, after=EVIL)
+    seen = SeenChange(name=EVIL, gone=False, frames=1, first=0)
+    found = page(
+        replace(DIFFERENCE, configuration=(change,), stages=(evil,), results=(change,), seen=(seen,)),
+        name=EVIL,
+    )
+    assert "script" not in found.names
+    assert "img" not in found.names
+    assert found.words.count(EVIL) >= 8
+    assert all(each.startswith("#") for each in found.addresses)

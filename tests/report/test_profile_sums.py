@@ -1,0 +1,61 @@
+"""Every cycle has an owner in every table of the profile: real runs, under every placement, feed and fidelity."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bfsim.machine.board import Fidelity, Outcome
+from bfsim.machine.cameras.capture import Feed
+from bfsim.run import simulate
+from bfsim.trace import BudgetRow, RunRecord
+from tests.machine.made_boards import play
+from tests.machine.rig import STAGES
+from tests.machine.test_timeline import EVERYTHING, LDFS, STEPS, Step, main_of
+from tests.report.profile_sums import assert_profile_adds_up
+from tests.report.records import IDENTITY, run_of
+
+SHIPPED = "thesis", "l2", "sdram", "cache"
+
+
+def run_from(outcome: Outcome) -> RunRecord:
+    """The records of a board's run; the second stage is a part of the first."""
+    return replace(
+        run_of(outcome.frames),
+        identity=replace(IDENTITY, cclk_hz=600e6),
+        rows=(BudgetRow(stage=STAGES[0]), BudgetRow(stage=STAGES[1], within=STAGES[0])),
+        kernels=outcome.kernels,
+        accesses=outcome.accesses,
+        paths=outcome.paths,
+        buffers=outcome.buffers,
+        traffic=outcome.traffic,
+    )
+
+
+@pytest.mark.parametrize("feed", Feed)
+@pytest.mark.parametrize("ldf", LDFS)
+@pytest.mark.parametrize("fidelity", Fidelity)
+def test_rows_add_up_under_every_placement(ldf: str, feed: Feed, fidelity: Fidelity) -> None:
+    """Rings, locks, semaphores, interrupts, kernels in every memory, stages within stages."""
+    mains = main_of(EVERYTHING, handles=True), main_of(EVERYTHING[::-1], handles=True)
+    assert_profile_adds_up(run_from(play(*mains, frames=3, ldf=LDFS[ldf], feed=feed, fidelity=fidelity)))
+
+
+@given(STEPS, STEPS, st.booleans(), st.sampled_from(list(LDFS)), st.integers(1, 3))
+@settings(max_examples=15, deadline=None)
+def test_rows_of_chance_firmware_add_up(
+    of_a: list[Step], of_b: list[Step], handles: bool, ldf: str, frames: int
+) -> None:
+    """Whatever the cores do, and in whichever order they meet."""
+    mains = main_of(of_a, handles=handles), main_of(of_b, handles=handles)
+    assert_profile_adds_up(run_from(play(*mains, frames=frames, ldf=LDFS[ldf])))
+
+
+@pytest.mark.parametrize("ldf", SHIPPED)
+def test_rows_of_the_built_in_firmware_add_up(ldf: str) -> None:
+    """Two frames of the built-in recording, with the start-up told apart."""
+    assert_profile_adds_up(simulate(ldf=Path(ldf), frames=2))
