@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from bfsim import shipped
-from bfsim.errors import ConfigError, shown
+from bfsim.errors import ConfigError, cut, shown
 from bfsim.report.check.baseline import Case, Configuration, MeasuredOn, measured_on
 from bfsim.run import Feed, Fidelity, identified, recording_digest
 
@@ -17,6 +17,7 @@ def arguments_of(configuration: Configuration, folder: Path) -> dict[str, Any]:
     """Return the arguments of `simulate`; paths are relative to the `folder` of the baseline file."""
     given = configuration.model_dump(exclude_defaults=True)
     arguments: dict[str, Any] = {
+        "firmware": shipped.FIRMWARE[0],
         "feed": Feed(configuration.feed),
         "fidelity": Fidelity(configuration.fidelity),
         "settings": configuration.set,
@@ -81,21 +82,28 @@ def require_comparable(case: Case, path: Path) -> None:
     if then is None:
         return
     now = measured_on(identity, frames)
-    differences = [
-        f"{key} {name} has other {what} than when the limits were measured"
-        for key, name, what in (
-            ("board", identity.board, "numbers"),
-            ("compiler", identity.compiler, "costs"),
-            ("script", case.script, "orders"),
-        )
-        if getattr(then, key) != getattr(now, key)
-    ]
-    differences = [*_recording_differences(then, now, arguments.get("recording")), *differences]
+    differences = [*_recording_differences(then, now, arguments.get("recording"))]
+    for key, name in (("board", identity.board), ("compiler", identity.compiler), ("script", case.script)):
+        if then.differs_in(key, now):
+            differences.append(f"{key} {name} {_difference(key, then, now)}")
     if differences:
         raise ConfigError(
             f"{path}: run {shown(case.name)}: {'; '.join(differences)}: limits of one say nothing about the other; "
             f'`bfsim check --baseline {path} --case "{case.name}" --update` measures it anew'
         )
+
+
+def _difference(key: str, then: MeasuredOn, now: MeasuredOn) -> str:
+    """Say what of a board, compiler or script is not as it was."""
+    old, new = (list(getattr(each, f"{key}_numbers", [])) for each in (then, now))
+    if old == new:
+        return "is another than when the limits were measured"
+    had, has = (
+        [each for each in one if each not in other]
+        or [f"that of {one[0].removeprefix('like ')}" if one else "none of its own"]
+        for one, other in ((old, new), (new, old))
+    )
+    return f"had {cut(', '.join(had))} when the limits were measured, and has {cut(', '.join(has))}"
 
 
 def _recording_differences(then: MeasuredOn, now: MeasuredOn, recording: Path | None) -> list[str]:

@@ -13,12 +13,17 @@ from bfsim.cli_boards import boards
 from bfsim.cli_check import check
 from bfsim.cli_colours import colours
 from bfsim.cli_diff import diff
-from bfsim.cli_html import paging, takes_html
+from bfsim.cli_export import export
+from bfsim.cli_html import takes_html, writing_page
 from bfsim.cli_ldf import ldf
+from bfsim.cli_place import place
+from bfsim.cli_profile import profile
 from bfsim.cli_record import record
-from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run, warn
+from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run, takes_work, warn
 from bfsim.cli_seen import stages_named, takes_views, watching
+from bfsim.cli_sweep import sweep
 from bfsim.cli_timeline import takes_timelines, timelines
+from bfsim.cli_verify import verify
 from bfsim.endings import exit_code_of
 from bfsim.errors import ConfigError
 from bfsim.terminal import print_report
@@ -68,11 +73,17 @@ main.add_command(boards)
 main.add_command(check)
 main.add_command(colours)
 main.add_command(diff)
+main.add_command(export)
 main.add_command(ldf)
+main.add_command(profile)
+main.add_command(place)
+main.add_command(sweep)
+main.add_command(verify)
 
 
 @main.command(short_help="Print what each frame costs: the timing budget.")
 @takes_a_run
+@takes_work
 @click.option(
     "--json",
     "json_path",
@@ -117,28 +128,34 @@ def run(
       bfsim run
       bfsim run drive.mcap --frames 20 --ldf l2
       bfsim run drive.mcap --set sdram.nRP=3 --set clocks.cclk_hz=500e6
-      bfsim run --full
+      bfsim run --full --target 15Hz
       bfsim run drive.mcap --feed recorded --json drive.json
       bfsim run drive.mcap --overlay drive-seen --mcap drive-seen.mcap
       bfsim run drive.mcap --overlay lines.gif --layers lines,above
       bfsim run drive.mcap --overlay heat.gif --heat
       bfsim run drive.mcap --html drive.html --target 15Hz
       bfsim run drive.mcap --trace drive.pftrace
+      bfsim run drive.mcap --record-work drive.work
+      bfsim run drive.mcap --work drive.work --set clocks.cclk_hz=500e6
     """
     from bfsim.report.as_json import json_chunks
-    from bfsim.report.save import require_apart, require_place, write_text
+    from bfsim.report.save import files_of_run, require_apart, require_place, write_text
     from bfsim.report.screen import screen
     from bfsim.report.seen_json import SeenStore
     from bfsim.report.tables import run_report
     from bfsim.run import has_view
 
-    read = what["recording"], what["ldf"], what["script"]
+    read = files_of_run(what)
+    if what["record_work"]:
+        require_apart(what["record_work"], (*read[:-1], mcap, overlay))
     if json_path and json_path != STDOUT:
         require_place(json_path)
         require_apart(json_path, (*read, mcap, overlay))
     if features and not json_path:
         raise ConfigError("--features must come with --json FILE, which it adds to")
-    is_telling = bool(json_path) and has_view(what["firmware"])
+    if target and json_path == STDOUT and not html:
+        raise ConfigError("--target must come with the tables or --html FILE, and --json - prints neither")
+    is_telling = bool(json_path) and not what["work"] and has_view(what["firmware"])
     if features and not is_telling:
         raise ConfigError(
             f"--features must go with firmware that has a view to tell what it sees, and {what['firmware']} has none"
@@ -154,7 +171,7 @@ def run(
                 layers=layers,
                 heat=stages_named(heat, what["firmware"]),
             ),
-            paging(watchers, html, target, what, (json_path, mcap, overlay)),
+            writing_page(watchers, html, target if html else None, what, (json_path, mcap, overlay)),
             timelines(watchers, trace, flame, (*read, json_path, mcap, overlay, html)),
         ):
             if is_telling:
@@ -165,51 +182,9 @@ def run(
                 click.echo(chunk, nl=False)
             warn(done)
         else:
-            print_report(run_report(done) if full else screen(done))
+            print_report(run_report(done, target) if full else screen(done, target))
             if json_path:
                 write_text(json_path, json_chunks(done, seen))
-    exit_if_interrupted(done)
-
-
-@main.command(short_help="Print where the cycles go, down to source lines.")
-@takes_a_run
-@click.option("--core", type=click.Choice(["A", "B"]), help="Show one core only.  [default: both together]")
-@click.option(
-    "--top",
-    metavar="N",
-    type=click.IntRange(min=0),
-    default=20,
-    show_default=True,
-    help="Show the N source lines that cost most.",
-)
-@takes_html
-@takes_timelines
-def profile(
-    core: str | None,
-    top: int,
-    html: Path | None,
-    target: Target | None,
-    trace: Path | None,
-    flame: Path | None,
-    **what: Any,
-) -> None:
-    """Run RECORDING and print where the cycles go: stage, kernel, source line, memory.
-
-    The cycles here are issue cycles; `bfsim run` has the stalls beside them.
-
-    \b
-    Examples:
-      bfsim profile
-      bfsim profile drive.mcap --core A --top 40
-      bfsim profile drive.mcap --trace drive.pftrace --flame drive.speedscope.json
-    """
-    from bfsim.report.profile_tables import profile_report
-
-    watchers = Watchers()
-    read = what["recording"], what["ldf"], what["script"]
-    with paging(watchers, html, target, what), timelines(watchers, trace, flame, (*read, html)):
-        done = simulated(watchers=watchers, **what)
-    print_report(profile_report(done, core, top))
     exit_if_interrupted(done)
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
 
-from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run
+from bfsim.cli_running import run_and_seen, takes_a_run
 from bfsim.endings import LIMIT_BROKEN
 from bfsim.errors import ConfigError
 from bfsim.terminal import print_report
@@ -19,7 +20,7 @@ from bfsim.terminal import print_report
 if TYPE_CHECKING:
     from bfsim.report.check.baseline import Case, Configuration
     from bfsim.report.check.judge import Outcome
-    from bfsim.trace import RunRecord
+    from bfsim.report.result_file import Result
 
 OUTPUTS = {
     "json": "every verdict and figure as JSON",
@@ -88,13 +89,15 @@ def check(
         read_history(history)
     for case in cases:
         require_comparable(case.model_copy(update={"measured_on": None}) if update else case, path)
-    runs = [(case, _run(case, path.parent, sanitize=sanitize)) for case in cases]
-    if update:
-        runs = _update(runs, path, reason)
-    outcomes = _judged(runs, path)
-    _write(outcomes, path, outputs)
-    if history:
-        _append(outcomes, history)
+    with ExitStack() as stack:
+        runs = [(case, _run(case, path.parent, stack, sanitize=sanitize)) for case in cases]
+        if update:
+            runs = _update(runs, path, reason)
+        outcomes = _judged(runs, path)
+        _write(outcomes, path, outputs)
+        if history:
+            _append(outcomes, history)
+        _print(outcomes, path, history)  # last: who reads may go away
     if not all(each.passed for each in outcomes):
         raise SystemExit(LIMIT_BROKEN)
 
@@ -119,45 +122,49 @@ def _cases(path: Path, given: Configuration | None, name: str | None, *, update:
     return chosen(baseline, path, given, name, name_of(given or Configuration()), update=update)
 
 
-def _run(case: Case, folder: Path, *, sanitize: bool) -> RunRecord:
+def _run(case: Case, folder: Path, stack: ExitStack, *, sanitize: bool) -> Result:
+    """Run what a case says; what was seen is kept as long as the stack is."""
     from bfsim.checking import arguments_of
 
-    done = simulated(sanitize=sanitize, **arguments_of(case.configuration, folder))
-    exit_if_interrupted(done)
-    return done
+    return run_and_seen(stack, sanitize=sanitize, **arguments_of(case.configuration, folder))
 
 
-def _update(
-    runs: Sequence[tuple[Case, RunRecord]], path: Path, reason: str | None
-) -> list[tuple[Case, RunRecord]]:
+def _update(runs: Sequence[tuple[Case, Result]], path: Path, reason: str | None) -> list[tuple[Case, Result]]:
     """Return the runs with what was measured as their limits, and write those into the file."""
     from bfsim.report.check.update import loosened, updated, write_cases
 
-    loose = [f"run {case.name!r}: {each}" for case, run in runs for each in loosened(case, run, path)]
+    loose = [f"run {case.name!r}: {each}" for case, result in runs for each in loosened(case, result, path)]
     if loose and not reason:
         listed = "".join(f"\n  {each}" for each in loose)
         if not sys.stdin.isatty():
             raise ConfigError(f"--update must come with --reason TEXT where limits loosen:{listed}")
         reason = click.prompt(f"These limits loosen:{listed}\nWhy", err=True)
-    done = [(updated(case, run, reason or "", path), run) for case, run in runs]
+    done = [(updated(case, result, reason or "", path), result) for case, result in runs]
     write_cases(path, {case.name: case for case, _ in done})
-    for case, run in done:
-        click.echo(f"{path}: {case.name}: {len(case.limits)} limits from {len(run.frames)} frames.")
+    for case, result in done:
+        click.echo(f"{path}: {case.name}: {len(case.limits)} limits from {len(result.run.frames)} frames.")
     return done
 
 
-def _judged(runs: Sequence[tuple[Case, RunRecord]], path: Path) -> list[Outcome]:
-    """Hold each run against its limits, and print what came out."""
+def _judged(runs: Sequence[tuple[Case, Result]], path: Path) -> list[Outcome]:
+    """Hold each run against its limits."""
     from bfsim.report.check.judge import judge
+
+    return [judge(case, result, path) for case, result in runs]
+
+
+def _print(outcomes: Sequence[Outcome], path: Path, history: Path | None) -> None:
+    """Print what came out, and the trend in the history."""
+    from bfsim.report.check.history import read_history, trend_table
     from bfsim.report.check.tables import check_report
 
-    outcomes = [judge(case, run, path) for case, run in runs]
     for each in outcomes:
         print_report(check_report(each, path))
     failed = sum(not each.passed for each in outcomes)
     if len(outcomes) > 1:
         click.echo(f"{len(outcomes) - failed} of {len(outcomes)} runs passed, {failed} FAILED.")
-    return outcomes
+    if history:
+        print_report(trend_table(read_history(history), [each.case.name for each in outcomes]))
 
 
 def _require_places(written: Sequence[Path | None], read: Sequence[Path | None]) -> None:
@@ -175,7 +182,7 @@ def _write(outcomes: Sequence[Outcome], path: Path, outputs: Mapping[str, Path |
     from bfsim.report.save import write_text
 
     texts: dict[str, Callable[[], str]] = {
-        "json": lambda: forms.check_json(outcomes, path),
+        "json": lambda: forms.check_json(outcomes),
         "junit": lambda: forms.junit_xml(outcomes, path),
         "markdown": lambda: forms.markdown(outcomes, path),
         "benchmark": lambda: forms.benchmark_json(outcomes),
@@ -186,12 +193,11 @@ def _write(outcomes: Sequence[Outcome], path: Path, outputs: Mapping[str, Path |
 
 
 def _append(outcomes: Sequence[Outcome], path: Path) -> None:
-    """Append to the history, and print the trend."""
-    from bfsim.report.check.history import history_lines, read_history, trend_table
+    """Append to the history."""
+    from bfsim.report.check.history import history_lines
 
     with path.open("a", encoding="utf-8") as stream:
         stream.write(history_lines(outcomes, _commit()))
-    print_report(trend_table(read_history(path), [each.case.name for each in outcomes]))
 
 
 def _commit() -> str:

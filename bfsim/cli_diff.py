@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run
+from bfsim.cli_running import run_and_seen, takes_a_run
 from bfsim.terminal import print_report
 from bfsim.watchers import Watchers
 
 if TYPE_CHECKING:
+    from bfsim.report.check.baseline import Case
+    from bfsim.report.diff.difference import Difference
+    from bfsim.report.html.pictures import Pictures
     from bfsim.report.result_file import Result
 
-RESULT = ".json"
+RESULT, BASELINE = ".json", ".toml"
 
 
 @click.command(add_help_option=False)
@@ -45,27 +49,43 @@ def _run(**what: Any) -> dict[str, Any]:
 )
 @click.option("--json", "as_json", is_flag=True, help="Print all of it as JSON instead.")
 @click.option("--markdown", is_flag=True, help="Print it as Markdown, for a comment on a pull request.")
-def diff(before: str, after: str, top: int, as_json: bool, markdown: bool) -> None:
+@click.option(
+    "--html",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Write all of it as one HTML page, too; with the pictures of the frames that changed most, of what is run on the spot.",
+)
+def diff(before: str, after: str, top: int, as_json: bool, markdown: bool, html: Path | None) -> None:
     """Print what differs between two runs: the configuration, then the cycles by stage, kernel, source line and cause.
 
-    BEFORE and AFTER are each a result, FILE.json as `bfsim run --json` writes it, or in quotes what would stand behind
-    `bfsim run`, which is then run on the spot. The contributions sum to the difference. Waits for the other core or for the
-    cameras are shown apart: they follow from the rest.
+    BEFORE and AFTER are each a result, FILE.json as `bfsim run --json` writes it; a run of a baseline of `bfsim check`,
+    FILE.toml or FILE.toml:NAME; or in quotes what would stand behind `bfsim run`, which is then run on the spot. The
+    contributions sum to the difference. Waits for the other core or for the cameras are shown apart: they follow from the rest.
 
     \b
     Examples:
       bfsim diff before.json after.json
       bfsim diff before.json "drive.mcap --firmware mine.py"
-      bfsim diff "--frames 2 --ldf l2" "--frames 2"
+      bfsim diff budget.toml after.json
+      bfsim diff "--frames 2 --ldf l2" "--frames 2" --html placement.html
     """
-    from bfsim.report.diff.compare import difference_of
-
     if as_json and markdown:
         raise click.UsageError("--json and --markdown must not be given together: each is all of the output")
     with ExitStack() as stack:
         sides = [_asked(text) for text in (before, after)]  # a slip in either is told before anything runs
-        results = [stack.enter_context(_result(each)) for each in sides]
-        difference = difference_of(*results)
+        if html:
+            from bfsim.run_page import require_page
+
+            require_page(html, chain(*map(_read, (before, after), sides)))
+        pictures = [_pictures(stack) if html and isinstance(each, dict) else None for each in sides]
+        results = [_result(stack, *each) for each in zip(sides, pictures, strict=True)]
+        difference = _difference(*results)
+        if html:
+            from bfsim.report.html.diff_page import DiffPage, Side
+            from bfsim.report.save import write_text
+
+            named = (Side(*each) for each in zip((before, after), pictures, strict=True))
+            write_text(html, DiffPage(difference, *named).chunks())
     if as_json:
         from bfsim.report.diff.as_json import diff_json
 
@@ -80,31 +100,66 @@ def diff(before: str, after: str, top: int, as_json: bool, markdown: bool) -> No
         print_report(diff_report(difference, top))
 
 
-def _asked(text: str) -> Result | dict[str, Any]:
-    """Read a result, or what to run."""
+def _difference(before: Result | Case, after: Result | Case) -> Difference:
+    from bfsim.report.check.kept import kept_side, whole_side
+    from bfsim.report.diff.compare import difference_between, difference_of
+    from bfsim.report.result_file import Result
+
+    if isinstance(before, Result) and isinstance(after, Result):
+        return difference_of(before, after)
+    sides = [whole_side(each) if isinstance(each, Result) else kept_side(each) for each in (before, after)]
+    return difference_between(*sides)
+
+
+def _asked(text: str) -> Result | Case | dict[str, Any]:
+    """Read a result or a run of a baseline, or what to run."""
+    from bfsim.report.check.baseline import measured_case
     from bfsim.report.result_file import read_result
 
-    if text.endswith(RESULT) and len(shlex.split(text)) == 1:
-        return read_result(Path(text))
+    file, name = _named(text)
     try:
         words = shlex.split(text)
     except ValueError as error:
         raise click.UsageError(f"{text!r} must be words as a shell takes them: {error}") from None
+    if len(words) > 1 and not file.is_file():
+        return _run.make_context("bfsim run", words).params
+    if file.suffix == RESULT:
+        return read_result(file)
+    if file.suffix == BASELINE:
+        return measured_case(file, name)
     return _run.make_context("bfsim run", words).params
 
 
-@contextmanager
-def _result(side: Any) -> Iterator[Result]:
-    """Yield a result as it was read, or that of a run."""
-    from bfsim.report.result_file import Result, result_of
-    from bfsim.report.seen_json import SeenStore
-    from bfsim.run import has_view
+def _named(text: str) -> tuple[Path, str]:
+    """Return the file that a side names, if it names one, and which run of a baseline."""
+    file, suffix, name = text.partition(f"{BASELINE}:")
+    return (Path(file + BASELINE), name) if suffix else (Path(text), "")
 
-    if isinstance(side, Result):
-        yield side
-        return
-    with SeenStore(with_features=False) as seen:
-        telling = [seen.add] if has_view(side["firmware"]) else []
-        done = simulated(watchers=Watchers(seen=[*telling]), **side)
-        exit_if_interrupted(done)
-        yield result_of(done, seen)
+
+def _read(text: str, side: Result | Case | dict[str, Any]) -> Iterator[Path | None]:
+    """Yield the files that a side is read from."""
+    from bfsim.report.save import files_of_run
+
+    if isinstance(side, dict):
+        yield from files_of_run(side)
+    else:
+        yield _named(text)[0]
+
+
+def _pictures(stack: ExitStack) -> Pictures:
+    """Return what draws the frames of a side, with room for those that a page shows."""
+    from bfsim.report.html.diff_page import FRAMES
+    from bfsim.report.html.pictures import Pictures
+
+    pictures = stack.enter_context(Pictures())
+    pictures.frames = 2 * FRAMES
+    return pictures
+
+
+def _result(
+    stack: ExitStack, side: Result | Case | dict[str, Any], pictures: Pictures | None
+) -> Result | Case:
+    """Return what was read, or the result of a run, of which `pictures` are drawn."""
+    if not isinstance(side, dict):
+        return side
+    return run_and_seen(stack, Watchers(seen=[pictures.add] if pictures else []), **side)

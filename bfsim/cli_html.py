@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from functools import partial
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -15,13 +13,7 @@ from bfsim.errors import ConfigError
 from bfsim.watchers import Watchers
 
 if TYPE_CHECKING:
-    from bfsim.report.html.gantt import Gantts
-    from bfsim.report.html.pictures import Pictures
-    from bfsim.report.ldf.map import MemoryMap
     from bfsim.report.target import Target
-    from bfsim.trace import Identity, RunRecord
-
-_PACKAGES = ("altair", "jinja2", "markdown_it", "vl_convert")
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -56,20 +48,20 @@ _PARAMETERS = (
         "--target",
         metavar="RATE|TIME",
         type=_TargetType(),
-        help="Frame rate or frame time that the page compares each frame with, such as 15Hz or 66ms.",
+        help="Frame rate or frame time that frames are compared with, such as 15Hz or 66ms.",
     ),
 )
 
 
 def takes_html(command: Command) -> Command:
-    """Give a command the options of `paging`."""
+    """Give a command the options of `writing_page`."""
     for parameter in reversed(_PARAMETERS):
         command = parameter(command)
     return command
 
 
 @contextmanager
-def paging(
+def writing_page(
     watchers: Watchers,
     path: Path | None,
     target: Target | None,
@@ -85,73 +77,9 @@ def paging(
             raise ConfigError("--target must come with --html FILE, whose page compares each frame with it")
         yield
         return
-    from bfsim.report.save import require_apart, require_place
+    from bfsim.report.save import files_of_run
+    from bfsim.run_page import paged, require_page
 
-    require_place(path)
-    require_apart(path, (what["recording"], what["ldf"], what["script"], *others))
-    _require_packages()
-    from bfsim.report.html.frames import MOST
-    from bfsim.report.html.gantt import Gantts
-    from bfsim.report.html.pictures import Pictures
-
-    with Pictures() as pictures, Gantts() as gantts:
-
-        def make_room(_identity: Identity, frames: int) -> None:
-            pictures.frames = min(frames, MOST)
-
-        watchers.before.extend((make_room, gantts.begin))
-        watchers.seen.append(pictures.add)
-        watchers.spans.append(gantts.add)
-        watchers.done.append(partial(_write, path, target, pictures, gantts, what))
+    require_page(path, (*files_of_run(what), *others))
+    with paged(watchers, path, target, what):
         yield
-
-
-def _write(
-    path: Path,
-    target: Target | None,
-    pictures: Pictures,
-    gantts: Gantts,
-    what: Mapping[str, Any],
-    run: RunRecord,
-) -> None:
-    from bfsim.report.html.page import Page
-    from bfsim.report.save import write_text
-    from bfsim.shipped import accuracy_on
-
-    gantts.finish()
-    page = Page(
-        run=run,
-        pictures=pictures,
-        gantts=gantts,
-        accuracy=accuracy_on("In short"),
-        unmodelled=accuracy_on("What is not modelled"),
-        memory_map=_map_of(run, what),
-        target=target,
-    )
-    write_text(path, page.chunks())
-
-
-def _map_of(run: RunRecord, what: Mapping[str, Any]) -> MemoryMap:
-    """Return where everything lay in a run."""
-    from bfsim.mapping import map_memory
-    from bfsim.recording import RecordingReader
-    from bfsim.run import BUILT_IN_RECORDING, calibration_of
-
-    with RecordingReader(what["recording"] or BUILT_IN_RECORDING) as reader:
-        calibration = calibration_of(reader)
-    given = ("firmware", "board", "settings", "profile", "defines", "include_dirs")
-    return map_memory(
-        what["ldf"],
-        **{name: what[name] for name in given},
-        width_px=run.identity.width_px,
-        height_px=run.identity.height_px,
-        calibration=calibration,
-    )
-
-
-def _require_packages() -> None:
-    missing = [each for each in _PACKAGES if find_spec(each) is None]
-    if missing:
-        raise ConfigError(
-            f'--html needs the package {missing[0]}; install all that it needs with: pip install "bfsim[html]"'
-        )

@@ -18,7 +18,7 @@ from bfsim.errors import RecordingError, shown
 from bfsim.terminal import print_report, progress_bar
 
 if TYPE_CHECKING:
-    from bfsim import recording
+    from bfsim.recording.sources import SourceFormat
 
 SOURCE_FORMATS = ("images", "uyvy", "i420", "y4m", "video", "rosbag")
 """Those of bfsim.recording, which takes its time to import."""
@@ -97,7 +97,7 @@ def import_command(
     sources: tuple[str, ...],
     side_by_side: bool,
     mono: bool,
-    format: recording.SourceFormat | None,
+    format: SourceFormat | None,
     size: tuple[int, int] | None,
     resize: tuple[int, int] | None,
     crop: tuple[int, int] | None,
@@ -128,10 +128,11 @@ def import_command(
       bfsim record import run.mcap phone.mp4 --mono --resize 320x240
       bfsim record import run.mcap "match/*.jpg" --mono --resize 320x240 --geometry 260 0 480 12
     """
-    from bfsim import recording
+    from bfsim.recording import StereoGeometry
+    from bfsim.recording.importer import import_recording, load_rectification
 
     with progress_bar("Importing") as progress:
-        summary = recording.import_recording(
+        summary = import_recording(
             sources,
             output,
             format=format,
@@ -143,8 +144,8 @@ def import_command(
             fps=fps,
             topics=topics,
             slop_s=None if slop is None else slop / 1000,
-            geometry=recording.StereoGeometry(*geometry) if geometry else None,
-            rectification=recording.load_rectification(*rectification) if rectification else None,
+            geometry=StereoGeometry(*geometry) if geometry else None,
+            rectification=load_rectification(*rectification) if rectification else None,
             description=description,
             force=force,
             progress=progress,
@@ -181,10 +182,11 @@ def info_command(path: Path, as_json: bool, plot: Path | None) -> None:
       bfsim record info run.mcap --plot residuals.png
       bfsim record info run.mcap --json
     """
-    from bfsim import recording
+    from bfsim.recording import RecordingReader
+    from bfsim.recording.info import describe_recording
 
-    with recording.RecordingReader(path) as reader, progress_bar("Reading") as progress:
-        info = recording.describe_recording(reader, progress)
+    with RecordingReader(path) as reader, progress_bar("Reading") as progress:
+        info = describe_recording(reader, progress)
         if plot:
             _write(plot, reader.residual_plot())
     if as_json:
@@ -238,9 +240,10 @@ def calibrate_command(
       bfsim record calibrate boards/ run.mcap --corners 8x5 --square 25 --height 120 --tilt 10
       bfsim record calibrate boards/ phone.mcap --mono
     """
-    from bfsim import recording
+    from bfsim.recording import RecordingReader
+    from bfsim.recording.calibration import calibrate_recording
 
-    found = recording.calibrate_recording(
+    found = calibrate_recording(
         chessboards,
         path,
         output,
@@ -252,7 +255,7 @@ def calibrate_command(
         mono=mono,
         resize=resize,
     )
-    with recording.RecordingReader(output or path) as reader:
+    with RecordingReader(output or path) as reader:
         geometry = reader.geometry
     report = found.report
     click.echo(f"{output or path}: rectification tables from {views_text(report)}")
@@ -350,8 +353,7 @@ def render_command(
     force: bool,
 ) -> None:
     """Render one scene, or several."""
-    from bfsim import recording
-    from bfsim.recording import scenes
+    from bfsim.recording import StereoGeometry, scenes
     from bfsim.scenery import load_scenes
 
     misfit = None
@@ -366,7 +368,7 @@ def render_command(
             frames=frames,
             samples=samples,
             distances_mm=distances,
-            geometry=recording.StereoGeometry(*geometry) if geometry else None,
+            geometry=StereoGeometry(*geometry) if geometry else None,
             misfit=misfit,
             chessboards=chessboards,
             force=force,

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 
 if TYPE_CHECKING:
-    from bfsim import recording
+    from bfsim.recording.calibration_report import CalibrationReport, ViewError
+    from bfsim.recording.info import CameraTiming, RecordingInfo
 
 
-def info_table(info: recording.RecordingInfo) -> Table:
+def info_table(info: RecordingInfo) -> Table:
     """Return what is in a recording as a table."""
     table = Table(title=str(info.path), show_header=False, title_justify="left")
     table.add_row("Images", f"{info.width}x{info.height} UYVY, left and right")
@@ -31,7 +32,7 @@ def info_table(info: recording.RecordingInfo) -> Table:
     return table
 
 
-def _timing_text(timing: recording.CameraTiming) -> str:
+def _timing_text(timing: CameraTiming) -> str:
     if timing.rate_hz is None or timing.shortest_interval_ns is None or timing.longest_interval_ns is None:
         return "one picture"
     shortest_ms, longest_ms = timing.shortest_interval_ns / 1e6, timing.longest_interval_ns / 1e6
@@ -44,14 +45,14 @@ def _rectification_text(shares: tuple[float, float] | None) -> str:
     return f"left and right, {shares[0]:.1%} and {shares[1]:.1%} of the pixels have a source"
 
 
-def _truth_text(info: recording.RecordingInfo) -> str:
+def _truth_text(info: RecordingInfo) -> str:
     if not info.truth_count:
         return "none"
     disparities = f", {info.disparity_count} with disparities" if info.disparity_count else ""
     return f"{info.truth_count} frames{disparities}"
 
 
-def _calibration_text(report: recording.CalibrationReport | None) -> str:
+def _calibration_text(report: CalibrationReport | None) -> str:
     if report is None:
         return "none"
     lines = [
@@ -63,7 +64,7 @@ def _calibration_text(report: recording.CalibrationReport | None) -> str:
     return "\n".join(lines)
 
 
-def views_text(report: recording.CalibrationReport) -> str:
+def views_text(report: CalibrationReport) -> str:
     """Return how many views a calibration used, and what it did without."""
     what = "chessboard pairs" if len(report.cameras) > 1 else "chessboard pictures"
     return (
@@ -71,7 +72,7 @@ def views_text(report: recording.CalibrationReport) -> str:
     )
 
 
-def view_text(view: recording.ViewError) -> str:
+def view_text(view: ViewError) -> str:
     """Return the pictures of a view and their errors."""
     errors = zip(view.names, view.errors_px, strict=True)
     return ", ".join(f"{name} {error_px:.2f} px" for name, error_px in errors)

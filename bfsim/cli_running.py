@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -17,6 +18,7 @@ from bfsim.terminal import progress_bar
 from bfsim.watchers import Watchers, calling
 
 if TYPE_CHECKING:
+    from bfsim.report.result_file import Result
     from bfsim.trace import RunRecord
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -76,6 +78,30 @@ def takes_a_run(command: Command) -> Command:
     return command
 
 
+_WORK_PARAMETERS = (
+    click.option(
+        "--record-work",
+        metavar="FILE",
+        type=click.Path(path_type=Path),
+        help="Record what the cores do, to be played again on other hardware with --work.",
+    ),
+    click.option(
+        "--work",
+        metavar="FILE",
+        type=click.Path(path_type=Path),
+        help="Play what --record-work has recorded of the same run, on the board, settings and LDF given here, in place of the "
+        "firmware: the same cycles, sooner.",
+    ),
+)
+
+
+def takes_work(command: Command) -> Command:
+    """Give a command the options that record the work of a run, or play it again."""
+    for parameter in reversed(_WORK_PARAMETERS):
+        command = parameter(command)
+    return command
+
+
 def simulated(*, feed: str, fidelity: str, watchers: Watchers | None = None, **what: Any) -> RunRecord:
     """Run the simulation behind a progress bar and return at least one frame."""
     from bfsim.run import Feed, Fidelity, simulate
@@ -99,6 +125,24 @@ def simulated(*, feed: str, fidelity: str, watchers: Watchers | None = None, **w
     for each in watchers.done:
         each(done)
     return done
+
+
+def run_and_seen(stack: ExitStack, watchers: Watchers | None = None, **what: Any) -> Result:
+    """Run the simulation and return the run with what was seen in each frame, which is kept until the `stack` ends.
+
+    Ends the command if something interrupts it.
+    """
+    from bfsim.report.result_file import result_of
+    from bfsim.report.seen_json import SeenStore
+    from bfsim.run import has_view
+
+    seen = stack.enter_context(SeenStore(with_features=False))
+    watchers = watchers or Watchers()
+    if has_view(what["firmware"]):
+        watchers.seen.append(seen.add)
+    done = simulated(watchers=watchers, **what)
+    exit_if_interrupted(done)
+    return result_of(done, seen)
 
 
 def warn(done: RunRecord) -> None:

@@ -29,7 +29,7 @@ _PARAMETERS = (
         "--flame",
         metavar="FILE",
         type=click.Path(path_type=Path),
-        help="Write the cycles by core, stage and kernel as a flame graph for speedscope.app, such as run.speedscope.json.",
+        help="Write the cycles by core, stage and path of calls as a flame graph for speedscope.app, such as run.speedscope.json.",
     ),
 )
 

@@ -13,7 +13,8 @@ from bfsim.errors import BfsimError, ConfigError, FirmwareError
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.firmware_lines import line_of
 from bfsim.machine.spi.device import Script
-from bfsim.recording import RecordingReader, picture_of_file
+from bfsim.recording import RecordingReader
+from bfsim.recording.images import picture_of_file
 from bfsim.seen import PictureColours
 
 MCAP_MAGIC = b"\x89MCAP"

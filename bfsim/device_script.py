@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from bfsim.errors import ConfigError
+from bfsim.file_content import read_bounded
 
 _PARSERS = {".json": json.loads, ".toml": tomllib.loads}
 
@@ -23,7 +24,7 @@ def read_script(path: Path) -> tuple[Mapping[str, Any], str]:
     if parse is None:
         raise ConfigError(f"{path} must end in .json or .toml")
     try:
-        octets = path.read_bytes()
+        octets = read_bounded(path)
         script = parse(octets.decode())
     except OSError as error:
         raise ConfigError(f"{path} must be a readable file: {error.strerror}") from error

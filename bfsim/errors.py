@@ -59,5 +59,9 @@ class MmrError(BfsimError, ValueError):
     """Raised when firmware programs a memory-mapped register with what the chip would flag."""
 
 
+class WorkError(BfsimError, ValueError):
+    """Raised when a recorded run cannot be read, or cannot be played on the hardware that was asked for."""
+
+
 class BfsimWarning(UserWarning):
     """Given where a run goes on, but not as its user will have thought."""

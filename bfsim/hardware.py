@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Generic
@@ -12,7 +12,7 @@ from bfsim.chip.boards import BOARDS, board_named
 from bfsim.chip.checks import require_sound
 from bfsim.chip.settings import with_settings
 from bfsim.chip.spec import BoardSpec
-from bfsim.errors import ConfigError, FirmwareError
+from bfsim.errors import ConfigError, FirmwareError, cut
 from bfsim.fields import leaves, require_types
 from bfsim.importing import OwnModules
 from bfsim.kernel import CompilerProfile, profile_named
@@ -22,6 +22,8 @@ from bfsim.loading import Kind, Loaded, Wanted, load_named
 BOARD = Kind("board", "--board", BoardSpec, "bfsim.chip.spec", tuple(BOARDS))
 PROFILE = Kind("compiler profile", "--profile", CompilerProfile, "bfsim.kernel", tuple(PROFILES))
 
+NAMES = {"name", "title"}
+"""Fields that say what something is called, and not what it is."""
 MOST_CCLK = 1_000_000
 """As many cycles may a routine of a compiler's library take. [assumed] far beyond any."""
 
@@ -31,11 +33,13 @@ class Found(Generic[Wanted]):
     """A board or a compiler profile, called as the identity of a run calls it.
 
     `files` are those that it was imported from, none for a shipped one; `digest` is of all its values and these files.
+    `numbers` are what it has otherwise than the shipped one that it is most like, which comes first; none for a shipped one.
     """
 
     value: Wanted
     files: tuple[str, ...]
     digest: str
+    numbers: tuple[str, ...]
 
 
 def find_board(
@@ -63,13 +67,13 @@ def find_board(
     except ConfigError as error:
         raise ConfigError(f"--board {spec.name}: {error}") from error
     spec, names = with_settings(spec, settings)
-    return _found(replace(spec, name=" --set ".join([spec.name, *names])), own)
+    return _found(replace(spec, name=" --set ".join([spec.name, *names])), own, BOARDS)
 
 
 def find_profile(name: str) -> Found[CompilerProfile]:
     """Return a compiler profile, called NAME or MODULE:NAME. Raises ConfigError, with the field, for one that cannot be."""
     if name in PROFILES:
-        return _found(profile_named(name), None)
+        return _found(profile_named(name), None, PROFILES)
     found = _load(name, PROFILE, PROFILES)
     profile = _named(found)
     require_types(profile, f"--profile {profile.name}: profile")
@@ -78,7 +82,7 @@ def find_profile(name: str) -> Found[CompilerProfile]:
             raise ConfigError(
                 f"--profile {profile.name}: profile.{leaf.path} must be 0 to {MOST_CCLK:,} cycles, not {leaf.value:,}"
             )
-    return _found(profile, found.own)
+    return _found(profile, found.own, PROFILES)
 
 
 def _load(name: str, kind: Kind[Wanted], shipped: Mapping[str, Wanted]) -> Loaded[Wanted]:
@@ -93,8 +97,23 @@ def _named(found: Loaded[Wanted]) -> Wanted:
     return replace(found.value, name=found.name)  # type: ignore[type-var]
 
 
-def _found(value: Wanted, own: OwnModules | None) -> Found[Wanted]:
+def _found(value: Wanted, own: OwnModules | None, shipped: Mapping[str, Wanted]) -> Found[Wanted]:
     """Note what a board or compiler is made of."""
     of_files = own.digest if own else ""
     digest = hashlib.sha256((repr(value) + of_files).encode()).hexdigest()
-    return Found(value, own.files if own else (), digest)
+    return Found(value, own.files if own else (), digest, tuple(_numbers(value, shipped)))
+
+
+def _numbers(value: Wanted, shipped: Mapping[str, Wanted]) -> Iterator[str]:
+    """Yield which shipped one a board or compiler is most like, and what it has otherwise."""
+    if value in shipped.values():
+        return
+    mine = _leaves(value).items()
+    others = {name: mine - _leaves(each).items() for name, each in shipped.items()}
+    nearest = min(others, key=lambda name: len(others[name]))
+    yield f"like {nearest}"
+    yield from (f"{path} = {text}" for path, text in mine if (path, text) in others[nearest])
+
+
+def _leaves(value: object) -> dict[str, str]:
+    return {each.path: cut(str(each.value)) for each in leaves(value) if each.path not in NAMES}

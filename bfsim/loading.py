@@ -131,19 +131,20 @@ def load_kernel(name: str, firmware: str) -> Kernel:
     place, _, attribute = name.rpartition(":")
     own = load_firmware(firmware).own
     if not place:
-        found = [each for each in _kernels_of(own) if each.name == attribute]
+        found = [each for each in kernels_of(own) if each.name == attribute]
     else:
         module = own.modules.get(place)
         if module is None:
             module, own = import_own(*located(parted(name, FIRMWARE.must_be)[0]))
         found = [each for each in [getattr(module, attribute, None)] if isinstance(each, Kernel)]
     if len(found) != 1:
-        advice = _apart(found) if found else _nearest(attribute, {each.name for each in _kernels_of(own)})
+        advice = _apart(found) if found else _nearest(attribute, {each.name for each in kernels_of(own)})
         raise FirmwareError(f"{cut(name)} must name one kernel, but names {len(found) or 'none'}; {advice}")
     return found[0]
 
 
-def _kernels_of(own: OwnModules) -> set[Kernel]:
+def kernels_of(own: OwnModules) -> set[Kernel]:
+    """Return every kernel that modules name."""
     return {
         each for module in own.modules.values() for each in vars(module).values() if isinstance(each, Kernel)
     }

@@ -7,6 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from bfsim.chip.spec import BoardSpec
+from bfsim.given import given_firmware
 from bfsim.hardware import find_board, find_profile
 from bfsim.linker import LinkerScript, link
 from bfsim.loading import load_firmware
@@ -14,14 +15,14 @@ from bfsim.machine.board import PROCESSORS, symbols_of
 from bfsim.machine.program import Buffer, Calibration, Firmware, FrameSize
 from bfsim.report.ldf.map import Kind, MemoryMap
 from bfsim.report.ldf.map_builder import BoardMemories, memory_map
-from bfsim.run import read_placement
+from bfsim.run_inputs import read_placement
 
 
 def map_memory(
     ldf: Path | None = None,
     *,
-    firmware: str,
-    board: str,
+    firmware: Firmware | str,
+    board: str | BoardSpec,
     settings: Mapping[str, object] = MappingProxyType({}),
     profile: str,
     width_px: int,
@@ -37,7 +38,8 @@ def map_memory(
     """
     spec, compiler = find_board(board, settings).value, find_profile(profile).value
     script = read_placement(ldf, spec, defines, include_dirs)
-    loaded, size = load_firmware(firmware), FrameSize(width_px, height_px)
+    loaded = given_firmware(firmware) if isinstance(firmware, Firmware) else load_firmware(firmware)
+    size = FrameSize(width_px, height_px)
     program = loaded.firmware if calibration is None else loaded.firmware.calibrated(calibration)
     fits = _fits(program, script, spec)
     link_map, kinds = None, {}

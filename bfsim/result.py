@@ -4,33 +4,42 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 from rich.console import Console, RenderableType
 
 from bfsim.errors import ConfigError, shown
 from bfsim.report.columns import Columns, tables_of
-from bfsim.report.profile_tables import profile_report
+from bfsim.report.profile.tables import profile_report
 from bfsim.report.screen import screen, verdict
 from bfsim.report.tables import run_report
+from bfsim.report.target import Target, target_of
 from bfsim.spans import Span
 from bfsim.trace import RunRecord
 
 WIDTH = 80
 HTML = '<pre style="white-space: pre; line-height: 1.2; font-family: monospace">{code}</pre>'
 
-REPORTS: dict[str, Callable[[RunRecord], RenderableType]] = {
+REPORTS: dict[str, Callable[[RunRecord, Target | None], RenderableType]] = {
     "screen": screen,
     "full": run_report,
-    "profile": profile_report,
+    "profile": lambda run, _target: profile_report(run),
 }
 """What `Run.report` returns, by its name."""
+PAGE = ".html"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Run(RunRecord):
-    """The records of one run, with their reports and tables. `repr` is one line; a notebook shows the screen of `bfsim run`."""
+    """The records of one run, with their reports and tables. `repr` is one line; a notebook shows the screen of `bfsim run`.
+
+    `again` makes the run once more, for those who look at what a run does not keep.
+    """
+
+    again: partial[Run] | None = field(default=None, compare=False)
 
     def __repr__(self) -> str:
         frames = "1 frame" if len(self.frames) == 1 else f"{len(self.frames)} frames"
@@ -45,25 +54,40 @@ class Run(RunRecord):
         console.print(screen(self))
         return console.export_html(inline_styles=True, code_format=HTML)
 
-    def report(self, which: str = "screen") -> str:
+    def report(self, which: str | Path = "screen", *, target: str | None = None) -> str:
         """Return a report as text of 80 columns: the "screen" of `bfsim run`, its "full" one, or the "profile".
 
-        Raises ConfigError for another name, and for a run without a frame.
+        Or write the page of `bfsim run --html` to a file, `which` ends in .html then, and return its name: for its pictures
+        the run is made once more. `target` is what frames are compared with, such as "15Hz". Raises ConfigError for another
+        name, for a run without a frame, and for a page that cannot be written.
         """
-        if which not in REPORTS:
-            raise ConfigError(f"report must be one of {', '.join(REPORTS)}, not {shown(which)}")
+        goal = None if target is None else target_of(target)
+        is_page = str(which).endswith(PAGE)
+        if not is_page and which not in REPORTS:
+            raise ConfigError(
+                f"report must be one of {', '.join(REPORTS)} or a file *.html, not {shown(str(which))}"
+            )
         if not self.frames:
             raise ConfigError("a run must have at least one frame to report on, and this one finished none")
+        if is_page:
+            from bfsim.run_page import write_page
+
+            if self.again is None:
+                raise ConfigError(
+                    "a run must come from simulate() for a page of it, which makes it once more"
+                )
+            write_page(self, self.again, Path(which), goal)
+            return str(which)
         console = _console(record=False)
-        console.print(REPORTS[which](self))
+        console.print(REPORTS[str(which)](self, goal))
         assert isinstance(console.file, io.StringIO)
         return "".join(f"{line.rstrip()}\n" for line in console.file.getvalue().splitlines())
 
     def tables(self, spans: Iterable[Span] = ()) -> dict[str, Columns]:
         """Return the tables of the run by their names, each as lists by column: Polars, Arrow and others take them so.
 
-        They are frames, results, stages, stalls, kernels, lines, traffic and spans; `bfsim.report.columns` says what a
-        row of each is. `spans` are what `simulate(on_spans=...)` told.
+        They are frames, results, stages, stalls, kernels, lines, owners, accesses, paths, buffers, traffic and spans;
+        `bfsim.report.columns` says what a row of each is. `spans` are what `simulate(on_spans=...)` told.
         """
         return tables_of(self, spans)
 

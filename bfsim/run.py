@@ -7,29 +7,34 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial, wraps
+from inspect import signature
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ParamSpec
 
 import llvmlite.binding as llvm
 
 from bfsim import __version__, shipped
 from bfsim.chip.spec import BoardSpec
 from bfsim.device_script import read_script
-from bfsim.errors import ConfigError, FirmwareError, LinkError, RecordingError, shown
+from bfsim.errors import ConfigError, FirmwareError, RecordingError, WorkError
 from bfsim.given import given_firmware
 from bfsim.hardware import Found, find_board, find_profile
 from bfsim.kernel import VDSP_O2, CompilerProfile
-from bfsim.linker import LinkerScript, LinkMap, parse_ldf
+from bfsim.linker import LinkerScript, LinkMap
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Fidelity, Outcome, require_cores
 from bfsim.machine.bus.ahead import compiled_ahead
+from bfsim.machine.calls.call_cache import BeforeCall, sanitized
 from bfsim.machine.cameras.capture import Feed
-from bfsim.machine.program import Calibration, Firmware, FrameSize, SourcePixels
+from bfsim.machine.program import Calibration, Firmware, FrameSize
 from bfsim.machine.spi.device import SpiDevice
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.result import Run
+from bfsim.retiming import retimed
 from bfsim.room import place
+from bfsim.run_inputs import calibration_of, read_placement
 from bfsim.seen import Seen, SeenFrame
 from bfsim.spans import Span
 from bfsim.trace import BudgetRow, Identity, MemoryRecord, RunWarning, WarningKind
@@ -39,6 +44,32 @@ PLACEMENTS = shipped.LDF_FOLDER
 DEFAULT_LDF = shipped.DEFAULT_LDFS["ADSP-BF561"]
 
 
+_WATCHING = ("before", "progress", "on_seen", "on_time", "on_spans", "on_call", "record_work", "work")
+"""Arguments of `simulate` that change nothing in the records: whoever makes the run again has others."""
+
+Given = ParamSpec("Given")
+
+
+def _repeatable(simulate: Callable[Given, Run]) -> Callable[Given, Run]:
+    """Return what also tells the run that it returns how to make it again."""
+
+    @wraps(simulate)
+    def repeatable(*arguments: Given.args, **options: Given.kwargs) -> Run:
+        done = simulate(*arguments, **options)
+        bound = signature(simulate).bind(*arguments, **options)
+        bound.apply_defaults()
+        what = {
+            name: dict(value) if isinstance(value, Mapping) else value
+            for name, value in bound.arguments.items()
+            if name not in _WATCHING
+        }
+        return replace(done, again=partial(by_name, **what))
+
+    by_name: Callable[..., Run] = repeatable
+    return repeatable
+
+
+@_repeatable
 def simulate(
     recording: Path | None = None,
     *,
@@ -54,11 +85,14 @@ def simulate(
     sanitize: bool = False,
     profile: str = VDSP_O2.name,
     script: Path | None = None,
+    record_work: Path | None = None,
+    work: Path | None = None,
     before: Callable[[Identity, int], None] | None = None,
     progress: Callable[[int, int], None] | None = None,
     on_seen: Callable[[SeenFrame], None] | None = None,
     on_time: Callable[[float], None] | None = None,
     on_spans: Callable[[Sequence[Span]], None] | None = None,
+    on_call: BeforeCall | None = None,
 ) -> Run:
     """Run `firmware` on a recording and return the records: a `Firmware`, or the name of one, as a built-in one's, "FILE.py:NAME" or "PACKAGE:NAME".
 
@@ -73,9 +107,11 @@ def simulate(
     compiler would leave it out. `before` is called with what will run and how many frames of it, before the first one does,
     and may raise; the digest of the recording is not known then. `progress` is called with
     (frames done, frames in all); `script` is a JSON or TOML file
-    that tells the firmware's device on the SPI what to do; `on_seen` is called with what was seen in each frame, if
+    that tells the firmware's device on the SPI what to do; `record_work` is a file to record what the cores do in, and `work` such a
+    file, which is then played in place of the firmware: the same records on another board or LDF, sooner; `on_seen` is called with what was seen in each frame, if
     the firmware has a view, which changes nothing in the records; `on_time` is called now and then with the simulated
-    time in seconds; `on_spans` with what the cores and devices did since the last time. Ctrl-C ends the run with the frames done. Raises a
+    time in seconds; `on_spans` with what the cores and devices did since the last time; `on_call`
+    with each kernel and its arguments before it runs. Ctrl-C ends the run with the frames done. Raises a
     BfsimError for anything that is wrong with what was given. A crash in native code ends the process, a notebook's, too;
     standard error then has the name of the kernel.
     """
@@ -103,7 +139,7 @@ def simulate(
             size,
             link_map,
             feed=feed,
-            sanitize=sanitize,
+            before_call=(*((sanitized,) if sanitize else ()), *((on_call,) if on_call else ())),
             profile=compiler,
             device=device,
             fidelity=fidelity,
@@ -139,7 +175,11 @@ def simulate(
             if on_seen:
                 on_seen(SeenFrame(index=index, times_ns=source.take_times_ns(index), cameras=cameras))
 
-        outcome = machine.run(iter(source), count, show if on_seen else None, on_time, on_spans)
+        watched = bool(on_seen or on_spans)
+        with retimed(
+            machine, identity, source, loaded, record_work=record_work, work=work, is_watched=watched
+        ):
+            outcome = machine.run(iter(source), count, show if on_seen else None, on_time, on_spans)
     identity = replace(
         identity, recording_digest=source.digest, firmware_digest=loaded.digest, firmware_files=loaded.files
     )
@@ -153,10 +193,10 @@ class _KnownError(Exception):
     """Ends a run before its first frame, when all is known about it."""
 
 
-def identified(**what: Any) -> tuple[Identity, int]:
-    """Return what `simulate` would run, with the digest of the recording, and how many frames of it. Nothing runs.
+def planned(**what: Any) -> tuple[Identity, int]:
+    """Return what `simulate` would run, without the digest of the recording, and how many frames of it. Nothing runs.
 
-    All that is given is read and checked; raises what `simulate` would before the first frame.
+    All that is given is read and checked, but the frames; raises what `simulate` would before the first one.
     """
     known = list[tuple[Identity, int]]()
 
@@ -166,7 +206,12 @@ def identified(**what: Any) -> tuple[Identity, int]:
 
     with suppress(_KnownError):
         simulate(before=stop, **what)
-    identity, frames = known[0]
+    return known[0]
+
+
+def identified(**what: Any) -> tuple[Identity, int]:
+    """Return what `planned` does, with the digest of the recording, for which all frames are read."""
+    identity, frames = planned(**what)
     return replace(identity, recording_digest=recording_digest(what.get("recording"), frames)), frames
 
 
@@ -226,22 +271,6 @@ def rows_of(firmware: str) -> tuple[BudgetRow, ...]:
     return load_firmware(firmware).firmware.rows
 
 
-def read_placement(
-    ldf: Path | None, spec: BoardSpec, defines: Mapping[str, str], include_dirs: Sequence[Path]
-) -> LinkerScript:
-    """Read an LDF, one that is shipped by its name, or the one that suits the board's chip, for chip and SDRAM of the board.
-
-    `defines` are macros beside, or instead of, those that bfsim defines.
-    """
-    path = shipped.ldf_at(ldf) if ldf else shipped.DEFAULT_LDFS[spec.chip.name]
-    if path is None:
-        known = ", ".join(shipped.LDFS)
-        raise LinkError(f"LDF must be a file or a shipped one ({known}), not {shown(str(ldf))}")
-    macros = {"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes), **defines}
-    folders = (*include_dirs, shipped.LDF_FOLDER)
-    return parse_ldf(path, macros, folders, chip=spec.chip.name).with_cores_named()
-
-
 def _device(path: Path | None, loaded: LoadedFirmware) -> tuple[SpiDevice, str]:
     """Return the device of the firmware, told by the script if there is one, and the digest of the script."""
     if path is None:
@@ -257,33 +286,35 @@ def _device(path: Path | None, loaded: LoadedFirmware) -> tuple[SpiDevice, str]:
         raise ConfigError(f"{path}: {error}") from error
 
 
-def calibration_of(reader: RecordingReader) -> Calibration:
-    """Return what a recording knows of its cameras: tables by the cores that take them, and the geometry."""
-    tables, geometry = reader.rectification, reader.geometry
-    pictures = (("A", tables.left), ("B", tables.right)) if tables else ()
-    return Calibration(
-        sources={core: SourcePixels(*table) for core, table in pictures},
-        geometries=(geometry,) if geometry else (),
-    )
-
-
 class _DigestedFrames:
     """The frames of a recording as they are read, and the digest of those that were."""
 
     def __init__(self, reader: RecordingReader, total: int) -> None:
         self.name = _name(Path(reader.path))
         self._reader = reader
-        self._total = total
+        self.total = total
         self._digest = hashlib.sha256()
+        self.digests: list[str] = []
+        """Of the recording up to each frame that was read."""
+        self._expected: Sequence[str] = ()
         self._times_ns: dict[int, dict[str, int]] = {}
 
     def __iter__(self) -> Iterator[StereoFrame]:
-        for frame in self._reader.frames(self._total):
+        for frame in self._reader.frames(self.total):
             self._digest.update(f"{frame.left.shape} {frame.left_ns} {frame.right_ns}\n".encode())
             self._digest.update(frame.left.tobytes())
             self._digest.update(frame.right.tobytes())
+            self.digests.append(self._digest.hexdigest())
+            if self._expected and self._expected[frame.index] != self.digests[-1]:
+                raise WorkError(
+                    f"{self.name} must be as it was when its run was recorded, and frame {frame.index} is another: record it again"
+                )
             self._times_ns[frame.index] = {"left": frame.left_ns, "right": frame.right_ns}
             yield frame
+
+    def expect(self, digests: Sequence[str]) -> None:
+        """Compare each frame that is read from now on with what was read before. Raises WorkError for another one."""
+        self._expected = digests
 
     def take_times_ns(self, index: int) -> dict[str, int]:
         """Return when the pictures of a frame were taken, by camera."""
@@ -333,11 +364,13 @@ def _identity(
         board=spec.name,
         board_digest=board.digest,
         board_files=board.files,
+        board_numbers=board.numbers,
         ldf=" -D ".join([_name(placement.path), *(f"{name}={value}" for name, value in defines.items())]),
         ldf_digest=hashlib.sha256(placement.source.expanded.encode()).hexdigest(),
         compiler=compiler.value.name,
         compiler_digest=compiler.digest,
         compiler_files=compiler.files,
+        compiler_numbers=compiler.numbers,
         feed=feed.value,
         script_digest=script_digest,
         fidelity=fidelity.value,

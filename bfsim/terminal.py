@@ -10,7 +10,15 @@ from threading import Timer
 from time import monotonic
 
 from rich.console import Console, RenderableType
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    TaskID,
+    TextColumn,
+    TimeRemainingColumn,
+)
 
 WIDTH_WITHOUT_TERMINAL = 100
 LEAST_WIDTH = 20
@@ -33,24 +41,28 @@ class Bar:
         """Tell how much is done."""
         self.progress.update(self._task, completed=done, total=total)
 
+    def say(self, text: str) -> None:
+        """Tell more in words."""
+        self.progress.update(self._task, reached=text)
+
     def reached(self, amount: float) -> None:
         """Tell how far it is in a unit of its own, of which nobody knows the end; the bar says how many of them a second."""
         rate = amount / max(monotonic() - self._began, 0.001)
-        self.progress.update(self._task, reached=f"{amount:,.1f} {self._unit}, {rate:,.1f} a second")
+        self.say(f"{amount:,.1f} {self._unit}, {rate:,.1f} a second")
 
 
 @contextmanager
-def progress_bar(title: str, unit: str = "") -> Iterator[Bar]:
+def progress_bar(title: str, unit: str = "", *, with_time: bool = True) -> Iterator[Bar]:
     """Yield what to tell; on a terminal a bar shows it, if it takes long, and leaves nothing behind.
 
-    `unit`: what `Bar.reached` counts.
+    `unit`: what `Bar.reached` counts. `with_time`: it shows the time left, as if all that is counted took the same time.
     """
-    columns = (
+    columns: tuple[ProgressColumn, ...] = (
         TextColumn("{task.description}"),
         BarColumn(),
         MofNCompleteColumn(),
         TextColumn("{task.fields[reached]}"),
-        TimeRemainingColumn(),
+        *((TimeRemainingColumn(),) if with_time else ()),
     )
     console = Console(stderr=True)
     progress = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)

@@ -105,12 +105,17 @@ class FrameRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineCost:
-    """One source line of a kernel: how often its first operation ran, and the cycles of all of them."""
+    """One source line of a kernel: how often its first operation ran, and the cycles of all of them.
+
+    `operations` are how often each ran and its issue cycles, which add up to `issue_cclk`; those of a routine of the run-time
+    library have the routine's name.
+    """
 
     line: int
     executions: int
     issue_cclk: int
     stall_cclk: Mapping[StallReason, int]
+    operations: Mapping[str, tuple[int, int]] = field(default_factory=dict)
 
     @property
     def elapsed_cclk(self) -> int:
@@ -236,6 +241,7 @@ class BudgetRow:
 class Identity:
     """All that a result depends on. Digests are sha256 in hex, or empty.
 
+    `..._numbers` say of a board or compiler that is not shipped which shipped one it is like, and what it has otherwise.
     Paths are left out on purpose: `..._files` are relative to the folder that they were imported from; a shipped board or
     compiler has none. `board` ends in --set PATH=VALUE for each number that was changed.
     """
@@ -262,6 +268,8 @@ class Identity:
     compiler_digest: str = ""
     board_files: tuple[str, ...] = ()
     compiler_files: tuple[str, ...] = ()
+    board_numbers: tuple[str, ...] = ()
+    compiler_numbers: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
+import sys
 from functools import cache
 from importlib.resources import files
+from io import BytesIO
 
+import lark
 from lark import Lark, Token, Tree, UnexpectedInput, UnexpectedToken
 from lark.exceptions import VisitError
 from lark.lexer import PatternStr
 
+from bfsim import store
 from bfsim.errors import LinkError
 from bfsim.linker.expression_builder import ExpressionBuilder
 from bfsim.linker.expressions import NO_SCOPE, Expression, ExpressionError
@@ -66,8 +71,17 @@ def parse_condition(text: str) -> int:
 
 @cache
 def _grammar() -> Lark:
+    """Return the parser, which the cache keeps: to make it takes ten times as long."""
     text = files("bfsim.linker").joinpath("ldf.lark").read_text(encoding="utf-8")
-    return Lark(text, parser="lalr", lexer="contextual", start=["start", "condition"])
+    name = hashlib.sha256(f"{text} lark {lark.__version__} Python {sys.version}".encode()).hexdigest()
+    kept = store.load(name)
+    if kept is not None:
+        return Lark.load(BytesIO(kept))
+    made = Lark(text, parser="lalr", lexer="contextual", start=["start", "condition"])
+    written = BytesIO()
+    made.save(written)
+    store.save(name, written.getvalue())
+    return made
 
 
 def _syntax_error(source: Source, error: UnexpectedInput) -> LinkError:

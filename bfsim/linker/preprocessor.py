@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from bfsim.errors import LinkError, cut, shown
+from bfsim.file_content import read_bounded
 from bfsim.linker.conditions import holds
 from bfsim.linker.macros import TOKEN, Macro, MacroError, Macros, expand_use
 from bfsim.linker.predefined import chip_in, macros_for
@@ -211,7 +212,7 @@ def _expanded(file: File, defined: Mapping[str, str], include_dirs: Sequence[Pat
 
 
 def _read(path: Path) -> str:
-    return path.read_text(encoding="utf-8-sig", errors="replace")
+    return read_bounded(path).decode("utf-8-sig", errors="replace")
 
 
 def _macro(define: re.Match[str]) -> Macro:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
-
-from pydantic import TypeAdapter, ValidationError
+from functools import cache
+from typing import TYPE_CHECKING, Literal
 
 from bfsim.errors import RecordingError, cut
 from bfsim.recording.sources import Skipped
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
 
 LensName = Literal["pinhole", "fisheye"]
 
@@ -68,13 +70,15 @@ class CalibrationReport:
 
     def to_json(self) -> str:
         """The report as text."""
-        return _ADAPTER.dump_json(self).decode()
+        return _adapter().dump_json(self).decode()
 
     @classmethod
     def from_json(cls, text: str) -> CalibrationReport:
         """The report out of its text. Raises RecordingError."""
+        from pydantic import ValidationError
+
         try:
-            return _ADAPTER.validate_json(text)
+            return _adapter().validate_json(text)
         except ValidationError as error:
             first = error.errors()[0]
             where = ".".join(map(str, first["loc"])) or "it"
@@ -83,4 +87,9 @@ class CalibrationReport:
             ) from None
 
 
-_ADAPTER = TypeAdapter(CalibrationReport)
+@cache
+def _adapter() -> TypeAdapter[CalibrationReport]:
+    """Return what reads and writes the JSON of reports: few recordings have one, and every run would wait for pydantic."""
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(CalibrationReport)

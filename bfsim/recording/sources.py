@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
-from bfsim.recording.planes import YuvPlanes
+if TYPE_CHECKING:
+    from bfsim.recording.planes import YuvPlanes
 
 SourceFormat = Literal["images", "uyvy", "i420", "y4m", "video", "rosbag"]
 SOURCE_FORMATS: tuple[SourceFormat, ...] = get_args(SourceFormat)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bfsim.seen.features import (
+    CAMERAS,
     Colour,
     Point,
     PointMm,
@@ -29,6 +30,7 @@ from bfsim.seen.features import (
 from bfsim.seen.naming import NamedColour, PictureColours
 
 __all__ = [
+    "CAMERAS",
     "Colour",
     "NamedColour",
     "PictureColours",

@@ -26,6 +26,10 @@ class Solid(StrEnum):
     BOX = "box"
 
 
+CAMERAS = {"A": "left", "B": "right"}
+"""The camera that each core looks at."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeenEdges:
     """The edges of a picture, one element of each array per edge.

@@ -1,0 +1,39 @@
+"""What a run reads beside its frames: the LDF, and what a recording knows of its cameras."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from bfsim import shipped
+from bfsim.chip.spec import BoardSpec
+from bfsim.errors import LinkError, shown
+from bfsim.linker import LinkerScript, parse_ldf
+from bfsim.machine.program import Calibration, SourcePixels
+from bfsim.recording import RecordingReader
+
+
+def read_placement(
+    ldf: Path | None, spec: BoardSpec, defines: Mapping[str, str], include_dirs: Sequence[Path]
+) -> LinkerScript:
+    """Read an LDF, one that is shipped by its name, or the one that suits the board's chip, for chip and SDRAM of the board.
+
+    `defines` are macros beside, or instead of, those that bfsim defines.
+    """
+    path = shipped.ldf_at(ldf) if ldf else shipped.DEFAULT_LDFS[spec.chip.name]
+    if path is None:
+        known = ", ".join(shipped.LDFS)
+        raise LinkError(f"LDF must be a file or a shipped one ({known}), not {shown(str(ldf))}")
+    macros = {"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes), **defines}
+    folders = (*include_dirs, shipped.LDF_FOLDER)
+    return parse_ldf(path, macros, folders, chip=spec.chip.name).with_cores_named()
+
+
+def calibration_of(reader: RecordingReader) -> Calibration:
+    """Return what a recording knows of its cameras: tables by the cores that take them, and the geometry."""
+    tables, geometry = reader.rectification, reader.geometry
+    pictures = (("A", tables.left), ("B", tables.right)) if tables else ()
+    return Calibration(
+        sources={core: SourcePixels(*table) for core, table in pictures},
+        geometries=(geometry,) if geometry else (),
+    )

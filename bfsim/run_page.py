@@ -1,0 +1,119 @@
+"""The page of a run: what watches the run for it, and writes it when the run is done."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import partial
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from bfsim import shipped
+from bfsim.errors import ConfigError
+from bfsim.loading import load_firmware
+from bfsim.machine.program import Firmware
+from bfsim.mapping import map_memory
+from bfsim.recording import RecordingReader
+from bfsim.report.digest import cycle_digest
+from bfsim.report.heat import HeatedFrames, stages_of
+from bfsim.report.html.frames import MOST
+from bfsim.report.html.gantt import Gantts
+from bfsim.report.html.pictures import Pictures
+from bfsim.report.ldf.map import MemoryMap
+from bfsim.report.save import files_of_run, require_apart, require_place, write_text
+from bfsim.report.target import Target
+from bfsim.run_inputs import calibration_of
+from bfsim.trace import BudgetRow, Identity, RunRecord
+from bfsim.watchers import Watchers, calling
+
+_PACKAGES = ("altair", "jinja2", "markdown_it", "vl_convert")
+
+
+def require_page(path: Path, others: Iterable[Path | None]) -> None:
+    """Raise ConfigError unless a page can be written to `path`, which must be none of the `others`, and its packages are there."""
+    require_place(path)
+    require_apart(path, others)
+    missing = [each for each in _PACKAGES if find_spec(each) is None]
+    if missing:
+        raise ConfigError(
+            f'an HTML page needs the package {missing[0]}; install all that it needs with: pip install "bfsim[html]"'
+        )
+
+
+@contextmanager
+def paged(watchers: Watchers, path: Path, target: Target | None, what: Mapping[str, Any]) -> Iterator[None]:
+    """Have `watchers` write a page to `path` of the run that `what`, arguments of `simulate`, describes."""
+    with Pictures() as pictures, Gantts() as gantts:
+        heats = HeatedFrames(stages_of(_rows(what["firmware"])), [pictures.add_heat])
+
+        def make_room(_identity: Identity, frames: int) -> None:
+            pictures.frames = min(frames, MOST)
+
+        watchers.before.extend((make_room, gantts.begin, heats.begin))
+        watchers.seen.extend((pictures.add, heats.add))
+        watchers.spans.extend((gantts.add, heats.add_spans))
+        watchers.done.append(partial(_write, path, target, pictures, gantts, what))
+        yield
+
+
+def write_page(run: RunRecord, again: partial[Any], path: Path, target: Target | None) -> None:
+    """Write the page of a run that is over: `again`, which makes it once more, shows what was seen and when.
+
+    Raises ConfigError where `require_page` does, and where it does not come out as before.
+    """
+    require_page(path, files_of_run(again.keywords))
+    watchers = Watchers()
+    with paged(watchers, path, target, again.keywords):
+        before, on_seen, on_spans = (
+            calling(each) for each in (watchers.before, watchers.seen, watchers.spans)
+        )
+        done = again(before=before, on_seen=on_seen, on_spans=on_spans)
+        if cycle_digest(done.frames) != cycle_digest(run.frames):
+            raise ConfigError(
+                "firmware, recording and LDF must be as they were for the page of a run, which makes it once more: "
+                f"its cycles are {cycle_digest(done.frames)[:12]} now, not {cycle_digest(run.frames)[:12]}"
+            )
+        for each in watchers.done:
+            each(run)
+
+
+def _rows(firmware: Firmware | str) -> tuple[BudgetRow, ...]:
+    return firmware.rows if isinstance(firmware, Firmware) else load_firmware(firmware).firmware.rows
+
+
+def _write(
+    path: Path,
+    target: Target | None,
+    pictures: Pictures,
+    gantts: Gantts,
+    what: Mapping[str, Any],
+    run: RunRecord,
+) -> None:
+    from bfsim.report.html.page import Page  # its packages are an extra
+
+    gantts.finish()
+    page = Page(
+        run=run,
+        pictures=pictures,
+        gantts=gantts,
+        accuracy=shipped.accuracy_on("In short"),
+        unmodelled=shipped.accuracy_on("What is not modelled"),
+        memory_map=_map_of(run, what),
+        target=target,
+    )
+    write_text(path, page.chunks())
+
+
+def _map_of(run: RunRecord, what: Mapping[str, Any]) -> MemoryMap:
+    """Return where everything lay in a run."""
+    with RecordingReader(what["recording"] or shipped.RECORDING) as reader:
+        calibration = calibration_of(reader)
+    given = ("firmware", "board", "settings", "profile", "defines", "include_dirs")
+    return map_memory(
+        what["ldf"],
+        **{name: what[name] for name in given},
+        width_px=run.identity.width_px,
+        height_px=run.identity.height_px,
+        calibration=calibration,
+    )
