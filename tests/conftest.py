@@ -22,6 +22,11 @@ def no_terminal() -> None:
     os.environ.pop("COLUMNS", None)
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the tests of whole commands, the longest ones: at the end no core then waits for the other."""
+    items.sort(key=lambda item: item.path.parent != Path(__file__).parent)
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Take recordings beside those that the tests have themselves."""
     parser.addoption("--recording", action="append", default=[], type=Path, help="play these pictures, too")

@@ -8,13 +8,21 @@ what they print beneath: those lines must appear in that order, and a line `...`
 from __future__ import annotations
 
 import re
+import shlex
 import subprocess
 from collections.abc import Iterator, Mapping
+from contextlib import chdir
 from dataclasses import dataclass
 from pathlib import Path
 
+from click.testing import CliRunner
+
+from bfsim.cli import main
+
 ROOT = Path(__file__).parent.parent
 PAGES = (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
+PLAIN = re.compile(r"bfsim [^|&;<>$`*?(){}#~\\]+")
+"""A command of bfsim that no shell must read: it is called in this process, for a new one would first import all anew."""
 FENCE = re.compile(
     r"^(?:<!-- run by (?P<runner>\S+) -->\n)?(?P<indent> *)```(?P<language>\w*)(?P<options>[^\n]*)\n"
     r"(?P<text>.*?)^(?P=indent)```$",
@@ -69,10 +77,20 @@ def play(block: Block, folder: Path, environment: Mapping[str, str]) -> None:
         file.write_text(block.text)
     elif block.language == "console":
         for command, printed in block.commands():
-            output = _run(["bash", "-c", f"set -euo pipefail\n{command}"], folder, environment)
+            if PLAIN.fullmatch(command):
+                output = _called(command, folder, environment)
+            else:
+                output = _run(["bash", "-c", f"set -euo pipefail\n{command}"], folder, environment)
             _compare(printed, output, f"{command} (line {block.line})")
     elif block.language == "python":
         _run(["python", "-c", block.text], folder, environment)
+
+
+def _called(command: str, folder: Path, environment: Mapping[str, str]) -> str:
+    with chdir(folder):
+        done = CliRunner().invoke(main, shlex.split(command)[1:], env=environment, prog_name="bfsim")
+    assert done.exit_code == 0, f"{command}\n{done.output}"
+    return done.output
 
 
 def _run(command: list[str], folder: Path, environment: Mapping[str, str]) -> str:

@@ -10,9 +10,10 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from bfsim import __version__, recording
+from bfsim import __version__
 from bfsim.cli import main
 from bfsim.cli_record import SOURCE_FORMATS
+from bfsim.recording import sources
 
 
 def call(*arguments: str) -> Result:
@@ -70,9 +71,24 @@ main()
     assert done.stdout.splitlines()[-1] == "[]"
 
 
+def test_a_run_imports_only_what_it_needs() -> None:
+    """What compiles and costs kernels, reads pictures and writes them waits for somebody to need it."""
+    late = {
+        "PIL",
+        "bfsim.kernel.costing",
+        "bfsim.kernel.emit",
+        "bfsim.recording.importer",
+        "numba",
+        "pydantic",
+    }
+    program = f"import sys, bfsim.run; print(sorted({late} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
+
+
 def test_the_formats_of_pictures_are_all_offered() -> None:
     """The command line knows them without importing what reads them."""
-    assert SOURCE_FORMATS == recording.SOURCE_FORMATS
+    assert SOURCE_FORMATS == sources.SOURCE_FORMATS
 
 
 @pytest.mark.parametrize(
@@ -158,13 +174,17 @@ def test_a_terminal_with_no_room_and_few_letters() -> None:
     assert done.stdout.isascii()
 
 
-@pytest.mark.parametrize("other", ["--mcap", "--script", "--ldf", "recording"])
-def test_the_json_takes_the_place_of_nothing_else(tmp_path: Path, other: str) -> None:
+@pytest.mark.parametrize("command", ["run", "profile"])
+@pytest.mark.parametrize("written", ["--json", "--trace", "--html"])
+@pytest.mark.parametrize("other", ["--script", "--ldf", "--work", "--record-work", "recording"])
+def test_what_is_written_takes_the_place_of_nothing_else(
+    tmp_path: Path, command: str, written: str, other: str
+) -> None:
     """A recording that is given twice by a slip is still there afterwards."""
     file = tmp_path / "drive.mcap"
     file.touch()
     option = [] if other == "recording" else [other]
-    result = call("run", *option, str(file), "--json", str(tmp_path / "." / "drive.mcap"))
+    result = call(command, *option, str(file), written, str(tmp_path / "." / "drive.mcap"))
     assert result.exit_code == 2
     assert "drive.mcap must be a file of its own to be written" in result.output
 

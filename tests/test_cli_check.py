@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -59,14 +61,17 @@ def test_all_runs_of_a_file_pass_from_any_folder(repository: Path, monkeypatch: 
     assert " ".join(result.output.split()).count("is the same as when the limits were measured") == 2
 
 
-def test_slower_firmware_fails_with_the_kernel_that_grew(repository: Path) -> None:
-    """Exit code 1, in the terminal and in all forms."""
+def test_slower_firmware_fails_with_the_line_that_grew_and_why(repository: Path) -> None:
+    """Exit code 1, and stage, kernel, line and cause in the terminal and in all forms; `bfsim diff` says the same."""
     Path("fw_eyes.py").write_text(SLOWER)
     forms = {"json": "o.json", "junit": "o.xml", "markdown": "o.md", "benchmark": "b.json"}
     options = [word for name, file in forms.items() for word in (f"--{name}", file)]
     result = call(*WHAT, "--baseline", "limits.toml", *options)
     assert result.exit_code == 1, result.output
-    assert "ms a frame in Threshold on core A: threshold +" in result.output
+    reason = "in it threshold (fw_eyes.py:"
+    cause = ": library division "
+    for words in (reason, cause, "if x * 7919 // (line[x] + 1) == 123456:"):
+        assert words in " ".join(result.output.split())
     assert "is another than when the limits were measured" in " ".join(result.output.split())
     told = json.loads(Path("o.json").read_text())
     assert told["passed"] is False
@@ -75,8 +80,14 @@ def test_slower_firmware_fails_with_the_kernel_that_grew(repository: Path) -> No
     assert not any(each.startswith("results.") for each in broken)
     failure = ET.parse("o.xml").getroot().find("testsuite/testcase/failure")
     assert failure is not None
-    assert "threshold +" in (failure.text or "")
+    assert reason in (failure.text or "")
+    assert cause in (failure.text or "")
     assert "| Threshold.A" in Path("o.md").read_text()
+    assert cause in Path("o.md").read_text()
+    assert sum(each["cclk"] for each in told["runs"][0]["difference"]["stages"]) > 0
+    name = "limits.toml:drive --firmware fw_eyes.py"
+    diff = CliRunner().invoke(main, ["diff", name, "drive.mcap --firmware fw_eyes.py", "--json"])
+    assert json.loads(diff.output) == told["runs"][0]["difference"]
     benchmark = json.loads(Path("b.json").read_text())
     assert {"name", "unit", "value"} == set(benchmark[0])
     assert {each["unit"] for each in benchmark} == {"ms", "B"}
@@ -187,3 +198,39 @@ def test_a_person_requires_more(repository: Path) -> None:
     assert result.exit_code == 1
     assert ">= 1000000.00 Hz" in result.output
     assert sentence in Path("limits.toml").read_text()
+
+
+BOARDS = """
+from dataclasses import replace
+from bfsim.chip.boards import CM_BF561
+mine = replace(CM_BF561, name="mine", sdram=replace(CM_BF561.sdram, nRP=3))
+"""
+
+
+def test_a_board_that_was_edited_is_refused_by_its_number(
+    repository: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is the numbers that count, not the letters of its file; before anything runs."""
+    what = (*WHAT, "--frames", "1", "--board", "boards.py:mine", "--baseline", "limits.toml")
+    Path("boards.py").write_text(BOARDS)
+    assert call(*what, "--update").exit_code == 0
+    Path("boards.py").write_text(f"# an edit\n{BOARDS}")
+    assert call(*what).exit_code == 0
+    monkeypatch.setattr("bfsim.machine.board.Board.run", None)
+    Path("boards.py").write_text(BOARDS.replace("nRP=3", "nRP=4"))
+    assert (
+        "board boards:mine had sdram.nRP = 3 when the limits were measured, and has sdram.nRP = 4"
+        in refused(*what)
+    )
+    Path("boards.py").write_text(BOARDS.replace("nRP=3", "nRP=CM_BF561.sdram.nRP"))
+    assert "and has that of cm-bf561" in refused(*what)
+
+
+def test_who_stops_reading_gets_the_files_all_the_same(repository: Path) -> None:
+    """`bfsim check ... | head -1`: outputs and history are written before anything is printed."""
+    command = f"{sys.executable} -m bfsim check --case 'drive --firmware fw_eyes.py' --baseline limits.toml --json o.json | true"
+    done = subprocess.run(
+        ["bash", "-c", f"{command}; exit ${{PIPESTATUS[0]}}"], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (141, "")
+    assert json.loads(Path("o.json").read_text())["passed"]

@@ -10,7 +10,8 @@ from click.testing import CliRunner, Result
 from PIL import Image
 
 from bfsim.cli import main
-from bfsim.recording import RecordingWriter, picture_of_file
+from bfsim.recording import RecordingWriter
+from bfsim.recording.images import picture_of_file
 from bfsim.run import BUILT_IN_RECORDING
 
 OTHER = """

@@ -8,9 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
 
 from bfsim.cli import main
 from bfsim.recording import RecordingWriter
+from tests.browser import browsing, needs_chromium
 
 FIRMWARE = """
 from bfsim.api import Buffer, BudgetRow, Firmware, i32, kernel, u8
@@ -69,19 +72,26 @@ def test_results_and_runs_on_the_spot_differ_alike(home: Path) -> None:
         assert words in read.output
     on_the_spot = bfsim("diff", "slow.json", "drive.mcap --firmware fast.py:firmware")
     assert on_the_spot.output == read.output
+    (home / "a name with spaces.json").write_text((home / "fast.json").read_text())
+    assert bfsim("diff", "slow.json", "a name with spaces.json").output == read.output
     markdown = bfsim("diff", "slow.json", "fast.json", "--markdown")
     assert markdown.output.startswith("**")
     assert "| --- |" in markdown.output
 
 
 def test_the_json_has_the_whole_tree(home: Path) -> None:
-    """Stages sum to the difference, and the kernel's name and lines are the same in both files."""
+    """The parts of everything sum to it, down to the causes of a line."""
     keep("before.json", "--firmware", "slow.py:firmware")
-    keep("after.json", "--firmware", "slow.py:firmware", "--ldf", "l2")
+    keep("after.json", "--firmware", "fast.py:firmware", "--ldf", "l2")
     found = json.loads(bfsim("diff", "before.json", "after.json", "--json").output)
     assert found["schema"] == "bfsim.diff/1"
-    assert sum(each["cclk"] for each in found["stages"]) == found["cclk"]
     assert found["cclk"] == found["after_cclk"] - found["before_cclk"]
+    levels, parts = 0, [(found["cclk"], found["stages"])]
+    while parts:
+        assert all(cclk == sum(each["cclk"] for each in of) for cclk, of in parts)
+        parts = [(each["cclk"], each["parts"]) for _, of in parts for each in of if each["parts"]]
+        levels += 1
+    assert levels > 3
 
 
 def test_a_run_does_not_differ_from_itself(home: Path) -> None:
@@ -117,11 +127,62 @@ def test_a_file_that_is_no_result_is_refused(home: Path, text: str, told: str) -
     [
         ("missing.json", "there is no such file"),
         ("drive.mcap --no-such-option", "No such option"),
+        ("drive.mcap --script no-such-orders.toml", "no-such-orders.toml must be a readable file"),
         ("drive.mcap 'open", "words as a shell takes them"),
+        ("missing.toml", "missing.toml must be a baseline file, but there is none"),
+        ("two.toml", "two.toml:NAME must name one of its runs; they are 'a', 'b'"),
+        ("two.toml:c", "two.toml must have a run called 'c'; they are 'a', 'b'"),
+        ("two.toml:a", "run 'a' must have been measured: --update does that"),
     ],
 )
 def test_a_side_that_cannot_be_is_refused(home: Path, side: str, told: str) -> None:
-    """As `bfsim run` would refuse it."""
+    """As `bfsim run` or `bfsim check` would refuse it."""
+    (home / "two.toml").write_text("[[run]]\nname = 'a'\n[[run]]\nname = 'b'\n")
     refused = bfsim("diff", "drive.mcap --firmware slow.py:firmware", side)
     assert refused.exit_code == 2
     assert told in " ".join(refused.stderr.split())
+
+
+def test_a_page_has_the_pictures_of_what_was_run(home: Path) -> None:
+    """Beside the table, which stays as it is; a side that was read has none, and the cycles are the same with a page."""
+    keep("slow.json", "--firmware", "slow.py:firmware")
+    arguments = "diff", "slow.json", "drive.mcap --firmware fast.py:firmware"
+    plain, paged = bfsim(*arguments), bfsim(*arguments, "--html", "page.html")
+    assert paged.exit_code == 0, paged.output
+    assert paged.output == plain.output
+    text = (home / "page.html").read_text()
+    assert text.count("data:image/webp") == 2
+    assert text.count("No picture: slow.json") == 2
+    assert "brighten (fast.py:" in text
+
+
+def test_a_page_that_cannot_be_written_is_refused_before_the_run(home: Path) -> None:
+    """Nowhere to write, or what is read."""
+    keep("slow.json", "--firmware", "slow.py:firmware")
+    for where, words in (("no/page.html", "must exist"), ("slow.json", "must be a file of its own")):
+        refused = bfsim("diff", "slow.json", "drive.mcap --firmware fast.py:firmware", "--html", where)
+        assert refused.exit_code == 2
+        assert words in " ".join(refused.output.split())
+    assert bfsim("diff", "slow.json", "slow.json").exit_code == 0
+
+
+@needs_chromium
+def test_the_page_opens_in_a_browser(home: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Without a complaint; the keyboard opens the tree down to the cause; it fits a phone."""
+    bfsim(
+        "diff",
+        "drive.mcap --firmware slow.py:firmware",
+        "drive.mcap --firmware fast.py:firmware",
+        "--html",
+        "page.html",
+    )
+    with browsing(tmp_path_factory.mktemp("chromium")) as browser:
+        browser.look(width=360, scheme="dark")
+        browser.driver.get((home / "page.html").as_uri())
+        assert not browser.complaints()
+        assert browser.ask("document.documentElement.scrollWidth <= innerWidth")
+        closed = browser.driver.find_element(By.CSS_SELECTOR, ".tree details:not([open]) > summary")
+        closed.send_keys(Keys.ENTER)
+        assert closed.find_element(By.XPATH, "..").get_attribute("open")
+        causes = browser.driver.find_elements(By.CSS_SELECTOR, ".row.cause")
+        assert any(each.is_displayed() for each in causes)

@@ -13,7 +13,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
-from bfsim import cli_html
+from bfsim import run_page
 from bfsim.cli import main
 from bfsim.report.html.pictures import Pictures
 from bfsim.shipped import accuracy_on
@@ -61,7 +61,7 @@ def test_a_profile_writes_a_page_too(tmp_path: Path) -> None:
     result = bfsim("profile", "--html", tmp_path / "profile.html", "--ldf", "l2", "--set", "sdram.nRP=3")
     assert result.exit_code == 0, result.output
     text = (tmp_path / "profile.html").read_text()
-    assert text.count("data:image/webp") == 3
+    assert text.count("data:image/webp") == 2 * 3
     assert "slack, worst" not in text
     assert "l2.ldf on cm-bf561" in text
 
@@ -69,13 +69,16 @@ def test_a_profile_writes_a_page_too(tmp_path: Path) -> None:
 def test_mistakes_are_told_before_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each in one sentence that says what to do."""
     page = tmp_path / "run.html"
-    assert "--target must come with --html FILE" in refused("run", "--target", "15Hz")
+    assert "--target must come with --html FILE" in refused("profile", "--target", "15Hz")
+    assert "--target must come with the tables or --html FILE" in refused(
+        "run", "--target", "15Hz", "--json", "-"
+    )
     assert "must be a frame rate such as 15Hz or a frame time such as 66ms, not 'soon'" in refused(
         "run", "--html", page, "--target", "soon"
     )
     assert "must exist to write a file there" in refused("run", "--html", tmp_path / "no" / "run.html")
     assert "must be a file of its own" in refused("run", "--html", page, "--json", page)
-    monkeypatch.setattr(cli_html, "find_spec", lambda name: None if name == "vl_convert" else object())
+    monkeypatch.setattr(run_page, "find_spec", lambda name: None if name == "vl_convert" else object())
     assert (
         'needs the package vl_convert; install all that it needs with: pip install "bfsim[html]"'
         in refused("profile", "--html", page)
@@ -83,15 +86,26 @@ def test_mistakes_are_told_before_the_run(tmp_path: Path, monkeypatch: pytest.Mo
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("full", [[], ["--full"]])
+def test_a_target_stands_on_the_screen(full: list[str]) -> None:
+    """In one sentence, without a page; the same in the full report."""
+    words = " ".join(bfsim("run", "--target", "15Hz", *full).stdout.split())
+    assert re.search(
+        r"Target 15 Hz, 66\.67 ms a frame: kept by 0 of 3 frames; the worst, frame \d, must save [\d.]+ ms\. "
+        r"Most of it, on core [AB]: Edge detection [\d.]+, ",
+        words,
+    )
+
+
 def test_firmware_without_a_view_has_its_pictures(tmp_path: Path) -> None:
-    """The plain ones."""
+    """The plain ones, and where in them its time went."""
     firmware = tmp_path / "blind.py"
     firmware.write_text(
         "from dataclasses import replace\nfrom tinyphoon import tinyphoon\nblind = replace(tinyphoon, view=None)\n"
     )
     result = bfsim("run", "--firmware", f"{firmware}:blind", "--html", tmp_path / "run.html")
     assert result.exit_code == 0, result.output
-    assert (tmp_path / "run.html").read_text().count("data:image/webp") == 3
+    assert (tmp_path / "run.html").read_text().count("data:image/webp") == 2 * 3
 
 
 def test_the_page_says_of_accuracy_what_the_readme_says() -> None:
@@ -117,16 +131,17 @@ def opened(browser: Browser, written: tuple[Path, dict[str, object]]) -> Browser
     return browser
 
 
-def shown_frame(browser: Browser) -> tuple[str, str]:
-    """The frame that can be seen, and its picture; no other one can."""
+def shown_frame(browser: Browser) -> tuple[str, list[str]]:
+    """The frame that can be seen, and its pictures, what was seen and the heat map; no other one can."""
     (article,) = [
         each for each in browser.driver.find_elements(By.TAG_NAME, "article") if each.is_displayed()
     ]
-    image = article.find_element(By.TAG_NAME, "img")
-    assert browser.driver.execute_script(
-        "return arguments[0].decode().then(() => arguments[0].naturalWidth)", image
-    )
-    return article.get_attribute("id") or "", image.get_attribute("src") or ""
+    images = article.find_elements(By.TAG_NAME, "img")
+    for image in images:
+        assert browser.driver.execute_script(
+            "return arguments[0].decode().then(() => arguments[0].naturalWidth)", image
+        )
+    return article.get_attribute("id") or "", [image.get_attribute("src") or "" for image in images]
 
 
 @needs_chromium
@@ -173,18 +188,18 @@ def test_choosing_a_frame_changes_the_picture(opened: Browser) -> None:
     worst = (link.get_attribute("href") or "").rpartition("#")[2]
     assert shown_frame(opened)[0] == worst
     opened.driver.find_element(By.ID, "choose").send_keys(Keys.HOME)
-    first, picture = shown_frame(opened)
+    first, pictures = shown_frame(opened)
     gantt = opened.ask("document.getElementById('gantt').innerHTML")
     opened.driver.find_element(By.ID, "choose").send_keys(Keys.ARROW_RIGHT)
-    second, other = shown_frame(opened)
+    second, others = shown_frame(opened)
     assert (first, second) == ("frame-0", "frame-1")
-    assert picture != other
+    assert len({*pictures, *others}) == 4
     redrawn = "return document.getElementById('gantt').innerHTML !== arguments[0]"
     WebDriverWait(opened.driver, PATIENCE_S).until(lambda driver: driver.execute_script(redrawn, gantt))
     opened.driver.find_element(By.ID, "after").click()
     assert shown_frame(opened)[0] == "frame-2"
     opened.driver.find_elements(By.CSS_SELECTOR, "#series-A .mark-rect path")[0].click()
-    assert shown_frame(opened) == (first, picture)
+    assert shown_frame(opened) == (first, pictures)
     link.send_keys(Keys.ENTER)
     assert shown_frame(opened)[0] == worst
 

@@ -1,4 +1,8 @@
-"""The real command line in its own process, from the terminal's side: output, exit codes, files and errors."""
+"""The command line from the terminal's side: output, exit codes, files and errors.
+
+What belongs to a process, as signals, hash seeds and an empty cache, is tried in one of its own (`started`); all else is called
+in this one, for each new one would import all anew.
+"""
 
 from __future__ import annotations
 
@@ -8,20 +12,29 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import chdir
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from click.testing import CliRunner, Result
 
+from bfsim.cli import main
 from bfsim.recording import RecordingWriter
 from bfsim.run import BUILT_IN_RECORDING
 
 
-def bfsim(
+def bfsim(*arguments: object, cwd: Path | None = None, **environment: str) -> Result:
+    """Call the command line in this process and return what came out."""
+    with chdir(cwd or Path.cwd()):
+        return CliRunner().invoke(main, [*map(str, arguments)], env=environment, prog_name="bfsim")
+
+
+def started(
     *arguments: object, cwd: Path | None = None, **environment: str
 ) -> subprocess.CompletedProcess[str]:
-    """Run the command line and return what came out."""
+    """Run the command line in a process of its own and return what came out."""
     command = [sys.executable, "-m", "bfsim", *map(str, arguments)]
     return subprocess.run(
         command,
@@ -37,7 +50,7 @@ def bfsim(
 def refused(*arguments: object, cwd: Path | None = None) -> str:
     """Run a command that must fail as a mistake: one paragraph on stderr, exit code 2, no traceback."""
     result = bfsim(*arguments, cwd=cwd)
-    assert result.returncode == 2, result.stdout + result.stderr
+    assert result.exit_code == 2, result.stdout + result.stderr
     assert result.stderr.startswith("bfsim: error: ")
     assert "Traceback" not in result.stderr
     assert "\n\n" not in result.stderr.strip()
@@ -49,14 +62,14 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """The JSON report of the built-in recording."""
     path = tmp_path_factory.mktemp("report") / "run.json"
     result = bfsim("run", "--json", path)
-    assert result.returncode == 0, result.stderr
+    assert result.exit_code == 0, result.stderr
     loaded: dict[str, Any] = json.loads(path.read_text())
     return loaded
 
 
 def test_run_prints_the_budget() -> None:
     """`bfsim run` needs nothing and prints rate, budget, what ran and digests on a screen of 80 columns by 30 lines."""
-    result = bfsim("run", COLUMNS="80")
+    result = started("run", COLUMNS="80")
     assert result.returncode == 0, result.stderr
     assert not result.stderr
     for words in ("frames/s", "bound by core A's Edge detection", "A ms", "B ms", "Open & closing", "(the rest)", "thesis",
@@ -70,7 +83,7 @@ def test_run_prints_the_budget() -> None:
 def test_run_prints_every_table_if_asked() -> None:
     """`--full`: the budget of each core, configuration and digests."""
     result = bfsim("run", "--frames", 2, "--full")
-    assert result.returncode == 0, result.stderr
+    assert result.exit_code == 0, result.stderr
     assert not result.stderr
     for words in ("frames/s", "Core A", "Core B", "Edge detection", "Open & closing", "(the rest)", "thesis", "cm-bf561",
                   "thesis.ldf", "vdsp-O2", "Cycles"):  # fmt: skip
@@ -119,8 +132,8 @@ def test_at_most_50_000_events_per_stereo_frame(report: dict[str, Any]) -> None:
 
 def test_the_same_command_gives_the_same_cycles_everywhere(tmp_path: Path) -> None:
     """Another process, hash seed, folder and an empty kernel cache change no cycle."""
-    first = bfsim("run", "--frames", 2, "--json", "-", PYTHONHASHSEED="1")
-    second = bfsim(
+    first = started("run", "--frames", 2, "--json", "-", PYTHONHASHSEED="1")
+    second = started(
         "run",
         "--frames",
         2,
@@ -155,8 +168,16 @@ def test_sanitize_changes_no_cycle(report: dict[str, Any]) -> None:
 def test_profile_shows_stage_kernel_and_line() -> None:
     """`bfsim profile` names the hottest kernels with their source."""
     result = bfsim("profile", "--frames", 1)
-    assert result.returncode == 0, result.stderr
-    for words in ("Edge detection", "isqrt32", "direction_row", "SDRAM", "L1_DATA_A"):
+    assert result.exit_code == 0, result.stderr
+    for words in ("Edge detection", "isqrt32", "direction_row"):
+        assert words in result.stdout
+
+
+def test_profile_by_buffer_shows_the_memories() -> None:
+    """`bfsim profile --by buffer` says where each buffer lies, in L1 and outside."""
+    result = bfsim("profile", "--frames", 1, "--by", "buffer")
+    assert result.exit_code == 0, result.stderr
+    for words in ("edge_data", "SDRAM", "L1_DATA_A"):
         assert words in result.stdout
 
 
@@ -343,7 +364,7 @@ def test_the_strategy_unit_orders_modes_and_models(tmp_path: Path) -> None:
     script = tmp_path / "orders.json"
     script.write_text(json.dumps(ORDERS))
     result = bfsim("run", "--frames", 4, "--script", script, "--json", tmp_path / "run.json")
-    assert result.returncode == 0, result.stderr
+    assert result.exit_code == 0, result.stderr
     said = " ".join(result.stdout.split())
     for words in (
         "frame 1: core A refused MODE 1: area must be 16x16 px at least and lie in the 320x240 of the pictures",
@@ -368,7 +389,7 @@ def test_small_pictures_run_three_times_as_fast(tmp_path: Path) -> None:
     script = tmp_path / "small.toml"
     script.write_text("[[send]]\nafter_frames = 0\nmode.camera = {width = 160, height = 120}\n")
     result = bfsim("run", "--script", script, "--json", "-")
-    assert result.returncode == 0, result.stderr
+    assert result.exit_code == 0, result.stderr
     frames = json.loads(result.stdout)["frames"]
     spent = [each["cores"][0]["end_cclk"] - each["cores"][0]["begin_cclk"] for each in frames]
     assert 3 < spent[0] / spent[-1] < 4.5

@@ -104,3 +104,22 @@ def test_a_signal_leaves_nothing_behind(tmp_path: Path, number: signal.Signals, 
     assert {each.name for each in tmp_path.iterdir()} == {"drawing", "seen", "seen.json", "seen.mcap"}
     assert [each.name for each in (tmp_path / "seen").iterdir()] == ["frame-0000.png"]
     assert ["seen" in each for each in json.loads((tmp_path / "seen.json").read_text())["frames"]] == [True]
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="a system without /dev/zero")
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("ldf", "/dev/zero"),
+        ("run", "--ldf", "/dev/zero"),
+        ("check", "--baseline", "/dev/zero"),
+        ("sweep", "/dev/zero"),
+        ("diff", "/dev/zero", "/dev/zero"),
+    ],
+)
+def test_a_device_without_an_end_is_no_file_to_read(arguments: tuple[str, ...]) -> None:
+    """What is read whole has a largest size: an endless device is refused, where it filled the memory."""
+    command = [sys.executable, "-m", "bfsim", *arguments]
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    assert done.returncode == 2, done.stderr
+    assert "/dev/zero" in done.stderr

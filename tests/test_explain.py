@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 
 import pytest
+from click.testing import CliRunner, Result
 
+from bfsim.cli import main
 from bfsim.errors import ConfigError, FirmwareError
 from bfsim.explain import explain, explain_named
 from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2
@@ -126,11 +126,9 @@ def test_an_unknown_profile_is_told() -> None:
         explain_named("sobel_row", "tinyphoon", "gcc-O3")
 
 
-def bfsim(*arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run the command line."""
-    return subprocess.run(
-        [sys.executable, "-m", "bfsim", *arguments], capture_output=True, text=True, check=False
-    )
+def bfsim(*arguments: str) -> Result:
+    """Call the command line."""
+    return CliRunner().invoke(main, arguments, prog_name="bfsim")
 
 
 def test_the_command_prints_a_table_and_json() -> None:
@@ -149,7 +147,7 @@ def test_the_command_prints_a_table_and_json() -> None:
 def test_a_mistake_ends_with_one_paragraph_and_code_2() -> None:
     """No traceback, and nobody waits for a run."""
     done = bfsim("explain", "no_such_kernel", "--run")
-    assert done.returncode == 2
+    assert done.exit_code == 2
     assert done.stderr.startswith("bfsim: error: no_such_kernel must name one kernel")
     assert len(done.stderr) < 200
     assert done.stderr.count("\n") == 1

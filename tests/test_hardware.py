@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner, Result
 
 from bfsim.chip.boards import BOARDS, CM_BF561
+from bfsim.cli import main
 from bfsim.errors import ConfigError
 from bfsim.hardware import find_board, find_profile
 from bfsim.kernel import VDSP_O2
 from bfsim.run import simulate
 from tests.test_run import FIRMWARE, record
 
-ROOT = Path(__file__).parent.parent
 MINE = """\
 from dataclasses import replace
 from fractions import Fraction
@@ -184,11 +182,9 @@ def test_the_clocks_that_no_pll_makes_are_warned_of(write: Write, tmp_path: Path
     assert any("no PLL setting makes the clocks" in each.text for each in run.assumptions)
 
 
-def bfsim(*arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run the command line in the current folder."""
-    environment = {**os.environ, "PYTHONPATH": f"{ROOT}:{ROOT / 'firmware'}", "COLUMNS": "80"}
-    command = [sys.executable, "-m", "bfsim", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+def bfsim(*arguments: str) -> Result:
+    """Call the command line in the current folder."""
+    return CliRunner().invoke(main, arguments, env={"COLUMNS": "80"}, prog_name="bfsim")
 
 
 def test_from_another_folder_on_the_command_line(
@@ -205,7 +201,7 @@ def test_from_another_folder_on_the_command_line(
     done = bfsim(
         "run", str(drive), *how, *clocks, "--profile", "../hardware/mine.py:PLAIN", "--json", "out.json"
     )
-    assert (done.returncode, done.stderr) == (0, "")
+    assert (done.exit_code, done.stderr) == (0, "")
     identity = json.loads(Path("out.json").read_text())["identity"]
     assert identity["board"] == (
         "mine:FAST --set clocks.cclk_hz=500000000 --set clocks.sclk_hz=125000000 --set sdram.nRP=3"
@@ -215,7 +211,7 @@ def test_from_another_folder_on_the_command_line(
     placed = bfsim(
         "ldf", "--board", "../hardware/mine.py:FAST", "--no-symbols", "--firmware", "../fw/fw_eyes.py"
     )
-    assert placed.returncode == 0
+    assert placed.exit_code == 0
     told = bfsim("boards", "../hardware/mine.py:FAST", *how[4:], *clocks)
     rows = [line.split() for line in told.stdout.splitlines()]
     assert ["sdram.nRP", "2", "3"] in rows
@@ -241,6 +237,6 @@ def test_from_another_folder_on_the_command_line(
 def test_mistakes_end_with_2_before_anything_runs(write: Write, arguments: list[str], problem: str) -> None:
     """In one paragraph that names the option."""
     done = bfsim(*arguments)
-    assert done.returncode == 2
+    assert done.exit_code == 2
     assert re.search(problem, " ".join(done.stderr.split()))
     assert "Traceback" not in done.stderr

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.metadata
+import re
 import subprocess
 import sys
 import tomllib
@@ -55,11 +56,15 @@ def suite(folder: Path, *options: str) -> str:
 
 @pytest.mark.parametrize("options", [["-n0"], ["-n2"]])
 def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
-    """What broke and what bounds the frame rate are the text of the failure; in one process and in two workers."""
+    """The text of the failure is what broke, stages, kernels and lines, and the screen; in one process and in two workers."""
     told = suite(tmp_path, *options)
     assert "2 failed, 3 passed" in told
     assert "frame_rate must be >= 15.00 Hz, not " in told
     assert '"Edge detection".max must be <= 10.500 ms, not ' in told
+    assert "Edge detection takes 1" in told
+    assert re.search(
+        r"  isqrt32 \(arithmetic\.py:\d+\): [\d.]+ ms\n    \d+  .* times x [\d.]+ cycles: ", told
+    )
     assert "bound by core A's Edge detection" in told
     assert "the unit of latency must be cycles or s or ms or us, not 'parsecs'" in told
 

@@ -18,7 +18,12 @@ OF_OTHERS = {"--recording", "--ablate", "--no", "--inline"}
 
 def options_of(command: click.Command) -> set[str]:
     """Every long option of a command and of those below it."""
-    found = {name for each in command.params for name in each.opts if name.startswith("--")}
+    found = {
+        name
+        for each in command.params
+        for name in (*each.opts, *each.secondary_opts)
+        if name.startswith("--")
+    }
     for each in getattr(command, "commands", {}).values():
         found |= options_of(each)
     return found | {"--help", "--version"}

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import pickle
 import re
 import sys
 from dataclasses import fields, replace
+from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
+from bfsim.cli import main
 from bfsim.errors import ConfigError
 from bfsim.result import Run
 from bfsim.run import simulate
 from bfsim.trace import RunRecord
 from tests.report.records import edge_run
+from tinyphoon import tinyphoon
 
 
 def run_from(record: RunRecord) -> Run:
@@ -55,10 +60,53 @@ def test_reports_are_text_of_80_columns() -> None:
         assert max(map(len, report.splitlines())) <= 80
         assert "\x1b" not in report
     assert run.report() == run.report("screen")
-    with pytest.raises(ConfigError, match="report must be one of screen, full, profile, not 'picture'"):
+    with pytest.raises(
+        ConfigError, match=r"must be one of screen, full, profile or a file \*\.html, not 'picture'"
+    ):
         run.report("picture")
     with pytest.raises(ConfigError, match="must have at least one frame"):
         replace(run, frames=()).report()
+
+
+def test_reports_stand_beside_a_target() -> None:
+    """The screen and the full one; what is no target is refused."""
+    run = run_from(edge_run(100, 100))
+    for which in ("screen", "full"):
+        assert "15 Hz, 66.67 ms a frame: kept by 2 of 2 frames" in " ".join(
+            run.report(which, target="15Hz").split()
+        )
+    with pytest.raises(ConfigError, match="must be a frame rate such as 15Hz"):
+        run.report(target="soon")
+
+
+def test_the_page_of_a_run_is_that_of_the_command(tmp_path: Path) -> None:
+    """To the last character, of firmware by name and as an object."""
+    command = "run", "--frames", "1", "--target", "15Hz", "--html", str(tmp_path / "command.html")
+    assert CliRunner().invoke(main, command).exit_code == 0
+    for firmware in ("tinyphoon", tinyphoon):
+        path = tmp_path / "script.html"
+        assert simulate(frames=1, firmware=firmware).report(path, target="15Hz") == str(path)
+        assert path.read_text() == (tmp_path / "command.html").read_text()
+
+
+def test_a_page_that_cannot_be_is_refused(tmp_path: Path) -> None:
+    """Of records that nobody can make again, where there is no folder, and where the run does not come out as before."""
+    with pytest.raises(ConfigError, match=r"must come from simulate\(\)"):
+        run_from(edge_run(100)).report(tmp_path / "run.html")
+    run = simulate(frames=1)
+    with pytest.raises(ConfigError, match="must exist to write a file there"):
+        run.report(tmp_path / "no" / "run.html")
+    with pytest.raises(ConfigError, match="must be as they were for the page of a run"):
+        replace(run, frames=edge_run(100).frames).report(tmp_path / "run.html")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_run_goes_through_pickle() -> None:
+    """As it does between processes; it can be made again there."""
+    run = simulate(frames=1, on_call=lambda _kernel, _arguments: None)
+    copy = pickle.loads(pickle.dumps(run))
+    assert copy == run
+    assert copy.again() == run
 
 
 def test_tables_are_data_frames() -> None:
@@ -77,7 +125,22 @@ def test_tables_are_data_frames() -> None:
         if name in ("stages", "kernels", "lines")
     }
     assert len(set(edges.values())) == 1
+    owned = (
+        tables["owners"].groupby(["frame", "core", "stage"])[["issue_cclk", "stall_cclk", "idle_cclk"]].sum()
+    )
+    costs = stages.set_index(["frame", "core", "stage"])[["issue_cclk", "stall_cclk", "idle_cclk"]]
+    assert (owned.loc[owned.sum(axis=1) > 0] == costs.loc[costs.sum(axis=1) > 0].sort_index()).all(axis=None)
+    kernels = tables["owners"][tables["owners"].symbol != ""]
+    assert kernels.issue_cclk.sum() == tables["kernels"].issue_cclk.sum() == tables["paths"].issue_cclk.sum()
+    assert tables["buffers"].stall_cclk.sum() == tables["accesses"].stall_cclk.sum() > 0
+    assert tables["buffers"].reads.sum() == tables["accesses"].reads.sum()
     assert len(tables["spans"]) == len(spans) > 0
+    calls = tables["spans"][tables["spans"].kind == "kernel"]
+    calls = calls[
+        calls["name"].isin(tables["kernels"].kernel)
+    ]  # TESTSET, of semaphores, is called and no kernel
+    assert calls.issue_cclk.sum() == tables["kernels"].issue_cclk.sum()
+    assert (calls.issue_cclk + calls.stall_cclk == calls.end_cclk - calls.begin_cclk).all()
     assert tables["stages"].elapsed_ms.dtype == float
 
 

@@ -19,10 +19,14 @@ from bfsim.recording import (
     RecordingWriter,
     RectificationTables,
     StereoGeometry,
-    calibrate_recording,
 )
 from bfsim.recording.boards import BoardView
-from bfsim.recording.calibration import StereoCalibration, _fit_without_outliers, calibrate
+from bfsim.recording.calibration import (
+    StereoCalibration,
+    _fit_without_outliers,
+    calibrate,
+    calibrate_recording,
+)
 from bfsim.recording.calibration_report import CalibrationReport, ViewError
 from bfsim.recording.camera_models import Fisheye
 from bfsim.recording.residual_plot import draw_residuals

@@ -10,12 +10,11 @@ import pytest
 
 from bfsim.errors import RecordingError
 from bfsim.recording import (
-    ImportSummary,
     RecordingReader,
     RectificationTables,
     StereoGeometry,
-    import_recording,
 )
+from bfsim.recording.importer import ImportSummary, import_recording
 from bfsim.recording.planes import YuvPlanes, fit_matrix
 from tests.recording.bags import EPOCH_NS, KINDS, LEFT, RIGHT, Message, Ros, grey_pair
 

@@ -15,7 +15,8 @@ import pytest
 import zstandard
 
 from bfsim.errors import RecordingError
-from bfsim.recording import RecordingReader, RecordingWriter, load_rectification
+from bfsim.recording import RecordingReader, RecordingWriter
+from bfsim.recording.importer import load_rectification
 from tests.recording.attacks import (
     FIRST_CHUNK_AT,
     IMAGE,

@@ -18,9 +18,8 @@ from bfsim.recording import (
     RectificationTables,
     StereoFrame,
     StereoGeometry,
-    import_recording,
-    load_rectification,
 )
+from bfsim.recording.importer import import_recording, load_rectification
 from bfsim.recording.planes import YuvPlanes
 
 PRIMARIES = {"red": (255, 0, 0), "green": (0, 255, 0), "blue": (0, 0, 255), "white": (255, 255, 255)}

@@ -18,7 +18,8 @@ from PIL import Image
 
 from bfsim.cli_record import record
 from bfsim.errors import RecordingError
-from bfsim.recording import RecordingReader, RecordingWriter, StereoFrame, import_recording
+from bfsim.recording import RecordingReader, RecordingWriter, StereoFrame
+from bfsim.recording.importer import import_recording
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.ros_images import ENCODINGS
 from bfsim.recording.time_pairs import nearest_pairs, rising

@@ -16,7 +16,8 @@ from mcap_protobuf.decoder import DecoderFactory
 from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
-from bfsim.recording import RecordingWriter, SeenWriter
+from bfsim.recording import RecordingWriter
+from bfsim.recording.seen_writer import SeenWriter
 from tests import seen_frames as made
 
 SCHEMAS = {
