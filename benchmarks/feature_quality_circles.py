@@ -25,6 +25,7 @@ from bfsim.recording import RecordingReader
 from tinyphoon.stages.blob_detection import hues
 from tinyphoon.stores.circles import CENTRE_PASSED, CIRCLE_EDGES, CIRCLE_TESTS, RADIUS_PASSED
 from tinyphoon.stores.lines import SUBPIXELS
+from tinyphoon.strategy.models import MODELS, Shape, colour_groups
 from tinyphoon.strategy.modes import INDOOR_FIELD, PLAIN_CIRCLES, Mode
 
 # The hues of all balls in the rendered scenes: magenta, blue, cyan, green, yellow, orange.
@@ -49,8 +50,10 @@ class Match:
 
 def mode_with(circles: str) -> Mode:
     """Return the mode that looks for balls of all colours."""
-    blobs = replace(INDOOR_FIELD.blobs, colour_groups=COLOURS)
-    return replace(INDOOR_FIELD, blobs=blobs, ball_colours=blobs.colours, circles=MODES[circles])
+    ball = next(each for each in MODELS if each.shape == Shape.BALL)
+    models = tuple(replace(ball, colours=each) for each in COLOURS)
+    blobs = replace(INDOOR_FIELD.blobs, colour_groups=colour_groups(models))
+    return replace(INDOOR_FIELD, blobs=blobs, models=models, circles=MODES[circles])
 
 
 def matches(seen: Seen, width: int, height: int) -> Iterator[Match]:

@@ -1,7 +1,7 @@
 """The scenes of T Figures 5.8 and 6.7 to 6.14: which objects the firmware finds, and how far off it has them.
 
-`python -m benchmarks.scenes [FOLDER] [--overlays FOLDER]`: a folder of recordings of `bfsim record render thesis FOLDER`;
-without one they are rendered here, which needs mitsuba (`pip install -e ".[scenes]"`) and some minutes. What the thesis
+`python -m benchmarks.scenes [FOLDER] [--scene NAME]... [--overlays FOLDER]`: a folder of recordings of `bfsim record render
+thesis FOLDER`; without one they are rendered here, which needs mitsuba (`pip install -e ".[scenes]"`) and some minutes. What the thesis
 reports as failing is reported here as it comes out. A thing is found if an object of its kind of model lies its way; its
 place is that of the ball's centre, of the middle of the goal's mouth, and of the middle of the mark's nearest face. The
 balls of Figure 5.8 have many colours and sizes, and the model one of each. What was seen is drawn over the pictures of each
@@ -11,7 +11,7 @@ scene, in a folder of its own.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,7 @@ from bfsim.report.tables import new_table
 from bfsim.run import simulate
 from bfsim.seen import SeenFrame, SeenObject
 from bfsim.terminal import print_report, progress_bar
+from tinyphoon.scenes.thesis import FIGURES
 from tinyphoon.strategy.models import MODELS, Shape
 
 PLACED_BY = {Shape.GOAL: "mouth_mm", Shape.MARKER: "mark_corners_mm", Shape.BALL: "centre_mm"}
@@ -178,11 +179,15 @@ def run_scene(recording: Path, overlays: Path) -> list[tuple[SeenFrame, Mapping[
         return [(each, picture.truth or {}) for each, picture in zip(seen, reader.frames(), strict=True)]
 
 
-def comparison(folder: Path, overlays: Path) -> Table:
-    """Return what is found of the things in each recording of a folder that has some."""
+def recordings(folder: Path, scenes: Collection[str]) -> list[Path]:
+    """Return the recordings of some scenes in a folder, of all without a name."""
+    return sorted(path for path in folder.glob("*.mcap") if not scenes or path.stem in scenes)
+
+
+def comparison(paths: Sequence[Path], overlays: Path) -> Table:
+    """Return what is found of the things in each recording that has some."""
     heads = ("Found", "with place", "direction, deg", "place, mm", "depth, %", "accuracy, %")
     table = new_table("Things found, and the mean error of those found", "Scene", "Thing", *heads)
-    paths = sorted(folder.glob("*.mcap"))
     overlays.mkdir(exist_ok=True)
     with progress_bar("Simulating") as progress:
         for done, path in enumerate(paths):
@@ -196,24 +201,26 @@ def comparison(folder: Path, overlays: Path) -> Table:
 @click.command()
 @click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path), required=False)
 @click.option(
+    "--scene", "scenes", multiple=True, type=click.Choice(sorted(FIGURES)), help="Only this; again for more."
+)
+@click.option(
     "--overlays",
     type=click.Path(file_okay=False, path_type=Path),
     default=Path("scenes-seen"),
     help="Folder for the pictures of what was seen.",
     show_default=True,
 )
-def main(folder: Path | None, overlays: Path) -> None:
+def main(folder: Path | None, scenes: tuple[str, ...], overlays: Path) -> None:
     """Print for each recording in FOLDER that has ground truth what the firmware finds of it, and draw it."""
     try:
         with tempfile.TemporaryDirectory() as rendered:
             if folder is None:
                 from bfsim.recording.scenes import render
-                from tinyphoon.scenes.thesis import FIGURES
 
                 folder = Path(rendered)
                 with progress_bar("Rendering the scenes") as progress:
-                    render(FIGURES, folder, progress=progress)
-            print_report(comparison(folder, overlays))
+                    render({name: FIGURES[name] for name in scenes or FIGURES}, folder, progress=progress)
+            print_report(comparison(recordings(folder, scenes), overlays))
     except BfsimError as error:
         raise click.ClickException(str(error)) from None
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from benchmarks.playing import play
 from bfsim.api import Core, Firmware, Readout
 from bfsim.recording import RecordingReader
-from bfsim.run import calibration_of
+from bfsim.run_inputs import calibration_of
 from tinyphoon import ROWS, THESIS
 from tinyphoon.buffers import buffers, calibration_buffers
 from tinyphoon.features import features

@@ -10,9 +10,7 @@ picture. The others are held out from that choice, but not unseen: the ball's hu
 from all pictures.
 
 The world is harder than the renderer: balls of a dozen pixels, over-exposed ones at the robot's foot, yellow wood, clothes
-and walls. The edge store holds 4096 and fills from the top: with thresholds low enough for a yellow ball on a lit field, 9 of
-the 14 pictures that were chosen by still find more, by up to 4800, and a ball below where it is full has no outline. With
-four times the thresholds the store mostly suffices, and balls that are as bright as the field have none.
+and walls.
 """
 
 from __future__ import annotations
@@ -71,6 +69,9 @@ LEVELS = {
     "and centre": CENTRE_TEST,
     "and radius": SIZE_TEST,
 }
+
+SIZE = (608, 368)
+"""Of the recording: as wide as the pictures, and the area of interest as high."""
 
 Box = tuple[float, float, float, float]
 """x and y of the middle, width and height, in pixels."""
@@ -142,10 +143,10 @@ def balls_of(path: Path) -> list[Box]:
 
 
 def on_ball(records: Records, box: Box) -> Records:
-    """Return which records have their middle in a box."""
+    """Return which records have their middle in a box. What lies beyond the picture, of a ball that it cuts, is in no box."""
     x, y, width, height = box
-    off_x = np.abs(records[:, OBJECT_IMAGE_X] / SUBPIXELS - x)
-    off_y = np.abs(records[:, OBJECT_IMAGE_Y] / SUBPIXELS - y)
+    off_x = np.abs(np.clip(records[:, OBJECT_IMAGE_X] / SUBPIXELS, 0, SIZE[0] - 1) - x)
+    off_y = np.abs(np.clip(records[:, OBJECT_IMAGE_Y] / SUBPIXELS, 0, SIZE[1] - 1) - y)
     return np.asarray((off_x <= BOX_SLACK * width / 2) & (off_y <= BOX_SLACK * height / 2))
 
 

@@ -91,15 +91,7 @@ int main(void)
 def lengths(function: tree.Function) -> list[int]:
     """Return which parameters of a kernel are arrays whose length it, or a kernel it calls, asks for."""
     names = [each.name for each in function.parameters]
-    return sorted(names.index(each) for each in _measured(function))
-
-
-def _measured(function: tree.Function) -> set[str]:
-    found = {each.array for each in tree._parts(function.body) if isinstance(each, tree.Length)}
-    for call in tree.calls_in(function.body):
-        inner = [call.arguments[each] for each in lengths(call.callee)]
-        found.update(each for each in inner if isinstance(each, str))
-    return found
+    return sorted(names.index(each) for each in tree.measured_arrays(function))
 
 
 def driver(kernel: Kernel) -> str:

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from benchmarks.bare import BareCore, run_bare
 from bfsim.api import Kernel, Row
 from bfsim.recording import RecordingReader
-from bfsim.run import BUILT_IN_RECORDING, calibration_of
+from bfsim.run import BUILT_IN_RECORDING
+from bfsim.run_inputs import calibration_of
 from tinyphoon import tinyphoon
 
 SAMPLES = 32  # of a kernel on a core, at most

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from benchmarks.playing import Played, play
 from bfsim.api import Firmware, Readout
 from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.run import calibration_of
+from bfsim.run_inputs import calibration_of
 from bfsim.terminal import progress_bar
 from bfsim.trace import FrameRecord
 from tinyphoon import tinyphoon

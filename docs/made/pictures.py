@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import rooms
 from PIL import Image
 
 IMAGES = Path(__file__).parent.parent / "images"
+PROFILING = IMAGES.parent / "how-to" / "profile.md"
 CHROMIUM = shutil.which("chromium")
 PAGE_SIZE = "1280,2560"  # of the window in px: from the verdict to the Gantt chart
 FRAME = 2  # of the built-in recording: the ball rolls before the goal
@@ -40,6 +42,16 @@ def photograph(page: Path, picture: Path) -> None:
     )
 
 
+def heat_of_the_case(folder: Path) -> None:
+    """Show where in the picture the firmware of the page on profiling spends its time."""
+    (case,) = re.findall(r'```python title="gradient.py"\n(.*?)```', PROFILING.read_text(), re.DOTALL)
+    firmware = folder / "gradient.py"
+    firmware.write_text(case)
+    bfsim("run", "--firmware", f"{firmware}:firmware", "--frames", "1", "--overlay", str(folder / "heat"),
+          "--heat", "Slopes")  # fmt: skip
+    keep_small(folder / "heat" / "frame-0000.png", "slow_rows.png", 1148)
+
+
 def main() -> None:
     """Write every picture into `docs/images`."""
     IMAGES.mkdir(exist_ok=True)
@@ -56,6 +68,7 @@ def main() -> None:
             keep_small(page.with_suffix(".png"), "page.png", 1280)
         else:
             sys.stderr.write("page.png stays as it is: Chromium is not installed\n")
+        heat_of_the_case(Path(folder))
         placement = Path(folder) / "placement.png"
         bfsim("ldf", "--picture", str(placement))
         keep_small(placement, "placement.png", 1360)

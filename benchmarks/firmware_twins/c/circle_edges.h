@@ -11,6 +11,7 @@
 #define MASS_X 4
 #define MASS_Y 5
 #define REACH 6
+#define BORDERING 7
 
 KERNEL int32_t edge_x(uint32_t edge);
 KERNEL int32_t edge_y(uint32_t edge);

@@ -4,8 +4,13 @@
 #include "circle_edges.h"
 #include "line_fit.h"
 
-#define OUTSIDE 8
-#define NORMAL_BITS 8
+#define STEEPEST 255
+#define OUTSIDE 3
+#define MEAN_WEIGHT 2
+#define MOST_WEIGHT 8
+#define TAPER 4
+#define TAPER_BITS 16
+#define NORMAL_BITS 7
 #define SHORTEST_ARC (1 << 10)
 
 KERNEL int32_t distance(int32_t x, int32_t y, const int32_t fit[])
@@ -15,8 +20,30 @@ KERNEL int32_t distance(int32_t x, int32_t y, const int32_t fit[])
     return (int32_t)isqrt32((uint32_t)(dx * dx) + (uint32_t)(dy * dy));
 }
 
-HELPER void sum_up(const uint32_t points[], int32_t count, int32_t fit[], int32_t fit_range)
+HELPER void weigh(uint16_t flanks[], int32_t fit[])
 {
+    int32_t count = fit[REFINED];
+    int32_t steep = 0;
+    int32_t wide = 0;
+    for (int32_t number = 0; number < count; number++) {
+        int32_t each = flanks[number];
+        steep = steep + (each & STEEPEST);
+        wide = wide + (each & STEEPEST) * (each >> FLANK_BITS);
+    }
+    int32_t widest = floor_div(2 * wide + steep, max(2 * steep, 1));
+    int32_t mean = max(floor_div(steep, max(count, 1)), 1);
+    for (int32_t number = 0; number < count; number++) {
+        int32_t each = flanks[number];
+        int32_t part = each & STEEPEST;
+        int32_t weight = min(floor_div(MEAN_WEIGHT * part * part + (mean * mean >> 1), mean * mean), MOST_WEIGHT);
+        flanks[number] = (uint16_t)(each >> FLANK_BITS <= widest ? weight : 0);
+    }
+}
+
+HELPER void sum_up(const uint32_t points[], const uint16_t weights[], int32_t count, int32_t fit[], int32_t fit_range)
+{
+    int32_t widest = fit_range * fit_range;
+    int32_t scale = floor_div(TAPER << TAPER_BITS, widest);
     for (int32_t word = WEIGHT; word < SUM_NYE + 1; word++)
         fit[word] = 0;
     for (int32_t number = 0; number < count; number++) {
@@ -24,8 +51,11 @@ HELPER void sum_up(const uint32_t points[], int32_t count, int32_t fit[], int32_
         int32_t y = (int32_t)(points[number] >> 16);
         int32_t away = distance(x, y, fit);
         int32_t outside = away - fit[RADIUS];
-        if (away > 0 && abs(outside) <= fit_range) {
-            int32_t weight = outside > 0 ? OUTSIDE : 1;
+        if (away > 0 && abs(outside) < fit_range) {
+            int32_t near = ((widest - outside * outside) * scale + (1 << (TAPER_BITS - 1))) >> TAPER_BITS;
+            int32_t weight = near * weights[number];
+            if (outside > 0)
+                weight = OUTSIDE * weight;
             int32_t nx = floor_div((x - fit[CENTRE_X]) << NORMAL_BITS, away);
             int32_t ny = floor_div((y - fit[CENTRE_Y]) << NORMAL_BITS, away);
             fit[WEIGHT] = fit[WEIGHT] + weight;
@@ -46,11 +76,11 @@ HELPER void move_circle(int32_t fit[], int32_t fit_range)
     int32_t weight = fit[WEIGHT];
     if (weight == 0)
         return;
-    int32_t xx = floor_div(spread(fit[SUM_NXX], fit[SUM_NX], fit[SUM_NX], weight), weight) >> 4;
-    int32_t xy = floor_div(spread(fit[SUM_NXY], fit[SUM_NX], fit[SUM_NY], weight), weight) >> 4;
-    int32_t yy = floor_div(spread(fit[SUM_NYY], fit[SUM_NY], fit[SUM_NY], weight), weight) >> 4;
-    int32_t xe = floor_div(spread(fit[SUM_NXE], fit[SUM_NX], fit[SUM_E], weight), weight);
-    int32_t ye = floor_div(spread(fit[SUM_NYE], fit[SUM_NY], fit[SUM_E], weight), weight);
+    int32_t xx = floor_div(spread(fit[SUM_NXX], fit[SUM_NX], fit[SUM_NX], weight), weight) >> 2;
+    int32_t xy = floor_div(spread(fit[SUM_NXY], fit[SUM_NX], fit[SUM_NY], weight), weight) >> 2;
+    int32_t yy = floor_div(spread(fit[SUM_NYY], fit[SUM_NY], fit[SUM_NY], weight), weight) >> 2;
+    int32_t xe = 2 * floor_div(spread(fit[SUM_NXE], fit[SUM_NX], fit[SUM_E], weight), weight);
+    int32_t ye = 2 * floor_div(spread(fit[SUM_NYE], fit[SUM_NY], fit[SUM_E], weight), weight);
     int32_t size = (xx * yy - xy * xy) >> 4;
     int32_t along_x = 0;
     int32_t along_y = 0;
@@ -62,16 +92,17 @@ HELPER void move_circle(int32_t fit[], int32_t fit_range)
         fit[CENTRE_X] = fit[CENTRE_X] + along_x;
         fit[CENTRE_Y] = fit[CENTRE_Y] + along_y;
     }
-    int32_t towards = (fit[SUM_NX] * along_x + fit[SUM_NY] * along_y) >> NORMAL_BITS;
+    int32_t towards = ((fit[SUM_NX] >> 1) * along_x + (fit[SUM_NY] >> 1) * along_y) >> (NORMAL_BITS - 1);
     fit[RADIUS] = fit[RADIUS] + floor_div(2 * (fit[SUM_E] - towards) + weight, 2 * weight);
 }
 
-KERNEL void fit_circle(const uint32_t points[], int32_t fit[], int32_t fit_range, int32_t rounds)
+KERNEL void fit_circle(const uint32_t points[], uint16_t weights[], int32_t fit[], int32_t fit_range, int32_t rounds)
 {
+    weigh(weights, fit);
     int32_t near = FINE * fit_range;
     for (int32_t i = 0; i < rounds; i++) {
-        sum_up(points, fit[REFINED], fit, near);
+        sum_up(points, weights, fit[REFINED], fit, near);
         move_circle(fit, near);
-        near = max(near >> 1, FINE);
+        near = max(near >> 1, min(max(FINE, fit[RADIUS] >> 4), near)); /* NEAR_BITS is 4 */
     }
 }

@@ -4,6 +4,12 @@
 #include "line_segments.h"
 
 #define LUMA_LINES 16
+#define REACH_LINES 8
+#define BEFORE (REACH_LINES - 1)
+#define RISES (2 * REACH_LINES - 1)
+#define FIRST_PLACE (BEFORE - 2)
+#define LAST_PLACE (BEFORE + 1)
+#define MOST_BESIDE 4
 
 HELPER int32_t profile_pixel(const uint8_t luma[], int32_t x, int32_t y, int32_t step, int32_t flat, int32_t height,
                              int32_t luma_length)
@@ -16,38 +22,63 @@ HELPER int32_t profile_pixel(const uint8_t luma[], int32_t x, int32_t y, int32_t
     return luma[(y & (LUMA_LINES - 1)) * width + x];
 }
 
-HELPER int32_t step_at(const uint8_t luma[], int32_t x, int32_t y, int32_t at, int32_t way, int32_t flat,
-                       int32_t height, int32_t luma_length)
+HELPER void fill_rises(const uint8_t luma[], int32_t x, int32_t y, int32_t way, int32_t flat, int32_t height,
+                       int32_t rises[], int32_t luma_length)
 {
-    int32_t here = profile_pixel(luma, x, y, way * at, flat, height, luma_length);
-    return profile_pixel(luma, x, y, way * (at + 1), flat, height, luma_length) - here;
+    int32_t here = profile_pixel(luma, x, y, -way * BEFORE, flat, height, luma_length);
+    for (int32_t place = 0; place < RISES; place++) {
+        int32_t ahead = profile_pixel(luma, x, y, way * (place + 1 - BEFORE), flat, height, luma_length);
+        rises[place] = ahead - here;
+        here = ahead;
+    }
 }
 
-HELPER int32_t outline_offset(const uint8_t luma[], int32_t x, int32_t y, int32_t way, int32_t flat, int32_t height,
-                              int32_t luma_length)
+HELPER int32_t steepest(const int32_t rises[])
 {
-    int32_t best = -2;
-    int32_t middle = step_at(luma, x, y, best, way, flat, height, luma_length);
-    for (int32_t at = -1; at < 2; at++) {
-        int32_t rise = step_at(luma, x, y, at, way, flat, height, luma_length);
-        if (rise > middle) {
-            middle = rise;
-            best = at;
+    int32_t best = FIRST_PLACE;
+    int32_t most = rises[best - 1] + 2 * rises[best] + rises[best + 1];
+    for (int32_t place = FIRST_PLACE + 1; place < LAST_PLACE + 1; place++) {
+        int32_t rise = rises[place - 1] + 2 * rises[place] + rises[place + 1];
+        if (rise > most) {
+            most = rise;
+            best = place;
         }
     }
-    int32_t dark_slope = max(step_at(luma, x, y, best - 2, way, flat, height, luma_length), 0);
-    int32_t bright_slope = max(step_at(luma, x, y, best + 2, way, flat, height, luma_length), 0);
-    int32_t before = max(step_at(luma, x, y, best - 1, way, flat, height, luma_length) - dark_slope, 0);
-    int32_t after = max(step_at(luma, x, y, best + 1, way, flat, height, luma_length) - bright_slope, 0);
-    int32_t whole = before + after + max(middle - ((dark_slope + bright_slope) >> 1), 0);
-    int32_t offset = FINE * best + FINE / 2;
+    return best;
+}
+
+HELPER int32_t flank(const int32_t rises[], int32_t at, int32_t way)
+{
+    int32_t beside = 1;
+    while (beside < MOST_BESIDE && 2 * rises[at + way * beside] > rises[at])
+        beside = beside + 1;
+    return beside;
+}
+
+HELPER int32_t outline_offset(const int32_t rises[], int32_t at, int32_t before, int32_t after)
+{
+    int32_t dark_slope = max(rises[at - before - 1], 0);
+    int32_t bright_slope = max(rises[at + after + 1], 0);
+    int32_t whole = max(rises[at] - ((dark_slope + bright_slope) >> 1), 0);
+    int32_t moment = 0;
+    for (int32_t step = 1; step < before + 1; step++) {
+        int32_t rise = max(rises[at - step] - dark_slope, 0);
+        whole = whole + rise;
+        moment = moment - step * rise;
+    }
+    for (int32_t step = 1; step < after + 1; step++) {
+        int32_t rise = max(rises[at + step] - bright_slope, 0);
+        whole = whole + rise;
+        moment = moment + step * rise;
+    }
+    int32_t offset = FINE * (at - BEFORE) + FINE / 2;
     if (whole > 0)
-        offset = offset + floor_div(2 * FINE * (after - before) + whole, 2 * whole);
+        offset = offset + floor_div(2 * FINE * moment + whole, 2 * whole);
     return offset;
 }
 
 KERNEL void refine_row(uint32_t selected[], int32_t count, int32_t y, const uint8_t luma[], int32_t height,
-                       int32_t fit[], int32_t fit_range, int32_t luma_length)
+                       int32_t fit[], int32_t fit_range, int32_t rises[], uint16_t flanks[], int32_t luma_length)
 {
     int32_t number = fit[NEXT_EDGE];
     while (number < count && edge_y(selected[number]) == y) {
@@ -57,11 +88,17 @@ KERNEL void refine_row(uint32_t selected[], int32_t count, int32_t y, const uint
         if (abs(distance(x, FINE * y, fit) - fit[RADIUS]) <= FINE * fit_range) {
             int32_t flat = is_flat(direction);
             int32_t way = ((direction - 64 * flat + 64) & 128) == 0 ? 1 : -1;
-            int32_t offset = way * outline_offset(luma, edge_x(edge), y, way, flat, height, luma_length);
+            fill_rises(luma, edge_x(edge), y, way, flat, height, rises, luma_length);
+            int32_t at = steepest(rises);
+            int32_t before = flank(rises, at, -1);
+            int32_t after = flank(rises, at, 1);
+            int32_t offset = way * outline_offset(rises, at, before, after);
             int32_t across = max(offset * (1 - flat) + x, 0);
             int32_t down = max(offset * flat + FINE * y, 0);
-            selected[fit[REFINED]] = (uint32_t)(across | down << 16);
-            fit[REFINED] = fit[REFINED] + 1;
+            int32_t point = fit[REFINED];
+            selected[point] = (uint32_t)(across | down << 16);
+            flanks[point] = (uint16_t)(max(rises[at], 0) | ((before + after + 1) >> 1) << FLANK_BITS);
+            fit[REFINED] = point + 1;
         }
         number = number + 1;
     }
