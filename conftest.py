@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import tempfile
 from collections.abc import Iterator
 
 import pytest
 
+from bfsim.__main__ import COLLECT_AFTER
+
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
     """Return no workers (of `-n auto`, in pyproject.toml) for tests that are named; else leave it to xdist."""
     return None if config.args_source is pytest.Config.ArgsSource.TESTPATHS else 0
+
+
+def pytest_configure() -> None:
+    """Look for garbage as seldom as the commands do: what is imported lives as long as the process."""
+    gc.set_threshold(COLLECT_AFTER)
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
