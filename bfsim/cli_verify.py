@@ -54,20 +54,25 @@ def verify(calls: int, toolchain: Path | None, top: int, json_path: Path | None,
       bfsim verify --frames 2
       bfsim verify drive.mcap --firmware my_robot.py:firmware --profile gcc-O0
     """
+    from bfsim.compiling import blackfin_toolchain, object_code, options_of
     from bfsim.hardware import find_profile
+    from bfsim.loading import entries_of, kernels_of, load_firmware
     from bfsim.report.save import require_place, write_text
     from bfsim.report.verification import as_json, verification_report
-    from bfsim.verifying import Sampler, blackfin_toolchain, require_compiler
+    from bfsim.verifying import Sampler
     from bfsim.verifying import verify as verified
 
     if json_path and json_path != STDOUT:
         require_place(json_path)
     profile = find_profile(what["profile"]).value
-    require_compiler(profile)
+    options_of(profile)
     tools = blackfin_toolchain(toolchain)
     sampler = Sampler(calls)
     done = simulated(on_call=sampler.see, **what)
-    found = verified(sampler, len(done.frames), profile, tools)
+    loaded = load_firmware(what["firmware"])
+    kernels = kernels_of(loaded.own) | set(sampler.of)
+    code = object_code(kernels, entries_of(loaded.firmware) | set(sampler.of), profile, tools)
+    found = verified(sampler, len(done.frames), profile, code, tools)
     if json_path == STDOUT:
         click.echo(as_json(found))
     else:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bfsim.errors import ConfigError, FirmwareError
-from bfsim.kernel.c import CProgram, c_program
+from bfsim.kernel.c import CProgram, c_program, in_python
 from bfsim.loading import kernels_of, load_firmware
 from bfsim.report.save import write_text, writing
 
@@ -52,7 +52,7 @@ def export(firmware: str, folder: Path, *, line_directives: bool = False, force:
         raise FirmwareError(
             f"{firmware} must have kernels to be exported, but has none; see `bfsim explain --help`"
         )
-    program = c_program((each.function for each in kernels), line_directives=line_directives)
+    program = c_program((each.function for each in kernels), place=in_python if line_directives else None)
     files = {**program.files, "Makefile": _makefile(program)}
     if not force and (there := [each for each in files if (folder / each).exists()]):
         raise ConfigError(

@@ -14,6 +14,7 @@ from bfsim.errors import BfsimError, FirmwareError, cut, shown
 from bfsim.importing import OwnModules, Root
 from bfsim.kernel import Kernel
 from bfsim.locating import located, parted
+from bfsim.machine.code import kernels_named
 from bfsim.machine.firmware_lines import line_of
 from bfsim.machine.program import Firmware
 
@@ -148,6 +149,11 @@ def kernels_of(own: OwnModules) -> set[Kernel]:
     return {
         each for module in own.modules.values() for each in vars(module).values() if isinstance(each, Kernel)
     }
+
+
+def entries_of(firmware: Firmware) -> set[Kernel]:
+    """Return every kernel that a main loop of `firmware` names, itself or through its functions."""
+    return {each for main in firmware.mains.values() for each in kernels_named(main)}
 
 
 def _apart(kernels: list[Kernel]) -> str:

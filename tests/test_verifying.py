@@ -11,15 +11,16 @@ import pytest
 from click.testing import CliRunner
 
 from bfsim.cli import main
+from bfsim.compiling import Toolchain, blackfin_toolchain, object_code
+from bfsim.compiling.toolchain import GCC, SIMULATOR
 from bfsim.errors import ConfigError
-from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, Kernel
+from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, CompilerProfile, Kernel
 from bfsim.report.verification import verdict
 from bfsim.run import simulate
 from bfsim.verified import Verification, VerifiedKernel
-from bfsim.verifying import Sampler, blackfin_toolchain, verify
+from bfsim.verifying import Sampler, verify
 from bfsim.verifying.player import FACTOR, checksum
 from bfsim.verifying.sample import Sample
-from bfsim.verifying.toolchain import GCC, SIMULATOR, Toolchain
 from tests.kernel import c_kernels
 from tests.kernel.host_c import COMPILER, needs_compiler
 from tests.kernel.test_c import drawn
@@ -35,6 +36,12 @@ def sampled(*kernels: Kernel) -> Sampler:
     for each in kernels:
         sampler.of[each] = Sample(40, 2, [tuple(drawn(each, random)) for _ in range(20)])
     return sampler
+
+
+def verified(sampler: Sampler, profile: CompilerProfile, tools: Toolchain) -> Verification:
+    """What is found of a sample by the code that `tools` make."""
+    code = object_code(sampler.of, sampler.of, profile, tools)
+    return verify(sampler, 1, profile, code, tools)
 
 
 def test_a_sample_is_spread_evenly_and_bounded() -> None:
@@ -61,7 +68,7 @@ def test_a_sample_is_taken_before_the_call() -> None:
 def test_the_program_leaves_the_same_bits_under_sanitizers() -> None:
     """Played by this machine's compiler, no call leaves other bits, leaves an array or does what C leaves open."""
     kernels = [getattr(c_kernels, each) for each in WITHOUT_OVERFLOW]
-    found = verify(sampled(*kernels), 1, GCC_O2, Toolchain((COMPILER or "", *SANITIZED)))
+    found = verified(sampled(*kernels), GCC_O2, Toolchain((COMPILER or "", *SANITIZED)))
     assert (found.different, len(found.kernels)) == (0, len(kernels))
     assert all(each.calls == 40 and each.played == 20 and each.estimated_cclk > 0 for each in found.kernels)
 
@@ -70,7 +77,7 @@ def test_the_program_leaves_the_same_bits_under_sanitizers() -> None:
 def test_other_bits_are_told() -> None:
     """A program that leaves something else is found out: here it tells 0 of each call."""
     liar = Toolchain((COMPILER or "",), ("sh", "-c", '"$0" | sed "s/ .*/ 0/"'))
-    found = verify(sampled(c_kernels.narrowed), 1, GCC_O2, liar)
+    found = verified(sampled(c_kernels.narrowed), GCC_O2, liar)
     assert found.different == 20
     assert "20 calls leave OTHER BITS, of narrowed." in verdict(found)
 
@@ -94,7 +101,7 @@ def test_gcc_s_code_leaves_the_same_bits(profile: Any) -> None:
     except ConfigError:
         pytest.skip("no bfin-elf toolchain on PATH")
     kernels = [getattr(c_kernels, each) for each in WITHOUT_OVERFLOW if each != "floats"]
-    found = verify(sampled(*kernels), 1, profile, tools)
+    found = verified(sampled(*kernels), profile, tools)
     assert found.different == 0
     assert abs(found.signed_error) < 1 / 3
 
@@ -115,13 +122,13 @@ def test_errors_are_signed_and_by_share() -> None:
 def test_a_profile_without_a_compiler_is_refused() -> None:
     """Nobody here has VisualDSP++."""
     with pytest.raises(ConfigError, match="gcc-O2 or gcc-O0"):
-        verify(Sampler(1), 1, VDSP_O2, Toolchain(("cc",)))
+        verified(Sampler(1), VDSP_O2, Toolchain(("cc",)))
 
 
 def test_a_run_without_kernels_is_refused() -> None:
     """There is nothing to compare."""
     with pytest.raises(ConfigError, match="must call a kernel"):
-        verify(Sampler(1), 1, GCC_O2, Toolchain(("cc",)))
+        verified(Sampler(1), GCC_O2, Toolchain(("cc",)))
 
 
 def test_a_missing_toolchain_is_told_before_the_run(tmp_path: Path) -> None:
@@ -132,8 +139,9 @@ def test_a_missing_toolchain_is_told_before_the_run(tmp_path: Path) -> None:
 
 
 FAKE_GCC = """#!/bin/sh
-case "$1" in -dumpfullversion) echo 99.0; exit 0;; esac
+case "$1" in -dump*) echo 99.0; exit 0;; esac
 shift 2
+case "$1" in -r) exec {compiler} -r -nostdlib *.o -o kernels.o;; esac
 exec {compiler} "$@"
 """
 

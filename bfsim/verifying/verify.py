@@ -8,53 +8,38 @@ from pathlib import Path
 
 import numpy as np
 
-from bfsim.errors import ConfigError
+from bfsim.compiling import ObjectCode, Toolchain
 from bfsim.kernel import CompilerProfile, Kernel
-from bfsim.kernel.c import c_program
+from bfsim.kernel.c import HEADER
 from bfsim.verified import Verification, VerifiedKernel
 from bfsim.verifying.player import checksum, played, player
 from bfsim.verifying.sample import Argument, Sample, Sampler
-from bfsim.verifying.toolchain import Toolchain
 
-OPTIONS = {"gcc-O2": ("-O2",), "gcc-O0": ("-O0",)}
-"""What the compiler is told, for each profile that stands for it."""
+PLAYER_OPTIONS = ("-std=gnu99", "-w", "-O2")
 
 
-def require_compiler(profile: CompilerProfile) -> None:
-    """Raise ConfigError unless a profile stands for a compiler that can be asked."""
-    if profile.name not in OPTIONS:
-        raise ConfigError(
-            f"the profile must be {' or '.join(OPTIONS)} to be verified, not {profile.name}: of other compilers there is no code"
-        )
+def verify(
+    sampler: Sampler, frames: int, profile: CompilerProfile, code: ObjectCode, toolchain: Toolchain
+) -> Verification:
+    """Play the calls that `sampler` kept of a run of `frames`, by the kernels here and by their object code under the simulator.
 
-
-def verify(sampler: Sampler, frames: int, profile: CompilerProfile, toolchain: Toolchain) -> Verification:
-    """Play the calls that `sampler` kept of a run of `frames`, by the kernels here and by what the compiler makes of their C.
-
-    Raises ConfigError for a profile that stands for no compiler that can be asked, for a run without kernels, and for what the
-    compiler refuses.
+    Raises ConfigError for what the compiler refuses.
     """
-    require_compiler(profile)
     kernels = list(sampler.of)
-    if not kernels:
-        raise ConfigError("the run must call a kernel to be verified, but calls none")
-    program = c_program([each.function for each in kernels], entries=[each.function for each in kernels])
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for file, text in program.files.items():
-            (folder / file).write_text(text, encoding="utf-8")
+        (folder / "kernels.o").write_bytes(code.octets)
+        (folder / HEADER).write_text(code.header, encoding="utf-8")
         (folder / "player.c").write_text(
-            player([each.function for each in kernels], program.names), encoding="utf-8"
+            player([each.function for each in kernels], code.names), encoding="utf-8"
         )
         with (folder / "calls.bin").open("wb") as stream:
             stream.writelines(played(_calls(kernels, sampler)))
-        built = toolchain.build(
-            folder, [*program.sources, "player.c"], ("-std=gnu99", "-w", *OPTIONS[profile.name])
-        )
+        built = toolchain.build(folder, ["kernels.o", "player.c"], PLAYER_OPTIONS)
         lines = iter(toolchain.run(built).splitlines())
     found = [_compared(each, sampler.of[each], frames, profile, lines) for each in kernels]
     found.sort(key=lambda each: -each.measured_cclk)
-    return Verification(profile.name, toolchain.version, frames, tuple(found))
+    return Verification(profile.name, code.compiler, frames, tuple(found))
 
 
 def _calls(kernels: Sequence[Kernel], sampler: Sampler) -> Iterator[tuple[int, tuple[Argument, ...]]]:

@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from bfsim.kernel import Kernel
-from bfsim.kernel.c import CProgram, c_program
+from bfsim.kernel.c import CProgram, c_program, in_python
 from bfsim.kernel.types import ArrayType, FloatType
 from tests.kernel import c_kernels
 from tests.kernel.host_c import call, compiled, copies, exported, needs_compiler
@@ -149,7 +149,7 @@ def test_c_reads_like_the_python(tmp_path: Path) -> None:
 def test_line_directives_name_the_lines_of_the_python(tmp_path: Path) -> None:
     """Each statement stands behind a #line with the place of its Python."""
     module = import_text(TEXT, tmp_path, "lined")
-    text = c_program([module.sharpen_row.function], line_directives=True).files["lined.c"]
+    text = c_program([module.sharpen_row.function], place=in_python).files["lined.c"]
     python = Path(module.__file__).read_text().splitlines()
     places = re.findall(r'#line (\d+) "(.*)"\n *(.*)', text)
     assert {file for _, file, _ in places} == {module.__file__}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter as Tally
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import PurePath
@@ -13,7 +13,7 @@ from bfsim.kernel import tree
 from bfsim.kernel.c.comments import c_comment
 from bfsim.kernel.c.expressions import number
 from bfsim.kernel.c.names import WORD, free_name, is_free
-from bfsim.kernel.c.statements import Definition, signature
+from bfsim.kernel.c.statements import Definition, Place, signature
 from bfsim.kernel.types import Number, f32, i32, u32
 
 OPERATORS = "operators.h"
@@ -38,12 +38,12 @@ def c_program(
     kernels: Iterable[tree.Function],
     *,
     entries: Iterable[tree.Function] = (),
-    line_directives: bool = False,
+    place: Callable[[tree.Function], Place] | None = None,
 ) -> CProgram:
     """Return `kernels` and what they call as C99.
 
-    A kernel is static if its Python file suggests so and no other kernel needs it; `entries` never are. With `line_directives` a debugger, and the
-    compiler's messages, point to the Python source.
+    A kernel is static if its Python file suggests so and no other kernel needs it; `entries` never are. With `place`, a
+    debugger and the compiler's messages point to where it says that a kernel is.
     """
     functions = sorted(_with_callees(kernels), key=lambda each: (each.file, each.first_line))
     static = _static(functions) - frozenset(entries)
@@ -55,7 +55,7 @@ def c_program(
     texts = {OPERATORS: (files(__package__) / OPERATORS).read_text(encoding="utf-8")}
     texts[HEADER] = _header(of_file, stems, names, static)
     for file, members in of_file.items():
-        texts[f"{stems[file]}.c"] = _source(file, members, names, static, line_directives)
+        texts[f"{stems[file]}.c"] = _source(file, members, names, static, place)
     return CProgram(texts, names, static)
 
 
@@ -135,16 +135,14 @@ def _source(
     members: list[tree.Function],
     names: Mapping[tree.Function, str],
     static: frozenset[tree.Function],
-    line_directives: bool,
+    place: Callable[[tree.Function], Place] | None,
 ) -> str:
     constants = _constants(members, names)
     definitions = [
-        Definition(
-            each, names, constants, is_static=each in static, place=_quoted(file) if line_directives else None
-        )
+        Definition(each, names, constants, is_static=each in static, place=place(each) if place else None)
         for each in members
     ]
-    parts = PurePath(file).parts[-3:]
+    parts = PurePath(file).parts[-2:]
     lines = [
         *c_comment(f"Exported by bfsim from {'/'.join(parts)}."),
         f'#include "{HEADER}"',
@@ -189,7 +187,3 @@ def _type(value: float) -> Number:
 
 def _bracketed(text: str) -> str:
     return f"({text})" if text.startswith("-") else text
-
-
-def _quoted(path: str) -> str:
-    return path.replace("\\", "\\\\").replace('"', '\\"')

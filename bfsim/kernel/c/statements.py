@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 from bfsim.kernel import tree
 from bfsim.kernel.c.comments import WIDTH, Comments, c_comment
@@ -14,6 +15,18 @@ from bfsim.kernel.operators import ALIKE
 from bfsim.kernel.types import FloatType, Number
 
 INDENT = "    "
+
+
+class Place(NamedTuple):
+    """Where `#line` says that a kernel is: the name of a file, and the kernel's first line in it."""
+
+    file: str
+    first_line: int
+
+
+def in_python(function: tree.Function) -> Place:
+    """Return the kernel's place in its Python file."""
+    return Place(function.file, function.first_line)
 
 
 def signature(
@@ -37,7 +50,7 @@ def signature(
 class Definition:
     """Prints the definition of one kernel; `lines` is its text.
 
-    `place` is the file for `#line` directives, by which a debugger finds the Python; none are printed without it.
+    `place` is what `#line` directives say, by which a debugger finds the source; none are printed without it.
     """
 
     def __init__(
@@ -47,7 +60,7 @@ class Definition:
         constants: Mapping[str, int | float],
         *,
         is_static: bool,
-        place: str | None = None,
+        place: Place | None = None,
     ) -> None:
         self.comments = Comments(function)
         head = signature(function, functions, is_static=is_static)
@@ -93,7 +106,7 @@ class Definition:
 
     def _directive(self, line: int, indent: str) -> None:
         if self.place is not None:
-            self.lines.append(f'#line {self.function.first_line + line - 1} "{self.place}"')
+            self.lines.append(f'#line {self.place.first_line + line - 1} "{_quoted(self.place.file)}"')
 
     def _assign(self, node: tree.Assign, indent: str) -> None:
         value = self.expressions.text(node.value)
@@ -219,3 +232,7 @@ def _is_true(test: tree.Expr) -> bool:
     if not isinstance(test, tree.Compare) or test.op != "!=":
         return False
     return all(isinstance(each, tree.Const) for each in (test.left, test.right)) and test.left != test.right
+
+
+def _quoted(path: str) -> str:
+    return path.replace("\\", "\\\\").replace('"', '\\"')

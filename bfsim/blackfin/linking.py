@@ -1,0 +1,183 @@
+"""Object files → an image: what lies where in the Blackfin's memory, with every relocation applied.
+
+A program that is linked already keeps its addresses. Of an object file, code goes to L1 instruction memory and data to L1 data
+memory, or as far beyond as they reach: nothing of the timing depends on it, for compilers' own tables are not traced.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+from bfsim.blackfin.objects import ObjectFile, Relocation, Section, Symbol, Use
+from bfsim.blackfin.relocations import FIELDS, Kind
+from bfsim.errors import KernelError, cut
+
+BASE = {Use.CODE: 0xFFA00000, Use.DATA: 0xFF900000}
+"""[HRM] Core A's L1 instruction memory; L1 data bank B, which has a MB of addresses to itself."""
+ADDRESSES = 1 << 32
+LONGEST_ALIGN = 4096
+MOST_NAMES = 5
+"""As many names are listed of what is missing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """Bytes from an address on: code, or data."""
+
+    address: int
+    octets: bytes
+    use: Use
+
+    @property
+    def end(self) -> int:
+        """The address behind it."""
+        return self.address + len(self.octets)
+
+
+@dataclass(frozen=True, slots=True)
+class Routine:
+    """A function in an image: from its first address to the one behind it."""
+
+    name: str
+    address: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
+class Image:
+    """A program in memory: its segments, addresses by symbol, its functions in the order of their addresses.
+
+    `octets` is the file with its relocations applied, and `section_addresses` are where its sections went, for what reads
+    debugging information.
+    """
+
+    name: str
+    segments: tuple[Segment, ...]
+    symbols: Mapping[str, int]
+    routines: tuple[Routine, ...]
+    octets: bytes
+    section_addresses: tuple[int, ...]
+
+    def address_of(self, symbol: str) -> int:
+        """Return the address of a symbol. Raises KernelError if there is none of that name."""
+        if symbol not in self.symbols:
+            names = ", ".join(cut(each.name) for each in self.routines[:MOST_NAMES])
+            more = f" and {len(self.routines) - MOST_NAMES} more" if len(self.routines) > MOST_NAMES else ""
+            raise KernelError(
+                f"{self.name} must define {cut(symbol)}, but has only {names or 'no function'}{more}"
+            )
+        return self.symbols[symbol]
+
+
+def link(file: ObjectFile) -> Image:
+    """Place an object file in memory and apply its relocations; a linked program is taken as it is.
+
+    Raises KernelError for symbols that are nowhere defined, for relocations that cannot be applied, and for sections that leave
+    the Blackfin's addresses or lie over each other.
+    """
+    places = _places(file)
+    contents = [bytearray(each.octets) for each in file.sections]
+    if not file.is_linked:
+        _require_symbols(file)
+        for each in file.relocations:
+            _apply(each, file, places, contents)
+    octets = bytearray(file.octets)
+    for section, body in zip(file.sections, contents, strict=True):
+        octets[section.offset : section.offset + len(body)] = body
+    segments = [
+        Segment(place, bytes(body) + bytes(each.nbytes - len(body)), each.use)
+        for each, place, body in zip(file.sections, places, contents, strict=True)
+        if each.use is not Use.NOTES and each.nbytes
+    ]
+    segments.sort(key=lambda each: each.address)
+    for one, other in pairwise(segments):
+        if one.end > other.address:
+            raise KernelError(f"{file.name} must have sections apart, but two lie at 0x{other.address:08X}")
+    symbols = {
+        each.name: _value(each, file, places) for each in file.symbols if each.is_defined and each.name
+    }
+    return Image(file.name, tuple(segments), symbols, _routines(file, places), bytes(octets), places)
+
+
+def _places(file: ObjectFile) -> tuple[int, ...]:
+    """The address of each section."""
+    ends, places = dict(BASE), []
+    for each in file.sections:
+        place = each.address
+        if not file.is_linked:
+            if each.use in ends and each.nbytes:
+                place = -(-ends[each.use] // each.align) * each.align
+                ends[each.use] = place + each.nbytes
+            else:
+                place = 0
+        if place + each.nbytes > ADDRESSES or each.align > LONGEST_ALIGN:
+            raise KernelError(
+                f"{file.name} must fit into 32 bits of addresses, but {cut(each.name)} does not"
+            )
+        places.append(place)
+    return tuple(places)
+
+
+def _require_symbols(file: ObjectFile) -> None:
+    used = {each.symbol for each in file.relocations if file.sections[each.section].use is not Use.NOTES}
+    if beyond := [each for each in used if each >= len(file.symbols)]:
+        raise KernelError(f"{file.name} must have the symbol number {beyond[0]}, which it relocates by")
+    missing = sorted({file.symbols[each].name for each in used if not file.symbols[each].is_defined} - {""})
+    if missing:
+        names = ", ".join(map(cut, missing[:MOST_NAMES]))
+        raise KernelError(
+            f"{file.name} must define all that it uses, but not {names}; link it with what does "
+            "(bfin-elf-gcc -r -nostdlib ... -lgcc)"
+        )
+
+
+def _value(symbol: Symbol, file: ObjectFile, places: tuple[int, ...]) -> int:
+    if file.is_linked or symbol.section is None:
+        return symbol.value
+    return places[symbol.section] + symbol.value
+
+
+def _routines(file: ObjectFile, places: tuple[int, ...]) -> tuple[Routine, ...]:
+    found: dict[int, Routine] = {}
+    for each in file.symbols:
+        if each.is_function and each.section is not None and file.sections[each.section].use is Use.CODE:
+            first = _value(each, file, places)
+            found.setdefault(first, Routine(each.name, first, first + each.nbytes))
+    return tuple(found[each] for each in sorted(found))
+
+
+def _apply(each: Relocation, file: ObjectFile, places: tuple[int, ...], contents: list[bytearray]) -> None:
+    """Write one relocation into the contents of its section."""
+    section, body = file.sections[each.section], contents[each.section]
+    if each.kind == 0 or each.symbol >= len(file.symbols):
+        return  # R_BFIN_UNUSED0; notes may name symbols that are gone
+    kind = each.kind
+    if kind not in set(Kind):
+        raise _refused(
+            file, section, each, f"relocations of the type 0x{kind:02X} are not for plain programs"
+        )
+    field = FIELDS[Kind(kind)]
+    at = each.offset - field.before
+    if not 0 <= at <= len(body) - field.nbytes:
+        raise _refused(file, section, each, "that is outside of the section")
+    value = _value(file.symbols[each.symbol], file, places) + each.addend
+    if field.relative:
+        value -= places[each.section] + at
+    shifted, mask = value >> field.shift, (1 << field.bits) - 1
+    lowest = -(1 << field.bits - 1)
+    if not field.is_part and not lowest <= shifted <= (mask if not field.relative else -lowest - 1):
+        raise _refused(file, section, each, f"{cut(file.symbols[each.symbol].name)} is out of reach")
+    word = int.from_bytes(body[at : at + field.nbytes], "little")
+    if field.before:  # the address of a long jump: its high bits are in the first halfword
+        word = word & 0xFF00 | shifted >> 16 & 0xFF | (shifted & 0xFFFF) << 16
+    else:
+        word = word & ~mask | shifted & mask
+    body[at : at + field.nbytes] = word.to_bytes(field.nbytes, "little")
+
+
+def _refused(file: ObjectFile, section: Section, each: Relocation, why: str) -> KernelError:
+    return KernelError(
+        f"{file.name} must have relocations that can be applied, but at 0x{each.offset:X} of {cut(section.name)} {why}"
+    )

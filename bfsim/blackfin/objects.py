@@ -1,0 +1,181 @@
+"""Blackfin ELF files: sections, symbols and relocations, as they stand in the file.
+
+Files come from users, so nothing in one is believed: whatever the reader makes of damaged bytes is one refusal.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from elftools.elf.constants import SH_FLAGS
+from elftools.elf.elffile import ELFFile
+from elftools.elf.relocation import RelocationSection
+from elftools.elf.sections import Section as ElfSection
+from elftools.elf.sections import SymbolTableSection
+
+from bfsim.errors import KernelError, cut
+
+MACHINE = "EM_BLACKFIN"
+RELOCATABLE, EXECUTABLE = "ET_REL", "ET_EXEC"
+MOST_BYTES = 64 << 20
+"""[ours] Of a file, and of what it wants in memory: as much as the largest board has of SDRAM."""
+ANYWHERE = ("SHN_ABS", "SHN_COMMON", "SHN_UNDEF")
+
+
+class Use(StrEnum):
+    """What a section holds."""
+
+    CODE = "code"
+    DATA = "data"
+    NOTES = "notes"
+    """Nothing for the processor, such as debugging information."""
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A section: `nbytes` from `address`, 0 before linking. `octets` are none where memory only has to be zero."""
+
+    name: str
+    use: Use
+    address: int
+    nbytes: int
+    align: int
+    octets: bytes
+    offset: int
+    """Where it begins in the file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """A name for `value`: an offset in section number `section`, before linking, or an address.
+
+    `section` is None for what is defined elsewhere, or has no place.
+    """
+
+    name: str
+    value: int
+    nbytes: int
+    section: int | None
+    is_function: bool
+    is_defined: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Relocation:
+    """What is to be written at `offset` of section number `section`: symbol number `symbol` plus `addend`."""
+
+    section: int
+    offset: int
+    kind: int
+    symbol: int
+    addend: int
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectFile:
+    """What an ELF file says. Sections and symbols keep their numbers."""
+
+    name: str
+    octets: bytes
+    is_linked: bool
+    sections: tuple[Section, ...]
+    symbols: tuple[Symbol, ...]
+    relocations: tuple[Relocation, ...]
+
+
+def read_object(octets: bytes, name: str) -> ObjectFile:
+    """Read an ELF file; `name` is what errors call it. Raises KernelError unless it is one for the Blackfin, and whole."""
+    if len(octets) > MOST_BYTES:
+        raise KernelError(f"{name} must have at most {MOST_BYTES:,} bytes, not {len(octets):,}")
+    if octets[:4] != b"\x7fELF":
+        raise KernelError(f"{name} must be an ELF file for the Blackfin, but does not begin like one")
+    try:
+        return _read(octets, name)
+    except KernelError:
+        raise
+    except Exception as error:  # noqa: BLE001  # bytes of others: the parser may fail in any way
+        raise damaged(name, error) from None
+
+
+def damaged(name: str, error: Exception) -> KernelError:
+    """Return the refusal of a file that cannot be read."""
+    return KernelError(
+        f"{name} must be a whole ELF file, but cannot be read ({type(error).__name__}: {cut(str(error))})"
+    )
+
+
+def _read(octets: bytes, name: str) -> ObjectFile:
+    elf = ELFFile(io.BytesIO(octets))
+    if elf["e_machine"] != MACHINE or elf.elfclass != 32 or not elf.little_endian:
+        raise KernelError(f"{name} must be code for the Blackfin, not for {cut(str(elf['e_machine']))}")
+    if elf["e_type"] not in (RELOCATABLE, EXECUTABLE):
+        raise KernelError(f"{name} must be an object file or a program, not {cut(str(elf['e_type']))}")
+    if elf.num_sections() * elf["e_shentsize"] > len(octets):
+        raise KernelError(
+            f"{name} must have all of its {elf.num_sections()} section headers, but ends before them"
+        )
+    parts = [elf.get_section(number) for number in range(elf.num_sections())]
+    sections = tuple(_section(each, octets, name) for each in parts)
+    if sum(each.nbytes for each in sections if each.use is not Use.NOTES) > MOST_BYTES:
+        raise KernelError(f"{name} must need at most {MOST_BYTES:,} bytes of memory, but needs more")
+    tables = [each for each in parts if isinstance(each, SymbolTableSection)]
+    return ObjectFile(
+        name=name,
+        octets=octets,
+        is_linked=elf["e_type"] == EXECUTABLE,
+        sections=sections,
+        symbols=tuple(_symbol(each, len(sections)) for table in tables[:1] for each in table.iter_symbols()),
+        relocations=tuple(
+            each
+            for part in parts
+            if isinstance(part, RelocationSection)
+            for each in _relocations(part, sections, name)
+        ),
+    )
+
+
+def _section(part: ElfSection, octets: bytes, name: str) -> Section:
+    flags, first, nbytes = part["sh_flags"], part["sh_offset"], part["sh_size"]
+    use = Use.NOTES
+    if flags & SH_FLAGS.SHF_ALLOC:
+        use = Use.CODE if flags & SH_FLAGS.SHF_EXECINSTR else Use.DATA
+    is_zero = part["sh_type"] in ("SHT_NOBITS", "SHT_NULL")
+    if not is_zero and first + nbytes > len(octets):
+        raise KernelError(
+            f"{name} must have all {nbytes:,} bytes of {cut(part.name)}, but ends after {len(octets):,}"
+        )
+    return Section(
+        name=part.name,
+        use=use,
+        address=part["sh_addr"],
+        nbytes=nbytes,
+        align=max(1, part["sh_addralign"]),
+        octets=b"" if is_zero else octets[first : first + nbytes],
+        offset=first,
+    )
+
+
+def _symbol(entry: Any, sections: int) -> Symbol:
+    place = entry["st_shndx"]
+    return Symbol(
+        name=entry.name,
+        value=entry["st_value"],
+        nbytes=entry["st_size"],
+        section=place if isinstance(place, int) and place < sections else None,
+        is_function=entry["st_info"]["type"] == "STT_FUNC",
+        is_defined=place not in ("SHN_UNDEF", "SHN_COMMON"),
+    )
+
+
+def _relocations(part: RelocationSection, sections: tuple[Section, ...], name: str) -> Iterator[Relocation]:
+    target = part["sh_info"]
+    if not part.is_RELA() or not 0 < target < len(sections):
+        raise KernelError(
+            f"{name} must have relocations with addends, of its own sections ({cut(part.name)})"
+        )
+    for each in part.iter_relocations():
+        yield Relocation(target, each["r_offset"], each["r_info_type"], each["r_info_sym"], each["r_addend"])

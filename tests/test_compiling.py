@@ -1,0 +1,46 @@
+"""Object code of kernels: kept by what it was made of, with and without a compiler. A stand-in makes code for this machine."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from bfsim.compiling import Toolchain, blackfin_compiler, object_code
+from bfsim.errors import ConfigError
+from bfsim.kernel import GCC_O0, GCC_O2
+from tests.kernel import c_kernels
+from tests.kernel.host_c import COMPILER, needs_compiler
+
+KERNELS = [c_kernels.narrowed]
+
+
+@pytest.fixture(autouse=True)
+def _empty_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path / "cache"))
+
+
+@needs_compiler
+def test_code_is_made_once_for_each_compiler_and_level() -> None:
+    """The second time the same file comes from the cache; another level is another file."""
+    tools = Toolchain((COMPILER or "",))
+    made = object_code(KERNELS, KERNELS, GCC_O2, tools)
+    broken = Toolchain((COMPILER or "",), libraries=("-lno_such_library",))
+    assert object_code(KERNELS, KERNELS, GCC_O2, broken) == made
+    with pytest.raises(ConfigError, match="no_such_library"):
+        object_code(KERNELS, KERNELS, GCC_O0, broken)
+    assert made.symbol_of(c_kernels.narrowed.function) == "_narrowed"
+
+
+def test_without_a_compiler_code_must_be_kept() -> None:
+    """What is missing, whose code it would be, and what helps."""
+    with pytest.raises(
+        ConfigError, match=r"bfin-elf-gcc must be on the PATH, for of these kernels no code of GCC 12"
+    ):
+        object_code(KERNELS, KERNELS, GCC_O2, None)
+
+
+def test_a_folder_that_is_named_must_have_a_compiler(tmp_path: Path) -> None:
+    """On the PATH there may be none."""
+    with pytest.raises(ConfigError, match=f"bfin-elf-gcc must be in {tmp_path}"):
+        blackfin_compiler(tmp_path)
