@@ -1,46 +1,48 @@
 """The file of a recorded run: what its cores did, to be played again on other hardware. Opening it runs nothing.
 
-It is a ZIP file. `run.json` says what was run; each `CORE/NUMBER` is one `FrameWork`, a line of JSON and then the columns of its tables,
-each in the narrowest integers that hold it; `end.json`, written last, says what was known only then.
+It is a ZIP file. `run.json` says what was run; each `CORE/NUMBER` is one `FrameWork`, compressed with Zstandard: a line of JSON and then
+the columns of its tables, each in the narrowest integers that hold it; `end.json`, written last, says what was known only then.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from functools import cache
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
+import zstandard
 from numpy.typing import NDArray
 
 from bfsim.errors import WorkError
 from bfsim.kernel import keys
 from bfsim.machine.retiming.work import (
     ACCESS_COLUMNS,
+    BYTE,
+    COPY_COLUMNS,
+    DESTINATION_BYTE,
     EVENT_COLUMNS,
     OPERATION_COLUMNS,
+    SOURCE_BYTE,
+    STAMP,
     FrameWork,
     Place,
     check,
 )
 
-FORMAT = 1
+FORMAT = 2
 WIDTHS = tuple(np.dtype(each) for each in ("<i1", "<i2", "<i4", "<i8"))
-TABLES = {"operations": OPERATION_COLUMNS, "accesses": ACCESS_COLUMNS, "events": EVENT_COLUMNS}
-IN_STEPS = {"accesses": (0, 3), "events": (1,)}
+TABLES = {
+    "operations": OPERATION_COLUMNS, "accesses": ACCESS_COLUMNS, "events": EVENT_COLUMNS, "copies": COPY_COLUMNS,
+}  # fmt: skip
+IN_STEPS = {"accesses": (STAMP, BYTE), "events": (1,), "copies": (SOURCE_BYTE, DESTINATION_BYTE)}
 """Columns that are written as differences from row to row: stamps, bytes and counters, which go up in steps."""
-
-
-@cache
-def costs_digest() -> str:
-    """Digest of what the costs of kernels depend on besides kernel and profile: the sources of the compiler."""
-    return hashlib.sha256(b"".join(each.read_bytes() for each in keys.sources())).hexdigest()
+LARGEST_FRAME_BYTES = 1 << 30
+"""What a frame decompresses to, at most: some hundred times as much as one of the built-in firmware has in SDRAM."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,18 +66,18 @@ class WorkWriter:
     """Writes a file as the run goes on."""
 
     def __init__(self, stream: IO[bytes]) -> None:
-        self._zip = zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED)
+        self._zip = zipfile.ZipFile(stream, "w")
         self._counts: dict[str, int] = {}
         self._obstacles: dict[str, None] = {}
 
     def begin(self, **what: Any) -> None:
         """Write what is known of the run before it begins."""
-        self._write("run.json", json.dumps({"format": FORMAT, "costs": costs_digest(), **what}).encode())
+        self._write("run.json", json.dumps({"format": FORMAT, "costs": keys.compiler(), **what}).encode())
 
     def add(self, work: FrameWork) -> None:
         """Write what a core did in a frame."""
         number = self._counts[work.core] = self._counts.get(work.core, 0) + 1
-        self._write(f"{work.core}/{number - 1:06}", _written(work))
+        self._write(f"{work.core}/{number - 1:06}", zstandard.compress(_written(work)))
 
     def add_obstacle(self, text: str) -> None:
         """Note why the run cannot be played again."""
@@ -87,7 +89,7 @@ class WorkWriter:
         self._zip.close()
 
     def _write(self, name: str, content: bytes) -> None:
-        self._zip.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
+        self._zip.writestr(zipfile.ZipInfo(name), content)
 
 
 class WorkReader:
@@ -97,7 +99,7 @@ class WorkReader:
         self.path = path
         self._zip = zipped
         run, end = self._json("run.json"), self._json("end.json")
-        if run.get("format") != FORMAT or run.get("costs") != costs_digest():
+        if run.get("format") != FORMAT or run.get("costs") != keys.compiler():
             raise WorkError(
                 f"{path} must be recorded by this bfsim: another one may cost kernels otherwise; record it again"
             )
@@ -113,9 +115,11 @@ class WorkReader:
         names = [each for each in self._zip.namelist() if each.startswith(f"{core}/")]
         for name in names:
             try:
-                work = _read(core, self._zip.read(name))
+                work = _read(core, _decompressed(self._zip.read(name)))
                 check(work, len(self.recorded.buffers))
-            except (ValueError, KeyError, TypeError, IndexError, zipfile.BadZipFile, OSError) as error:
+            except (
+                ValueError, KeyError, TypeError, IndexError, zipfile.BadZipFile, zstandard.ZstdError, OSError,
+            ) as error:  # fmt: skip
                 raise self._broken() from error
             yield work
 
@@ -146,6 +150,12 @@ def opened(path: Path) -> Iterator[WorkReader]:
         yield WorkReader(path, zipped)
 
 
+def _decompressed(content: bytes) -> bytes:
+    if not 0 < zstandard.frame_content_size(content) <= LARGEST_FRAME_BYTES:
+        raise ValueError("a frame must say how large it is, and not be larger than any")
+    return zstandard.decompress(content)
+
+
 def _written(work: FrameWork) -> bytes:
     columns: list[tuple[int, NDArray[Any]]] = []
     for table in TABLES:
@@ -158,7 +168,7 @@ def _written(work: FrameWork) -> bytes:
             )
             columns.append((WIDTHS.index(width), steps.astype(width)))
     head = {
-        "calls": work.calls, "accounts": work.accounts, "copies": work.copies, "widths": [width for width, _ in columns],
+        "calls": work.calls, "accounts": work.accounts, "widths": [width for width, _ in columns],
         "rows": {table: len(getattr(work, table)) for table in TABLES},
     }  # fmt: skip
     return json.dumps(head, default=asdict).encode() + b"\n" + b"".join(each.tobytes() for _, each in columns)
@@ -170,12 +180,14 @@ def _read(core: str, content: bytes) -> FrameWork:
     tables, at, widths = {}, line, iter(head["widths"])
     for name, columns in TABLES.items():
         rows = int(head["rows"][name])
-        table = tables[name] = np.empty((rows, columns), np.int64)
+        table = tables[name] = np.empty((columns, rows), np.int64).T  # each column in one piece
         for number in range(columns):
             width = WIDTHS[next(widths)]
-            table[:, number] = np.frombuffer(content, width, rows, at)
+            written = np.frombuffer(content, width, rows, at)
             if number in IN_STEPS.get(name, ()):
-                np.cumsum(table[:, number], out=table[:, number])
+                np.cumsum(written, out=table[:, number])
+            else:
+                table[:, number] = written
             at += rows * width.itemsize
     return FrameWork(
         core=core,
@@ -183,10 +195,6 @@ def _read(core: str, content: bytes) -> FrameWork:
             (name, tuple(_argument(each) for each in arguments)) for name, arguments in head["calls"]
         ),
         accounts=tuple(head["accounts"]),
-        copies=tuple(
-            (int(stream), Place(**source), Place(**destination))
-            for stream, source, destination in head["copies"]
-        ),
         **tables,
     )
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import zstandard
 
 from bfsim.errors import ConfigError, WorkError
 from bfsim.machine.bus import state as w
@@ -178,9 +179,22 @@ def test_another_version_is_refused(work: Path, folder: Path) -> None:
     other = folder / "other.work"
     with zipfile.ZipFile(work) as old, zipfile.ZipFile(other, "w") as new:
         for name in old.namelist():
-            new.writestr(name, old.read(name).replace(b'"format": 1', b'"format": 0'))
+            new.writestr(name, old.read(name).replace(b'"format": 2', b'"format": 1'))
     with pytest.raises(WorkError, match="must be recorded by this bfsim"):
         simulate(frames=FRAMES, work=other)
+
+
+@pytest.mark.parametrize(
+    "frame", [b"", b"no frame", zstandard.compress(b"{}\n"), b"\x28\xb5\x2f\xfd\xe0" + b"\xff" * 8]
+)  # the last one says that it decompresses to more than there is memory in the world
+def test_a_broken_frame_is_refused(work: Path, folder: Path, frame: bytes) -> None:
+    """Where it is read, in the words for the file; nothing large is made for it."""
+    broken = folder / "broken.work"
+    with zipfile.ZipFile(work) as old, zipfile.ZipFile(broken, "w") as new:
+        for name in old.namelist():
+            new.writestr(name, frame if name == "B/000001" else old.read(name))
+    with pytest.raises(WorkError, match=r"broken\.work must be a whole file"):
+        simulate(frames=FRAMES, work=broken)
 
 
 def test_a_frame_takes_less_than_200_kb(work: Path) -> None:
@@ -193,9 +207,9 @@ NOTHING = FrameWork(
     operations=np.zeros((0, 5), np.int64),
     accesses=np.zeros((0, 5), np.int64),
     events=np.zeros((0, 3), np.int64),
+    copies=np.zeros((0, 6), np.int64),
     calls=(),
     accounts=(),
-    copies=(),
 )
 
 

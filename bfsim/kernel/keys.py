@@ -61,15 +61,18 @@ def sources() -> list[Path]:
 
 
 @cache
+def compiler() -> str:
+    """Digest of the compiler's own sources."""
+    return hashlib.sha256(b"".join(each.read_bytes() for each in sources())).hexdigest()
+
+
+@cache
 def tools() -> str:
     """The compiler's own sources, LLVM and the host's processor."""
-    digest = hashlib.sha256()
-    for path in sources():
-        digest.update(path.read_bytes())
     host = (
         llvm.get_host_cpu_name(),
         llvm.get_host_cpu_features().flatten(),
         llvmlite.__version__,
         llvm.llvm_version_info,
     )
-    return f"{digest.hexdigest()} {host}"
+    return f"{compiler()} {host}"

@@ -397,15 +397,15 @@ class Bus:
             accounts={number: accounts[number] for _, number in used},
         )
 
-    def keep_plan(self, plan: TransferPlan) -> int:
-        """Keep a plan where stretches find it; return its number."""
-        number = self._plans
-        if number == w.MAX_PLANS:
+    def keep_plans(self, words: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Keep plans where stretches find them, each a row of the `words` of a `TransferPlan`; return their numbers."""
+        numbers = np.arange(self._plans, self._plans + len(words))
+        self._plans += len(words)
+        if self._plans > w.MAX_PLANS:
             raise FirmwareError(f"a recorded run must have at most {w.MAX_PLANS} different copies")
-        first = w.PLANS_AT + number * w.PLAN_WORDS + w.SETUP
-        self._state[first : first + len(plan.words)] = plan.words
-        self._plans = number + 1
-        return number
+        plans = self._state[w.PLANS_AT : w.PLANS_AT + self._plans * w.PLAN_WORDS].reshape(-1, w.PLAN_WORDS)
+        plans[numbers, w.SETUP :] = words
+        return numbers
 
     def log_in_l2(self, core: int, stamp_cclk: int, kind: int) -> int:
         """Make the log of a core that of one access to a shared variable in L2; return the number of its entries."""

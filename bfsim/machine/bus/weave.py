@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from bfsim.kernel.native import native, native_entry, words_at
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.camera_words import take_hits
 from bfsim.machine.bus.core_requests import serve_core, serve_stores, start_jobs
 from bfsim.machine.bus.dma_requests import serve_dma
 from bfsim.machine.bus.pacing import arrival
@@ -100,6 +101,7 @@ def serve_cameras(state: State, memory: Memory, number: int, at: int, until: int
     for other in range(w.SPI, w.MASTERS):
         limit = min(limit, state[w.MASTERS_AT + other + w.READY])
     while woken == w.NONE:
+        take_hits(state, memory, limit)
         left, right = state[w.MASTERS_AT + w.PPI0 + w.READY], state[w.MASTERS_AT + w.PPI1 + w.READY]
         ready, master = min(left, right), w.PPI0 if left <= right else w.PPI1
         if (

@@ -13,7 +13,7 @@ from bfsim.errors import FirmwareError, KernelError
 from bfsim.kernel import CompilerProfile, Kernel, Work
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.machine.bus.memory_owners import MemoryOwners
-from bfsim.machine.calls.conflicts import SubBanks
+from bfsim.machine.calls.conflicts import StageGroups, SubBanks
 from bfsim.machine.calls.fetch import CodeOutside, FetchedCall
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.calls.ledger import Ledger, Snapshot
@@ -103,19 +103,20 @@ class CallCache:
         self._owners = owners
         self._ledger = ledger
         self._groups: dict[tuple[str, Kernel, tuple[int, ...]], CallGroup] = {}
+        self._in_stage: dict[str, StageGroups] = {}
         self._calls: dict[str, dict[tuple[Kernel, object], BoundCall]] = {}
         self.enter(REST)
 
     def enter(self, stage: str) -> None:
         """Count the calls from now on under `stage`."""
         self.stage = stage
+        self._in_stage.setdefault(stage, StageGroups())
         self.known = self._calls.setdefault(stage, {})
         """Calls of this stage by kernel and rows, ready to run."""
 
     def conflicts_cclk(self, elapsed_cclk: int) -> int:
         """Return what conflicts in L1 cost the present stage in its `elapsed_cclk`, since it was asked last."""
-        groups = (each for each in self._groups.values() if each.stage == self.stage)
-        conflicts = self._subbanks.since(groups, elapsed_cclk)
+        conflicts = self._subbanks.since(self._in_stage[self.stage], self._ledger.events, elapsed_cclk)
         if conflicts.cclk:
             self._ledger.add_conflicts(conflicts.sites, conflicts.at_sites_cclk)
         return conflicts.cclk
@@ -211,4 +212,5 @@ class CallCache:
                 subbanks=[set() for _ in owners],
             )
             self._ledger.add(self._groups[key])
+            self._in_stage[self.stage].add(self._groups[key])
         return self._groups[key]

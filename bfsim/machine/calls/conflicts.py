@@ -7,7 +7,7 @@ have them by their part in those accesses.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +31,35 @@ class Conflicts(NamedTuple):
 NO_CONFLICTS = Conflicts(0, np.zeros(0, np.int64), np.zeros(0, np.int64))
 
 
+class StageGroups:
+    """The groups of calls of one stage, and what each of their events accesses: the `spread` of all of them, and its counts before."""
+
+    def __init__(self) -> None:
+        self._new: list[CallGroup] = []
+        self._spread = np.zeros((5, 0), np.int64)
+        self._before = np.zeros(0, np.int64)
+
+    def add(self, group: CallGroup) -> None:
+        """Add a group. Where its rows lie is looked up when it has run."""
+        self._new.append(group)
+
+    @property
+    def spread(self) -> NDArray[np.int64]:
+        """What an event of each counter accesses: see `_spread`."""
+        if self._new:
+            self._spread = np.concatenate([self._spread, *map(_spread, self._new)], axis=1)
+            self._new = []
+        return self._spread
+
+    def counted(self, events: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return how often each event of `spread` was counted since the last time."""
+        counted: NDArray[np.int64] = events[self.spread[0]]
+        since = counted.copy()
+        since[: len(self._before)] -= self._before
+        self._before = counted
+        return since
+
+
 class SubBanks:
     """The sub-banks of L1 as one core meets them."""
 
@@ -41,8 +70,6 @@ class SubBanks:
         self._first = memories.l1
         self._words = words
         self._moved = self._dma_words()
-        self._counted: dict[int, NDArray[np.int64]] = {}
-        self._spread: dict[int, NDArray[np.int64]] = {}
 
     def _dma_words(self) -> NDArray[np.int64]:
         return np.array(self._words[w.SUBBANKS_AT : w.SUBBANKS_AT + w.MAX_SUBBANKS], np.int64)
@@ -54,33 +81,22 @@ class SubBanks:
         first, last = row.offset - self._first, row.offset + row.nbytes - 1 - self._first
         return range(first // self._bytes, last // self._bytes + 1)
 
-    def since(self, groups: Iterable[CallGroup], elapsed_cclk: int) -> Conflicts:
-        """Return what conflicts cost in the last `elapsed_cclk`, in which the calls of `groups` ran."""
+    def since(self, groups: StageGroups, events: NDArray[np.int64], elapsed_cclk: int) -> Conflicts:
+        """Return what conflicts cost in the last `elapsed_cclk`, in which the calls of `groups` ran, by the core's `events`."""
         moved = self._dma_words()
         dma = moved - self._moved
         self._moved = moved
-        accesses = np.zeros(w.MAX_SUBBANKS, np.float64)
-        shares = []
-        for group in groups:
-            before = self._counted.get(id(group), np.zeros_like(group.totals))
-            self._counted[id(group)] = group.totals.copy()
-            counters, banks, each, parts, sites = self._spread_of(group)
-            made = (group.totals - before)[counters] * each / parts
-            np.add.at(accesses, banks, made)
-            shares.append((sites, made * dma[banks]))
+        _, banks, each, parts, sites = groups.spread
+        made = groups.counted(events) * each / parts
         if elapsed_cclk <= 0:
             return NO_CONFLICTS
+        accesses = np.zeros(w.MAX_SUBBANKS, np.float64)
+        np.add.at(accesses, banks, made)
         # added up in order: a product of vectors may round otherwise on another machine
         cclk = int(sum((dma * accesses).tolist()) / elapsed_cclk) * self._conflict_cclk
         if not cclk:
             return NO_CONFLICTS
-        sites = np.concatenate([each for each, _ in shares])
-        return Conflicts(cclk, sites, _shared_out(cclk, np.concatenate([each for _, each in shares])))
-
-    def _spread_of(self, group: CallGroup) -> NDArray[np.int64]:
-        if id(group) not in self._spread:
-            self._spread[id(group)] = _spread(group)
-        return self._spread[id(group)]
+        return Conflicts(cclk, sites, _shared_out(cclk, made * dma[banks]))
 
 
 def _shared_out(cclk: int, shares: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -95,7 +111,7 @@ def _shared_out(cclk: int, shares: NDArray[np.float64]) -> NDArray[np.int64]:
 def _spread(group: CallGroup) -> NDArray[np.int64]:
     """Return what an event of each counter accesses, spread evenly over the sub-banks that the rows lie in.
 
-    Five rows: counter, sub-bank, accesses, sub-banks to share them, and the core's site that makes them.
+    Five rows: the core's number of the counter, sub-bank, accesses, sub-banks to share them, and the core's site that makes them.
     """
     banks = group.by_array(group.subbanks)
     found: dict[tuple[int, int, int, int], int] = {}
@@ -104,7 +120,7 @@ def _spread(group: CallGroup) -> NDArray[np.int64]:
             hit = banks.get(path.arrays.get(access.array, ""), set())
             site = group.first_site + group.site_number(path, Site(access.line, access.array))
             for bank in hit if not access.fills else ():
-                key = (number, bank, len(hit), site)
+                key = (group.first_event + number, bank, len(hit), site)
                 found[key] = found.get(key, 0) + 1
     rows = [(number, bank, each, parts, site) for (number, bank, parts, site), each in found.items()]
     return np.array(rows, np.int64).reshape(-1, 5).T

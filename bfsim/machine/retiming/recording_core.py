@@ -23,7 +23,7 @@ from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.memory_dma import MemoryDma
 from bfsim.machine.memories import Row
 from bfsim.machine.program import FrameSize
-from bfsim.machine.retiming.work import CALL, FrameWork, Place
+from bfsim.machine.retiming.work import ACCESS_COLUMNS, CALL, COPY_COLUMNS, FrameWork, Place
 from bfsim.trace import StallReason
 
 STALLED = {StallReason.RING_EMPTY: w.RING_EMPTY, StallReason.RING_FULL: w.RING_FULL}
@@ -70,7 +70,7 @@ class RecordingCore(Core):
         self._inside = 0  # of calls that are noted as a whole
         self._prepared: dict[int, int] = {}
         self._accounts_noted: dict[str, int] = {}
-        self._copies_noted: dict[tuple[int, Place, Place], int] = {}
+        self._copies_noted: dict[tuple[int, ...], int] = {}
         self._copies = 0
         self._posted: dict[int, int] = {}  # number of a transfer → of this core's copies, the latest
         self._events = np.zeros(0, np.int64)
@@ -87,7 +87,7 @@ class RecordingCore(Core):
         self._counted: list[tuple[int, Any, Any]] = []
         self._noted: list[tuple[str, tuple[Any, ...]]] = []
         self._new_accounts: list[str] = []
-        self._new_copies: list[tuple[int, Place, Place]] = []
+        self._new_copies: list[tuple[int, ...]] = []
 
     # Kernels
 
@@ -162,7 +162,7 @@ class RecordingCore(Core):
         super().program_device(owner, writes=writes, reads=reads)
 
     def _note_copy(self, stream: int, source: Row, destination: Row, transfer: Transfer) -> None:
-        copy = stream, self._place(source), self._place(destination)
+        copy = stream, *self._byte(source), *self._byte(destination), source.nbytes
         if copy not in self._copies_noted:
             self._copies_noted[copy] = len(self._copies_noted)
             self._new_copies.append(copy)
@@ -316,7 +316,7 @@ class RecordingCore(Core):
         )
         offsets = entries & log.OFFSET_MASK
         owners = self._bus.owners.of_all(offsets)
-        accesses = np.empty((count, 5), np.int64)
+        accesses = np.empty((count, ACCESS_COLUMNS), np.int64)
         accesses.T[:] = (
             entries >> log.STAMP_BIT, entries >> log.KIND_BIT & log.KIND_MASK, owners,
             offsets - np.array(self._bus.owners.first)[owners], sites,
@@ -331,13 +331,16 @@ class RecordingCore(Core):
                 operations=np.array(self._operations, np.int64).reshape(-1, w.OPERATION_WORDS),
                 accesses=accesses,
                 events=np.concatenate(events or [np.zeros((0, 3), np.int64)]),
+                copies=np.array(self._new_copies, np.int64).reshape(-1, COPY_COLUMNS),
                 calls=tuple(self._noted),
                 accounts=tuple(self._new_accounts),
-                copies=tuple(self._new_copies),
             )
         )
         self._begin()
 
-    def _place(self, row: Row) -> Place:
+    def _byte(self, row: Row) -> tuple[int, int]:
         owner = self._bus.owners.of(row.offset)
-        return Place(owner, row.offset - self._bus.owners.first[owner], row.nbytes)
+        return owner, row.offset - self._bus.owners.first[owner]
+
+    def _place(self, row: Row) -> Place:
+        return Place(*self._byte(row), row.nbytes)

@@ -9,7 +9,6 @@ import numpy as np
 
 from bfsim.errors import BfsimError, WorkError, shown
 from bfsim.kernel import Kernel
-from bfsim.kernel import access_trace as log
 from bfsim.kernel.types import ArrayType, IntType, Number, u8
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
@@ -21,13 +20,14 @@ from bfsim.machine.core.spin_lock import SpinLock
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.machine.program import FrameSize
+from bfsim.machine.retiming.translated import Stretch, translated
 from bfsim.machine.retiming.work import (
-    BYTE,
-    CALL,
-    KIND,
-    OWNER,
-    SITE,
-    STAMP,
+    DESTINATION,
+    DESTINATION_BYTE,
+    NBYTES,
+    SOURCE,
+    SOURCE_BYTE,
+    STREAM,
     FrameWork,
     Place,
     Table,
@@ -61,110 +61,10 @@ class ReplayedCore(Core):
         self._kernels = kernels
         self._firsts = np.array(bus.owners.first, np.int64)
         self._is_outside = self._firsts < int(bus.words[w.L2_END])
-        self._prepared_outside: list[bool] = []
+        self._kinds_of_calls: list[int] = []  # of those that were prepared: what running them is to the bus
         self._account_names: list[str] = []
         self._plans = np.zeros(0, np.int64)
-
-    # The main loop
-
-    def replay(self) -> Generator[Any, Any, None]:
-        """Do what was recorded."""
-        for work in self._works:
-            try:
-                yield from self._play_work(work)
-            except BfsimError:
-                raise
-            except (LookupError, TypeError, ValueError, OverflowError) as error:  # a file may hold anything
-                raise WorkError(
-                    f"the work of core {self.name} must be as it was recorded, but names what is not there: {shown(error)}"
-                ) from error
-
-    def _play_work(self, work: FrameWork) -> Wait:
-        self._account_names += work.accounts
-        if work.copies:
-            plans = [self._planned(*each) for each in work.copies]
-            self._plans = np.concatenate([self._plans, np.array(plans, np.int64)])
-        calls = np.flatnonzero(work.operations[:, 0] == CALL).tolist()
-        counts = np.where(work.operations[:, 0] == w.ACCESS, work.operations[:, 3], 0)
-        ends = np.cumsum(counts)
-        begin = 0
-        events = np.searchsorted(work.events[:, 0], np.arange(len(calls) + 1)).tolist()
-        for number, at in enumerate(calls):
-            yield from self._stretches(work, begin, at, ends)
-            _, counters, since = work.events[events[number] : events[number + 1]].T
-            name, arguments = work.calls[number]
-            self._calls.events[counters] += since
-            yield from self._call(name, arguments)
-            begin = at + 1
-        yield from self._stretches(work, begin, len(work.operations), ends)
-
-    # Stretches
-
-    def _stretches(self, work: FrameWork, begin: int, end: int, ends: Table) -> Wait:
-        for first in range(begin, end, w.MAX_OPERATIONS):
-            last = min(first + w.MAX_OPERATIONS, end)
-            accesses = work.accesses[ends[first - 1] if first else 0 : ends[last - 1]]
-            yield from self._stretch(work.operations[first:last], accesses)
-
-    def _stretch(self, recorded: Table, accesses: Table) -> Wait:
-        operations, log_of_it = self._translated(recorded, accesses)
-        yield self._bus.play(self._number, self._cclk, operations, log_of_it)
-        played = self._bus.played(self._number)
-        self._cclk = played.clock_cclk
-        kernels = self._account.kernels
-        kernels.issue_cclk += played.issue_cclk
-        for reason, cclk in zip(
-            (StallReason.INTERLOCK, *BUS_STALLS),
-            (played.interlocks_cclk, *played.bus_stalls_cclk),
-            strict=True,
-        ):
-            if cclk:
-                kernels.stall(reason, cclk)
-        for number, words in played.accounts.items():
-            account = self._account.of(self._account_names[number])
-            for word, reason in REASONS.items():
-                if words[word]:
-                    account.stall(reason, words[word])
-
-    def _translated(self, recorded: Table, accesses: Table) -> tuple[Table, Table]:
-        """Return operations as the bus plays them here, and the log of their accesses."""
-        operations = recorded.copy()
-        kinds = recorded[:, 0]
-        calls = kinds == w.ACCESS
-        outside = self._is_outside[accesses[:, OWNER]]
-        kept = accesses[outside]
-        ends = np.cumsum(np.where(calls, recorded[:, 3], 0))
-        behind = np.concatenate([[0], np.cumsum(outside)])
-        numbers = operations[calls, 4]
-        operations[calls, 4] = behind[ends[calls]]
-        operations[calls, 3] = behind[ends[calls] - recorded[calls, 3]]
-        operations[calls, 0] = np.where(np.array(self._prepared_outside, bool)[numbers], w.ACCESS, w.RUN)
-        setups = kinds == w.SET_UP
-        events = self._board.chip.events
-        operations[setups, 1] = (
-            recorded[setups, 1] * events.mmr_write_cclk + recorded[setups, 2] * events.mmr_read_cclk
-        )
-        operations[setups, 2] = recorded[setups, 3]
-        copies = kinds == w.COPY
-        operations[copies, 1] = self._plans[recorded[copies, 1]]
-        entries = (
-            kept[:, STAMP] << log.STAMP_BIT
-            | kept[:, KIND] << log.KIND_BIT
-            | self._firsts[kept[:, OWNER]] + kept[:, BYTE]
-        )
-        return operations, np.stack([entries, kept[:, SITE]])
-
-    def _planned(self, stream: int, source: Place, destination: Place) -> int:
-        rows = self._row(source), self._row(destination)
-        for each in rows:
-            if "SCRATCH" in each.memory:
-                raise WorkError(f"{each.buffer} must be where DMA can reach it, not in {each.memory}")
-        return self._bus.keep_plan(self._streams[stream].plan(*rows))
-
-    # Calls of firmware, by the name that they are noted by
-
-    def _call(self, name: str, arguments: tuple[Any, ...]) -> Wait:
-        calls: dict[str, Callable[..., Any]] = {
+        self._known_calls: dict[str, Callable[..., Any]] = {
             "prepare": self._prepare,
             "stage": self._enter,
             "end_frame": lambda: None,
@@ -182,7 +82,84 @@ class ReplayedCore(Core):
             "receive": self._receive,
             "ppi_status": self._read_status,
         }
-        again = calls[name](*arguments)
+
+    # The main loop
+
+    def replay(self) -> Generator[Any, Any, None]:
+        """Do what was recorded."""
+        for work in self._works:
+            try:
+                yield from self._play_work(work)
+            except BfsimError:
+                raise
+            except (LookupError, TypeError, ValueError, OverflowError) as error:  # a file may hold anything
+                raise WorkError(
+                    f"the work of core {self.name} must be as it was recorded, but names what is not there: {shown(error)}"
+                ) from error
+
+    def _play_work(self, work: FrameWork) -> Wait:
+        self._account_names += work.accounts
+        if len(work.copies):
+            self._plans = np.concatenate([self._plans, self._planned(work.copies)])
+        frame = translated(work, self._firsts, self._is_outside, self._plans, self._board.chip.events)
+        events = np.searchsorted(work.events[:, 0], np.arange(len(work.calls) + 1)).tolist()
+        for number, stretches in enumerate(frame.stretches()):
+            for each in stretches:
+                yield from self._stretch(each)
+            if number < len(work.calls):
+                _, counters, since = work.events[events[number] : events[number + 1]].T
+                self._calls.events[counters] += since
+                name, arguments = work.calls[number]
+                yield from self._call(name, arguments)
+
+    def _stretch(self, stretch: Stretch) -> Wait:
+        runs_at, kernels = stretch.calls
+        if len(runs_at):
+            stretch.operations[runs_at, 0] = np.array(self._kinds_of_calls)[kernels]
+        yield self._bus.play(self._number, self._cclk, stretch.operations, stretch.accesses)
+        played = self._bus.played(self._number)
+        self._cclk = played.clock_cclk
+        kernels_account = self._account.kernels
+        kernels_account.issue_cclk += played.issue_cclk
+        for reason, cclk in zip(
+            (StallReason.INTERLOCK, *BUS_STALLS),
+            (played.interlocks_cclk, *played.bus_stalls_cclk),
+            strict=True,
+        ):
+            if cclk:
+                kernels_account.stall(reason, cclk)
+        for number, words in played.accounts.items():
+            account = self._account.of(self._account_names[number])
+            for word, reason in REASONS.items():
+                if words[word]:
+                    account.stall(reason, words[word])
+
+    def _planned(self, copies: Table) -> Table:
+        """Plan copies; return their numbers. Those of a kind differ only in where they go from and to."""
+        sources, destinations = (
+            self._firsts[copies[:, owner]] + copies[:, byte]
+            for owner, byte in ((SOURCE, SOURCE_BYTE), (DESTINATION, DESTINATION_BYTE))
+        )
+        within_word = (sources | destinations) % self._board.chip.dma.word_bytes
+        kinds = np.column_stack([copies[:, [STREAM, SOURCE, DESTINATION, NBYTES]], within_word])
+        _, examples, kind_of = np.unique(kinds, axis=0, return_index=True, return_inverse=True)
+        words = np.array([self._plan(*copies[each].tolist()) for each in examples])[kind_of.reshape(-1)]
+        words[:, w.FROM - w.SETUP], words[:, w.TO - w.SETUP] = sources, destinations
+        return self._bus.keep_plans(words)
+
+    def _plan(
+        self, stream: int, source: int, from_byte: int, destination: int, to_byte: int, nbytes: int
+    ) -> tuple[int, ...]:
+        rows = self._row(Place(source, from_byte, nbytes)), self._row(Place(destination, to_byte, nbytes))
+        for each in rows:
+            if "SCRATCH" in each.memory:
+                raise WorkError(f"{each.buffer} must be where DMA can reach it, not in {each.memory}")
+        return self._streams[stream].plan(*rows).words
+
+    # Calls of firmware, by the name that they are noted by
+
+    def _call(self, name: str, arguments: tuple[Any, ...]) -> Wait:
+        again = self._known_calls[name](*arguments)
         if isinstance(again, Generator):
             yield from again
 
@@ -256,7 +233,7 @@ class ReplayedCore(Core):
                 f"{', '.join(dict.fromkeys(moved_out))} must be in L1, for it was when the run was recorded, and of what lies there "
                 "the accesses are not; record a run with this LDF, which can be played where it is in L1, too"
             )
-        self._prepared_outside.append(not call.stays_in_l1)
+        self._kinds_of_calls.append(w.RUN if call.stays_in_l1 else w.ACCESS)
 
     def _offset(self, place: Place) -> int:
         return int(self._firsts[place.owner]) + place.first

@@ -20,7 +20,10 @@ CALL = w.AWAIT + 1
 STAMP, KIND, OWNER, BYTE, SITE = range(5)
 """Columns of an access: cycle in its call, kind (`kernel.access_trace`), owner of the memory, byte there, and the core's site."""
 
-OPERATION_COLUMNS, ACCESS_COLUMNS, EVENT_COLUMNS = w.OPERATION_WORDS, 5, 3
+STREAM, SOURCE, SOURCE_BYTE, DESTINATION, DESTINATION_BYTE, NBYTES = range(6)
+"""Columns of a copy: the stream of the core, owner of the memory and byte there of each side, and how many bytes."""
+
+OPERATION_COLUMNS, ACCESS_COLUMNS, EVENT_COLUMNS, COPY_COLUMNS = w.OPERATION_WORDS, 5, 3, 6
 
 Table = NDArray[np.int64]
 
@@ -41,17 +44,17 @@ class FrameWork:
     `operations`: rows of a kind and four numbers as in `bus.state`, with differences: of ACCESS the last two are how many accesses it
     has, and the number of its call among those prepared; SET_UP has register writes and reads before its account.
     `accesses`: rows as above, of all calls one after the other. `events`: rows of a call's number here, a counter of the
-    core and what that has counted since it was written down last, up to that call. `calls`: name and arguments.
-    `accounts`, `copies`: those used for the first time; a copy is the stream, the source and the destination.
+    core and what that has counted since it was written down last, up to that call. `copies`: rows as above, and `accounts`,
+    of those used for the first time. `calls`: name and arguments.
     """
 
     core: str
     operations: Table
     accesses: Table
     events: Table
+    copies: Table
     calls: tuple[tuple[str, tuple[Any, ...]], ...]
     accounts: tuple[str, ...]
-    copies: tuple[tuple[int, Place, Place], ...]
 
 
 def check(work: FrameWork, owners: int) -> None:
@@ -72,6 +75,10 @@ def check(work: FrameWork, owners: int) -> None:
         (accesses[:, OWNER], 0, owners - 1),
         (accesses[:, BYTE], 0, log.OFFSET_MASK),
         (accesses[:, SITE], 0, w.MAX_SITES - 1),
+        (work.copies[:, STREAM], 0, 1),
+        (work.copies[:, [SOURCE, DESTINATION]], 0, owners - 1),
+        (work.copies[:, [SOURCE_BYTE, DESTINATION_BYTE]], 0, log.OFFSET_MASK),
+        (work.copies[:, NBYTES], 1, log.OFFSET_MASK),
         (work.events, 0, 1 << 40),
     )
     if any(
