@@ -14,7 +14,7 @@ from bfsim.cli_check import check
 from bfsim.cli_colours import colours
 from bfsim.cli_diff import diff
 from bfsim.cli_export import export
-from bfsim.cli_html import takes_html, writing_page
+from bfsim.cli_html import require_told, takes_html, writing_page
 from bfsim.cli_ldf import ldf
 from bfsim.cli_place import place
 from bfsim.cli_profile import profile
@@ -153,8 +153,7 @@ def run(
         require_apart(json_path, (*read, mcap, overlay))
     if features and not json_path:
         raise ConfigError("--features must come with --json FILE, which it adds to")
-    if target and json_path == STDOUT and not html:
-        raise ConfigError("--target must come with the tables or --html FILE, and --json - prints neither")
+    require_told(target, html, is_json_only=json_path == STDOUT)
     is_telling = bool(json_path) and not what["work"] and has_view(what["firmware"])
     if features and not is_telling:
         raise ConfigError(
@@ -171,7 +170,7 @@ def run(
                 layers=layers,
                 heat=stages_named(heat, what["firmware"]),
             ),
-            writing_page(watchers, html, target if html else None, what, (json_path, mcap, overlay)),
+            writing_page(watchers, html, target, what, (json_path, mcap, overlay)),
             timelines(watchers, trace, flame, (*read, json_path, mcap, overlay, html)),
         ):
             if is_telling:

@@ -60,6 +60,12 @@ def takes_html(command: Command) -> Command:
     return command
 
 
+def require_told(target: Target | None, html: Path | None, *, is_json_only: bool) -> None:
+    """Raise ConfigError for a target that nothing would be said of."""
+    if target and is_json_only and not html:
+        raise ConfigError("--target must come with the tables or --html FILE, and --json - prints neither")
+
+
 @contextmanager
 def writing_page(
     watchers: Watchers,
@@ -73,8 +79,6 @@ def writing_page(
     Raises ConfigError for a place that cannot be written, one of the `others` included, and where a package is missing.
     """
     if path is None:
-        if target is not None:
-            raise ConfigError("--target must come with --html FILE, whose page compares each frame with it")
         yield
         return
     from bfsim.report.save import files_of_run

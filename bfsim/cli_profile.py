@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bfsim.cli_html import takes_html, writing_page
+from bfsim.cli_html import require_told, takes_html, writing_page
 from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run, takes_work, warn
 from bfsim.cli_timeline import takes_timelines, timelines
 from bfsim.errors import ConfigError, shown
@@ -80,6 +80,7 @@ def profile(
     if json_path and json_path != STDOUT:
         require_place(json_path)
         require_apart(json_path, (*files_of_run(what), html, trace, flame))
+    require_told(target, html, is_json_only=json_path == STDOUT)
     if stage is not None:
         _require_stage(stage, what["firmware"])
     watchers = Watchers()
@@ -92,7 +93,7 @@ def profile(
         click.echo(profile_json(done, core, stage, top), nl=False)
         warn(done)
     else:
-        print_report(profile_report(done, core, top, by, stage))
+        print_report(profile_report(done, core, top, by, stage, target))
         if json_path:
             write_text(json_path, [profile_json(done, core, stage, top)])
     exit_if_interrupted(done)

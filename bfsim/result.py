@@ -23,10 +23,16 @@ from bfsim.trace import RunRecord
 WIDTH = 80
 HTML = '<pre style="white-space: pre; line-height: 1.2; font-family: monospace">{code}</pre>'
 
+
+def profile_of_run(run: RunRecord, target: Target | None) -> RenderableType:
+    """Return the profile of a run, behind how it keeps a target if there is one."""
+    return profile_report(run, target=target)
+
+
 REPORTS: dict[str, Callable[[RunRecord, Target | None], RenderableType]] = {
     "screen": screen,
     "full": run_report,
-    "profile": lambda run, _target: profile_report(run),
+    "profile": profile_of_run,
 }
 """What `Run.report` returns, by its name."""
 PAGE = ".html"

@@ -11,14 +11,14 @@ from functools import partial, wraps
 from inspect import signature
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, ParamSpec
+from typing import Any, ParamSpec, TypeVar
 
 import llvmlite.binding as llvm
 
 from bfsim import __version__, shipped
 from bfsim.chip.spec import BoardSpec
 from bfsim.device_script import read_script
-from bfsim.errors import ConfigError, FirmwareError, RecordingError, WorkError
+from bfsim.errors import ConfigError, FirmwareError, RecordingError, WorkError, shown
 from bfsim.given import given_firmware
 from bfsim.hardware import Found, find_board, find_profile
 from bfsim.kernel import VDSP_O2, CompilerProfile
@@ -48,6 +48,7 @@ _WATCHING = ("before", "progress", "on_seen", "on_time", "on_spans", "on_call", 
 """Arguments of `simulate` that change nothing in the records: whoever makes the run again has others."""
 
 Given = ParamSpec("Given")
+Choice = TypeVar("Choice", Feed, Fidelity)
 
 
 def _repeatable(simulate: Callable[Given, Run]) -> Callable[Given, Run]:
@@ -71,22 +72,22 @@ def _repeatable(simulate: Callable[Given, Run]) -> Callable[Given, Run]:
 
 @_repeatable
 def simulate(
-    recording: Path | None = None,
+    recording: Path | str | None = None,
     *,
     firmware: Firmware | str = shipped.FIRMWARE[0],
     board: str | BoardSpec = "cm-bf561",
     settings: Mapping[str, object] = MappingProxyType({}),
-    ldf: Path | None = None,
+    ldf: Path | str | None = None,
     defines: Mapping[str, str] = MappingProxyType({}),
-    include_dirs: Sequence[Path] = (),
+    include_dirs: Sequence[Path | str] = (),
     frames: int | None = None,
-    feed: Feed = Feed.DEMAND,
-    fidelity: Fidelity = Fidelity.FAST,
+    feed: Feed | str = Feed.DEMAND,
+    fidelity: Fidelity | str = Fidelity.FAST,
     sanitize: bool = False,
     profile: str = VDSP_O2.name,
-    script: Path | None = None,
-    record_work: Path | None = None,
-    work: Path | None = None,
+    script: Path | str | None = None,
+    record_work: Path | str | None = None,
+    work: Path | str | None = None,
     before: Callable[[Identity, int], None] | None = None,
     progress: Callable[[int, int], None] | None = None,
     on_seen: Callable[[SeenFrame], None] | None = None,
@@ -117,6 +118,8 @@ def simulate(
     """
     if frames is not None and frames < 1:
         raise ConfigError(f"frames must be at least 1, not {frames}")
+    feed, fidelity = _one_of(Feed, "feed", feed), _one_of(Fidelity, "fidelity", fidelity)
+    script, record_work, work = map(_path_of, (script, record_work, work))
     found_board, found_compiler = find_board(board, settings), find_profile(profile)
     spec, compiler = found_board.value, found_compiler.value
     loaded = given_firmware(firmware) if isinstance(firmware, Firmware) else load_firmware(firmware)
@@ -187,6 +190,18 @@ def simulate(
     geometry = geometry_in_words(program, calibration)
     memories = tuple(_memories(link_map, spec))
     return _record(outcome, identity, geometry, assumptions, loaded, placement, memories)
+
+
+def _one_of(kind: type[Choice], option: str, name: Choice | str) -> Choice:
+    try:
+        return kind(name)
+    except ValueError:
+        known = ", ".join(each.value for each in kind)
+        raise ConfigError(f"{option} must be one of {known}, not {shown(name)}") from None
+
+
+def _path_of(name: Path | str | None) -> Path | None:
+    return None if name is None else Path(name)
 
 
 class _KnownError(Exception):
@@ -326,7 +341,7 @@ class _DigestedFrames:
         return self._digest.hexdigest()
 
 
-def recording_digest(recording: Path | None, frames: int) -> str:
+def recording_digest(recording: Path | str | None, frames: int) -> str:
     """Digest of the first `frames` frames of a recording, as in the identity of a run; empty where there are fewer."""
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
         source = _DigestedFrames(reader, frames)

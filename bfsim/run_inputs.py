@@ -14,18 +14,18 @@ from bfsim.recording import RecordingReader
 
 
 def read_placement(
-    ldf: Path | None, spec: BoardSpec, defines: Mapping[str, str], include_dirs: Sequence[Path]
+    ldf: Path | str | None, spec: BoardSpec, defines: Mapping[str, str], include_dirs: Sequence[Path | str]
 ) -> LinkerScript:
     """Read an LDF, one that is shipped by its name, or the one that suits the board's chip, for chip and SDRAM of the board.
 
     `defines` are macros beside, or instead of, those that bfsim defines.
     """
-    path = shipped.ldf_at(ldf) if ldf else shipped.DEFAULT_LDFS[spec.chip.name]
+    path = shipped.ldf_at(Path(ldf)) if ldf else shipped.DEFAULT_LDFS[spec.chip.name]
     if path is None:
         known = ", ".join(shipped.LDFS)
         raise LinkError(f"LDF must be a file or a shipped one ({known}), not {shown(str(ldf))}")
     macros = {"SDRAM_BANK_BYTES": str(spec.sdram.bank_bytes), **defines}
-    folders = (*include_dirs, shipped.LDF_FOLDER)
+    folders = (*map(Path, include_dirs), shipped.LDF_FOLDER)
     return parse_ldf(path, macros, folders, chip=spec.chip.name).with_cores_named()
 
 

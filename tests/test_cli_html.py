@@ -69,10 +69,10 @@ def test_a_profile_writes_a_page_too(tmp_path: Path) -> None:
 def test_mistakes_are_told_before_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each in one sentence that says what to do."""
     page = tmp_path / "run.html"
-    assert "--target must come with --html FILE" in refused("profile", "--target", "15Hz")
-    assert "--target must come with the tables or --html FILE" in refused(
-        "run", "--target", "15Hz", "--json", "-"
-    )
+    for command in ("run", "profile"):
+        assert "--target must come with the tables or --html FILE" in refused(
+            command, "--target", "15Hz", "--json", "-"
+        )
     assert "must be a frame rate such as 15Hz or a frame time such as 66ms, not 'soon'" in refused(
         "run", "--html", page, "--target", "soon"
     )

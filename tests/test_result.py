@@ -69,9 +69,9 @@ def test_reports_are_text_of_80_columns() -> None:
 
 
 def test_reports_stand_beside_a_target() -> None:
-    """The screen and the full one; what is no target is refused."""
+    """The screen, the full one and the profile; what is no target is refused."""
     run = run_from(edge_run(100, 100))
-    for which in ("screen", "full"):
+    for which in ("screen", "full", "profile"):
         assert "15 Hz, 66.67 ms a frame: kept by 2 of 2 frames" in " ".join(
             run.report(which, target="15Hz").split()
         )

@@ -21,7 +21,7 @@ from bfsim.kernel.traced_access import trace_access
 from bfsim.machine.bus.weave import advance
 from bfsim.recording import RecordingWriter
 from bfsim.report.digest import cycle_digest, identity_digest
-from bfsim.run import Feed, Fidelity, simulate
+from bfsim.run import BUILT_IN_RECORDING, PLACEMENTS, Feed, Fidelity, simulate
 from bfsim.trace import RunRecord
 
 FIRMWARE = '''\
@@ -73,7 +73,7 @@ DIGESTS = """\
 import json, sys
 from pathlib import Path
 from bfsim.report.digest import cycle_digest, identity_digest
-from bfsim.run import Feed, Fidelity, simulate
+from bfsim.run import BUILT_IN_RECORDING, PLACEMENTS, Feed, Fidelity, simulate
 runs = [simulate(Path(sys.argv[1]), firmware="fw_eyes:eyes", feed=feed) for feed in Feed]
 print(json.dumps([[identity_digest(run.identity), cycle_digest(run.frames)] for run in runs]))
 """
@@ -294,3 +294,16 @@ def test_pictures_too_large_for_the_rings_are_a_link_error(home: Path) -> None:
     assert run_eyes(record(home / "largest.mcap", 1, width=width, height=2)).identity.width_px == width
     with pytest.raises(LinkError):
         run_eyes(record(home / "larger.mcap", 1, width=width + 192, height=2))
+
+
+def test_names_stand_for_files_and_choices() -> None:
+    """As text, as a notebook has them; what there is not is refused in one sentence."""
+    run = simulate(str(BUILT_IN_RECORDING), frames=1, ldf="thesis", feed="recorded", fidelity="fast")
+    assert run.identity == simulate(frames=1, ldf=PLACEMENTS / "thesis.ldf", feed=Feed.RECORDED).identity
+    for wrong, words in (
+        ({"feed": "slow"}, "feed must be one of demand, recorded, cameras, not 'slow'"),
+        ({"fidelity": "good"}, "fidelity must be one of fast, detailed, not 'good'"),
+        ({"ldf": "nowhere"}, "LDF must be a file or a shipped one"),
+    ):
+        with pytest.raises(BfsimError, match=words):
+            simulate(frames=1, **wrong)  # type: ignore[arg-type]

@@ -27,11 +27,15 @@ _CLOCK, _BOOTTIME = 64, proto.BUILTIN_CLOCK_BOOTTIME
 _LEVEL = 1  # of zlib: fast
 _CALLED, _MOVED = ("issue_cclk", "interlocks_cclk"), ("bytes",)
 """Names of what a slice says besides its time."""
+_ENDED = "ended"
+"""The mark at the end of a wait."""
 _TOGETHER = 1 << 14
 """Packets that are compressed together."""
 _MOST_KNOWN = 1 << 14
 """Packets that are kept for each track."""
 _NS = 1_000_000_000
+_TOP = "board"
+"""The track that all others lie below."""
 _ORDER = ("core", "SDRAM", "L2", "MDMA", "IMDMA", "PPI", "SPI", "semaphore", "lock")
 """Devices from top to bottom, by how their names begin."""
 _TRACKS = ("frames", "stages", "work", "interrupts")
@@ -82,10 +86,9 @@ class PerfettoTrace:
         """Describe the track of a span, and the device that it belongs to where that is new."""
         where, name = span.track
         if not self._uuids:
-            root = proto.TrackDescriptor(uuid=0, child_ordering=proto.TrackDescriptor.EXPLICIT)
-            self._packets.append(_framed(proto.TracePacket(track_descriptor=root)))
+            self._describe((), 0, _TOP, 0)  # Perfetto's page keeps an order below a track, not at the top
         if (where,) not in self._uuids:
-            self._describe((where,), 0, where, _rank(where, _ORDER))
+            self._describe((where,), self._uuids[()], where, _rank(where, _ORDER))
         uuid = self._describe(
             span.track,
             self._uuids[where,],
@@ -173,6 +176,12 @@ class _Track:
                 packet.track_event.debug_annotations.add(name_iid=iid)
         return packet
 
+    def mark(self, cclk: int, name: str, flow: int) -> None:
+        """Put a mark at a cycle, which shares the number `flow` with a slice."""
+        packet = self._packet(type=proto.TrackEvent.TYPE_INSTANT, name_iid=self._iid("event_names", name))
+        packet.track_event.flow_ids[:] = [flow]
+        self._append(packet.SerializeToString(), cclk)
+
     def end(self, cclk: int) -> None:
         """End the slice that began last."""
         self._append(self._end, cclk)
@@ -221,7 +230,15 @@ class _Track:
 
 
 def _slice(track: _Track, span: Span) -> None:
+    track.begin(span.begin_cclk, span.name)
+    track.end(span.end_cclk)
+
+
+def _wait(track: _Track, span: Span) -> None:
+    """Write a wait, with a mark where it ends: an arrow leads to what begins later, and a wait may begin before its transfer."""
     track.begin(span.begin_cclk, span.name, span.flow)
+    if span.flow:
+        track.mark(span.end_cclk, _ENDED, span.flow)
     track.end(span.end_cclk)
 
 
@@ -251,6 +268,8 @@ def _level(track: _Track, span: Span) -> None:
 _WRITE: dict[SpanKind, Callable[[_Track, Span], None]] = {
     **dict.fromkeys(SpanKind, _slice),
     SpanKind.CALL: _call,
+    SpanKind.STALL: _wait,
+    SpanKind.IDLE: _wait,
     SpanKind.TRANSFER: _moving,
     SpanKind.MESSAGE: _moving,
     SpanKind.LEVEL: _level,

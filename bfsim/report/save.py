@@ -33,7 +33,8 @@ def require_apart(path: Path, others: Iterable[Path | None]) -> None:
 
 def files_of_run(what: Mapping[str, Any]) -> tuple[Path | None, ...]:
     """Return the files that a run with the arguments `what` of `simulate` reads, and the one in which it records its work."""
-    return tuple(what.get(name) for name in ("recording", "ldf", "script", "work", "record_work"))
+    names = (what.get(name) for name in ("recording", "ldf", "script", "work", "record_work"))
+    return tuple(name if name is None else Path(name) for name in names)
 
 
 def write_text(path: Path, text: str | Iterable[str]) -> None:

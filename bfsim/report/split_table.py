@@ -9,8 +9,8 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.measure import Measurement
 from rich.table import Column, Table
 
-LEAST_TEXT = 12
-"""Names and texts may be cut or folded to so many characters, if that keeps a table together."""
+LEAST_NAME, LEAST_TEXT = 24, 12
+"""Names may be cut, and texts folded, to so many characters, if that keeps a table together."""
 
 
 class SplitTable(Table):
@@ -38,7 +38,7 @@ class SplitTable(Table):
 
     def _pieces(self, console: Console, options: ConsoleOptions) -> Iterator[tuple[int, list[Column]]]:
         """Yield the columns of each piece, as many as have room beside the first one, and how wide that is."""
-        name = min(_width(self.columns[0], console, options), LEAST_TEXT)
+        name = min(_width(self.columns[0], console, options), LEAST_NAME)
         taken: list[Column] = []
         left = options.max_width
         for column in self.columns[1:]:

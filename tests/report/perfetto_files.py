@@ -19,7 +19,7 @@ CLEARED, NEEDED = (
 
 @dataclass(slots=True)
 class Slice:
-    """A slice of a track; those within it are its children."""
+    """A slice of a track; those within it are its children. A mark is one that ends where it begins."""
 
     name: str
     begin_ns: int
@@ -112,7 +112,7 @@ def _play(event: Any, sequence: _Sequence, track: Track) -> None:
     if event.type == proto.TrackEvent.TYPE_SLICE_END:
         sequence.open.pop().end_ns = sequence.ns
         return
-    assert event.type == proto.TrackEvent.TYPE_SLICE_BEGIN
+    assert event.type in (proto.TrackEvent.TYPE_SLICE_BEGIN, proto.TrackEvent.TYPE_INSTANT)
     begun = Slice(
         name=sequence.names[event.name_iid],
         begin_ns=sequence.ns,
@@ -120,14 +120,18 @@ def _play(event: Any, sequence: _Sequence, track: Track) -> None:
         flows=tuple(event.flow_ids),
     )
     (sequence.open[-1].children if sequence.open else track.slices).append(begun)
-    sequence.open.append(begun)
+    if event.type == proto.TrackEvent.TYPE_INSTANT:
+        begun.end_ns = begun.begin_ns
+    else:
+        sequence.open.append(begun)
 
 
 def flows_of(tracks: dict[tuple[str, str], Track]) -> dict[int, list[tuple[str, Slice]]]:
-    """Return the slices of each flow, and the tracks' names."""
+    """Return the slices of each flow, and the tracks' names, in the order of time, as the arrows of Perfetto lead."""
     found: dict[int, list[tuple[str, Slice]]] = defaultdict(list)
     for (_, name), track in tracks.items():
         for each in track.slices:
-            for flow in each.flows:
-                found[flow].append((name, each))
-    return found
+            for part in (each, *each.children):
+                for flow in part.flows:
+                    found[flow].append((name, part))
+    return {flow: sorted(each, key=lambda part: part[1].begin_ns) for flow, each in found.items()}

@@ -60,6 +60,17 @@ def test_the_cameras_stand_side_by_side() -> None:
         assert (legend == colour).all(axis=2).any()
 
 
+def test_the_legend_is_of_what_is_drawn() -> None:
+    """A layer that is left out is not explained; the sheet is as large."""
+    whole, lines = overlay_of(made.frame()), overlay_of(made.frame(), ("lines", "above"))
+    assert whole.size == lines.size
+    legend = np.asarray(lines)[-style.FOOT :]
+    shown_there = [
+        (legend == each).all(axis=2).any() for each in (colours.EDGE, colours.LINE, colours.CIRCLE)
+    ]
+    assert shown_there == [False, True, False]
+
+
 def test_a_picture_is_darkened() -> None:
     """Marks stand out of it; grey stays grey."""
     red, green, blue = shown(one(), 40, 30)

@@ -61,12 +61,18 @@ def heat_legend(heats: Sequence[SeenHeat], width: int, hottest_us: float, longes
     pen = ImageDraw.Draw(strip)
     _draw_scale(strip, pen, hottest_us, longest_us)
     for stage, (text, faint), (x, line) in zip(stages, words, lines, strict=True):
+        if not _cost_anything(heats, stage):
+            continue
         middle = LINE * (line + 1) + LINE // 2
         pen.rectangle((x, middle - SWATCH // 2, x + SWATCH, middle + SWATCH // 2), colour_of(stages, stage))
         begin = x + SWATCH + GAP
         pen.text((begin, middle), text, style.WORDS, font, anchor="lm")
         pen.text((begin + font.getlength(text), middle), faint, style.FAINT, font, anchor="lm")
     return strip
+
+
+def _cost_anything(heats: Sequence[SeenHeat], stage: str) -> bool:
+    return any(each.elsewhere_us[stage] or each.stages_us[stage].any() for each in heats)
 
 
 def _words(heats: Sequence[SeenHeat], stages: Sequence[str]) -> Iterator[tuple[str, str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from itertools import accumulate
 
 from PIL import Image, ImageDraw
 
@@ -35,46 +36,52 @@ OBJECT = SeenObject(
     is_direction=False, camera="left", image_px=(12, -0.5), image_size_px=(14, 8), age_frames=0,
 )  # fmt: skip
 
-ENTRIES: tuple[tuple[str, Callable[[Pen], None]], ...] = (
-    ("edges", lambda pen: pen.edges(EDGES)),
-    ("blob and its centre", lambda pen: pen.blob(BLOB)),
-    ("line from its start", lambda pen: pen.line(LINE, colours.LINE)),
-    ("circle", lambda pen: pen.circle(CIRCLE)),
-    ("circle that failed", lambda pen: pen.circle(FAILED)),
-    ("object", lambda pen: pen.object(OBJECT)),
+ENTRIES: tuple[tuple[str, str, Callable[[Pen], None]], ...] = (
+    ("edges", "edges", lambda pen: pen.edges(EDGES)),
+    ("blobs", "blob and its centre", lambda pen: pen.blob(BLOB)),
+    ("lines", "line from its start", lambda pen: pen.line(LINE, colours.LINE)),
+    ("circles", "circle", lambda pen: pen.circle(CIRCLE)),
+    ("circles", "circle that failed", lambda pen: pen.circle(FAILED)),
+    ("objects", "object", lambda pen: pen.object(OBJECT)),
 )
+"""The layer of each mark, what it means, and how it is drawn."""
 
 
+OF_DEPTH = {"edges", "lines", "above"}
+"""Layers whose colours say how far something is."""
 TITLE = "3-D lines and edges by depth, mm"
 
 
-def _steps() -> list[int]:
-    """Return how wide each entry is."""
-    font = style.font(style.FONT)
-    return [GLYPH + round(font.getlength(text)) + GAP for text, _ in ENTRIES]
+def _step(text: str) -> int:
+    """Return how wide an entry is."""
+    return GLYPH + round(style.font(style.FONT).getlength(text)) + GAP
 
 
-LEGEND_WIDTH = sum(_steps()) + round(style.font(style.FONT).getlength(TITLE)) + BAR + 3 * GAP + 100
+LEGEND_WIDTH = (
+    sum(_step(text) for _, text, _ in ENTRIES)
+    + round(style.font(style.FONT).getlength(TITLE))
+    + BAR
+    + 3 * GAP
+    + 100
+)
 
 
 @cache
-def legend(scale: DepthScale) -> Image.Image:
-    """Return the legend as a strip."""
+def legend(scale: DepthScale, layers: frozenset[str]) -> Image.Image:
+    """Return the legend of what is drawn as a strip, as wide for any layers."""
     font = style.font(style.FONT)
     middle = style.FOOT // 2
-    steps = _steps()
+    entries = [(text, draw) for layer, text, draw in ENTRIES if layer in layers]
+    places = [0, *accumulate(_step(text) for text, _ in entries)]
     large = Image.new("RGB", (LEGEND_WIDTH * style.SMOOTH, style.FOOT * style.SMOOTH), style.PAPER)
-    x = 0
-    for (_, draw), step in zip(ENTRIES, steps, strict=True):
+    for x, (_, draw) in zip(places, entries, strict=False):
         draw(Pen(large, style.SMOOTH, (x, middle)))
-        x += step
     strip = large.reduce(style.SMOOTH)
     pen = ImageDraw.Draw(strip)
-    x = 0
-    for (text, _), step in zip(ENTRIES, steps, strict=True):
+    for x, (text, _) in zip(places, entries, strict=False):
         pen.text((x + GLYPH + 6, middle), text, style.FAINT, font, anchor="lm")
-        x += step
-    _write_scale(pen, x, middle, scale)
+    if layers & OF_DEPTH:
+        _write_scale(pen, places[-1], middle, scale)
     return strip
 
 

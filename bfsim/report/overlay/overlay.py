@@ -51,7 +51,7 @@ def overlay_of(frame: SeenFrame, layers: Collection[str] = LAYERS) -> Image.Imag
     if above:
         sheet.paste(above, (left, style.HEAD))
         pen.text((left, style.HEAD // 2), "from above, mm", style.WORDS, style.font(style.FONT), anchor="lm")
-    sheet.paste(legend(scale), (style.MARGIN, style.HEAD + highest))
+    sheet.paste(legend(scale, frozenset(layers)), (style.MARGIN, style.HEAD + highest))
     if below:
         sheet.paste(below, (style.MARGIN, height - below.height))
     return sheet

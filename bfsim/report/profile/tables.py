@@ -16,6 +16,7 @@ from bfsim.report.profile.reason_tables import reason_tables
 from bfsim.report.profile.sentences import sentences_of
 from bfsim.report.profile.view import View
 from bfsim.report.tables import configuration, stacked, warning_table
+from bfsim.report.target import Target, target_words
 from bfsim.trace import RunRecord
 
 VIEWS: Mapping[str, Callable[[View], Iterator[Table]]] = {
@@ -30,15 +31,21 @@ VIEWS: Mapping[str, Callable[[View], Iterator[Table]]] = {
 
 
 def profile_report(
-    run: RunRecord, core: str | None = None, top: int = 20, by: str = "kernel", stage: str | None = None
+    run: RunRecord,
+    core: str | None = None,
+    top: int = 20,
+    by: str = "kernel",
+    stage: str | None = None,
+    target: Target | None = None,
 ) -> RenderableType:
     """Return the profile of a run of at least one frame by one of `VIEWS`, for one core or all, one stage or all.
 
-    `top`: how many lines, buffers or callers are shown.
+    `top`: how many lines, buffers or callers are shown. `target` is what frames are compared with.
     """
     view = View.of(run, core, stage, top)
     return stacked(
         Text("\n".join(sentences_of(run, core, stage)), style="bold"),
+        *([] if target is None else [Text(f"Target {target_words(run, target)}")]),
         *VIEWS[by](view),
         Text(
             f"Also: --by {', '.join(each for each in VIEWS if each != by)}; --stage, --core, --top, --json."

