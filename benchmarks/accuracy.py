@@ -134,11 +134,12 @@ def summary(rows: Sequence[Comparison], role: Role) -> dict[str, float]:
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """Held-out kernels that were first measured together, by the commit of the model; errors in percent, without sign."""
+    """Held-out kernels that were first measured together, by the commit of the model; errors in percent, `signed` the mean with signs."""
 
     commit: str
     kernels: int
     mean: float
+    signed: float
     largest: float
     worst: str
 
@@ -148,14 +149,15 @@ def first_sight(level: str) -> list[Batch]:
     batches: dict[tuple[str, str], dict[str, float]] = {}
     for each in measured().values():
         if first := each.first_sight:
-            batches.setdefault((first.at, first.commit), {})[each.name] = abs(first.percent[level])
+            batches.setdefault((first.at, first.commit), {})[each.name] = first.percent[level]
     found = [_batch(commit, errors) for (_, commit), errors in sorted(batches.items())]
     return [*found, _batch("all", {name: off for errors in batches.values() for name, off in errors.items()})]
 
 
 def _batch(commit: str, errors: Mapping[str, float]) -> Batch:
-    worst = max(errors, key=lambda name: errors[name])
-    return Batch(commit, len(errors), mean(errors.values()), errors[worst], worst)
+    sizes = {name: abs(error) for name, error in errors.items()}
+    worst = max(sizes, key=lambda name: sizes[name])
+    return Batch(commit, len(sizes), mean(sizes.values()), mean(errors.values()), sizes[worst], worst)
 
 
 def first_sight_table(batches: Sequence[Batch], level: str) -> Table:
@@ -163,11 +165,11 @@ def first_sight_table(batches: Sequence[Batch], level: str) -> Table:
     result = _new_table(
         f"gcc -{level}: kernels nobody had looked at, first measured; error of the cycles, %", "batch"
     )
-    for name in ("kernels", "mean", "largest"):
+    for name in ("kernels", "mean", "signed", "largest"):
         result.add_column(name, justify="right")
     result.add_column("")
     for each in batches:
-        numbers = str(each.kernels), f"{each.mean:.1f}", f"{each.largest:.1f}"
+        numbers = str(each.kernels), f"{each.mean:.1f}", f"{each.signed:+.1f}", f"{each.largest:.1f}"
         result.add_row(each.commit, *numbers, each.worst, style="bold" if each is batches[-1] else "")
     return result
 

@@ -10,25 +10,22 @@ with calls; `c/twin.h` says what the variants are. The simulator charges cycles 
 from __future__ import annotations
 
 import json
-import shutil
-import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.firmware_twins.harness import block, driver, entry
 from benchmarks.firmware_twins.measured import MEASURED
 from benchmarks.firmware_twins.recorded import recorded
-from benchmarks.firmware_twins.twins import TWINS
+from benchmarks.firmware_twins.twins import TWINS, of_all
 from bfsim.api import Kernel
+from bfsim.compiling import Toolchain, blackfin_toolchain
+from bfsim.verifying.player import write_player
 
 HERE = Path(__file__).parent
 SOURCES = HERE / "c"
-TOOLS = ("bfin-elf-gcc", "bfin-elf-run")
-FLAGS = ("-mcpu=bf561", "-msim")
+ENTRY, HEADER = "entry.c", "extern void *const entry;\n"  # all that the player knows of a twin
 CALLED = "__attribute__((noinline, noclone))"
 
 
@@ -50,83 +47,54 @@ VARIANTS = {
 }
 
 
-def missing_tools() -> list[str]:
-    """Return the programs of the toolchain that are not on PATH."""
-    return [tool for tool in TOOLS if shutil.which(tool) is None]
-
-
 def measure(kernel: Kernel, folder: Path) -> dict[str, Any]:
     """Return what `measured.json` says of a kernel; `folder` takes the programs."""
     checksums, cycles = set(), {}
     for variant in VARIANTS:
-        program = build(kernel, variant, folder, compiler=("bfin-elf-gcc", *FLAGS))
-        *spent, checksum = _output("bfin-elf-run", program).split()
-        checksums.add(checksum)
-        cycles[variant] = [int(each) for each in spent]
+        toolchain = blackfin_toolchain()
+        program = build(kernel, variant, folder, toolchain)
+        lines = [[int(each) for each in line.split()] for line in toolchain.run(program).splitlines()]
+        checksums.add(of_all([left for _, left in lines]))
+        cycles[variant] = [cclk for cclk, _ in lines]
     if len(checksums) != 1:
         raise SystemExit(f"{kernel.name}: the variants must leave the same, not {sorted(checksums)}")
     return {"checksum": checksums.pop(), "cycles": cycles}
 
 
-def build(kernel: Kernel, variant: str, folder: Path, compiler: Sequence[str]) -> Path:
-    """Compile the program that plays the recorded calls of a kernel; return it. A folder is for one compiler."""
-    sources = {"driver": driver(kernel), "calls": CALLS.format(path=folder / "calls.bin")}
-    (folder / "calls.bin").write_bytes(block(recorded()[kernel].arguments))
+def build(kernel: Kernel, variant: str, folder: Path, toolchain: Toolchain) -> Path:
+    """Compile the program that plays the recorded calls of a kernel; return it."""
+    function, twins = kernel.function, []
+    options = _options(variant)
     if VARIANTS[variant].one_file:
-        files = dict.fromkeys(Path(each.file).stem for each in (kernel.function, *kernel.function.callees()))
-        sources["entry"] = "".join(f'#include "{each}.c"\n' for each in files) + entry(kernel)
-        library = []
+        files = dict.fromkeys(Path(each.file).stem for each in (function, *function.callees()))
+        entry = "".join(f'#include "{each}.c"\n' for each in files)
     else:
-        sources["entry"] = f"extern void {kernel.name}(void);\n{entry(kernel)}"
-        library = [_library(variant, folder, compiler)]
-    objects = []
-    for name, text in sources.items():
-        source = folder / f"{name}.c"
-        source.write_text(text, encoding="utf-8")
-        objects.append(_compiled(source, folder / f"{name}.o", variant, compiler))
-    program = folder / f"{kernel.name}_{variant}"
-    _output(*compiler, *objects, *library, "-o", program)
-    return program
+        twins = [_twins(variant, folder, toolchain)]
+        entry = f"extern void {kernel.name}(void);\n"
+    entry += f"void *const entry = (void *){kernel.name};\n"
+    (folder / ENTRY).write_text(entry, encoding="utf-8")
+    calls = ((0, each) for each in recorded()[kernel].arguments)
+    player = write_player(folder, HEADER, [function], {function: "entry"}, calls)
+    return toolchain.build(folder, [ENTRY, player, *twins], options)
 
 
-def _library(variant: str, folder: Path, compiler: Sequence[str]) -> Path:
-    """Compile every file of twins for a variant, once."""
-    archive = folder / f"{variant}.a"
-    if not archive.exists():
-        for each in sorted(SOURCES.glob("*.c")):
-            _compiled(each, folder / f"{variant}_{each.stem}.o", variant, compiler)
-        _output(compiler[0].replace("gcc", "ar"), "rcs", archive, *sorted(folder.glob(f"{variant}_*.o")))
-    return archive
+def _twins(variant: str, folder: Path, toolchain: Toolchain) -> str:
+    """Compile every file of twins for a variant, once, and link them to one object file."""
+    linked = folder / f"{variant}.o"
+    if not linked.exists():
+        sources = [str(each) for each in sorted(SOURCES.glob("*.c"))]
+        toolchain.build(folder, sources, ("-r", *_options(variant))).rename(linked)
+    return linked.name
 
 
-def _compiled(source: Path, to: Path, variant: str, compiler: Sequence[str]) -> Path:
+def _options(variant: str) -> tuple[str, ...]:
     each = VARIANTS[variant]
-    meanings = (f"-DKERNEL={each.kernels}", f"-DHELPER={each.helpers}", f"-I{SOURCES}")
-    _output(*compiler, "-std=gnu99", each.level, "-w", *meanings, "-c", source, "-o", to)
-    return to
-
-
-CALLS = """\
-#ifdef __BFIN__
-#define NAME "_calls"
-#else
-#define NAME "calls"
-#endif
-__asm__(".section .rodata; .align 4; .global " NAME "; " NAME ": .incbin \\"{path}\\"; .text");
-"""
-
-
-def _output(*command: str | Path) -> str:
-    done = subprocess.run(command, check=False, capture_output=True, text=True)
-    if done.returncode:
-        raise SystemExit(f"{' '.join(map(str, command))}\n{done.stderr}")
-    return done.stdout
+    meanings = (f"-DKERNEL={each.kernels}", f"-DHELPER={each.helpers}", f"-I{SOURCES}", "-I.")
+    return ("-std=gnu99", each.level, "-w", *meanings)
 
 
 def main(names: list[str]) -> None:
     """Measure the kernels and write their entries."""
-    if missing := missing_tools():
-        raise SystemExit(f"a bfin-elf toolchain must be on PATH; not found: {', '.join(missing)}")
     measured: dict[str, Any] = json.loads(MEASURED.read_text()) if MEASURED.exists() else {}
     with tempfile.TemporaryDirectory() as folder:
         for kernel in TWINS:

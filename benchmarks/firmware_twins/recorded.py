@@ -1,49 +1,29 @@
 """Arguments of real calls: the built-in firmware plays the built-in recording, and a sample of its calls is kept.
 
-Of each kernel and core the calls number 0, s, 2s, ... of the whole run are kept, where s is the least power of two that
-leaves fewer than SAMPLES. So the sample is spread evenly over both cores, all frames and all rows, and is the same
-everywhere: the firmware is played without time (`benchmarks/bare.py`), and its pixels do not depend on any.
+Each core's calls are sampled as `bfsim verify` samples those of a run (`bfsim/verifying/sample.py`), so that the sample is spread
+evenly over both cores, all frames and all rows. It is the same everywhere: the firmware is played without time
+(`benchmarks/bare.py`), and its pixels do not depend on any.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from benchmarks.bare import BareCore, run_bare
-from bfsim.api import Kernel, Row
+from bfsim.api import Kernel
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
 from bfsim.run_inputs import calibration_of
+from bfsim.verifying import Sampler
+from bfsim.verifying.sample import Argument, Sample
 from tinyphoon import tinyphoon
 
 SAMPLES = 32  # of a kernel on a core, at most
-
-Argument = NDArray[Any] | int
-
-
-@dataclass(slots=True)
-class Sample:
-    """Calls of one kernel on one core. `seen`: how many there were; `kept`: the arguments of every `stride`th."""
-
-    seen: int = 0
-    stride: int = 1
-    kept: list[tuple[Argument, ...]] = field(default_factory=list)
-
-    def see(self, arguments: tuple[Row | int, ...]) -> None:
-        """Take note of a call before it is made."""
-        if self.seen % self.stride == 0:
-            self.kept.append(
-                tuple(each.array.copy() if isinstance(each, Row) else each for each in arguments)
-            )
-            if len(self.kept) == SAMPLES:
-                self.kept, self.stride = self.kept[::2], 2 * self.stride
-        self.seen += 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,24 +40,27 @@ def recorded() -> Mapping[Kernel, Calls]:
     with RecordingReader(BUILT_IN_RECORDING) as reader:
         frames = list(reader.frames())
         firmware = tinyphoon.calibrated(calibration_of(reader))
-    samples: dict[str, dict[Kernel, Sample]] = {}
+    samplers: dict[str, Sampler] = {}
 
     class RecordingCore(BareCore):
         counted = True  # the build that `bfsim run` has in the cache already
 
         def run(self, kernel: Kernel, *arguments: Any) -> Any:
-            samples.setdefault(self.name, {}).setdefault(kernel, Sample()).see(arguments)
+            samplers.setdefault(self.name, Sampler(SAMPLES)).see(kernel, arguments)
             return super().run(kernel, *arguments)
 
     run_bare(firmware, frames, RecordingCore)
-    kernels = dict.fromkeys(kernel for of_core in samples.values() for kernel in of_core)
-    return {kernel: _of_both(kernel, samples, len(frames)) for kernel in kernels}
+    cores = [samplers[core].of for core in sorted(samplers)]
+    return {
+        kernel: _of_both(kernel, cores, len(frames))
+        for kernel in dict.fromkeys(each for of in cores for each in of)
+    }
 
 
-def _of_both(kernel: Kernel, samples: Mapping[str, Mapping[Kernel, Sample]], frames: int) -> Calls:
-    of_cores = [samples[core][kernel] for core in sorted(samples) if kernel in samples[core]]
-    arguments = tuple(each for sample in of_cores for each in sample.kept)
-    return Calls(sum(each.seen for each in of_cores) / frames, arguments)
+def _of_both(kernel: Kernel, cores: Sequence[Mapping[Kernel, Sample]], frames: int) -> Calls:
+    samples = [each[kernel] for each in cores if kernel in each]
+    arguments = tuple(each for sample in samples for each in sample.kept)
+    return Calls(sum(each.seen for each in samples) / frames, arguments)
 
 
 def copied(arguments: tuple[Argument, ...]) -> tuple[Argument, ...]:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from benchmarks.firmware_twins.harness import Checksum
+import numpy as np
+
 from benchmarks.firmware_twins.recorded import Calls, copied, recorded
+from benchmarks.twins.lcg import fnv
 from bfsim.api import Kernel
 from bfsim.kernel import CompilerProfile
+from bfsim.verifying.player import checksum
 from tinyphoon.stages.blob_detection import segment_row
 from tinyphoon.stages.circle_edges import select_edges_row
 from tinyphoon.stages.circle_fit import fit_circle
@@ -58,14 +61,19 @@ class Predicted:
 def predict(kernel: Kernel, calls: Calls, profile: CompilerProfile) -> Predicted:
     """Make the recorded calls of a kernel."""
     code = kernel.compile(profile)
-    cycles, checksum = [], Checksum()
+    cycles, left = [], []
     for each in calls.arguments:
         arguments = copied(each)
         arrays = [arguments[position] for position in kernel.array_positions]
         work = kernel.prepare(code, arrays, code.new_totals()).run(arguments)
         cycles.append(work.issue_cclk + work.stall_cclk)
-        checksum.add(arguments, None if work.value is None else int(work.value))
-    return Predicted(tuple(cycles), str(checksum))
+        left.append(checksum(arguments, work.value))
+    return Predicted(tuple(cycles), of_all(left))
+
+
+def of_all(checksums: Sequence[int]) -> str:
+    """Return the checksum of the checksums of all calls of a kernel."""
+    return fnv(np.array(checksums, np.uint32))
 
 
 def frame_cycles(profile: CompilerProfile) -> Mapping[Kernel, float]:

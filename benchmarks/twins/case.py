@@ -16,11 +16,15 @@ Run = Callable[..., Any]
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One twin. `play` draws the inputs, calls what it is given as the kernel would be called, and returns the outputs."""
+    """One twin. `play` draws the inputs, calls what it is given as the kernel would be called, and returns the outputs.
+
+    The C of one that is `exported` is what `bfsim export` writes; the others' stands in `c/`, with helpers that are called.
+    """
 
     kernel: Kernel
     seed: int
     play: Callable[[Lcg, Run], Iterable[Array]]
+    exported: bool = False
 
     @property
     def name(self) -> str:

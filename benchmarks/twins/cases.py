@@ -5,7 +5,9 @@ from __future__ import annotations
 from benchmarks.twins import (
     angles,
     bits,
+    cameras,
     codes,
+    controllers,
     digits,
     drawing,
     exchanges,
@@ -23,9 +25,11 @@ from benchmarks.twins import (
     patches,
     pictures,
     pixels,
+    protocols,
     regions,
     rows,
     samples,
+    shapes,
     signals,
     sorted_rows,
     sorting,
@@ -37,8 +41,9 @@ from benchmarks.twins import (
 )
 
 SUBJECTS = (
-    angles, bits, codes, digits, drawing, exchanges, fills, filters, grids, heaps, integers,
-    labels, lines, lookups, mixture, neighbours, ordering, patches, pictures, pixels, regions, rows,
-    samples, signals, sorted_rows, sorting, tables, tallies, text, transforms, words,
+    angles, bits, cameras, codes, controllers, digits, drawing, exchanges, fills, filters, grids, heaps,
+    integers, labels, lines, lookups, mixture, neighbours, ordering, patches, pictures, pixels,
+    protocols, regions, rows, samples, shapes, signals, sorted_rows, sorting, tables, tallies, text,
+    transforms, words,
 )  # fmt: skip
 CASES = tuple(case for subject in SUBJECTS for case in subject.CASES)

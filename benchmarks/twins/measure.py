@@ -17,7 +17,9 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from benchmarks.twins.case import Case
 from benchmarks.twins.cases import CASES
+from benchmarks.twins.exported import played
 from benchmarks.twins.measured import MEASURED, Role
 from benchmarks.twins.predicted import predict
 from benchmarks.twins.trace import executed, steps, summary
@@ -38,6 +40,23 @@ def missing_tools() -> list[str]:
 
 def measure(name: str, folder: Path) -> dict[str, Any]:
     """Return what `measured.json` says of a kernel, but for what is kept; `folder` takes the programs."""
+    case = next(each for each in CASES if each.name == name)
+    return _measure_exported(case, folder) if case.exported else _measure_written(name, folder)
+
+
+def _measure_exported(case: Case, folder: Path) -> dict[str, Any]:
+    levels = {}
+    for level, profile in PROFILES.items():
+        program, cycles = played(case, profile, folder)
+        levels[level] = traced(program, case.name)
+        if levels[level]["cycles"] != cycles:
+            raise SystemExit(
+                f"{case.name}: the trace must take {cycles} cycles, not {levels[level]['cycles']}"
+            )
+    return {"checksum": case.checksum(), "levels": levels}
+
+
+def _measure_written(name: str, folder: Path) -> dict[str, Any]:
     record: dict[str, Any] = {}
     levels = {}
     for level in PROFILES:
@@ -67,7 +86,9 @@ def first_sight(name: str, found: dict[str, Any]) -> dict[str, Any]:
 def traced(program: Path, name: str) -> dict[str, Any]:
     """Run a program of the Blackfin; return cycles and classes of the operations of its function `name` (`trace.summary`)."""
     command = ["bfin-elf-run", "--trace-insn", str(program)]
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as run:
+    with subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, cwd=program.parent
+    ) as run:
         assert run.stderr
         return summary(*executed(steps(run.stderr), _entry(program, name)))
 
@@ -87,7 +108,7 @@ def main(names: list[str]) -> None:
         raise SystemExit(f"a bfin-elf toolchain must be on PATH; not found: {', '.join(missing)}")
     measured: dict[str, Any] = json.loads(MEASURED.read_text()) if MEASURED.exists() else {}
     with tempfile.TemporaryDirectory() as folder:
-        for name in names or [path.stem.removeprefix("k_") for path in SOURCES.glob("k_*.c")]:
+        for name in names or [case.name for case in CASES]:
             known = measured.get(name)
             found = measure(name, Path(folder))
             kept = {key: known[key] for key in KEPT if key in known} if known else first_sight(name, found)

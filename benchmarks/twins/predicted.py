@@ -21,9 +21,9 @@ class Predicted:
 
 
 def predict(case: Case, profile: CompilerProfile) -> Predicted:
-    """Run a twin and add up what its operations cost; its helpers are called, as those of the C twins are (noinline)."""
+    """Run a twin and add up what its operations cost; helpers in C by hand are called (noinline)."""
     kernel = case.kernel
-    code = kernel.compile(replace(profile, inlines=Inlines.NOTHING))
+    code = kernel.compile(profile if case.exported else replace(profile, inlines=Inlines.NOTHING))
     totals = code.new_totals()
 
     def run(*arguments: Any) -> int | None:

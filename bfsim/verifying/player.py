@@ -10,17 +10,35 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
 
 from bfsim.kernel import tree
+from bfsim.kernel.c import HEADER
 from bfsim.kernel.c.names import c_type
 from bfsim.kernel.types import ArrayType, FloatType
 from bfsim.verifying.sample import Argument
 
+PLAYER, PLAYER_OPTIONS = "player.c", ("-std=gnu99", "-w", "-O2")
 FACTOR = 16777619  # of the checksum: the sum of all words, each times a power of it
 END = 0xFFFFFFFF
 M32 = 0xFFFFFFFF
+
+
+def write_player(
+    folder: Path,
+    header: str,
+    kernels: Sequence[tree.Function],
+    names: Mapping[tree.Function, str],
+    calls: Iterable[tuple[int, tuple[Argument, ...]]],
+) -> str:
+    """Write what plays `kernels`, as `header` declares them, and their `calls`, by numbers; return the file to be compiled."""
+    (folder / HEADER).write_text(header, encoding="utf-8")
+    (folder / PLAYER).write_text(player(kernels, names), encoding="utf-8")
+    with (folder / "calls.bin").open("wb") as stream:
+        stream.writelines(played(calls))
+    return PLAYER
 
 
 def player(kernels: Sequence[tree.Function], names: Mapping[tree.Function, str]) -> str:

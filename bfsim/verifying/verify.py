@@ -10,12 +10,9 @@ import numpy as np
 
 from bfsim.compiling import ObjectCode, Toolchain
 from bfsim.kernel import CompilerProfile, Kernel
-from bfsim.kernel.c import HEADER
 from bfsim.verified import Verification, VerifiedKernel
-from bfsim.verifying.player import checksum, played, player
+from bfsim.verifying.player import PLAYER_OPTIONS, checksum, write_player
 from bfsim.verifying.sample import Argument, Sample, Sampler
-
-PLAYER_OPTIONS = ("-std=gnu99", "-w", "-O2")
 
 
 def verify(
@@ -29,13 +26,9 @@ def verify(
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "kernels.o").write_bytes(code.octets)
-        (folder / HEADER).write_text(code.header, encoding="utf-8")
-        (folder / "player.c").write_text(
-            player([each.function for each in kernels], code.names), encoding="utf-8"
-        )
-        with (folder / "calls.bin").open("wb") as stream:
-            stream.writelines(played(_calls(kernels, sampler)))
-        built = toolchain.build(folder, ["kernels.o", "player.c"], PLAYER_OPTIONS)
+        functions = [each.function for each in kernels]
+        source = write_player(folder, code.header, functions, code.names, _calls(kernels, sampler))
+        built = toolchain.build(folder, ["kernels.o", source], PLAYER_OPTIONS)
         lines = iter(toolchain.run(built).splitlines())
     found = [_compared(each, sampler.of[each], frames, profile, lines) for each in kernels]
     found.sort(key=lambda each: -each.measured_cclk)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from bfsim.kernel import GCC_O2
 from bfsim.kernel.isa import Op
@@ -88,3 +89,59 @@ def test_what_the_stores_address_is_still_there(tmp_path: Path) -> None:
         expected[value & 3] = expected[value & 3] + 1 if value > 7 else other
     run(kernel, a, counts, b, profile=GCC_O2)
     np.testing.assert_array_equal(counts, expected)
+
+
+CHAINS = """
+@kernel
+def root(parents: u8[:], label: i32) -> i32:
+    while parents[label] != label:
+        label = parents[label]
+    return label
+
+@kernel
+def halved(parents: u8[:], label: i32) -> i32:
+    while parents[label] != label:
+        parents[label] = parents[parents[label]]
+        label = parents[label]
+    return label
+
+@kernel
+def overwritten(parents: u8[:], seen: u8[:], label: i32) -> i32:
+    while parents[label] != label:
+        seen[0] = 1
+        label = parents[label]
+    return label
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "others", "reads"), [("root", 0, 4), ("halved", 0, 5), ("overwritten", 1, 7)]
+)
+def test_what_was_loaded_to_be_tested_is_not_loaded_again(
+    name: str, others: int, reads: int, tmp_path: Path
+) -> None:
+    """Of a chain of three steps each label is read once, and by `halved` its grandparent; twice if a store is between."""
+    kernel = getattr(import_text(CHAINS, tmp_path), name)
+    parents = np.array([0, 0, 1, 2, 3], np.uint8)
+    arrays = [parents, *(np.ones(5, np.uint8) for _ in range(others))]
+    code = kernel.compile(GCC_O2)
+    totals = code.new_totals()
+    assert kernel.prepare(code, arrays, totals).run((*arrays, 3)).value == 0
+    found = sum(
+        events * read
+        for counter, events in zip(code.counters, totals.tolist(), strict=True)
+        for array, read, _ in counter.array_accesses
+        if array == "parents"
+    )
+    assert found == reads
+    if name == "halved":
+        assert parents.tolist() == [0, 0, 1, 1, 3]
+
+
+def test_a_moved_operand_does_not_share_the_register_of_the_sum(tmp_path: Path) -> None:
+    """`halved` has three pointers; a moved index beside them is the fourth, which the caller's code needs: it is saved."""
+    counters = import_text(CHAINS, tmp_path).halved.counters(GCC_O2)
+    entry = [each.op for counter in counters for each in counter.charges if counter.value is None]
+    assert Op.PUSH_MULTIPLE in entry
+    root = [each.op for each in import_text(CHAINS, tmp_path).root.counters(GCC_O2)[0].charges]
+    assert Op.PUSH_MULTIPLE not in root

@@ -24,6 +24,7 @@ class Moves:
         self._copies()
         self._overwrites()
         self._moves()
+        self._results()
         self._constants()
 
     def _copies(self) -> None:
@@ -39,6 +40,12 @@ class Moves:
                     move = MachineInstruction(
                         Op.MOVE, line, phi, RegisterBank.ANY, ((value, RegisterBank.ANY),)
                     )
+                    if self._is_kept_apart(phi, value, label, home):
+                        kept = MachineInstruction(
+                            Op.MOVE, line, None, RegisterBank.ANY, ((phi, RegisterBank.ANY),)
+                        )
+                        self.code.add(home, kept)
+                        continue
                     if self._is_before_the_test(phi, label, home):
                         self.code.add(label, move)
                         continue
@@ -48,6 +55,23 @@ class Moves:
             if _is_circular(copies):
                 line = self.flow.blocks[home].instructions[0].line
                 self._on_edge(label, home, MachineInstruction(Op.MOVE, line, None, RegisterBank.ANY))
+
+    def _is_kept_apart(self, phi: str, value: str, label: str, home: str) -> bool:
+        """Whether the old value is copied in the header, before the new one is computed there [insert_backedge_copies].
+
+        Then the two share a register, and nothing is copied on the way back. It is if the old value is wanted after that or
+        behind the header, unless another variable takes it over.
+        """
+        where, new = self.flow.defined.get(value, ("", None))
+        critical = home in self.flow.dominators[label] and len(set(self.flow.blocks[label].successors)) > 1
+        if where != home or new is None or new.opcode == "phi" or not critical:
+            return False
+        rows = [id(each) for each in self.flow.blocks[home].instructions]
+        places = [
+            rows.index(id(each)) if id(each) in rows else len(rows) for each in self.flow.users.get(phi, [])
+        ]
+        taken_over = any((phi, label) in arms for arms in self.webs.phis.values())
+        return not taken_over and any(place > rows.index(id(new)) for place in places)
 
     def _is_before_the_test(self, phi: str, label: str, home: str) -> bool:
         """Whether a copy that goes with a back edge is made before the test there [insert_backedge_copies, tree-outof-ssa.cc].
@@ -117,6 +141,19 @@ class Moves:
                     )
                 block.append(instruction)
             self.code.of[label] = block
+
+    def _results(self) -> None:
+        """What is returned goes to R0, from the other bank by a move."""
+        for label, block in self.flow.blocks.items():
+            for value in block.terminator.operands if block.terminator.opcode == "ret" else ():
+                name, line = self.webs.context.name(value), block.terminator.line
+                if self.bank.get(self.find(name)) is RegisterBank.POINTER:
+                    move = MachineInstruction(
+                        Op.MOVE, line, None, RegisterBank.DATA, ((name, RegisterBank.ANY),)
+                    )
+                    self.code.add(label, move)
+                elif name.startswith("#"):
+                    self.code.add(label, load_constant(name, line))
 
     def _behind_definition(self, block: list[MachineInstruction], name: str) -> int:
         """Position right behind the instruction that computes `name`, or the end: what a pointer register yields goes back."""

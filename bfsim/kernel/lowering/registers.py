@@ -6,6 +6,7 @@ allocator would: see `webs`, `moves` and `pressure`.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from bfsim.kernel import isa
@@ -61,6 +62,9 @@ class _Ends:
             for alive in self.pressure.points(label, across_calls=False):
                 for bank, highest in peak.items():
                     peak[bank] = max(highest, sum(self.bank.get(name) is bank for name in alive))
+            for alive in self._reloaded(label):
+                pointers = sum(self.bank.get(name) is RegisterBank.POINTER for name in alive)
+                peak[RegisterBank.POINTER] = max(peak[RegisterBank.POINTER], pointers)
             for alive in self.pressure.points(label, across_calls=True):
                 for name in alive:
                     across[self.bank.get(name, RegisterBank.DATA)].add(name)
@@ -78,6 +82,14 @@ class _Ends:
         if self.webs.context.profile.applies(Learnt.KEPT_RESULTS):
             self._results()
         self._parameters(across)
+
+    def _reloaded(self, label: str) -> Iterator[set[str]]:
+        """What is alive where an operand was moved to a pointer register: it cannot be the one of the result [order_regs_for_reload]."""
+        points = self.pressure.points(label, across_calls=False)[::-1]
+        for instruction, before in zip(self.code.of[label], points, strict=False):
+            moved = {name for name, bank in instruction.uses if bank is RegisterBank.POINTER and "@" in name}
+            if moved and instruction.result and self.bank.get(instruction.result) is RegisterBank.POINTER:
+                yield before | {self.webs.find(instruction.result)}
 
     def _results(self) -> None:
         """The next call destroys R0: a result that is wanted behind it moves to a register that survives."""

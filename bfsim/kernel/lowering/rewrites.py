@@ -9,6 +9,7 @@ from collections.abc import Callable
 
 from bfsim.kernel.ir_text import Routine, read_module, with_names, write_module
 from bfsim.kernel.learnt import Learnt
+from bfsim.kernel.lowering.carried import carry_over
 from bfsim.kernel.lowering.counted_fills import count_fills
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
 from bfsim.kernel.lowering.merged_stores import merge_stores
@@ -23,6 +24,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     merge_stores,
     with_preheaders,
     without_redundant_loads,
+    carry_over,
     sink,
     hoist_loads,
 )

@@ -1,0 +1,45 @@
+"""Programs of the twins whose C is what `bfsim export` writes: they play the calls of the case (`bfsim/verifying`)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.twins.case import Case
+from bfsim.compiling import blackfin_toolchain, object_code
+from bfsim.kernel import CompilerProfile
+from bfsim.verifying.player import PLAYER_OPTIONS, checksum, write_player
+
+
+def played(case: Case, profile: CompilerProfile, folder: Path) -> tuple[Path, int]:
+    """Compile a twin as a profile's compiler does and run it; return the program and the cycles of all its calls.
+
+    Raises SystemExit unless every call leaves what the Python kernel leaves.
+    """
+    kernel, toolchain = case.kernel, blackfin_toolchain()
+    calls, left = _calls(case)
+    code = object_code([kernel], [kernel], profile, toolchain)
+    (folder / "kernels.o").write_bytes(code.octets)
+    numbered = ((0, each) for each in calls)
+    source = write_player(folder, code.header, [kernel.function], code.names, numbered)
+    built = toolchain.build(folder, ["kernels.o", source], PLAYER_OPTIONS)
+    lines = [[int(each) for each in line.split()] for line in toolchain.run(built).splitlines()]
+    if [there for _, there in lines] != left:
+        raise SystemExit(f"{case.name}: the code of {profile.name} must leave what the Python kernel leaves")
+    return built, sum(cclk for cclk, _ in lines)
+
+
+def _calls(case: Case) -> tuple[list[tuple[Any, ...]], list[int]]:
+    """Arguments of the calls of a case, and the checksum of what each leaves."""
+    calls, left = [], []
+
+    def run(*arguments: Any) -> Any:
+        calls.append(tuple(each.copy() if isinstance(each, np.ndarray) else each for each in arguments))
+        result = case.kernel(*arguments)
+        left.append(checksum(arguments, result))
+        return result
+
+    case.checksum(run)
+    return calls, left
