@@ -11,7 +11,8 @@ import os
 import signal
 from functools import cache
 
-from bfsim.kernel import machine_code, tree
+from bfsim import machine_code
+from bfsim.kernel import tree
 
 CAUSES = {
     "SIGSEGV": "a memory access that is not allowed",

@@ -13,9 +13,9 @@ from functools import cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim import store
+from bfsim import machine_code, store
 from bfsim.errors import KernelError
-from bfsim.kernel import crashes, keys, machine_code, tree
+from bfsim.kernel import crashes, keys, tree
 from bfsim.kernel.call_paths import Program
 from bfsim.kernel.costs import Costs, costs_of
 from bfsim.kernel.counters import Counter

@@ -13,6 +13,7 @@ from pathlib import Path
 import llvmlite
 import llvmlite.binding as llvm
 
+from bfsim import machine_code
 from bfsim.kernel import tree
 from bfsim.kernel.profile import CompilerProfile, Inlines
 
@@ -56,8 +57,8 @@ def _text(function: tree.Function) -> str:
 
 
 def sources() -> list[Path]:
-    """Files that decide what a kernel becomes: all of this package."""
-    return sorted(Path(__file__).parent.rglob("*.py"))
+    """Files that decide what a kernel becomes: all of this package, and what makes its IR machine code."""
+    return [*sorted(Path(__file__).parent.rglob("*.py")), Path(machine_code.__file__)]
 
 
 @cache

@@ -18,8 +18,7 @@ from typing import Any, TypeVar
 
 import llvmlite.binding as llvm
 
-from bfsim import store
-from bfsim.kernel import machine_code
+from bfsim import machine_code, store
 from bfsim.kernel.keys import tools
 
 Function = TypeVar("Function", bound=Callable[..., Any])

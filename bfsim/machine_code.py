@@ -55,3 +55,11 @@ def address_of(name: str) -> int:
     """Return the host address of a function or variable of a loaded object file."""
     engine = _engine()
     return int(engine.get_function_address(name) or engine.get_global_value_address(name))
+
+
+def loaded(code: bytes) -> llvm.ExecutionEngine:
+    """Add an object file to this process for as long as what is returned lives; its names are its own."""
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _host_machine())
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    engine.finalize_object()
+    return engine

@@ -1,0 +1,136 @@
+"""Code as blocks: all that can be reached from its entries, cut where control can come in or go out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from bfsim.blackfin.decode import Instruction, InstructionError, decode
+
+Fetch = Callable[[int], bytes]
+"""Returns the 8 bytes of code at an address, or as many as there are."""
+
+DIRECT = {"jump", "call", "branch", "branch_predicted"}
+"""What these do is go to their operand t."""
+COMPUTED = {"jump_to", "jump_relative", "call_to", "call_relative", "return_"}
+CALLS = {"call", "call_to", "call_relative"}
+BRANCHES = {"branch", "branch_predicted"}
+EVENTS = {
+    *("return_from_interrupt", "return_from_exception", "return_from_nmi", "return_from_emulation"),
+    *("raise_interrupt", "exception", "emulation_exception", "idle"),
+    *("output", "output_register", "halt", "abort", "assert_low", "assert_high", "debug"),
+}
+"""What these do may leave native code, which goes on with what follows."""
+NEVER_ON = (DIRECT | COMPUTED) - CALLS - BRANCHES
+"""Control never goes to what follows."""
+CLOCKED = {"CYCLES", "CYCLES2", "SYSCFG"}
+"""An instruction with one of these begins a block: it must know the cycles of what was executed before it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Instructions that are executed one behind the other. `refused`: why there is no instruction behind the last one."""
+
+    start: int
+    instructions: tuple[Instruction, ...]
+    refused: str = ""
+
+    @property
+    def end(self) -> int:
+        """The address behind the last instruction."""
+        return self.instructions[-1].end if self.instructions else self.start
+
+    @property
+    def branches(self) -> bool:
+        """Whether it ends with a conditional branch."""
+        return bool(self.instructions) and does(self.instructions[-1]) in BRANCHES
+
+
+@dataclass(slots=True)
+class Code:
+    """The code that can be reached from `entries`, which are also addresses that a computed jump may lead to.
+
+    `blocks`: by their addresses. `resumed`: where calls, and the events that leave native code, come back to. `loop_starts`: of each
+    last instruction of a hardware loop and the number of its counter, where its loops begin.
+    """
+
+    fetch: Fetch
+    entries: frozenset[int]
+    blocks: dict[int, Block] = field(default_factory=dict)
+    resumed: set[int] = field(default_factory=set)
+    loop_starts: dict[tuple[int, int], set[int]] = field(default_factory=dict)
+    _decoded: dict[int, Instruction | InstructionError] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        leaders = self._explore()
+        self.blocks = {start: self._block(start, leaders) for start in sorted(leaders)}
+
+    @property
+    def targets(self) -> list[int]:
+        """Addresses that computed jumps may lead to."""
+        starts = {start for starts in self.loop_starts.values() for start in starts}
+        return sorted(self.entries | self.resumed | starts)
+
+    def is_loop_end(self, address: int) -> bool:
+        """Whether a hardware loop ends with the instruction at an address."""
+        return (address, 0) in self.loop_starts or (address, 1) in self.loop_starts
+
+    def _explore(self) -> set[int]:
+        """Decode all that can be reached; return where blocks begin."""
+        leaders, waiting = set(self.entries), sorted(self.entries)
+        while waiting:
+            address = waiting.pop()
+            if address in self._decoded:
+                continue
+            instruction = self._decoded[address] = self._decode(address)
+            if isinstance(instruction, InstructionError):
+                continue
+            found = self._targets(instruction)
+            leaders |= found
+            waiting += found
+            if does(instruction) not in NEVER_ON:
+                waiting.append(instruction.end)
+            if _is_clocked(instruction):
+                leaders.add(address)
+        for end, _ in self.loop_starts:
+            if isinstance(last := self._decoded.get(end), Instruction) and last.end in self._decoded:
+                leaders.add(last.end)
+        return leaders
+
+    def _decode(self, address: int) -> Instruction | InstructionError:
+        try:
+            return decode(self.fetch(address), address)
+        except InstructionError as refused:
+            return refused
+
+    def _targets(self, instruction: Instruction) -> set[int]:
+        """Return where blocks begin because of an instruction; take note of loops and of where control comes back to."""
+        what, operands = does(instruction), instruction.operations[0].operands
+        if what == "loop_setup":
+            start, end, counter = int(operands["s"]), int(operands["e"]), int(operands["c"])
+            self.loop_starts.setdefault((end, counter), set()).add(start)
+            return {start}
+        found = {int(operands["t"])} if what in DIRECT else set()
+        if what in CALLS | EVENTS:
+            self.resumed.add(instruction.end)
+        return found | ({instruction.end} if what in CALLS | EVENTS | BRANCHES else set())
+
+    def _block(self, start: int, leaders: set[int]) -> Block:
+        instructions: list[Instruction] = []
+        address = start
+        while isinstance(instruction := self._decoded[address], Instruction):
+            instructions.append(instruction)
+            address = instruction.end
+            ends = does(instruction) in DIRECT | COMPUTED | EVENTS
+            if ends or address in leaders or self.is_loop_end(instruction.address):
+                return Block(start, tuple(instructions))
+        return Block(start, tuple(instructions), str(instruction))
+
+
+def does(instruction: Instruction) -> str:
+    """Return what an instruction does; of a bundle, what its DSP instruction does."""
+    return instruction.operations[0].form.does
+
+
+def _is_clocked(instruction: Instruction) -> bool:
+    return not CLOCKED.isdisjoint(map(str, instruction.operations[0].operands.values()))

@@ -1,0 +1,92 @@
+"""Kinds of operands: what the bits of a field mean, and how GNU objdump prints it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from bfsim.blackfin.registers import DATA, ENCODED, POINTERS
+
+Operand = int | str
+"""A number, or the name of a register."""
+
+
+def number_text(value: Operand) -> str:
+    """Print a number as objdump does, -0x10 or 0x10, or a name as it is."""
+    return value if isinstance(value, str) else f"{'-' if value < 0 else ''}{abs(value):#x}"
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """`value`: of the bits of a field, in an instruction at an address; None where they mean nothing. `text`: of the value."""
+
+    value: Callable[[int, int], Operand | None]
+    text: Callable[[Operand], str] = number_text
+
+
+NUMBER = Kind(lambda raw, _: raw)
+
+
+def signed(bits: int, scale: int = 1) -> Kind:
+    """Return the kind of a two's complement number, times `scale`."""
+    return Kind(lambda raw, _: _signed(raw, bits) * scale)
+
+
+def unsigned(scale: int = 1) -> Kind:
+    """Return the kind of a number, times `scale`."""
+    return Kind(lambda raw, _: raw * scale)
+
+
+def decimal(kind: Kind) -> Kind:
+    """Return a kind that is printed in decimal."""
+    return Kind(kind.value, str)
+
+
+def register(names: Sequence[str]) -> Kind:
+    """Return the kind of a register by its number; an empty name is reserved."""
+    return Kind(lambda raw, _: names[raw] or None)
+
+
+def target(bits: int, *, forward: bool = False) -> Kind:
+    """Return the kind of an address in code, as its distance from the instruction in halfwords."""
+    return Kind(lambda raw, address: address + 2 * (raw if forward else _signed(raw, bits)) & 0xFFFFFFFF)
+
+
+def option(*texts: str) -> Kind:
+    """Return the kind of a number that is printed as one of `texts`; an empty tuple place (None there) is none."""
+    return Kind(lambda raw, _: raw if raw < len(texts) else None, lambda value: texts[int(value)])
+
+
+def _signed(raw: int, bits: int) -> int:
+    return raw - (raw >> bits - 1 << bits)
+
+
+KINDS = {
+    "R": register(DATA),
+    "P": register(POINTERS),
+    "RP": register((*DATA, *POINTERS)),
+    "I": register(("I0", "I1", "I2", "I3")),
+    "M": register(("M0", "M1", "M2", "M3")),
+    "LC": register(("LC0", "LC1")),
+    "A": register(("A0", "A1")),
+    "any": register(ENCODED),
+    "dag": register(ENCODED[:32]),
+    "count": unsigned(),
+    "count2": unsigned(2),
+    "count4": unsigned(4),
+    "decimal": decimal(unsigned()),
+    "imm3": signed(3),
+    "imm5": signed(5),
+    "imm6": signed(6),
+    "imm7": signed(7),
+    "imm16": signed(16),
+    "imm16x2": signed(16, 2),
+    "imm16x4": signed(16, 4),
+    "frame": Kind(lambda raw, _: 4 * (raw - 32)),
+    "target4": target(4, forward=True),
+    "target10": target(10),
+    "target12": target(12),
+    "target24": target(24),
+    "end10": target(10, forward=True),
+}
+"""By the names that forms call them. The numbers in them are bits, and bytes behind an x."""

@@ -1,0 +1,122 @@
+"""A core that runs object code in an address space as native code."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import llvmlite.binding as llvm
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim import machine_code
+from bfsim.blackfin.address_space import AddressSpace
+from bfsim.blackfin.blocks import Code
+from bfsim.blackfin.decode import InstructionError
+from bfsim.blackfin.effects import Event
+from bfsim.blackfin.registers import ACCUMULATORS, ASTAT_UNUSED, FLAGS, SLOTS
+from bfsim.blackfin.timing import GNU, Timing
+from bfsim.blackfin.translate import NAME, Counter, counters, translate
+
+ENTRY = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)
+OUTSIDE = 0xFFFFFFFE
+"""[ours] Where a subroutine that is called from outside returns to: no memory is there, and no code can be."""
+
+
+class State:
+    """The registers, by their names. ASTAT is made of its flags; A0 and A1 are numbers with a sign."""
+
+    def __init__(self) -> None:
+        self.slots = np.zeros(len(SLOTS), np.uint64)
+
+    def __getitem__(self, register: str) -> int:
+        if register == "ASTAT":
+            return sum(self[flag] << place for flag, place in FLAGS.items()) | self["ASTAT_UNUSED"]
+        value = int(self.slots[SLOTS[register]])
+        return value - (value >> 63 << 64) if register in ACCUMULATORS else value
+
+    def __setitem__(self, register: str, value: int) -> None:
+        if register == "ASTAT":
+            self["ASTAT_UNUSED"] = value & ASTAT_UNUSED
+            for flag, place in FLAGS.items():
+                self[flag] = value >> place & 1
+        else:
+            self.slots[SLOTS[register]] = value & 0xFFFFFFFFFFFFFFFF
+
+
+@dataclass(slots=True)
+class Translated:
+    """Code in this process. `counts`: how often each of `counters` has counted since it was translated."""
+
+    code: Code
+    counters: list[Counter]
+    entry: Callable[[int, int, int], int]
+    native: llvm.ExecutionEngine
+    counts: NDArray[np.int64]
+
+
+@dataclass(slots=True)
+class Processor:
+    """A core, its registers and its address space.
+
+    `entries`: addresses at which it can be started or that its code computes; others are found when control comes there, and the
+    code is translated anew with them. `fuel`: with it, at most so many blocks are run by a call of `run`.
+    """
+
+    space: AddressSpace
+    timing: Timing = GNU
+    entries: set[int] = field(default_factory=set)
+    fuel: int | None = None
+    state: State = field(default_factory=State)
+    translated: Translated | None = None
+
+    def call(self, address: int) -> Event:
+        """Run a subroutine until it returns. Returns the event that it was left for: UNKNOWN_TARGET with PC outside if it returned."""
+        self.state["RETS"] = OUTSIDE
+        self.state["PC"] = address
+        return self.run()
+
+    def run(self) -> Event:
+        """Go on at PC until an event that is not a jump to code.
+
+        Raises InstructionError where control comes to what is no instruction.
+        """
+        if self.fuel is not None:
+            self.state["FUEL"] = self.fuel
+        while True:
+            start = self.state["PC"]
+            if self.translated is None or (start not in self.translated.code.entries and self._is_new(start)):
+                self.entries.add(start)
+                self.translated = self._translate()
+            event = Event(
+                self.translated.entry(
+                    self.space.origin, self.state.slots.ctypes.data, self.translated.counts.ctypes.data
+                )
+            )
+            if event is Event.ILLEGAL:
+                raise InstructionError(self._refusal(self.state["PC"]))
+            if event is not Event.UNKNOWN_TARGET or self.state["PC"] == OUTSIDE:
+                return event
+
+    def _is_new(self, address: int) -> bool:
+        assert self.translated
+        return address not in self.translated.code.targets
+
+    def _translate(self) -> Translated:
+        code = Code(self.space.fetch, frozenset(self.entries))
+        text = translate(code, self.timing, fuel=self.fuel is not None)
+        native = machine_code.loaded(machine_code.host_code(text))
+        counted = counters(code, self.timing)
+        return Translated(
+            code,
+            counted,
+            ENTRY(native.get_function_address(NAME)),
+            native,
+            np.zeros(len(counted), np.int64),
+        )
+
+    def _refusal(self, address: int) -> str:
+        assert self.translated
+        blocks = self.translated.code.blocks.values()
+        return next(each.refused for each in blocks if each.refused and each.end == address)

@@ -1,0 +1,22 @@
+"""What forms do, as functions of `Effects` and the operands of a form, which have the letters of its bits as their names."""
+
+from collections.abc import Callable
+from inspect import isfunction
+
+from bfsim.blackfin.semantics import (
+    arithmetic,
+    conditions,
+    control,
+    immediates,
+    loads,
+    loads_dag,
+    moves,
+    system,
+)
+
+SEMANTICS: dict[str, Callable[..., None]] = {
+    name: each
+    for module in (control, moves, immediates, conditions, arithmetic, loads, loads_dag, system)
+    for name, each in vars(module).items()
+    if isfunction(each) and each.__module__ == module.__name__ and not name.startswith("_")
+}

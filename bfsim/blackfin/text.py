@@ -1,0 +1,21 @@
+"""Instructions as GNU objdump prints them, without the symbols and comments that it adds."""
+
+from __future__ import annotations
+
+from string import Formatter
+
+from bfsim.blackfin.decode import Instruction, Operation
+
+
+def text(instruction: Instruction) -> str:
+    """Return an instruction in the assembler's language; those of a bundle have || between them."""
+    return " || ".join(map(_text, instruction.operations))
+
+
+def _text(operation: Operation) -> str:
+    parts = []
+    for literal, letter, _, _ in Formatter().parse(operation.form.text):
+        parts.append(literal)
+        if letter:
+            parts.append(operation.form.kinds[letter].text(operation.operands[letter]))
+    return "".join(parts)

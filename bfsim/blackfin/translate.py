@@ -1,0 +1,251 @@
+"""Object code → one native function of all that can be reached, with counters of its blocks.
+
+The function is `int(memory, state, counts)`: it goes on from the address in the PC of the state until it meets an event
+(`effects.Event`), which it returns; registers are in the state again then, CLOCK has all cycles, and the counts are added to.
+Registers are slots on its stack, which LLVM turns into its own. Jumps whose target is computed go through one switch over all
+addresses that they may lead to; another address is an event as well, and whoever runs the code may translate it anew with that
+address among its entries. The hardware's loops are checked for behind each instruction with which one ends, as the hardware does:
+by the registers LC, LT and LB, so that code may also leave, save and restore them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from llvmlite import ir
+
+from bfsim.blackfin.blocks import Block, Code
+from bfsim.blackfin.decode import Instruction
+from bfsim.blackfin.effects import I8, I32, I64, Effects, Event, Flow
+from bfsim.blackfin.registers import SLOTS, width
+from bfsim.blackfin.semantics import SEMANTICS
+from bfsim.blackfin.timing import Timing
+from bfsim.blackfin.value import Value
+
+POINTER = ir.PointerType()
+NAME = "blackfin"
+
+
+@dataclass(frozen=True, slots=True)
+class Counter:
+    """How often a block was executed, or, with `taken`, how often it was left by its branch; `cclk`: what each time adds."""
+
+    block: Block
+    cclk: int
+    taken: bool = False
+
+
+def counters(code: Code, timing: Timing) -> list[Counter]:
+    """Return the counters of code, in the order of the counts."""
+    found = [Counter(each, sum(map(timing.of, each.instructions))) for each in code.blocks.values()]
+    for each in code.blocks.values():
+        if each.branches:
+            last = each.instructions[-1]
+            found.append(Counter(each, timing.taken(last) - timing.of(last), taken=True))
+    return found
+
+
+def translate(code: Code, timing: Timing, *, fuel: bool = False) -> str:
+    """Return the LLVM module of code; its function is called `NAME`. With `fuel`, the FUEL of the state is how many blocks it may run."""
+    return str(_Translation(code, counters(code, timing), fuel=fuel).module())
+
+
+class _Translation:
+    """The function while it is made."""
+
+    def __init__(self, code: Code, counted: list[Counter], *, fuel: bool) -> None:
+        self.code, self.counted, self.fuel = code, counted, fuel
+        self.made = ir.Module(NAME)
+        self.function = ir.Function(self.made, ir.FunctionType(I32, (POINTER, POINTER, POINTER)), NAME)
+        self.memory, self.state, self.counts = self.function.args
+        self.entry = self._new("entry")
+        self.dispatch, self.leave = self._new("dispatch"), self._new("leave")
+        self.at = {start: self._new(f"at_{start:08x}") for start in code.blocks}
+        self.slots: dict[str, ir.AllocaInstr] = {}
+        self.ticks: list[ir.AllocaInstr] = []
+        self.numbers = {(each.block.start, each.taken): number for number, each in enumerate(counted)}
+
+    def module(self) -> ir.Module:
+        entry = ir.IRBuilder(self.entry)
+        self.event = entry.alloca(I32)
+        self.ticks = [entry.alloca(I64) for _ in self.counted]
+        for each in self.ticks:
+            entry.store(I64(0), each)
+        for block in self.code.blocks.values():
+            self._block(block)
+        self._dispatch()
+        self._leave()
+        self._enter()
+        return self.made
+
+    def slot(self, register: str) -> ir.AllocaInstr:
+        """Return the stack slot of a register."""
+        if register not in self.slots:
+            entry = ir.IRBuilder(self.entry)
+            self.slots[register] = entry.alloca(ir.IntType(width(register)), name=register)
+        return self.slots[register]
+
+    def _new(self, name: str) -> ir.Block:
+        return self.function.append_basic_block(name)
+
+    def _block(self, block: Block) -> None:
+        builder = ir.IRBuilder(self.at[block.start])
+        if self.fuel:
+            self._burn(builder, block.start)
+        flow: Flow | None = None
+        for instruction in block.instructions:
+            flow = self._instruction(builder, instruction)
+        self._count(builder, block.start)
+        if flow and flow.condition and block.branches:
+            taken = flow.condition.zero_extended(64)
+            self._add(builder, self.numbers[block.start, True], taken.ir)
+        last = block.instructions[-1].address if block.instructions else block.start
+        if flow:
+            self._flow(builder, flow, last, block.end)
+        elif block.refused:
+            self._event(builder, Event.ILLEGAL, I32(block.end))
+        else:
+            self._loops(builder, last)
+            builder.branch(self.at[block.end])
+
+    def _instruction(self, builder: ir.IRBuilder, instruction: Instruction) -> Flow | None:
+        effects = Effects(
+            builder,
+            self.slot,
+            self.memory,
+            lambda: self._clock(builder),
+            instruction.address,
+            lambda: self._following(builder, instruction),
+        )
+        for each in instruction.operations:
+            SEMANTICS[each.form.does](effects, **each.operands, **each.form.given)
+        effects.commit()
+        return effects.flow
+
+    def _flow(self, builder: ir.IRBuilder, flow: Flow, last: int, end: int) -> None:
+        """Go where an instruction says, through the end of a loop if there is one."""
+        if flow.condition is not None:
+            goes, stays = self._new("goes"), self._new("stays")
+            builder.cbranch(flow.condition.ir, goes, stays)
+            builder.position_at_end(stays)
+            self._loops(builder, last)
+            builder.branch(self.at[end])
+            builder.position_at_end(goes)
+        self._loops(builder, last, jumps=False)
+        target = flow.target.ir if isinstance(flow.target, Value) else I32(flow.target)
+        if flow.event is not None:
+            self._event(builder, flow.event, target)
+        elif isinstance(flow.target, Value):
+            builder.store(target, self.slot("PC"))
+            builder.branch(self.dispatch)
+        else:
+            builder.branch(self.at[flow.target])
+
+    def _loops(self, builder: ir.IRBuilder, address: int, *, jumps: bool = True) -> None:
+        """Count down the loops that end with the instruction at `address`, counter 1 first, and go back to the start of one."""
+        done = None
+        for counter in (1, 0):
+            starts = self.code.loop_starts.get((address, counter))
+            if starts is None:
+                continue
+            done = done or self._new("through")
+            ends, again, out = self._new("ends"), self._new("again"), self._new("out")
+            left = builder.load(self.slot(f"LC{counter}"))
+            is_end = builder.icmp_unsigned("==", builder.load(self.slot(f"LB{counter}")), I32(address))
+            builder.cbranch(builder.and_(is_end, builder.icmp_unsigned("!=", left, I32(0))), ends, out)
+            builder.position_at_end(ends)
+            left = builder.sub(left, I32(1))
+            builder.store(left, self.slot(f"LC{counter}"))
+            builder.cbranch(builder.icmp_unsigned("!=", left, I32(0)), again, out)
+            builder.position_at_end(again)
+            if jumps:
+                self._go_to(builder, builder.load(self.slot(f"LT{counter}")), starts)
+            else:
+                builder.branch(done)
+            builder.position_at_end(out)
+        if done:
+            builder.branch(done)
+            builder.position_at_end(done)
+
+    def _go_to(self, builder: ir.IRBuilder, target: ir.Value, likely: set[int]) -> None:
+        """Go to a computed address, which is most likely one of a few."""
+        builder.store(target, self.slot("PC"))
+        choice = builder.switch(target, self.dispatch)
+        for each in sorted(likely):
+            choice.add_case(I32(each), self.at[each])
+
+    def _following(self, builder: ir.IRBuilder, instruction: Instruction) -> Value:
+        """Return the address of what is executed behind an instruction that does not jump: at a loop's end perhaps its start."""
+        found = Value(builder, I32(instruction.end))
+        for counter in (0, 1):
+            if (instruction.address, counter) in self.code.loop_starts:
+                left, end, start = (
+                    Value(builder, builder.load(self.slot(f"{each}{counter}"))) for each in ("LC", "LB", "LT")
+                )
+                again = found.constant(1).below(left) & end.equals(instruction.address)
+                found = again.choose(start, found)
+        return found
+
+    def _count(self, builder: ir.IRBuilder, start: int) -> None:
+        self._add(builder, self.numbers[start, False], I64(1))
+
+    def _burn(self, builder: ir.IRBuilder, start: int) -> None:
+        left = builder.load(self.slot("FUEL"))
+        empty, enough = self._new("empty"), self._new("enough")
+        builder.cbranch(builder.icmp_unsigned("==", left, I64(0)), empty, enough)
+        builder.position_at_end(empty)
+        self._event(builder, Event.FUEL, I32(start))
+        builder.position_at_end(enough)
+        builder.store(builder.sub(left, I64(1)), self.slot("FUEL"))
+
+    def _add(self, builder: ir.IRBuilder, number: int, amount: ir.Value) -> None:
+        builder.store(builder.add(builder.load(self.ticks[number]), amount), self.ticks[number])
+
+    def _clock(self, builder: ir.IRBuilder) -> Value:
+        """Add up the cycles of all blocks that were executed."""
+        total = Value(builder, builder.load(self.slot("CLOCK")))
+        for each, ticks in zip(self.counted, self.ticks, strict=True):
+            total += Value(builder, builder.load(ticks)) * each.cclk
+        return total
+
+    def _event(self, builder: ir.IRBuilder, event: Event, pc: ir.Value) -> None:
+        builder.store(pc, self.slot("PC"))
+        builder.store(I32(event), self.event)
+        builder.branch(self.leave)
+
+    def _dispatch(self) -> None:
+        builder = ir.IRBuilder(self.dispatch)
+        unknown = self._new("unknown")
+        choice = builder.switch(builder.load(self.slot("PC")), unknown)
+        for each in self.code.targets:
+            choice.add_case(I32(each), self.at[each])
+        builder.position_at_end(unknown)
+        builder.store(I32(Event.UNKNOWN_TARGET), self.event)
+        builder.branch(self.leave)
+
+    def _leave(self) -> None:
+        """Add the counts to the caller's, and give back the registers."""
+        builder = ir.IRBuilder(self.leave)
+        clock = self._clock(builder)
+        builder.store(clock.ir, self.slot("CLOCK"))
+        for number, ticks in enumerate(self.ticks):
+            place = builder.gep(self.counts, [I64(8 * number)], source_etype=I8)
+            builder.store(
+                builder.add(builder.load(place, typ=I64, align=8), builder.load(ticks)), place, align=8
+            )
+        for name, slot in self.slots.items():
+            value = builder.load(slot)
+            whole = value if width(name) == 64 else builder.zext(value, I64)
+            builder.store(whole, self._place(builder, name), align=8)
+        builder.ret(builder.load(self.event))
+
+    def _enter(self) -> None:
+        """Fetch the registers that the code touches."""
+        builder = ir.IRBuilder(self.entry)
+        for name, slot in self.slots.items():
+            value = builder.load(self._place(builder, name), typ=I64, align=8)
+            builder.store(value if width(name) == 64 else builder.trunc(value, ir.IntType(width(name))), slot)
+        builder.branch(self.dispatch)
+
+    def _place(self, builder: ir.IRBuilder, register: str) -> ir.Value:
+        return builder.gep(self.state, [I64(8 * SLOTS[register])], source_etype=I8)

@@ -1,0 +1,40 @@
+"""Bytes are decoded, printed, run and counted."""
+
+from __future__ import annotations
+
+import pytest
+
+from bfsim.blackfin.decode import InstructionError, decode, disassemble
+from bfsim.blackfin.effects import Event
+from bfsim.blackfin.processor import OUTSIDE
+from bfsim.blackfin.text import text
+from tests.blackfin.code import CODE, processor
+
+SUM = "2860 5068 a2e0 0300 0964 0850 1000"
+"""R0 = 5; P0 = 10; ten times R1 += 1, R0 = R0 + R1; back."""
+
+
+def test_instructions_are_printed_as_objdump_does() -> None:
+    assert [text(each) for each in disassemble(bytes.fromhex(SUM), CODE)] == [
+        "R0 = 0x5 (X)",
+        "P0 = 0xa (X)",
+        "LSETUP(0x1008, 0x100a) LC0 = P0",
+        "R1 += 0x1",
+        "R0 = R0 + R1",
+        "RTS",
+    ]
+
+
+def test_a_hardware_loop_runs_as_often_as_its_counter_says_and_its_cycles_are_counted() -> None:
+    core = processor(SUM)
+    assert core.call(CODE) is Event.UNKNOWN_TARGET
+    assert core.state["PC"] == OUTSIDE
+    assert (core.state["R0"], core.state["R1"], core.state["LC0"]) == (5 + sum(range(1, 11)), 10, 0)
+    assert core.state["CLOCK"] == 3 + 10 * 2 + 5
+
+
+def test_bytes_that_are_no_instruction_are_refused_with_address_and_bytes() -> None:
+    with pytest.raises(InstructionError, match="0x00001000, .* none of a Blackfin: ff ff ff ff"):
+        decode(b"\xff\xff\xff\xff", CODE)
+    with pytest.raises(InstructionError, match="0x00001002, .*: ff ff"):
+        processor("2860 ffff").call(CODE)
