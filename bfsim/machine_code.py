@@ -32,6 +32,10 @@ def _optimise(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
 
 @cache
 def _host_machine() -> llvm.TargetMachine:
+    return _new_machine()
+
+
+def _new_machine() -> llvm.TargetMachine:
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     return llvm.Target.from_default_triple().create_target_machine(
@@ -59,7 +63,7 @@ def address_of(name: str) -> int:
 
 def loaded(code: bytes) -> llvm.ExecutionEngine:
     """Add an object file to this process for as long as what is returned lives; its names are its own."""
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _host_machine())
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _new_machine())  # which ends with the engine
     engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
     return engine
