@@ -139,8 +139,8 @@ def radius_peak(counts: Sequence[int], reach: int) -> tuple[int, int, int]:
     return radius, max(sums), FINE * radius + mean_offset(wide[radius : radius + 2 * reach + 1])
 
 
-def outline_offset(profile: Sequence[int]) -> tuple[int, int, int]:
-    """Where the outline crosses a profile, in 1/64 px from its middle, how steep it is and how wide its flanks; 7 values before, 8 behind."""
+def outline_offset(profile: Sequence[int]) -> tuple[int, int]:
+    """Where the outline crosses a profile, in 1/64 px from its middle, and how steep it is; 7 values before, 8 behind."""
     rises = [int(after) - int(before) for before, after in pairwise(profile)]
     place = max(
         range(5, 9), key=lambda each: sum(rises[each - 1 : each + 2]) + rises[each]
@@ -155,14 +155,11 @@ def outline_offset(profile: Sequence[int]) -> tuple[int, int, int]:
     parts = [max(rises[place + step] - slope, 0) for step, slope in zip(steps, slopes, strict=True)]
     moment = sum(step * part for step, part in zip(steps, parts, strict=True))
     aside = (2 * FINE * moment + sum(parts)) // (2 * sum(parts)) if sum(parts) else 0
-    return FINE * (place - 7) + FINE // 2 + aside, max(rises[place], 0), (before + after + 1) // 2
+    return FINE * (place - 7) + FINE // 2 + aside, max(rises[place], 0)
 
 
-Flank = tuple[int, int]  # how steep, how wide
-
-
-def point_of(edge: Edge, luma: Picture) -> tuple[Point, Flank]:
-    """The point on the outline at an edge, in 1/64 px, and its flank."""
+def point_of(edge: Edge, luma: Picture) -> tuple[Point, int]:
+    """The point on the outline at an edge, in 1/64 px, and how steep it is there."""
     x, y, direction = edge
     steep = is_steep(direction)
     way = (1 if direction < 128 else -1) if steep else (1 if direction < 64 or direction >= 192 else -1)
@@ -171,10 +168,10 @@ def point_of(edge: Edge, luma: Picture) -> tuple[Point, Flank]:
     profile = (
         luma[np.clip(y + steps, 0, height - 1), x] if steep else luma[y, np.clip(x + steps, 0, width - 1)]
     )
-    offset, *flank = outline_offset(profile.tolist())
+    offset, rise = outline_offset(profile.tolist())
     if steep:
-        return (FINE * x, max(FINE * y + way * offset, 0)), (flank[0], flank[1])
-    return (max(FINE * x + way * offset, 0), FINE * y), (flank[0], flank[1])
+        return (FINE * x, max(FINE * y + way * offset, 0)), rise
+    return (max(FINE * x + way * offset, 0), FINE * y), rise
 
 
 def near_of(radius: int) -> int:
@@ -224,16 +221,24 @@ def through(one: Point, two: Point, three: Point) -> Circle | None:
     return FINE * one[0] + dx, FINE * one[1] + dy, isqrt(dx**2 + dy**2)
 
 
-def weights(flanks: Sequence[Flank]) -> list[int]:
-    """What points count, by their flanks."""
-    steep = sum(each for each, _ in flanks)
-    blur = (2 * sum(each * wide for each, wide in flanks) + steep) // max(2 * steep, 1)
-    square = max(steep // max(len(flanks), 1), 1) ** 2
-    return [min((2 * each**2 + square // 2) // square, 8) if wide <= blur else 0 for each, wide in flanks]
+Weights = tuple[int, int]  # what a point counts inside the circle, and outside
 
 
-def refined(circle: Circle, points: Sequence[Point], counts: Sequence[int], limit: int) -> Circle:
-    """One round of the fit over the points nearer to the circle than `limit`: the nearer, the more they count, up to 4."""
+def weights(steep: Sequence[int]) -> list[Weights]:
+    """One over the variance of each point's place, of 255 for an eighth of a pixel.
+
+    With noise of 2 levels, and inside the circle half a pixel of shade for each time that the outline could be steeper.
+    """
+    mean = sum(each**2 for each in steep) // max(len(steep), 1)
+    squares = [each**2 for each in steep]
+    return [
+        (255 * each // (each + 256 + 16 * max(mean - each, 0)), 255 * each // (each + 256))
+        for each in squares
+    ]
+
+
+def refined(circle: Circle, points: Sequence[Point], counts: Sequence[Weights], limit: int) -> Circle:
+    """One round of the fit over the points nearer to the circle than `limit`: the nearer, the more they count, up to 32."""
     x, y, radius = circle
     rows = []
     for point, count in zip(points, counts, strict=True):
@@ -241,8 +246,8 @@ def refined(circle: Circle, points: Sequence[Point], counts: Sequence[int], limi
         off = away - radius
         if away and abs(off) < limit:
             nx, ny = (point[0] - x) * 128 // away, (point[1] - y) * 128 // away
-            near = ((limit**2 - off**2) * ((4 << 16) // limit**2) + (1 << 15)) >> 16
-            rows.append((near * count * (3 if off > 0 else 1), nx, ny, off))
+            near = ((limit**2 - off**2) * ((64 << 16) // limit**2)) >> 16
+            rows.append(((near * count[off > 0] + 256) >> 9, nx, ny, off))
     weight = sum(row[0] for row in rows)
     if not weight:
         return circle
@@ -365,7 +370,7 @@ def fit(circle: Circle, edges: Sequence[Edge], luma: Picture, limits: Any) -> tu
     close = [edge for edge, each in zip(edges, away, strict=True) if abs(each - radius) <= limit]
     outline = [point_of(edge, luma) for edge in close]
     points = [point for point, _ in outline]
-    counts = weights([flank for _, flank in outline])
+    counts = weights([steep for _, steep in outline])
     for _ in range(limits.fit_rounds):
         circle = refined(circle, points, counts, limit)
         limit = max(limit // 2, min(near_of(circle[2]), limit))

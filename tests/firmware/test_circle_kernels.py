@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from tests.firmware import circle_references as expected
 from tests.firmware.circle_references import Edge
@@ -29,7 +30,7 @@ from tinyphoon.stages.circle_edges import (
     open_area,
     select_edges_row,
 )
-from tinyphoon.stages.circle_fit import FIT_WORDS, FLANK_BITS, REFINED, STEEPEST, arc_of, fit_circle
+from tinyphoon.stages.circle_fit import FIT_WORDS, OUTSIDE_BITS, REFINED, arc_of, fit_circle
 from tinyphoon.stages.circle_outline import (
     LUMA_LINES,
     REACH_LINES,
@@ -198,46 +199,49 @@ def test_points_on_the_outline(edges: list[Edge], seed: int, x: int, y: int, rad
     fit[:3] = 64 * x + 7, 64 * y - 9, 64 * radius
     clear_points(fit)
     selected, luma = words(edges), np.full(LUMA_LINES * SIZE, 77, np.uint8)
-    rises, flanks = np.zeros(RISES, np.int32), np.full(len(edges), 77, np.uint16)
+    rises, steep = np.zeros(RISES, np.int32), np.full(len(edges), 77, np.uint16)
     for ahead in range(SIZE + REACH_LINES):
         if ahead < SIZE:
             luma_row(uyvy[ahead], luma, ahead, area_of((0, SIZE - 1, 0, SIZE - 1), (x, y), 9))
         if ahead >= REACH_LINES:
-            refine_row(selected, len(edges), ahead - REACH_LINES, luma, SIZE, fit, 3, rises, flanks)
+            refine_row(selected, len(edges), ahead - REACH_LINES, luma, SIZE, fit, 3, rises, steep)
     away = [expected.distance((64 * each[0], 64 * each[1]), (64 * x + 7, 64 * y - 9)) for each in edges]
     close = [edge for edge, each in zip(edges, away, strict=True) if abs(each - 64 * radius) <= 192]
     wanted = [expected.point_of(edge, expected.references.luma(uyvy)) for edge in close]
     assert [(word & 0xFFFF, word >> 16) for word in selected[: fit[REFINED]].tolist()] == [
         point for point, _ in wanted
     ]
-    assert [(word & STEEPEST, word >> FLANK_BITS) for word in flanks[: fit[REFINED]].tolist()] == [
-        flank for _, flank in wanted
-    ]
+    assert steep[: fit[REFINED]].tolist() == [rise for _, rise in wanted]
 
 
 points_near = st.lists(
-    st.tuples(st.floats(0, 6.28), st.integers(-250, 250), st.integers(0, 255), st.integers(1, 4)), max_size=80
+    st.tuples(st.floats(0, 6.28), st.integers(-250, 250), st.integers(0, 255)), max_size=80
 )
-EVEN = 100 | 1 << FLANK_BITS
+EVEN = 100
+
+
+def words_of(weights: list[expected.Weights]) -> list[int]:
+    """What points count as the kernels have it."""
+    return [inside | outside << OUTSIDE_BITS for inside, outside in weights]
 
 
 @given(points_near, st.integers(1, 100), st.integers(0, 4))
-def test_rounds_of_the_fit(around: list[tuple[float, int, int, int]], radius: int, rounds: int) -> None:
+def test_rounds_of_the_fit(around: list[tuple[float, int, int]], radius: int, rounds: int) -> None:
     """Scattered points, arcs, a single point and none."""
     points = [
         (int(8000 + (64 * radius + off) * np.cos(angle)), int(7900 + (64 * radius + off) * np.sin(angle)))
-        for angle, off, _, _ in around
+        for angle, off, _ in around
     ]
-    flanks = [(steep, wide) for _, _, steep, wide in around]
+    steep = [each for _, _, each in around]
     fit = np.zeros(FIT_WORDS, np.int32)
     fit[:3] = 8010, 7890, 64 * radius
     fit[REFINED] = len(points)
     words = np.array([x | y << 16 for x, y in points] or [0], np.uint32)
-    counts = np.array([steep | wide << FLANK_BITS for steep, wide in flanks] or [0], np.uint16)
+    counts = np.array(steep or [0], np.uint16)
     fit_circle(words, counts, fit, 3, rounds)
     circle, limit = (8010, 7890, 64 * radius), 192
-    wanted = expected.weights(flanks)
-    assert counts[: len(points)].tolist() == wanted
+    wanted = expected.weights(steep)
+    assert counts[: len(points)].tolist() == words_of(wanted)
     for _ in range(rounds):
         circle = expected.refined(circle, points, wanted, limit)
         limit = max(limit // 2, min(expected.near_of(circle[2]), limit))
@@ -253,9 +257,31 @@ def test_the_fit_goes_to_the_circle(x: float, y: float, radius: float, start: fl
     fit = np.zeros(FIT_WORDS, np.int32)
     fit[:3] = 64 * (x + 1), 64 * (y - 1), 64 * (radius - 0.5)
     fit[REFINED] = points.shape[1]
-    flanks = np.full(points.shape[1], EVEN, np.uint16)
-    fit_circle((points[0] | points[1] << 16).astype(np.uint32), flanks, fit, 3, 12)
+    steep = np.full(points.shape[1], EVEN, np.uint16)
+    fit_circle((points[0] | points[1] << 16).astype(np.uint32), steep, fit, 3, 12)
     assert np.abs(fit[:3] / 64 - (x, y, radius)).max() < 0.15
+
+
+def fitted_radius(off: NDArray[np.int64], steep: NDArray[np.int64]) -> float:
+    """The radius of a circle of 20 px, from points that lie off it by some 1/64 px."""
+    angles = 2 * np.pi * np.arange(len(off)) / len(off)
+    x, y = (np.rint(4000 + (1280 + off) * each(angles)).astype(int) for each in (np.cos, np.sin))
+    fit = np.zeros(FIT_WORDS, np.int32)
+    fit[:3], fit[REFINED] = (4000, 4000, 1280), len(off)
+    fit_circle((x | y << 16).astype(np.uint32), steep.astype(np.uint16), fit, 3, 8)
+    return float(fit[2]) / 64
+
+
+def test_in_even_light_both_sides_of_the_circle_count_alike() -> None:
+    """Points that scatter by half a pixel to both sides leave the radius as it is."""
+    off = np.tile([-32, 32, 0, 16, -16], 24)
+    assert fitted_radius(off, np.full(120, 80)) == pytest.approx(20, abs=0.02)
+
+
+def test_points_in_the_shade_do_not_pull_the_circle_in() -> None:
+    """A third of the outline, four times less steep, lies three quarters of a pixel further in."""
+    shade = np.arange(120) % 3 == 0
+    assert fitted_radius(np.where(shade, -48, 0), np.where(shade, 20, 80)) == pytest.approx(20, abs=0.1)
 
 
 @pytest.mark.parametrize("off", [1, 64, 148, 250])
@@ -263,19 +289,15 @@ def test_sums_of_the_largest_picture_stay_in_32_bits(off: int) -> None:
     """All edges that a picture 640 wide has room for, outside a circle as far as it can be, with nearly the largest weight."""
     count = 1920
     points = np.full(count, 40_900 | 30_600 << 16, np.uint32)
-    flanks = [(255, 1) if number % 2 else (1, 4) for number in range(count)]
-    counts = expected.weights(flanks)
-    assert set(counts) == {8, 0}
-    fit = np.zeros(FIT_WORDS, np.int32)
-    fit[REFINED] = count
-    start = 0, 0, expected.distance((40_900, 30_600), (0, 0)) - off
-    fit[:3] = start
-    circle = expected.refined(start, [(40_900, 30_600)] * count, counts, 256)
-    fit_circle(points, np.array([steep | wide << FLANK_BITS for steep, wide in flanks], np.uint16), fit, 4, 1)
-    assert tuple(fit[:3].tolist()) == circle
-    fit[:3] = start
-    fit_circle(points, np.full(count, EVEN, np.uint16), fit, 4, 1)
-    assert tuple(fit[:3].tolist()) == expected.refined(start, [(40_900, 30_600)] * count, [2] * count, 256)
+    for steep in ([255] * count, [255, 1] * (count // 2)):
+        fit = np.zeros(FIT_WORDS, np.int32)
+        fit[REFINED] = count
+        start = 0, 0, expected.distance((40_900, 30_600), (0, 0)) - off
+        fit[:3] = start
+        counts = expected.weights(steep)
+        circle = expected.refined(start, [(40_900, 30_600)] * count, counts, 256)
+        fit_circle(points, np.array(steep, np.uint16), fit, 4, 1)
+        assert tuple(fit[:3].tolist()) == circle
 
 
 @settings(max_examples=60)

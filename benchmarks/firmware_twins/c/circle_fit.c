@@ -4,12 +4,13 @@
 #include "circle_edges.h"
 #include "line_fit.h"
 
-#define STEEPEST 255
-#define OUTSIDE 3
-#define MEAN_WEIGHT 2
-#define MOST_WEIGHT 8
-#define TAPER 4
+#define NOISE 256
+#define SHADE 16
+#define OUTSIDE_BITS 8
+#define MOST 255
+#define TAPER 64
 #define TAPER_BITS 16
+#define WEIGHT_BITS 9
 #define NORMAL_BITS 7
 #define SHORTEST_ARC (1 << 10)
 
@@ -20,23 +21,18 @@ KERNEL int32_t distance(int32_t x, int32_t y, const int32_t fit[])
     return (int32_t)isqrt32((uint32_t)(dx * dx) + (uint32_t)(dy * dy));
 }
 
-HELPER void weigh(uint16_t flanks[], int32_t fit[])
+HELPER void weigh(uint16_t weights[], int32_t fit[])
 {
     int32_t count = fit[REFINED];
-    int32_t steep = 0;
-    int32_t wide = 0;
+    int32_t squares = 0;
+    for (int32_t number = 0; number < count; number++)
+        squares = squares + weights[number] * weights[number];
+    int32_t mean = floor_div(squares, max(count, 1));
     for (int32_t number = 0; number < count; number++) {
-        int32_t each = flanks[number];
-        steep = steep + (each & STEEPEST);
-        wide = wide + (each & STEEPEST) * (each >> FLANK_BITS);
-    }
-    int32_t widest = floor_div(2 * wide + steep, max(2 * steep, 1));
-    int32_t mean = max(floor_div(steep, max(count, 1)), 1);
-    for (int32_t number = 0; number < count; number++) {
-        int32_t each = flanks[number];
-        int32_t part = each & STEEPEST;
-        int32_t weight = min(floor_div(MEAN_WEIGHT * part * part + (mean * mean >> 1), mean * mean), MOST_WEIGHT);
-        flanks[number] = (uint16_t)(each >> FLANK_BITS <= widest ? weight : 0);
+        int32_t own = weights[number] * weights[number];
+        int32_t noisy = own + NOISE;
+        int32_t inside = floor_div(MOST * own, noisy + SHADE * max(mean - own, 0));
+        weights[number] = (uint16_t)(inside | floor_div(MOST * own, noisy) << OUTSIDE_BITS);
     }
 }
 
@@ -52,10 +48,9 @@ HELPER void sum_up(const uint32_t points[], const uint16_t weights[], int32_t co
         int32_t away = distance(x, y, fit);
         int32_t outside = away - fit[RADIUS];
         if (away > 0 && abs(outside) < fit_range) {
-            int32_t near = ((widest - outside * outside) * scale + (1 << (TAPER_BITS - 1))) >> TAPER_BITS;
-            int32_t weight = near * weights[number];
-            if (outside > 0)
-                weight = OUTSIDE * weight;
+            int32_t near = (widest - outside * outside) * scale >> TAPER_BITS;
+            int32_t counts = outside > 0 ? weights[number] >> OUTSIDE_BITS : weights[number] & MOST;
+            int32_t weight = (near * counts + (1 << (WEIGHT_BITS - 1))) >> WEIGHT_BITS;
             int32_t nx = floor_div((x - fit[CENTRE_X]) << NORMAL_BITS, away);
             int32_t ny = floor_div((y - fit[CENTRE_Y]) << NORMAL_BITS, away);
             fit[WEIGHT] = fit[WEIGHT] + weight;

@@ -19,9 +19,6 @@
 #define NEXT_EDGE 12
 #define REFINED 13
 
-/* a flank: steepness below, width above */
-#define FLANK_BITS 8
-
 KERNEL int32_t distance(int32_t x, int32_t y, const int32_t fit[]);
 
 #endif

@@ -78,7 +78,7 @@ HELPER int32_t outline_offset(const int32_t rises[], int32_t at, int32_t before,
 }
 
 KERNEL void refine_row(uint32_t selected[], int32_t count, int32_t y, const uint8_t luma[], int32_t height,
-                       int32_t fit[], int32_t fit_range, int32_t rises[], uint16_t flanks[], int32_t luma_length)
+                       int32_t fit[], int32_t fit_range, int32_t rises[], uint16_t steepness[], int32_t luma_length)
 {
     int32_t number = fit[NEXT_EDGE];
     while (number < count && edge_y(selected[number]) == y) {
@@ -97,7 +97,7 @@ KERNEL void refine_row(uint32_t selected[], int32_t count, int32_t y, const uint
             int32_t down = max(offset * flat + FINE * y, 0);
             int32_t point = fit[REFINED];
             selected[point] = (uint32_t)(across | down << 16);
-            flanks[point] = (uint16_t)(max(rises[at], 0) | ((before + after + 1) >> 1) << FLANK_BITS);
+            steepness[point] = (uint16_t)max(rises[at], 0);
             fit[REFINED] = point + 1;
         }
         number = number + 1;

@@ -321,14 +321,14 @@ def _measure(
 
 
 def _refine(
-    core: Core, frame: Frame, selected: Row, count: int, flanks: Row, thresholds: CircleThresholds
+    core: Core, frame: Frame, selected: Row, count: int, weights: Row, thresholds: CircleThresholds
 ) -> Generator[Any, Any, None]:
     """Fit centre and radius to the outline in the camera's lines, which come through the ring of the edge detection.
 
-    `flanks` is room for as many words as there are edges.
+    `weights` is room for as many words as there are edges.
     """
     area, fit = core.array("circle_area"), core.array("circle_fit")
-    profile = fit, thresholds.fit_range, core.array("circle_rises"), flanks
+    profile = fit, thresholds.fit_range, core.array("circle_rises"), weights
     luma = core.overlay("colour_ring", u8, LUMA_LINES * frame.width)[0]
     top, bottom = ends((yield core.run(rows_of, area)))
     first, height = max(top - REACH_LINES, 0), frame.height
@@ -341,7 +341,7 @@ def _refine(
         y = ahead - REACH_LINES
         if top <= y:
             yield core.run(refine_row, selected, count, y, luma, height, *profile)
-    yield core.run(fit_circle, selected, flanks, fit, thresholds.fit_range, thresholds.fit_rounds)
+    yield core.run(fit_circle, selected, weights, fit, thresholds.fit_range, thresholds.fit_rounds)
 
 
 def ends(rows: int) -> tuple[int, int]:

@@ -1,13 +1,19 @@
 """A fit of centre and radius to the outline of a ball, finer than the thesis has them [ours].
 
 Rounds of least squares over the points near the circle: each moves centre and radius by what their distances and
-directions ask for (Gauss-Newton). Points count by how sharp the outline is there. An error of place is as large as the noise
-is beside the steepness, so the weight is its square. And a lens blurs all of an outline alike: where the flank is wider than
-elsewhere, light falls off along the ball, or is lost in shade.
+directions ask for (Gauss-Newton). A point counts by one over the variance of its place, which has three parts:
 
-There edges lie further in, never further out. So a point outside the circle counts OUTSIDE times as much as one inside: the
-circle settles on the outermost points that agree. And a point counts the less the further it is from the circle, down to
-nothing (Beaton and Tukey's weights): what lies beside the ball, or on it, does not pull it over.
+    PLACE^2 + (NOISE / steep)^2                              outside the circle
+    PLACE^2 + (NOISE / steep)^2 + SHADE^2 (mean^2 / steep^2 - 1)   inside, where the outline is less steep than in the mean
+
+PLACE is what is left with the best of light: pixels are squares, and a profile runs along rows or columns. Noise of the camera
+moves a place by as much as it is beside the steepness. And where light falls off along the ball, less of its brightness is gained
+at the outline and the rest behind it, over the next pixel or two: the edge lies further in, by SHADE times how often steeper
+it would be in good light. It never lies further out. So on a ball in even light both sides count alike, and the circle
+has no bias; on one that is lit from above it settles on the outermost points that agree.
+
+A point also counts the less the further it is from the circle, down to nothing (Beaton and Tukey's weights): what lies
+beside the ball, or on it, does not pull it over.
 """
 
 from __future__ import annotations
@@ -34,15 +40,19 @@ NEXT_EDGE = 12  # how many selected edges have been refined
 REFINED = 13  # how many of them became points
 FIT_WORDS = 14
 
-# A flank: how steep the outline is at a point, and how wide, in the bits above.
-FLANK_BITS = 8
-STEEPEST = 255
+# Of the variance of a place, in parts of PLACE^2: an eighth of a pixel, to which points of sharp outlines scatter.
+NOISE = 256  # (2 grey levels / PLACE)^2; by steepness squared
+SHADE = 16  # (1/2 px / PLACE)^2: what is gained over the next pixel is half a pixel further in
 
-OUTSIDE = 3
-MEAN_WEIGHT = 2
-MOST_WEIGHT = 8
-TAPER = 4  # so much counts a point on the circle, inside it
+# What a point counts, 255 at most: inside the circle, and outside in the bits above.
+OUTSIDE_BITS = 8
+MOST = 255
+
+TAPER = 64  # so much of it counts on the circle, and less to both sides
 TAPER_BITS = 16
+WEIGHT_BITS = (
+    9  # are left out of the product: 32 at most, so that the sums over 3 rows of edges stay in 32 bits
+)
 NORMAL_BITS = 7
 
 # Edges stand on whole pixels, and smoothing moves them by up to one; perspective makes ellipses of near balls.
@@ -71,25 +81,18 @@ def near_of(radius: i32) -> i32:
 
 
 @kernel
-def weigh(flanks: u16[:], fit: i32[:]) -> None:
-    """Make weights of the flanks of all points: MEAN_WEIGHT by the square of how steep each is over the mean, 0 if it is too wide.
-
-    That is wider by half a pixel than they are in the mean, steep ones counting more.
-    """
+def weigh(weights: u16[:], fit: i32[:]) -> None:
+    """Make of how steep the outline is at each point what the point counts, inside the circle and outside."""
     count = fit[REFINED]
-    steep = 0
-    wide = 0
+    squares = 0
     for number in range(count):
-        each = i32(flanks[number])
-        steep = steep + (each & STEEPEST)
-        wide = wide + (each & STEEPEST) * (each >> FLANK_BITS)
-    widest = (2 * wide + steep) // max(2 * steep, 1)
-    mean = max(steep // max(count, 1), 1)
+        squares = squares + weights[number] * weights[number]
+    mean = squares // max(count, 1)
     for number in range(count):
-        each = i32(flanks[number])
-        part = each & STEEPEST
-        weight = min((MEAN_WEIGHT * part * part + (mean * mean >> 1)) // (mean * mean), MOST_WEIGHT)
-        flanks[number] = weight if each >> FLANK_BITS <= widest else 0
+        own = weights[number] * weights[number]
+        noisy = own + NOISE
+        inside = MOST * own // (noisy + SHADE * max(mean - own, 0))
+        weights[number] = inside | MOST * own // noisy << OUTSIDE_BITS
 
 
 @kernel
@@ -105,10 +108,9 @@ def sum_up(points: u32[:], weights: u16[:], count: i32, fit: i32[:], fit_range: 
         away = distance(x, y, fit)
         outside = away - fit[RADIUS]
         if away > 0 and abs(outside) < fit_range:
-            near = (widest - outside * outside) * scale + (1 << TAPER_BITS - 1) >> TAPER_BITS
-            weight = near * weights[number]
-            if outside > 0:
-                weight = OUTSIDE * weight
+            near = (widest - outside * outside) * scale >> TAPER_BITS
+            counts = weights[number] >> OUTSIDE_BITS if outside > 0 else weights[number] & MOST
+            weight = near * counts + (1 << WEIGHT_BITS - 1) >> WEIGHT_BITS
             nx = (x - fit[CENTRE_X] << NORMAL_BITS) // away
             ny = (y - fit[CENTRE_Y] << NORMAL_BITS) // away
             fit[WEIGHT] = fit[WEIGHT] + weight
@@ -154,7 +156,7 @@ def move_circle(fit: i32[:], fit_range: i32) -> None:
 
 @kernel
 def fit_circle(points: u32[:], weights: u16[:], fit: i32[:], fit_range: i32, rounds: i32) -> None:
-    """Fit centre and radius to the points near the circle, `rounds` times. `weights` has their flanks before.
+    """Fit centre and radius to the points near the circle, `rounds` times. `weights` has how steep each is before.
 
     Near is `fit_range` pixels at first, then half as far each time, but not less than points of a circle may be.
     """

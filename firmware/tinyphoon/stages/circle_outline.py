@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from bfsim.api import i32, kernel, u8, u16, u32
 from tinyphoon.stages.circle_edges import FINE, LEFT, RIGHT, edge_x, edge_y
-from tinyphoon.stages.circle_fit import FLANK_BITS, NEXT_EDGE, RADIUS, REFINED, distance
+from tinyphoon.stages.circle_fit import NEXT_EDGE, RADIUS, REFINED, distance
 from tinyphoon.stages.line_segments import is_flat
 
 LUMA_LINES = 16
@@ -123,11 +123,11 @@ def refine_row(
     fit: i32[:],
     fit_range: i32,
     rises: i32[:],
-    flanks: u16[:],
+    steepness: u16[:],
 ) -> None:
     """Make points of the selected edges of row `y` that are not further than `fit_range` pixels from the circle.
 
-    The points take the place of edges that came before, from the first on; `flanks` gets how steep and wide the outline is there.
+    The points take the place of edges that came before, from the first on; `steepness` gets how steep the outline is there.
     """
     number = fit[NEXT_EDGE]
     while number < count and edge_y(selected[number]) == y:
@@ -147,7 +147,7 @@ def refine_row(
             down = max(offset * flat + FINE * y, 0)
             point = fit[REFINED]
             selected[point] = u32(across | down << 16)
-            flanks[point] = max(rises[at], 0) | (before + after + 1 >> 1) << FLANK_BITS
+            steepness[point] = max(rises[at], 0)
             fit[REFINED] = point + 1
         number = number + 1
     fit[NEXT_EDGE] = number
