@@ -17,6 +17,10 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
     return None if config.args_source is pytest.Config.ArgsSource.TESTPATHS else 0
 
 
+os.environ.setdefault("NUMPY_MADVISE_HUGEPAGE", "0")
+"""Thousands of boards are made that hardly touch their memories: with huge pages each touch clears 2 MB. Workers and commands inherit it."""
+
+
 def pytest_configure() -> None:
     """Look for garbage as seldom as the commands do: what is imported lives as long as the process."""
     gc.set_threshold(COLLECT_AFTER)

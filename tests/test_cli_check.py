@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 import sys
+from contextlib import chdir
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -30,15 +32,24 @@ def call(*arguments: object) -> Result:
     )
 
 
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with firmware, a recording, and limits for two runs of it."""
+    folder = tmp_path_factory.mktemp("measured")
+    (folder / "fw_eyes.py").write_text(FIRMWARE)
+    record(folder / "drive.mcap", 3)
+    with chdir(folder):
+        for more in ([], ["--frames", "1", "--set", "sdram.nRP=3"]):
+            assert call(*WHAT, *more, "--baseline", "limits.toml", "--update").exit_code == 0
+    return folder
+
+
 @pytest.fixture
-def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with firmware, a recording, and limits for two runs of it; the current one."""
+def repository(measured: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The same, to be changed; the current folder."""
+    shutil.copytree(measured, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
-    Path("fw_eyes.py").write_text(FIRMWARE)
-    record(tmp_path / "drive.mcap", 3)
-    for more in ([], ["--frames", "1", "--set", "sdram.nRP=3"]):
-        assert call(*WHAT, *more, "--baseline", "limits.toml", "--update").exit_code == 0
     return tmp_path
 
 

@@ -21,7 +21,16 @@ from bfsim.cli import main
 from tests.sweeping.rig import BASE, FILE, Here, home_in, swept
 from tests.test_run import FIRMWARE, record
 
-SLEEPY = FIRMWARE.replace("def main(core):\n", "def main(core):\n    import time; time.sleep(0.25)\n")
+HELD = FIRMWARE.replace(
+    "def main(core):\n",
+    """def main(core):
+    import pathlib, time
+    here = pathlib.Path(__file__).parent
+    while core.name == "A" and (here / "hold").exists() and [*here.glob("what-if.sweep/points/*/*.json")]:
+        time.sleep(0.01)
+""",
+)
+"""Firmware of which one run comes to its end, and the others wait as long as there is a file `hold`."""
 
 
 def call(*arguments: object) -> Result:
@@ -128,7 +137,8 @@ def test_what_cannot_work_is_told_at_once(file: Path, monkeypatch: pytest.Monkey
 def test_ctrl_c_ends_it_cleanly(tmp_path: Path) -> None:
     """What is done is reported and kept, no process is left, and the same command goes on."""
     file = home_in(tmp_path, FILE.replace("[2, 4]", "[2, 3, 4, 5, 6, 7]"))
-    (tmp_path / "fw_eyes.py").write_text(SLEEPY)
+    (tmp_path / "fw_eyes.py").write_text(HELD)
+    (tmp_path / "hold").touch()
     command = [sys.executable, "-m", "bfsim", "sweep", str(file), "--workers", "1"]
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
@@ -145,6 +155,7 @@ def test_ctrl_c_ends_it_cleanly(tmp_path: Path) -> None:
         for _ in range(1000):  # Python's own helper of its processes needs a moment
             os.killpg(process.pid, 0)
             time.sleep(0.02)
+    (tmp_path / "hold").unlink()
     kept = sum(bool(row["frame_rate Hz"]) for row in table(file))
     assert 1 <= kept < 12
     assert len(swept(file)[1]) == 12 - kept

@@ -14,16 +14,17 @@ import pytest
 
 from bfsim.endings import FAULT
 
-# firmware that sees something, in a recording that does not end
+# a run that is in the midst of a drawing when the signal comes, however late that is
 SLOW = """
-import signal, sys, time
+import os, time
 import bfsim.report.overlay.files as files
 
 drawn = files.overlay_of
 
 def slowly(*frame, **how):
     open("drawing", "w").close()
-    time.sleep(1)
+    while not os.path.exists("signalled"):
+        time.sleep(0.01)
     return drawn(*frame, **how)
 
 files.overlay_of = slowly
@@ -99,9 +100,11 @@ def test_a_signal_leaves_nothing_behind(tmp_path: Path, number: signal.Signals, 
         while process.poll() is None and not (tmp_path / "drawing").exists():
             time.sleep(0.05)
         process.send_signal(number)
-        _, err = process.communicate(timeout=60)
+        (tmp_path / "signalled").touch()
+        _, err = process.communicate()
     assert (process.returncode, err) == (code, "bfsim: interrupted after 1 frames\n")
-    assert {each.name for each in tmp_path.iterdir()} == {"drawing", "seen", "seen.json", "seen.mcap"}
+    left = {each.name for each in tmp_path.iterdir()} - {"drawing", "signalled"}
+    assert left == {"seen", "seen.json", "seen.mcap"}
     assert [each.name for each in (tmp_path / "seen").iterdir()] == ["frame-0000.png"]
     assert ["seen" in each for each in json.loads((tmp_path / "seen.json").read_text())["frames"]] == [True]
 

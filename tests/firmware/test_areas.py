@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 from bfsim.api import Calibration, Firmware, FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.chip.sensors import LEFT_CAMERA, RIGHT_CAMERA
-from bfsim.linker import link, parse_ldf
+from bfsim.linker import link
 from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.cameras.settling import settled
 from bfsim.machine.cameras.skipping import skipped
 from bfsim.recording import StereoFrame
-from bfsim.run import DEFAULT_LDF, PLACEMENTS
 from tests.firmware.lenses import rectified, sighted
 from tests.firmware.pictures import Bytes
 from tests.firmware.test_rectification import tables
 from tests.firmware.whole_pictures import buffer, check_core, random_frames
+from tests.machine.placements import shipped
 from tinyphoon import tinyphoon
 from tinyphoon.areas import Area, area_in, principal_shift
 from tinyphoon.strategy_unit.unit import StrategyUnit
@@ -31,12 +31,12 @@ def run(
     frames: Sequence[StereoFrame],
     *names: dict[str, Any],
     firmware: Firmware = tinyphoon,
-    ldf: Any = DEFAULT_LDF,
+    ldf: str = "thesis.ldf",
 ) -> tuple[Board, Outcome]:
     """Play the frames; mode number n of `names` comes in frame n, to be in force in the next one; the first one is in force from the start."""
     height, double_width = frames[0].left.shape
     size = FrameSize(double_width // 2, height)
-    link_map = link(parse_ldf(ldf), symbols_of(firmware, size), CM_BF561.chip.regions)
+    link_map = link(shipped(ldf), symbols_of(firmware, size), CM_BF561.chip.regions)
     send = [{"after_frames": number, "mode": each} for number, each in enumerate(names)]
     board = Board(CM_BF561, firmware, size, link_map, device=StrategyUnit({"send": send}))
     return board, board.run(iter(frames))
@@ -64,7 +64,7 @@ def check(board: Board, outcome: Outcome, left: Bytes, right: Bytes, *clear: NDA
 def test_an_area_is_seen_like_the_cropped_picture(area: tuple[int, int, int, int], ldf: str) -> None:
     """Borders too: nothing beyond the area is looked at. The frames before were whole."""
     frames = random_frames(64, 48, count=3)
-    board, outcome = run(frames, {"area": list(area)}, ldf=PLACEMENTS / ldf)
+    board, outcome = run(frames, {"area": list(area)}, ldf=ldf)
     check(board, outcome, part(frames[-1].left, area), part(frames[-1].right, area))
 
 

@@ -11,10 +11,10 @@ import pytest
 
 from bfsim.api import BudgetRow, Buffer, Core, Firmware, FrameSize, u8, u32
 from bfsim.chip.boards import CM_BF561
-from bfsim.linker import link, parse_ldf
+from bfsim.linker import link
 from bfsim.machine.board import Board, symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.run import BUILT_IN_RECORDING, DEFAULT_LDF
+from bfsim.run import BUILT_IN_RECORDING
 from tests.firmware import references
 from tests.firmware.blob_references import labelled, segments
 from tests.firmware.colour_pictures import (
@@ -27,6 +27,7 @@ from tests.firmware.colour_pictures import (
     dots,
     scattered,
 )
+from tests.machine.rig import thesis_ldf
 from tinyphoon.stages.blob_detection import (
     LABELS,
     RECYCLE_AT,
@@ -73,7 +74,7 @@ def on_machine(pictures: Sequence[Words], thresholds: BlobThresholds, frames: in
     rows = (BudgetRow(stage=ROW),)
     firmware = Firmware(mains=dict.fromkeys("AB", main), buffers=buffers, camera="camera", rows=rows)
     size = FrameSize(width, height)
-    link_map = link(parse_ldf(DEFAULT_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
+    link_map = link(thesis_ldf(), symbols_of(firmware, size), CM_BF561.chip.regions)
     board, black = Board(CM_BF561, firmware, size, link_map), np.zeros((height, 2 * width), np.uint8)
     shots = [StereoFrame(index, black, black, index, index, truth=None) for index in range(frames)]
     last = board.run(iter(shots)).frames[-1]

@@ -9,10 +9,10 @@ import numpy as np
 
 from bfsim.api import FrameSize
 from bfsim.chip.boards import CM_BF561
-from bfsim.linker import link, parse_ldf
+from bfsim.linker import link
 from bfsim.machine.board import Board, Outcome, symbols_of
-from bfsim.run import DEFAULT_LDF
 from tests.firmware.whole_pictures import buffer, random_frames
+from tests.machine.rig import thesis_ldf
 from tinyphoon import tinyphoon
 from tinyphoon.fields import to_words
 from tinyphoon.strategy import order_checks as checks
@@ -26,7 +26,7 @@ Entry = dict[str, Any]
 def run(script: Sequence[Entry], frames: int) -> tuple[StrategyUnit, Board, Outcome]:
     """Play noise of 64x48 to the firmware while the strategy unit sends the entries of a script."""
     size = FrameSize(64, 48)
-    link_map = link(parse_ldf(DEFAULT_LDF), symbols_of(tinyphoon, size), CM_BF561.chip.regions)
+    link_map = link(thesis_ldf(), symbols_of(tinyphoon, size), CM_BF561.chip.regions)
     unit = StrategyUnit({"send": list(script)})
     board = Board(CM_BF561, tinyphoon, size, link_map, device=unit)
     return unit, board, board.run(iter(random_frames(64, 48, frames)))

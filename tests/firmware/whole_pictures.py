@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from bfsim.api import Firmware
 from bfsim.chip.boards import CM_BF561
-from bfsim.linker import link, parse_ldf
+from bfsim.linker import link
 from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.machine.program import FrameSize
 from bfsim.recording import StereoFrame
-from bfsim.run import DEFAULT_LDF
 from tests.firmware import (
     blob_references,
     edge_references,
@@ -23,6 +22,7 @@ from tests.firmware import (
     refinement_references,
 )
 from tests.firmware.pictures import Bytes, random_uyvy
+from tests.machine.rig import thesis_ldf
 from tinyphoon import tinyphoon
 from tinyphoon.stages.blob_detection import LABELS as BLOB_LABELS
 from tinyphoon.stages.blob_detection import RECYCLE_AT
@@ -39,7 +39,7 @@ from tinyphoon.strategy.modes import INDOOR_FIELD
 def board_for(width: int, height: int, firmware: Firmware = tinyphoon) -> Board:
     """A board with the firmware in it, linked for pictures of that size."""
     size = FrameSize(width, height)
-    link_map = link(parse_ldf(DEFAULT_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
+    link_map = link(thesis_ldf(), symbols_of(firmware, size), CM_BF561.chip.regions)
     return Board(CM_BF561, firmware, size, link_map)
 
 

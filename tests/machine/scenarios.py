@@ -139,15 +139,15 @@ class Scene:
         bus = self.bench.bus
         self.bench.env.process(self._settle(stops))
         self.bench.play()
-        words = bus.words[: w.SUBBANKS_AT].tolist()  # which place a transfer had means nothing
+        words = bytearray(bus.words[: w.SUBBANKS_AT])  # which place a transfer had means nothing
         for word in OF_THE_LAST_ACCESS:
-            words[word] = 0
+            words[8 * word : 8 * (word + 1)] = bytes(8)
         return {
             "ends": [each.end for each in self.transfers],
             "calls": [
                 [each.end, {str(reason): cclk for reason, cclk in each.stalls.items()}] for each in self.calls
             ],
-            "words": hashlib.sha256(repr(words).encode()).hexdigest(),
+            "words": hashlib.sha256(words).hexdigest(),
             "memory": hashlib.sha256(b"".join(self._touched())).hexdigest(),
         }
 

@@ -142,21 +142,3 @@ def test_what_is_compiled_is_the_same_in_any_environment(name: str) -> None:
         text=True,
     )
     assert done.stdout == "False\n"
-
-
-FIND = """
-import sys
-from bfsim.kernel.traced_access import trace_access
-from bfsim.machine.bus.weave import advance
-print(all(each.is_kept() and each.address() for each in (trace_access, advance)), "numba" in sys.modules)
-"""
-
-
-def test_what_it_makes_needs_no_compiler(tmp_path: Path) -> None:
-    """What the process leaves in the cache is all that a later one needs: numba is not even imported there."""
-    surroundings = {**os.environ, "BFSIM_CACHE_DIR": str(tmp_path)}
-    for command in (["-m", ahead.__name__, str(os.getpid())], ["-c", FIND]):
-        done = subprocess.run(
-            [sys.executable, *command], env=surroundings, capture_output=True, check=True, text=True
-        )
-    assert done.stdout == "True False\n"

@@ -125,4 +125,4 @@ class Ledger:
 def stalls_by_reason(interlocks_cclk: int, at_sites: Sequence[int]) -> dict[StallReason, int]:
     """Return stalls by reason: interlocks, and those in the order of SITE_STALLS; what is 0 is left out."""
     pairs = zip((StallReason.INTERLOCK, *SITE_STALLS), (interlocks_cclk, *at_sites), strict=True)
-    return {reason: cclk for reason, cclk in sorted(pairs) if cclk}
+    return dict(sorted(pair for pair in pairs if pair[1]))
