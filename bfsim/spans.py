@@ -43,10 +43,10 @@ NO_STALLS: Mapping[StallReason, int] = MappingProxyType({})
 
 
 class Place(NamedTuple):
-    """A part of a picture: its rows and its columns, counted from 0, or all columns."""
+    """A part of a picture: its rows and its columns, counted from 0: those of a range, single ones in order, or all."""
 
     rows: range
-    columns: range | None = None
+    columns: range | tuple[int, ...] | None = None
 
 
 class Span(NamedTuple):

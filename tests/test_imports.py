@@ -37,6 +37,7 @@ MAY_IMPORT = {
     "report": {
         "file_content",
         "errors",
+        "store",
         "drafts",
         "clocks",
         "seen",

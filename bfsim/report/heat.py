@@ -60,18 +60,26 @@ def heat_of(cycles: Cycles, stages: Sequence[str], width_px: int, height_px: int
     for (stage, place), cclk in cycles.items():
         if stage not in shares:
             continue
-        part = (
-            shares[stage][_within(place.rows, height_px), _within(place.columns, width_px)] if place else None
-        )
-        if part is None or not part.size:
-            elsewhere[stage] += cclk * us_of_cclk
+        where = (_slice_of(place.rows), _columns_within(place.columns, width_px)) if place else None
+        pixels = shares[stage][where].size if where else 0
+        if pixels:
+            shares[stage][where] += cclk * us_of_cclk / pixels
         else:
-            part += cclk * us_of_cclk / part.size
+            elsewhere[stage] += cclk * us_of_cclk
     return SeenHeat(stages_us=shares, elsewhere_us=elsewhere)
 
 
-def _within(places: range | None, length: int) -> slice:
-    return slice(0, length) if places is None else slice(max(places.start, 0), max(places.stop, 0))
+def _slice_of(rows: range) -> slice:
+    return slice(max(rows.start, 0), max(rows.stop, 0))
+
+
+def _columns_within(columns: range | tuple[int, ...] | None, width_px: int) -> slice | list[int]:
+    """Return the columns of a place as numpy takes them, without those beyond the picture."""
+    if columns is None:
+        return slice(0, width_px)
+    if isinstance(columns, range):
+        return _slice_of(columns)
+    return [each for each in columns if 0 <= each < width_px]
 
 
 def stages_of(rows: Sequence[BudgetRow], name: str | None = None) -> tuple[str, ...]:

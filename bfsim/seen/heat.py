@@ -13,6 +13,9 @@ from bfsim.seen.features import SeenHeat
 SHARE = 0.55
 """Of the colour over the picture."""
 
+WITHIN = 0.98
+"""Of the pixels that cost anything: what is dearer has the last colour of the scale."""
+
 _STEPS = 256
 _LIGHTNESS, _CHROMA, _HUE_DEG = (0.22, 0.94), (0.10, 0.19, 0.15), (300.0, 465.0)
 """In OKLCH: lightness rises evenly, as the eye has it, while the hue goes from violet over red to yellow."""
@@ -53,8 +56,14 @@ def row_us(heat: SeenHeat) -> NDArray[np.float64]:
 
 
 def hottest_row_us(heats: Iterable[SeenHeat]) -> float:
-    """Return the end of a scale for pictures that stand side by side: what the dearest of their places costs, in µs a row."""
-    return max((float(row_us(each).max()) for each in heats), default=0.0)
+    """Return the end of a scale for pictures that stand side by side, in µs a row: WITHIN of the pixels that cost anything cost no more.
+
+    The few that do are as bright: on a scale up to the dearest edge all else would be dark.
+    """
+    costs = [row_us(each).ravel() for each in heats]
+    costly = np.concatenate(costs) if costs else np.zeros(0)
+    costly = costly[costly > 0]
+    return float(np.quantile(costly, WITHIN)) if costly.size else 0.0
 
 
 def heated(image: Image.Image, heat: SeenHeat, hottest_us: float) -> Image.Image:

@@ -12,7 +12,7 @@ from bfsim.report.heat import Heats
 from bfsim.spans import Place, Span, SpanKind
 from tests.machine.kernels import copy, spin
 from tests.machine.made_boards import made_board
-from tests.machine.rig import SIZE, STAGES, Play, cycles_of, every_frame
+from tests.machine.rig import SIZE, STAGES, Play, cycles_of, every_frame, run
 from tests.machine.test_timeline import EVERYTHING, LDFS, handler, main_of
 from tests.machine.timelines import told
 
@@ -91,12 +91,27 @@ def test_firmware_says_where_it_is() -> None:
             yield core.run(spin, 1)
             core.at(5, 6)
             yield core.run(spin, 1)
+            core.at(5, lambda: [7, 2, 7])
+            yield core.run(spin, 1)
+            core.at(5, list)
+            yield core.run(spin, 1)
         yield core.run(spin, 1)
         core.at()
         yield core.run(spin, 1)
 
     box, point = Place(range(1, 3), range(4, 8)), Place(range(5, 6), range(6, 7))
-    assert places_of(work) == [box, None, point, box, None]
+    single = Place(range(5, 6), (2, 7))
+    assert places_of(work) == [box, None, point, single, row(5), box, None]
+
+
+def test_columns_are_asked_for_only_if_someone_looks() -> None:
+    """They may take long to tell."""
+
+    def work(core: Core, _frame: Frame) -> Play:
+        core.at(1, lambda: pytest.fail("nobody looks"))
+        yield core.run(spin, 1)
+
+    run(every_frame(work))
 
 
 def test_a_handler_is_elsewhere() -> None:

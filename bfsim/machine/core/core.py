@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from operator import index
 from typing import Any
@@ -39,8 +39,20 @@ CAMERAS, SPI = "cameras", "SPI"
 """Owners of cycles."""
 
 
+Columns = int | range | Callable[[], Iterable[int]]
+"""Columns of a picture: one, those of a range, or what returns single ones and is called only if someone looks."""
+
+
 def _range(places: int | range) -> range:
     return places if isinstance(places, range) else range(index(places), index(places) + 1)
+
+
+def _place(rows: int | range, columns: Columns | None) -> Place:
+    if columns is None:
+        return Place(_range(rows))
+    if callable(columns):
+        return Place(_range(rows), tuple(sorted(set(columns()))) or None)
+    return Place(_range(rows), _range(columns))
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,17 +197,16 @@ class Core(SynchronisedCore):
             self.at()
             self._enter(before)
 
-    def at(self, rows: int | range | None = None, columns: int | range | None = None) -> None:
+    def at(self, rows: int | range | None = None, columns: Columns | None = None) -> None:
         """Say what the work from here on is about, for the heat map: rows and columns of the picture that is looked at.
 
+        `columns` may also be a function that returns single ones, such as those of edges: it is called only if someone looks.
         Without columns it is the whole rows, without anything no place. That holds until the next `at` or the end of the
         stage; rows without columns, or no place, also until the next line of a ring over a picture as high as the camera's,
         which is the place then. It takes no cycle.
         """
         if self._timeline:
-            self._timeline.place = (
-                None if rows is None else Place(_range(rows), None if columns is None else _range(columns))
-            )
+            self._timeline.place = None if rows is None else _place(rows, columns)
 
     @awaited
     def next_frame(self) -> Generator[Any, Any, Frame | None]:

@@ -26,6 +26,7 @@ BARS = "bars"
 _BAR_HEIGHT = 26  # px
 _TRACK_HEIGHT = 20  # px
 _FRAMES_HEIGHT = 150  # px
+_FONT = "system-ui, sans-serif"  # of the page: Vega measures words before it writes them
 _INK, _GRID = "var(--ink)", "var(--line)"  # the page has one for light and one for dark
 
 
@@ -158,7 +159,7 @@ def _spec(chart: alt.Chart | alt.LayerChart, height: int) -> Spec:
             background="transparent",
             autosize=alt.AutoSizeParams(type="fit-x", contains="padding"),
         )
-        .configure(font="inherit")
+        .configure(font=_FONT)
         .configure_view(stroke=None)
         .configure_mark(aria=False)
         .configure_axis(

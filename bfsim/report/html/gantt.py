@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
 
@@ -117,31 +117,56 @@ def chart_of(
 
     `slice_ms` is how long a slice is: the time has `slices` of them, or so many fewer that there are not too many bars.
     """
-    length_cclk = max(slices, end_cclk - begin_cclk)
+    length = max(slices, end_cclk - begin_cclk)
+    sliced = _sliced(spans, begin_cclk, end_cclk, slices, length)
+    tracks, parts = sorted(sliced, key=_order), length
+    while True:
+        keys, bars = dict[Key, int](), list[Bar]()
+        for place, name in enumerate(tracks):
+            least = 0 if name.endswith(WAITS) else 1
+            bars += _bars(place, sliced[name], keys, parts, least)
+        if len(bars) <= MOST_BARS or parts >= slices * length:
+            break
+        sliced, parts = {name: _halved(each) for name, each in sliced.items()}, 2 * parts
+    return {
+        "tracks": tracks,
+        "keys": [list(key) for key in keys],
+        "slice_ms": 1000 * parts / slices / cclk_hz,
+        "bars": bars,
+    }
+
+
+def _sliced(
+    spans: Sequence[Span], begin_cclk: int, end_cclk: int, slices: int, length: int
+) -> dict[str, dict[int, Counter[Key]]]:
+    """Return how long what was going on in each slice of each track.
+
+    In parts of a cycle, of which a cycle has `slices` and a slice `length`, nothing is rounded.
+    """
     sliced: dict[str, dict[int, Counter[Key]]] = defaultdict(lambda: defaultdict(Counter))
     for span in spans:
-        # in parts of a cycle, of which a cycle has `slices` and a slice `length_cclk`, nothing is rounded
         begin = (max(span.begin_cclk, begin_cclk) - begin_cclk) * slices
         end = (min(span.end_cclk, end_cclk) - begin_cclk) * slices
         if end <= begin:
             continue
+        first, behind = begin // length, -(-end // length)
         for track, key, cclk in _shares(span):
-            for number in range(begin // length_cclk, -(-end // length_cclk)):
-                overlap = min(end, (number + 1) * length_cclk) - max(begin, number * length_cclk)
-                sliced[track][number][key] += overlap * cclk // span.elapsed_cclk
-    tracks, keys = sorted(sliced, key=_order), dict[Key, int]()
-    bars: list[Bar] = []
-    for place, name in enumerate(tracks):
-        least = 0 if name.endswith(WAITS) else 1
-        bars += _bars(place, sliced[name], keys, length_cclk, least)
-    if len(bars) > MOST_BARS and slices > 1:
-        return chart_of(spans, begin_cclk, end_cclk, cclk_hz, slices // 2)
-    return {
-        "tracks": tracks,
-        "keys": [list(key) for key in keys],
-        "slice_ms": 1000 * length_cclk / slices / cclk_hz,
-        "bars": bars,
-    }
+            found = sliced[track]
+            if behind == first + 1:  # most are short
+                found[first][key] += (end - begin) * cclk // span.elapsed_cclk
+                continue
+            for number in range(first, behind):
+                overlap = min(end, (number + 1) * length) - max(begin, number * length)
+                found[number][key] += overlap * cclk // span.elapsed_cclk
+    return sliced
+
+
+def _halved(slices: Mapping[int, Counter[Key]]) -> dict[int, Counter[Key]]:
+    """Return half as many slices, each as long as two."""
+    found: dict[int, Counter[Key]] = defaultdict(Counter)
+    for number, counts in slices.items():
+        found[number // 2].update(counts)
+    return found
 
 
 def _shares(span: Span) -> Iterator[tuple[str, Key, int]]:

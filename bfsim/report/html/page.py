@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from importlib.metadata import version
 from typing import Any
 
 from markupsafe import Markup
 
+from bfsim import store
 from bfsim.report.budget import budget_of, milliseconds
 from bfsim.report.configuration import configuration_of
 from bfsim.report.html.charts import cycle_stack, frames_a_bar, gantt, part_colours, row_colours, time_series
@@ -107,8 +110,13 @@ class Page:
 
 
 def _library() -> str:
-    """Return Vega, Vega-Lite and Vega-Embed as one script."""
+    """Return Vega, Vega-Lite and Vega-Embed as one script. It takes seconds to put together and is kept in the cache."""
     import vl_convert
 
-    script: str = vl_convert.javascript_bundle("window.vegaEmbed = vegaEmbed; window.vega = vega;")
-    return script
+    said = "window.vegaEmbed = vegaEmbed; window.vega = vega;"
+    name = hashlib.sha256(f"{version('vl-convert-python')} {said}".encode()).hexdigest()
+    kept = store.load(name)
+    if kept is None:
+        kept = vl_convert.javascript_bundle(said).encode()
+        store.save(name, kept)
+    return kept.decode()

@@ -8,7 +8,7 @@ from typing import Self
 
 from PIL import Image
 
-from bfsim.report.overlay.layers import UNDER_HEAT
+from bfsim.report.overlay.layers import LAYERS, UNDER_HEAT
 from bfsim.report.overlay.overlay import overlay_of
 from bfsim.report.spool import Spool
 from bfsim.seen import SeenFrame
@@ -18,6 +18,8 @@ PAGE_BYTES = 4_000_000
 HEAT_SHARE = 0.35
 """Of these for the heat maps: they have smooth colours and few words."""
 
+_PANEL_WIDTH = 640
+"""Of a camera's picture: a page shows it no larger, and words are read more easily than in one that is made smaller."""
 _PIXELS_A_BYTE = 25
 """A picture has at most so many: then most are small enough at the first quality, and words can be read."""
 _QUALITIES = (75, 60, 45, 30)
@@ -45,11 +47,15 @@ class Pictures:
 
     def add(self, frame: SeenFrame) -> None:
         """Draw what was seen in a frame."""
-        self._overlays.put(frame.index, webp_of(overlay_of(frame), self._room_bytes(1 - HEAT_SHARE)))
+        self._overlays.put(
+            frame.index, webp_of(overlay_of(frame, LAYERS, _PANEL_WIDTH), self._room_bytes(1 - HEAT_SHARE))
+        )
 
     def add_heat(self, frame: SeenFrame) -> None:
         """Draw the heat of a frame whose cameras have theirs."""
-        self._heats.put(frame.index, webp_of(overlay_of(frame, UNDER_HEAT), self._room_bytes(HEAT_SHARE)))
+        self._heats.put(
+            frame.index, webp_of(overlay_of(frame, UNDER_HEAT, _PANEL_WIDTH), self._room_bytes(HEAT_SHARE))
+        )
 
     def has_overlay(self, index: int) -> bool:
         """Whether a frame was seen."""

@@ -43,8 +43,8 @@ def above_of(frame: SeenFrame, scale: DepthScale, height: int) -> Image.Image:
         box = {"width": side, "height": side, "weight": weight}
         labels.append(Label(x, y, each.name, colour, is_boxed=True, **box))
     words = ImageDraw.Draw(image)
-    write_labels(words, labels, (0, 0, width, height))
     _write_rings(words, floor, scale)
+    write_labels(words, labels, (0, 0, width, height))
     return image
 
 

@@ -49,20 +49,14 @@ def bars_of(heat: SeenHeat, height: int, longest_us: float) -> Image.Image:
 def heat_legend(heats: Sequence[SeenHeat], width: int, hottest_us: float, longest_us: float) -> Image.Image:
     """Return what colours and bars mean, and what each stage cost all cores: in places of the pictures, and elsewhere."""
     stages = list(heats[0].stages_us)
-    words = list(_words(heats, stages))
     font = style.font(style.FONT)
-    # as wide as any number may become: the legend is as high for each frame of a run
-    steps = [
-        SWATCH + GAP + round(font.getlength(f"{each}  0000.00 ms + 0000.00 elsewhere")) + 3 * GAP
-        for each in stages
-    ]
-    lines = _lines(steps, width)
-    strip = Image.new("RGB", (width, LINE * (1 + max(line for _, line in lines) + 1)), style.PAPER)
+    # as high as that of all stages with any numbers: the legend is so for each frame of a run
+    height = LINE * (1 + max(line for _, line in _lines(stages, width)) + 1)
+    strip = Image.new("RGB", (width, height), style.PAPER)
     pen = ImageDraw.Draw(strip)
     _draw_scale(strip, pen, hottest_us, longest_us)
-    for stage, (text, faint), (x, line) in zip(stages, words, lines, strict=True):
-        if not _cost_anything(heats, stage):
-            continue
+    told = [each for each in stages if _cost_anything(heats, each)]
+    for stage, (text, faint), (x, line) in zip(told, _words(heats, told), _lines(told, width), strict=True):
         middle = LINE * (line + 1) + LINE // 2
         pen.rectangle((x, middle - SWATCH // 2, x + SWATCH, middle + SWATCH // 2), colour_of(stages, stage))
         begin = x + SWATCH + GAP
@@ -82,10 +76,13 @@ def _words(heats: Sequence[SeenHeat], stages: Sequence[str]) -> Iterator[tuple[s
         yield f"{stage}  {placed / 1000:.2f} ms", f" + {elsewhere / 1000:.2f} elsewhere"
 
 
-def _lines(steps: Sequence[int], width: int) -> list[tuple[int, int]]:
-    """Return where each word begins, and in which line."""
+def _lines(stages: Sequence[str], width: int) -> list[tuple[int, int]]:
+    """Return where the words on each stage begin, and in which line."""
+    font = style.font(style.FONT)
     places, x, line = [], 0, 0
-    for step in steps:
+    for stage in stages:
+        words = f"{stage}  0000.00 ms + 0000.00 elsewhere"
+        step = SWATCH + GAP + round(font.getlength(words)) + 3 * GAP
         if x and x + step > width:
             x, line = 0, line + 1
         places.append((x, line))
@@ -102,5 +99,5 @@ def _draw_scale(strip: Image.Image, pen: ImageDraw.ImageDraw, hottest_us: float,
     x += font.getlength(title) + GAP
     strip.paste(bar, (round(x), middle - SCALE_HEIGHT // 2))
     x += SCALE_WIDTH + GAP
-    ends = f"{hottest_us / 1000:.3g} ms a row      bars: what each row cost, full length {longest_us / 1000:.3g} ms"
+    ends = f"{hottest_us / 1000:.3g} ms a row or more      bars: what each row cost, full length {longest_us / 1000:.3g} ms"
     pen.text((x, middle), ends, style.FAINT, font, anchor="lm")

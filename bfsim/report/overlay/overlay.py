@@ -18,13 +18,15 @@ from bfsim.seen.colours import DepthScale, depths_of
 from bfsim.seen.heat import hottest_row_us
 
 
-def overlay_of(frame: SeenFrame, layers: Collection[str] = LAYERS) -> Image.Image:
+def overlay_of(
+    frame: SeenFrame, layers: Collection[str] = LAYERS, panel_width: int = style.PANEL_WIDTH
+) -> Image.Image:
     """Return the sheet of a frame, RGB, with some `layers` drawn: the same size for frames of pictures of one size.
 
-    Cameras that see depth have a view from above beside them, and pictures with their heat what each row cost.
+    A picture is about `panel_width` pixels wide, one alone as wide as the legend. Cameras that see depth have a view from above beside them, and pictures with their heat what each row cost.
     """
     frame, scale = only(frame, layers), depths_of(frame)
-    wanted_px = style.PANEL_WIDTH if len(frame.cameras) > 1 else LEGEND_WIDTH
+    wanted_px = panel_width if len(frame.cameras) > 1 else LEGEND_WIDTH
     heats = [each.heat for each in frame.cameras if each.heat]
     hottest_us, longest_us = hottest_row_us(heats), longest_row_us(heats)
     panels = [_panel(frame, each, wanted_px, scale, hottest_us) for each in frame.cameras]

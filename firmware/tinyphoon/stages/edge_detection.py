@@ -18,6 +18,7 @@ from tinyphoon.scan_lines import line_ring, window
 from tinyphoon.stages.colour_reduction import AS_IT_IS, balance_row, colour_row
 from tinyphoon.stages.edge_thinning import Candidates, thinned_bands
 from tinyphoon.stages.hysteresis import LABELS, EdgeGroups, hysteresis
+from tinyphoon.stores.edges import edge_columns
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -199,6 +200,7 @@ def edge_detection(
     for y in range(frame.height):
         core.at(y)
         found = yield from candidates.take(rows, y, found)
+        core.at(y, edge_columns(core, y))
         given = yield from groups.add(y, given)
     kept = yield from hysteresis(groups, frame.height, thresholds.strong_threshold)
     core.publish(edges=kept, edges_lost=lost, edge_groups_shared=max(0, given - LABELS + 1))

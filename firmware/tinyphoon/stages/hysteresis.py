@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bfsim.api import Buffer, Core, Row, i32, kernel, u8, u16, u32
-from tinyphoon.stores.edges import edge_store
+from tinyphoon.stores.edges import edge_columns, edge_store
 
 # Noise makes most of the groups: the rendered scenes of the thesis ask for up to 724 labels. Only where the edge store is
 # full of specks of 5 edges and less are these too few.
@@ -224,7 +224,7 @@ def hysteresis(groups: EdgeGroups, height: int, strong_threshold: int) -> Genera
     edges = groups.core.output_ring("edge_ring", groups.core.rows("edge_image"))
     given = kept = 0
     for y in range(height):
-        groups.core.at(y)
+        groups.core.at(y, edge_columns(groups.core, y))
         row = yield from edges.row()
         given, kept = yield from groups.keep(y, given, kept, strong_threshold, row)
         edges.send()

@@ -22,7 +22,7 @@ from tinyphoon.stages.line_segments import (
     clear_segments,
     keep_segments,
 )
-from tinyphoon.stores.edges import edge_store
+from tinyphoon.stores.edges import edge_columns, edge_store
 from tinyphoon.stores.lines import LINE_WORDS
 
 
@@ -79,7 +79,7 @@ def line_detection(core: Core, frame: Frame, thresholds: LineThresholds) -> Gene
     yield core.run(clear_segments, segments, scan, *labels)
     limits = thresholds.angle_range, thresholds.mean_edges, thresholds.min_length
     for y in range(frame.height):
-        core.at(y)
+        core.at(y, edge_columns(core, y))
         near = labels[y + 1 & 1], labels[y & 1]
         yield core.run(segments_row, *store, y, *near, segments, scan, *limits)
     core.at()

@@ -10,11 +10,11 @@ The sums of each line lie over the segments, which the line detection has finish
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from bfsim.api import Core, Frame, i16, i32, kernel, u8
+from bfsim.api import Core, Frame, Row, i16, i32, kernel, u8
 from tinyphoon.fields import allowed
 from tinyphoon.stages.line_fit import SLOPE_BITS, slope, spread, store_ends
 from tinyphoon.stages.line_segments import SEGMENT_WORDS
@@ -163,6 +163,22 @@ def refine_lines(lines: i16[:], count: i32, sums: i32[:], atan: u8[:], width: i3
     return refined
 
 
+def columns_at(lines: Row, sums: Row, count: int, y: int, reach: int) -> Callable[[], Iterator[int]]:
+    """Return what tells the columns in which `look_at_row` looks at row `y`, for `core.at`: nothing on the chip reads them here."""
+
+    def columns() -> Iterator[int]:
+        for line in range(count):
+            first, last, rise = (
+                int(sums.array[line * SEGMENT_WORDS + word]) for word in (FIRST_ROW, LAST_ROW, RISE)
+            )
+            if first <= y <= last:
+                x0, y0 = (int(lines.array[line * LINE_WORDS + word]) for word in (LINE_X0, LINE_Y0))
+                middle = x0 + (rise * (SUBPIXELS * y - y0) >> SLOPE_BITS) + SUBPIXELS // 2 >> 4
+                yield from range(middle - reach, middle + reach + 1)
+
+    return columns
+
+
 def line_refinement(
     core: Core, frame: Frame, count: int, thresholds: RefinementThresholds
 ) -> Generator[Any, Any, None]:
@@ -180,7 +196,7 @@ def line_refinement(
     if crossed:
         camera = core.input_ring(frame.rows[crossed.start : crossed.stop], "camera_ring")
         for y in crossed:
-            core.at(y)
+            core.at(y, columns_at(lines, sums, count, y, thresholds.reach))
             line = yield from camera.line()
             limits = thresholds.reach, thresholds.min_step
             yield core.run(look_at_row, line, y, lines, count, sums, *limits)

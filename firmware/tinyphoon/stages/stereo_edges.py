@@ -27,7 +27,7 @@ from tinyphoon.stages.edge_correspondence import (
 )
 from tinyphoon.stages.line_votes import LineVote
 from tinyphoon.stages.stereo_lines import Correspondence, check_depths
-from tinyphoon.stores.edges import edge_store
+from tinyphoon.stores.edges import edge_columns, edge_store
 from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.stores.lines3d import EDGE3D_CAPACITY, EDGE3D_WORDS
 
@@ -120,7 +120,7 @@ def stereo_edges(
             yield from rows.spread(y)
     found = 0
     for y in range(frame.height - 1, -1, -1):
-        core.at(y)
+        core.at(y, edge_columns(core, y))
         row = yield from rows.take(y)
         if is_mutual:
             yield from rows.spread(y - REACH)
