@@ -53,8 +53,37 @@ def target(bits: int, *, forward: bool = False) -> Kind:
 
 
 def option(*texts: str) -> Kind:
-    """Return the kind of a number that is printed as one of `texts`; an empty tuple place (None there) is none."""
+    """Return the kind of a number that is printed as one of `texts`; there is none for more."""
     return Kind(lambda raw, _: raw if raw < len(texts) else None, lambda value: texts[int(value)])
+
+
+def shift(*, right: bool) -> Kind:
+    """Return the kind of a shift of six bits, positive to the left, of which objdump prints the other sign if it is to the right."""
+    return Kind(
+        lambda raw, _: _signed(raw, 6), lambda count: number_text((-int(count) if right else int(count)) & 63)
+    )
+
+
+def mode(*left_out: str, mixed: str = "") -> Kind:
+    """Return the kind of a multiplication's mode, a name; `mixed` is printed before it."""
+
+    def text(name: Operand) -> str:
+        names = ", ".join(filter(None, (mixed, str(name))))
+        return f" ({names})" if names else ""
+
+    return Kind(lambda raw, _: None if MODES.get(raw) in left_out else MODES.get(raw), text)
+
+
+def crossing(scale: str = "") -> Kind:
+    """Return the kind of the options of a vector sum: 1 exchanges its halves, 2 saturates; `scale` is printed behind."""
+    names = (", ".join(filter(None, (each, scale))) for each in ("", "CO", "S", "SCO"))
+    return option(*(f" ({each})" if each else "" for each in names))
+
+
+MODES = {
+    0: "", 1: "S2RND", 2: "T", 3: "W32", 4: "FU", 6: "TFU", 8: "IS", 9: "ISS2", 11: "IH", 12: "IU"
+}  # fmt: skip
+"""Modes of multiplications, by their encoding: names in assembler."""
 
 
 def _signed(raw: int, bits: int) -> int:
@@ -88,5 +117,31 @@ KINDS = {
     "target12": target(12),
     "target24": target(24),
     "end10": target(10, forward=True),
+    "even": register(("R0", "R2", "R4", "R6")),
+    "odd": Kind(register(("R0", "R2", "R4", "R6")).value, lambda even: f"R{int(str(even)[1]) + 1}"),
+    "pair": register(("R1:0", "", "R3:2", "", "", "", "", "")),
+    "half": option("L", "H"),
+    "sign": option("+", "-"),
+    "assign": option("=", "+=", "-="),
+    "saturation": option(" (NS)", " (S)"),
+    "crossing": crossing(),
+    "crossingASR": crossing("ASR"),
+    "crossingASL": crossing("ASL"),
+    "reverse": option("", " (R)"),
+    "and_reverse": option("", ", R"),
+    "rounding": option("RND", "T"),
+    "end": option("LO", "HI"),
+    "comparison": register(("GT", "GE", "LT", "LE")),
+    "right": shift(right=True),
+    "left": shift(right=False),
+    "mixed": option("", " (M)"),
+    "mode": mode("W32"),
+    "mixed_mode": mode("W32", mixed="M"),
+    "sum_mode": mode(),
+    "mixed_sum_mode": mode(mixed="M"),
+    "wide_mode": mode("W32", "T", "TFU", "IH"),
+    "mixed_wide_mode": mode("W32", "T", "TFU", "IH", mixed="M"),
+    "wide_product_mode": mode("W32", "T", "TFU", "IH", "IU"),
+    "mixed_wide_product_mode": mode("W32", "T", "TFU", "IH", "IU", mixed="M"),
 }
 """By the names that forms call them. The numbers in them are bits, and bytes behind an x."""

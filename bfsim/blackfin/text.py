@@ -5,6 +5,7 @@ from __future__ import annotations
 from string import Formatter
 
 from bfsim.blackfin.decode import Instruction, Operation
+from bfsim.blackfin.operands import KINDS, NUMBER
 
 
 def text(instruction: Instruction) -> str:
@@ -14,8 +15,8 @@ def text(instruction: Instruction) -> str:
 
 def _text(operation: Operation) -> str:
     parts = []
-    for literal, letter, _, _ in Formatter().parse(operation.form.text):
+    for literal, letter, kind, _ in Formatter().parse(operation.form.text):
         parts.append(literal)
         if letter:
-            parts.append(operation.form.kinds[letter].text(operation.operands[letter]))
+            parts.append((KINDS[kind] if kind else NUMBER).text(operation.operands[letter]))
     return "".join(parts)

@@ -102,6 +102,22 @@ class Value:
         """Return `yes` where this bit is set, else `no`."""
         return Value(self.builder, self.builder.select(self.ir, yes.ir, yes._as(no).ir))
 
+    def smaller(self, other: Value | int) -> Value:
+        """Return the lesser of two signed numbers."""
+        return (self < other).choose(self, other)
+
+    def larger(self, other: Value | int) -> Value:
+        """Return the greater of two signed numbers."""
+        return (self > other).choose(self, other)
+
+    def leading_zeros(self) -> Value:
+        """Return how many zeros are above the highest one, in as many bits: all if there is no one."""
+        return Value(self.builder, self.builder.ctlz(self.ir, ir.Constant(ir.IntType(1), 0)))
+
+    def ones(self) -> Value:
+        """Return how many bits are set, in as many bits."""
+        return Value(self.builder, self.builder.ctpop(self.ir))
+
     def low(self, bits: int) -> Value:
         """Return the lowest bits, as a value of so many."""
         return (

@@ -1,15 +1,21 @@
 """The instruction table, grouped as the programming reference groups it; where two rows could be meant, the first counts."""
 
 from bfsim.blackfin.forms import (
+    accumulators,
     arithmetic,
+    bitfields,
     conditions,
     control,
     immediates,
     loads,
     loads_dag,
     moves,
+    multiplications,
     pseudo,
+    shifts,
+    sums,
     system,
+    video,
 )
 
 TABLE = (
@@ -20,6 +26,12 @@ TABLE = (
     *arithmetic.FORMS,
     *loads.FORMS,
     *loads_dag.FORMS,
+    *multiplications.FORMS,
+    *sums.FORMS,
+    *accumulators.FORMS,
+    *video.FORMS,
+    *shifts.FORMS,
+    *bitfields.FORMS,
     *system.FORMS,
     *pseudo.FORMS,
 )

@@ -4,19 +4,30 @@ from collections.abc import Callable
 from inspect import isfunction
 
 from bfsim.blackfin.semantics import (
+    accumulators,
     arithmetic,
+    bitfields,
     conditions,
     control,
     immediates,
     loads,
     loads_dag,
     moves,
+    multiplications,
+    selections,
+    shifts,
+    sums,
     system,
+    video,
 )
 
+MODULES = (
+    *(control, moves, immediates, conditions, arithmetic, loads, loads_dag, system),
+    *(multiplications, accumulators, video, bitfields),
+)
 SEMANTICS: dict[str, Callable[..., None]] = {
     name: each
-    for module in (control, moves, immediates, conditions, arithmetic, loads, loads_dag, system)
+    for module in MODULES
     for name, each in vars(module).items()
     if isfunction(each) and each.__module__ == module.__name__ and not name.startswith("_")
-}
+} | {**sums.SEMANTICS, **selections.SEMANTICS, **shifts.SEMANTICS}
