@@ -37,6 +37,8 @@ class Event(IntEnum):
     """An instruction of the system that is not simulated: RTI, RAISE, IDLE ..."""
     FUEL = 8
     """As many blocks were run as were allowed."""
+    FAULT = 9
+    """An access to an address where there is no memory. Registers are lost."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import llvmlite.binding as llvm
@@ -15,13 +13,18 @@ from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.blocks import Code
 from bfsim.blackfin.decode import InstructionError
 from bfsim.blackfin.effects import Event
-from bfsim.blackfin.registers import ACCUMULATORS, ASTAT_UNUSED, FLAGS, SLOTS
+from bfsim.blackfin.guard import runner
+from bfsim.blackfin.registers import ACCUMULATOR_PARTS, ACCUMULATORS, ASTAT_UNUSED, FLAGS, SLOTS
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.blackfin.translate import NAME, Counter, counters, translate
+from bfsim.errors import BfsimError
 
-ENTRY = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)
 OUTSIDE = 0xFFFFFFFE
 """[ours] Where a subroutine that is called from outside returns to: no memory is there, and no code can be."""
+
+
+class AccessError(BfsimError, LookupError):
+    """Raised when code accesses an address where there is no memory."""
 
 
 class State:
@@ -33,6 +36,11 @@ class State:
     def __getitem__(self, register: str) -> int:
         if register == "ASTAT":
             return sum(self[flag] << place for flag, place in FLAGS.items()) | self["ASTAT_UNUSED"]
+        if register == "CYCLES":
+            counts = self["SYSCFG"] & 2
+            return self["CYCLES_OFFSET"] + (self["CLOCK"] if counts else 0) & 0xFFFFFFFF
+        if register in ACCUMULATOR_PARTS:
+            return self[register[:2]] >> (32 if register[3] == "X" else 0) & 0xFFFFFFFF
         value = int(self.slots[SLOTS[register]])
         return value - (value >> 63 << 64) if register in ACCUMULATORS else value
 
@@ -51,7 +59,7 @@ class Translated:
 
     code: Code
     counters: list[Counter]
-    entry: Callable[[int, int, int], int]
+    entry: int
     native: llvm.ExecutionEngine
     counts: NDArray[np.int64]
 
@@ -80,7 +88,8 @@ class Processor:
     def run(self) -> Event:
         """Go on at PC until an event that is not a jump to code.
 
-        Raises InstructionError where control comes to what is no instruction.
+        Raises InstructionError where control comes to what is no instruction, and AccessError for an access where there is no memory;
+        what the registers were by then is not known.
         """
         if self.fuel is not None:
             self.state["FUEL"] = self.fuel
@@ -90,10 +99,18 @@ class Processor:
                 self.entries.add(start)
                 self.translated = self._translate()
             event = Event(
-                self.translated.entry(
-                    self.space.origin, self.state.slots.ctypes.data, self.translated.counts.ctypes.data
+                runner().run(
+                    self.translated.entry,
+                    self.space.origin,
+                    self.state.slots.ctypes.data,
+                    self.translated.counts.ctypes.data,
                 )
             )
+            if event is Event.FAULT:
+                raise AccessError(
+                    f"code must access memory where there is some, but what was started at {start:#010x} accesses "
+                    f"{runner().fault.value:#010x}"
+                )
             if event is Event.ILLEGAL:
                 raise InstructionError(self._refusal(self.state["PC"]))
             if event is not Event.UNKNOWN_TARGET or self.state["PC"] == OUTSIDE:
@@ -111,7 +128,7 @@ class Processor:
         return Translated(
             code,
             counted,
-            ENTRY(native.get_function_address(NAME)),
+            native.get_function_address(NAME),
             native,
             np.zeros(len(counted), np.int64),
         )

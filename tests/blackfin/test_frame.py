@@ -6,9 +6,9 @@ import pytest
 
 from bfsim.blackfin.decode import InstructionError, decode, disassemble
 from bfsim.blackfin.effects import Event
-from bfsim.blackfin.processor import OUTSIDE
+from bfsim.blackfin.processor import OUTSIDE, AccessError
 from bfsim.blackfin.text import text
-from tests.blackfin.code import CODE, processor
+from tests.blackfin.code import CODE, DATA, processor
 
 SUM = "2860 5068 a2e0 0300 0964 0850 1000"
 """R0 = 5; P0 = 10; ten times R1 += 1, R0 = R0 + R1; back."""
@@ -38,3 +38,21 @@ def test_bytes_that_are_no_instruction_are_refused_with_address_and_bytes() -> N
         decode(b"\xff\xff\xff\xff", CODE)
     with pytest.raises(InstructionError, match="0x00001002, .*: ff ff"):
         processor("2860 ffff").call(CODE)
+
+
+def test_an_access_without_memory_is_refused_and_the_process_goes_on() -> None:
+    core = processor("0091 1000", P0=0xDEADBEE0)  # R0 = [P0]; RTS
+    for _ in range(2):
+        with pytest.raises(AccessError, match="started at 0x00001000 accesses 0xdeadbee0"):
+            core.call(CODE)
+    core.state["P0"] = DATA
+    assert core.call(CODE) is Event.UNKNOWN_TARGET
+
+
+def test_an_access_over_the_end_of_the_address_space_is_refused() -> None:
+    with pytest.raises(AccessError, match="accesses 0xffff"):
+        processor("0091 1000", P0=0xFFFFFFFE).call(CODE)
+
+
+def test_an_endless_loop_uses_up_its_fuel() -> None:
+    assert processor("0020").call(CODE) is Event.FUEL

@@ -1,0 +1,96 @@
+"""Native code that touches an address without memory: it ends there, and the process goes on.
+
+While it runs, faults in the reservation of its address space are caught by a signal handler, which is machine code and leaves the native
+code by `siglongjmp`; what is in its registers is lost. Other faults go to whoever has had the signal before.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import signal
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+
+from bfsim import machine_code
+from bfsim.blackfin.address_space import SPAN_BYTES
+from bfsim.blackfin.effects import Event
+
+RUNNER = f"""
+@bfsim_run_jump = internal global [512 x i8] zeroinitializer, align 16
+@bfsim_run_origin = internal global i64 0
+@bfsim_run_action = global [256 x i8] zeroinitializer, align 16
+@bfsim_run_before = internal global [256 x i8] zeroinitializer, align 16
+@bfsim_run_fault = global i64 0
+declare i32 @sigaction(i32, ptr, ptr)
+declare i32 @__sigsetjmp(ptr, i32) returns_twice
+declare void @siglongjmp(ptr, i32) noreturn
+
+define void @bfsim_run_handler(i32 %number, ptr %information, ptr %context) {{
+  %place = getelementptr i8, ptr %information, i64 16
+  %address = load i64, ptr %place
+  %origin = load i64, ptr @bfsim_run_origin
+  %offset = sub i64 %address, %origin
+  %ours = icmp ule i64 %offset, {SPAN_BYTES}
+  br i1 %ours, label %leave, label %pass
+leave:
+  store i64 %offset, ptr @bfsim_run_fault
+  call void @siglongjmp(ptr @bfsim_run_jump, i32 1)
+  unreachable
+pass:
+  %given = call i32 @sigaction(i32 %number, ptr @bfsim_run_before, ptr null)
+  ret void
+}}
+
+define i32 @bfsim_run(ptr %code, ptr %memory, ptr %state, ptr %counts) {{
+  %origin = ptrtoint ptr %memory to i64
+  store i64 %origin, ptr @bfsim_run_origin
+  %taken = call i32 @sigaction(i32 {int(signal.SIGSEGV)}, ptr @bfsim_run_action, ptr @bfsim_run_before)
+  %fault = call i32 @__sigsetjmp(ptr @bfsim_run_jump, i32 0) returns_twice
+  %first = icmp eq i32 %fault, 0
+  br i1 %first, label %run, label %faulted
+run:
+  %event = call i32 %code(ptr %memory, ptr %state, ptr %counts)
+  %given = call i32 @sigaction(i32 {int(signal.SIGSEGV)}, ptr @bfsim_run_before, ptr null)
+  ret i32 %event
+faulted:
+  %given.back = call i32 @sigaction(i32 {int(signal.SIGSEGV)}, ptr @bfsim_run_before, ptr null)
+  ret i32 {int(Event.FAULT)}
+}}
+"""
+"""`si_addr` is at byte 16 of Linux's `siginfo_t` on every 64-bit processor."""
+SA_SIGINFO, SA_NODEFER = 4, 0x40000000
+"""Linux: the handler gets the address; the signal is not blocked while it runs, for it never returns."""
+
+
+class _Action(ctypes.Structure):
+    """The C library's `struct sigaction` on Linux."""
+
+    _fields_ = (
+        ("handler", ctypes.c_void_p),
+        ("mask", ctypes.c_uint64 * 16),
+        ("flags", ctypes.c_int),
+        ("restorer", ctypes.c_void_p),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Runner:
+    """`run(code, memory, state, counts)`: calls native code and returns its event; `fault`: the address of the last fault."""
+
+    run: Callable[[int, int, int, int], int]
+    fault: ctypes.c_int64
+
+
+@cache
+def runner() -> Runner:
+    """Return what runs native code."""
+    machine_code.add(machine_code.host_code(RUNNER))
+    action = _Action.from_address(machine_code.address_of("bfsim_run_action"))
+    action.handler = machine_code.address_of("bfsim_run_handler")
+    action.flags = SA_SIGINFO | SA_NODEFER
+    kind = ctypes.CFUNCTYPE(ctypes.c_int32, *(4 * [ctypes.c_void_p]))
+    return Runner(
+        kind(machine_code.address_of("bfsim_run")),
+        ctypes.c_int64.from_address(machine_code.address_of("bfsim_run_fault")),
+    )
