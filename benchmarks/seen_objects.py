@@ -55,7 +55,7 @@ def see(path: Path, mode: Mode = INDOOR_FIELD, frames: int | None = None) -> lis
             keep(core, "left_seen")
             yield from core.post("core A is done")
             yield from core.wait("core B is done")
-            yield from object_detection(core, mode.objects)
+            yield from object_detection(core, frame, mode.objects)
             yield from report(core, frame)
 
     def right_main(core: Core) -> Generator[Any, Any, None]:

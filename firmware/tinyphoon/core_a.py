@@ -36,7 +36,7 @@ def core_a(core: Core) -> Generator[Any, Any, None]:
             yield from vote.close()
         with core.stage("Object detection"):
             yield from follow_area(core, area, halvings_of(core, frame))
-            yield from object_detection(core, mode.objects)
+            yield from object_detection(core, found.frame, mode.objects)
         yield from orders.take()  # for the next frame; core B reads them when core A is done
         yield from core.post("core A is done")
         yield from report(core, frame, area, orders.close())

@@ -17,6 +17,7 @@ from tinyphoon.stages.line_refinement import line_refinement
 from tinyphoon.stages.object_detection import Outlines
 from tinyphoon.stages.open_closing import open_closing
 from tinyphoon.stages.rectangle_detection import rectangle_detection
+from tinyphoon.stages.rectangle_ends import hidden_ends
 from tinyphoon.stages.rectification import rectification
 from tinyphoon.strategy.modes import Mode
 
@@ -52,5 +53,6 @@ def features(
         rectangles = yield from rectangle_detection(
             core, blobs, lines, mode.rectangle_colours, mode.goal_colours, mode.rectangles
         )
+        yield from hidden_ends(core, frame, rectangles, mode.goal_colours)
     outlines = Outlines(blobs=blobs, circles=circles, rectangles=rectangles)
     return Features(frame=frame, edges=edges, lines=lines, outlines=outlines)

@@ -22,8 +22,8 @@ def disparity_depth(geometry: Sequence[int], disparity: int) -> int:
 
 
 def unlikeness(one: Record, other: Record, row_range: int, disparity_max: int) -> int | None:
-    """How unlike two objects are; None if they cannot be the same."""
-    rows = abs(one["image_y"] - other["image_y"])
+    """How unlike two objects are; None if they cannot be the same. One that is less high may lack its upper end or its lower one."""
+    rows = max(abs(one["image_y"] - other["image_y"]) - abs(one["height"] - other["height"]) // 2, 0)
     disparity = one["image_x"] - other["image_x"]
     if one["model"] != other["model"] or rows > row_range or not -row_range <= disparity <= disparity_max:
         return None
@@ -37,10 +37,12 @@ def verified(
     ranges: Sequence[int],
     weights: Sequence[int],
     refined: bool,
+    width: int,
 ) -> tuple[list[Record], list[Record]]:
     """The objects of the left camera, made better by the right one's; and what the right one has beside, free ones too.
 
-    `ranges`: of rows, the largest of disparities, and between disparities; `weights`: of the second camera and of the size.
+    `ranges`: of rows, the largest of disparities, and between disparities; `weights`: of the second camera and of the size;
+    `width`: of the pictures.
     """
     baseline = (geometry[BASELINE] + 500) // 1000
     others = [each | ({"x": each["x"] + baseline} if each["measures"] else {}) for each in right]
@@ -55,16 +57,27 @@ def verified(
             result.append(one)
             continue
         other = others[min(likes)[1]]
-        result.append(_pair(one, other, geometry, ranges[2], weights, refined))
+        result.append(_pair(one, other, geometry, ranges[2], weights, refined, width))
         others[min(likes)[1]] = other | {"model": 0}
     return result, others
 
 
 def _pair(
-    one: Record, other: Record, geometry: Sequence[int], off: int, weights: Sequence[int], refined: bool
+    one: Record,
+    other: Record,
+    geometry: Sequence[int],
+    off: int,
+    weights: Sequence[int],
+    refined: bool,
+    width: int,
 ) -> Record:
     both = dict(one)
-    if one["measures"] and other["measures"]:
+    nearer, farther = sorted((one["z"], other["z"]))
+    agree = not (refined and one["measures"] == other["measures"] == 2 and 8 * (farther - nearer) > nearer)
+    if not agree:
+        better = _to_be_believed(one, other, width)
+        both |= {name: better[name] for name in ("x", "y", "z", "extent")}
+    elif one["measures"] and other["measures"]:
         both |= {name: (one[name] + other[name] + 1) // 2 for name in ("x", "y", "z", "extent")}
     elif other["measures"]:
         both |= {name: other[name] for name in ("x", "y", "z", "extent")}
@@ -72,12 +85,22 @@ def _pair(
     both["cameras"] = 3
     tests = one["tests"] | other["tests"]
     accuracy = max(one["accuracy"], other["accuracy"])
-    agree = True
     if refined and one["tests"] & other["tests"] & 16 and both["measures"] & 1:
         agree = _by_disparity(both, one["image_x"] - other["image_x"], geometry, off)
     if agree:
         return both | {"accuracy": min(accuracy + weights[0], 255), "tests": tests | 32}
     return both | {"accuracy": max(accuracy - weights[1], 0), "tests": tests & ~16}
+
+
+def _to_be_believed(one: Record, other: Record, width: int) -> Record:
+    """Of two that disagree the one with more tests; if that says nothing, or both are cut at a side, the nearer one; or else the first."""
+    cut = [
+        each["image_x"] - each["width"] // 2 < 16 or each["image_x"] + each["width"] // 2 > 16 * width - 32
+        for each in (one, other)
+    ]
+    if one["accuracy"] != other["accuracy"] and not all(cut):
+        return max(one, other, key=lambda each: each["accuracy"])
+    return min(one, other, key=lambda each: each["z"])
 
 
 def _by_disparity(both: Record, disparity: int, geometry: Sequence[int], off: int) -> bool:

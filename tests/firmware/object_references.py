@@ -270,12 +270,12 @@ def foot_row(
 ) -> int:
     """The row of a foot: the bottom line, or the end of the blob if that is more than one pixel above it, but not more than four.
 
-    Not where the line of the post goes on below that end by more than a pixel.
+    Not where the line of the post goes on below that end by more than a pixel. Nor is it a line more than a pixel above that end.
     """
     top, bottom = rows
     end, row = row_below(None, bottom, column), row_below(line, bottom, column)
     goes_on = post_end(post, 16 * top - 8, end) > end + 16
-    return end if 16 < row - end <= 64 and not is_cut and not goes_on else row
+    return end if row < end - 16 or (16 < row - end <= 64 and not is_cut and not goes_on) else row
 
 
 def rectangle_at(
@@ -284,11 +284,12 @@ def rectangle_at(
     box: Record,
     parts: Sequence[Record],
     borders: dict[str, Sequence[int] | None],
+    hidden: int,
     geometry: Sequence[int],
     refined: bool,
     size: tuple[int, int],
 ) -> Record:
-    """A rectangle by the floor below it; `borders` are its lines, `parts` are those of a merged blob."""
+    """A rectangle by the floor below it; `borders` are its lines, `parts` those of a merged blob, `hidden`: 1 left, 2 right."""
     bottom = borders["bottom"]
     width, height = size
     middle_x, middle_y = 8 * (width - 1), 8 * (height - 1)
@@ -307,7 +308,7 @@ def rectangle_at(
             corners.append((column - middle_x, below, floor_depth(geometry, below, 0)))
         cuts = box["left"] <= 1, box["right"] >= width - 2
         if all(each[2] for each in corners):
-            x, y, z = between_feet(corners, cuts, model.width_mm, geometry)
+            x, y, z = between_feet(corners, cuts, hidden, model.width_mm, geometry)
     up, back = (((model.height_mm * geometry[each] >> 14) + 1) // 2 for each in (COSINE, SINE))
     extent = abs(horizon_distance(geometry, row))
     return found | {"x": x, "y": y - up, "z": z - back, "measures": 2, "extent": extent}
@@ -334,15 +335,21 @@ def rows_at(box: Record, parts: Sequence[Record], side: str) -> tuple[int, int]:
 
 
 def between_feet(
-    corners: Sequence[tuple[int, int, int]], cuts: tuple[bool, bool], width_mm: int, geometry: Sequence[int]
+    corners: Sequence[tuple[int, int, int]],
+    cuts: tuple[bool, bool],
+    hidden: int,
+    width_mm: int,
+    geometry: Sequence[int],
 ) -> tuple[int, int, int]:
     """The middle of a goal's mouth on the floor, from its lower corners: column, row and depth of each."""
     left, right = (on_floor(geometry, *each) for each in corners)
     off = [b - a for a, b in zip(left, right, strict=True)]
     apart = isqrt(sum(each * each for each in off)) if max(map(abs, off)) < 16_000 else 16_000
     share = Fraction(apart, width_mm)
-    if share > Fraction(5, 4) or share < (Fraction(3, 4) if cuts[0] == cuts[1] else Fraction(1, 4)):
-        _, row, depth = min(corners, key=lambda each: each[2])
+    too_near = share < (Fraction(3, 4) if cuts[0] == cuts[1] else Fraction(1, 4))
+    if share > Fraction(5, 4) or too_near or hidden:
+        standing = {1: corners[1:], 2: corners[:1]}.get(hidden, corners)
+        _, row, depth = min(standing, key=lambda each: each[2])
         return on_floor(geometry, (corners[0][0] + corners[1][0]) >> 1, row, depth)
     part = Fraction(1, 2) if cuts[0] == cuts[1] else Fraction(width_mm, 2 * apart)
     if cuts[0] and not cuts[1]:
@@ -399,7 +406,10 @@ def sight(
                 for side in ("left", "right", "bottom")
             }
             parts = [each for at, each in enumerate(boxes[:number]) if parents[at] == number]
-            found = rectangle_at(found, model, box, parts, borders, geometry, thresholds.refined, size)
+            hidden = outline["hidden"] if outline else 0
+            found = rectangle_at(
+                found, model, box, parts, borders, hidden, geometry, thresholds.refined, size
+            )
         count += 1
         if len(seen) < room:
             seen.append(found)

@@ -10,6 +10,7 @@ import pytest
 
 from tests.firmware.object_rig import HEIGHT, THESIS, WIDTH
 from tests.firmware.test_object_sight import see
+from tinyphoon.stages.rectangle_ends import LEFT_HIDDEN, RIGHT_HIDDEN
 from tinyphoon.stores.objects import BY_FLOOR
 from tinyphoon.strategy.models import BLUE, MODELS
 from tinyphoon.strategy.modes import INDOOR_FIELD
@@ -61,12 +62,15 @@ def goal(
 
 
 def placed(
-    blobs: Any, parents: Any, line: Any = None, post: Any = None, *, refined: bool = True
+    blobs: Any, parents: Any, line: Any = None, post: Any = None, *, hidden: int = 0, refined: bool = True
 ) -> np.ndarray:
     """Where the only goal is seen, with its bottom line and the line to its left."""
     thresholds = replace(INDOOR_FIELD.objects, refined=refined)
     left = 1 if post else -1
-    borders = [{"left": left, "right": -1, "top": -1, "bottom": 0, "blob": len(blobs) - 1}] if line else []
+    bottom = 0 if line else -1
+    borders = [
+        {"left": left, "right": -1, "top": -1, "bottom": bottom, "blob": len(blobs) - 1, "hidden": hidden}
+    ]
     lines = [[round(each) for each in ends] for ends in (line, post) if ends]
     (found,) = see(
         blobs, rectangles=borders, parents=parents, lines=lines, models=(GOAL,), thresholds=thresholds
@@ -160,6 +164,23 @@ def test_a_hidden_post() -> None:
     ) - 50 * np.sin(TILT)
     assert z == pytest.approx(depth, abs=2)
     assert x == pytest.approx(((190 + whole["right"]) / 2 - 159.5) / FOCAL * z, rel=0.02)
+
+
+@pytest.mark.parametrize("turn_deg", [18, -18])
+@pytest.mark.parametrize("hidden", [LEFT_HIDDEN, RIGHT_HIDDEN])
+def test_a_foot_that_is_known_to_be_hidden(hidden: int, turn_deg: float) -> None:
+    """What is seen is a goal's width wide all the same: the other foot tells the depth, even if it is the farther one."""
+    blobs, parents, _, _ = goal((0, 900), turn_deg)
+    foot = blobs[1 if hidden == LEFT_HIDDEN else 0]["bottom"]
+    depth = UP_MM * FOCAL / ((foot + 0.5 - 119.5) * np.cos(TILT) + FOCAL * np.sin(TILT)) - 50 * np.sin(TILT)
+    assert placed(blobs, parents, hidden=hidden)[2] == pytest.approx(depth, abs=2)
+
+
+def test_a_line_of_the_back() -> None:
+    """A line above the feet is not theirs."""
+    blobs, parents, _, line = goal((0, 900), 0)
+    line[1] = line[3] = 16 * (blobs[0]["bottom"] + 0.5 - 1.1)
+    assert (placed(blobs, parents, line) == placed(blobs, parents)).all()
 
 
 def test_a_post_in_two_parts() -> None:

@@ -72,7 +72,8 @@ def see(
     table = np.full(room * OBJECT_WORDS, 77, np.int16)
     parents = range(len(boxes)) if parents is None else parents
     rounds = [(c["x"], c["y"], c["radius"], c["blob"], 0, 0, 0, c["tests"], c["arc"]) for c in circles]
-    borders = [[r[name] for name in ("left", "right", "top", "bottom", "blob")] for r in rectangles]
+    rectangles = [{"hidden": 0, **each} for each in rectangles]
+    borders = [[r[name] for name in ("left", "right", "top", "bottom", "blob", "hidden")] for r in rectangles]
     found = see_objects(
         *(blob_words(*boxes), np.array(parents, np.uint8), len(boxes), models_of(*models)),
         *(circle_words(*rounds), len(rounds), rectangle_words(*borders), len(borders), line_words(lines)),

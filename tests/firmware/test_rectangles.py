@@ -14,7 +14,7 @@ from tests.firmware.line_rig import BareCore
 from tests.firmware.object_rig import blob_words
 from tinyphoon.stages.rectangle_detection import find_rectangles, rectangle_buffers, rectangle_detection
 from tinyphoon.stores.lines import LINE_WORDS
-from tinyphoon.stores.rectangles import NO_LINE, RECTANGLE_CAPACITY, RECTANGLE_WORDS
+from tinyphoon.stores.rectangles import NO_LINE, RECTANGLE_CAPACITY, RECTANGLE_HIDDEN, RECTANGLE_WORDS
 from tinyphoon.strategy.models import BLUE, YELLOW
 from tinyphoon.strategy.modes import INDOOR_FIELD
 
@@ -45,7 +45,9 @@ def find(
     assert core.published["rectangles"] == count
     lost = core.published["rectangles_lost"]
     assert lost == sum(each["colours"] & colours != 0 for each in boxes) - count
-    return core.array("rectangles").reshape(-1, RECTANGLE_WORDS)[:count].tolist()
+    records = core.array("rectangles").reshape(-1, RECTANGLE_WORDS)[:count]
+    assert not records[:, RECTANGLE_HIDDEN].any()
+    return records[:, :RECTANGLE_HIDDEN].tolist()
 
 
 def test_all_four() -> None:
@@ -123,7 +125,7 @@ def test_parts_of_a_merged_blob() -> None:
     limits = 64, LIMITS.overlap, 32
     lines = line_words([BOTTOM])
     assert find_rectangles(blob_words(*boxes), parents, 3, BLUE, 0, lines, 1, table, *limits) == 1
-    assert table[:RECTANGLE_WORDS].tolist() == [NO_LINE, NO_LINE, NO_LINE, 0, 2]
+    assert table[:RECTANGLE_WORDS].tolist() == [NO_LINE, NO_LINE, NO_LINE, 0, 2, 0]
 
 
 def test_more_than_there_is_room() -> None:
@@ -164,7 +166,7 @@ def test_lines_as_long_as_a_word_can_say(ends: tuple[int, ...]) -> None:
         find_rectangles(blob_words(box), parents, 1, BLUE, BLUE, line_words([within]), 1, table, 64, 128, 32)
         == 1
     )
-    assert table.tolist() == [*wanted, 0]
+    assert table.tolist() == [*wanted, 0, 0]
 
 
 def test_buffers_hold_what_the_store_says() -> None:

@@ -149,7 +149,7 @@ def _sight(
     core.publish(seen=min(found, SEEN_CAPACITY), seen_lost=max(found - SEEN_CAPACITY, 0))
 
 
-def object_detection(core: Core, thresholds: ObjectThresholds) -> Generator[Any, Any, None]:
+def object_detection(core: Core, frame: Frame, thresholds: ObjectThresholds) -> Generator[Any, Any, None]:
     """Verify `left_seen` by `right_seen` and take both into the history, `objects`.
 
     Publishes `verified`, how many objects both cameras see, and what `remember` does.
@@ -160,7 +160,7 @@ def object_detection(core: Core, thresholds: ObjectThresholds) -> Generator[Any,
         verify_objects,
         *(core.array("geometry"), *tables),
         *(SUBPIXELS * each for each in pixels),
-        *(thresholds.camera_weight, thresholds.size_weight, int(thresholds.refined)),
+        *(thresholds.camera_weight, thresholds.size_weight, int(thresholds.refined), frame.width),
     )
     core.publish(verified=verified)
     yield from remember(core, tables, thresholds)

@@ -6,7 +6,10 @@ of a pixel is then a smaller part of it, so each has the weight of its pixels sq
 the size of its model; the disparity, which knows no model, places it then, and it is less certain.
 
 That is for balls, whose circles have a middle even where part of them is hidden. The middle of a rectangle's image is that
-of what is seen of it, which the border of one picture may cut and that of the other not: it has no disparity.
+of what is seen of it, which the border of one picture may cut and that of the other not: it has no disparity. The floor
+places it in each picture. Where the cameras disagree by more than an eighth, the one counts that passed more tests, unless
+the border cuts the image in both: then the tests tell of what is left, and the nearer place counts, since what cuts or hides the
+lower end of a thing only ever moves it up, and the place away.
 """
 
 from __future__ import annotations
@@ -14,14 +17,17 @@ from __future__ import annotations
 from bfsim.api import i16, i32, kernel
 from tinyphoon.geometry import GEOMETRY_BASELINE, MICROMETRES, depth_mm, disparity_at
 from tinyphoon.stages.object_places import HALF_PIXEL
+from tinyphoon.stores.blobs import BORDER_PX
 from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.stores.objects import (
     BY_DISPARITY,
+    BY_FLOOR,
     BY_SIZE,
     NO_MODEL,
     OBJECT_ACCURACY,
     OBJECT_CAMERAS,
     OBJECT_EXTENT,
+    OBJECT_HEIGHT,
     OBJECT_IMAGE_X,
     OBJECT_IMAGE_Y,
     OBJECT_MEASURES,
@@ -54,13 +60,15 @@ def mismatch(left: i16[:], one: i32, right: i16[:], other: i32, row_range: i32, 
     """Return how unlike an object in both pictures is, in 1/16 px of row and width; NOBODY if it cannot be the same.
 
     It must be of one model, at most `row_range` from its epipolar row, and farther left in the right picture by at most
-    `disparity_max`; but `row_range` more or less is no reason.
+    `disparity_max`; but `row_range` more or less is no reason. What one picture lacks of it above or below moves its
+    middle by half as much: its upper ends count, or its lower ones.
     """
     at = one * OBJECT_WORDS
     to = other * OBJECT_WORDS
     if left[at + OBJECT_MODEL] != right[to + OBJECT_MODEL]:
         return NOBODY
-    rows = abs(left[at + OBJECT_IMAGE_Y] - right[to + OBJECT_IMAGE_Y])
+    lacks = abs(left[at + OBJECT_HEIGHT] - right[to + OBJECT_HEIGHT]) >> 1
+    rows = max(abs(left[at + OBJECT_IMAGE_Y] - right[to + OBJECT_IMAGE_Y]) - lacks, 0)
     disparity = left[at + OBJECT_IMAGE_X] - right[to + OBJECT_IMAGE_X]
     if rows > row_range or disparity < -row_range or disparity > disparity_max:
         return NOBODY
@@ -106,6 +114,41 @@ def average_places(left: i16[:], one: i32, right: i16[:], other: i32) -> None:
         extent = left[at + OBJECT_EXTENT] + extent + 1 >> 1
     left[at + OBJECT_EXTENT] = extent
     left[at + OBJECT_MEASURES] = left[at + OBJECT_MEASURES] | right[to + OBJECT_MEASURES]
+
+
+@kernel
+def agree_on_floor(left: i16[:], one: i32, right: i16[:], other: i32) -> i32:
+    """Return 0 if both cameras measure an object by the floor, and their depths are more than an eighth apart; else 1."""
+    at = one * OBJECT_WORDS
+    to = other * OBJECT_WORDS
+    if left[at + OBJECT_MEASURES] != BY_FLOOR or right[to + OBJECT_MEASURES] != BY_FLOOR:
+        return 1
+    nearer = min(left[at + OBJECT_Z], right[to + OBJECT_Z])
+    return 1 if 8 * abs(left[at + OBJECT_Z] - right[to + OBJECT_Z]) <= nearer else 0
+
+
+@kernel
+def is_cut_aside(objects: i16[:], number: i32, width: i32) -> i32:
+    """Return 1 if the left or the right border of a picture `width` pixels wide cuts an object's image; else 0."""
+    at = number * OBJECT_WORDS
+    half = objects[at + OBJECT_WIDTH] >> 1
+    if objects[at + OBJECT_IMAGE_X] - half < SUBPIXELS * BORDER_PX:
+        return 1
+    return 1 if objects[at + OBJECT_IMAGE_X] + half > SUBPIXELS * (width - 1 - BORDER_PX) else 0
+
+
+@kernel
+def take_better(left: i16[:], one: i32, right: i16[:], other: i32, width: i32) -> None:
+    """Place an object where that camera has it that is to be believed, of two that disagree."""
+    at = one * OBJECT_WORDS
+    to = other * OBJECT_WORDS
+    better = right[to + OBJECT_ACCURACY] - left[at + OBJECT_ACCURACY]
+    if better == 0 or is_cut_aside(left, one, width) & is_cut_aside(right, other, width) != 0:
+        better = left[at + OBJECT_Z] - right[to + OBJECT_Z]
+    if better > 0:
+        for word in range(OBJECT_X, OBJECT_Z + 1):
+            left[at + word] = right[to + word]
+        left[at + OBJECT_EXTENT] = right[to + OBJECT_EXTENT]
 
 
 @kernel
@@ -177,14 +220,20 @@ def unite(
     weight: i32,
     size_weight: i32,
     refined: i32,
+    width: i32,
 ) -> None:
     """Make an object of the left camera and its partner of the right one a single one, in `left`."""
     at = one * OBJECT_WORDS
     to = other * OBJECT_WORDS
-    average_places(left, one, right, other)
+    agree: i32 = 1
+    if refined != 0:
+        agree = agree_on_floor(left, one, right, other)
+    if agree != 0:
+        average_places(left, one, right, other)
+    else:
+        take_better(left, one, right, other, width)
     tests = left[at + OBJECT_TESTS] | right[to + OBJECT_TESTS]
     accuracy = max(left[at + OBJECT_ACCURACY], right[to + OBJECT_ACCURACY])
-    agree: i32 = 1
     if refined != 0 and has_disparity(left, one, right, other) != 0:
         disparity = left[at + OBJECT_IMAGE_X] - right[to + OBJECT_IMAGE_X]
         agree = refine_place(geometry, left, one, disparity, disparity_range)
@@ -209,12 +258,13 @@ def verify_objects(
     weight: i32,
     size_weight: i32,
     refined: i32,
+    width: i32,
 ) -> i32:
     """Make one object of each pair that both cameras see, in `left`; returns how many pairs there are.
 
     The other ones of the right camera stay in `right`. All are in the frame of the left camera then. A verified object
-    is as accurate as the better of the two, and `weight` more; one whose disparity disagrees is `size_weight` less. Lengths in
-    1/16 px.
+    is as accurate as the better of the two, and `weight` more; one whose disparity or places disagree is `size_weight` less.
+    Lengths in 1/16 px, but for the `width` of the pictures in pixels.
     """
     pairs: i32 = 0
     for other in range(len(right) // OBJECT_WORDS):
@@ -234,5 +284,6 @@ def verify_objects(
                     weight,
                     size_weight,
                     refined,
+                    width,
                 )
     return pairs

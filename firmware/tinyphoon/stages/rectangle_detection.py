@@ -28,6 +28,7 @@ from tinyphoon.stores.rectangles import (
     RECTANGLE_BLOB,
     RECTANGLE_BOTTOM,
     RECTANGLE_CAPACITY,
+    RECTANGLE_HIDDEN,
     RECTANGLE_LEFT,
     RECTANGLE_RIGHT,
     RECTANGLE_TOP,
@@ -194,6 +195,7 @@ def find_rectangle(
     )
     rectangles[at + RECTANGLE_BOTTOM] = bottom_line
     rectangles[at + RECTANGLE_BLOB] = blob
+    rectangles[at + RECTANGLE_HIDDEN] = 0
 
 
 @kernel

@@ -20,15 +20,14 @@ from tinyphoon.geometry import (
 from tinyphoon.stages.object_places import HALF_PIXEL, depth_by_floor, floor_extent, place_object, principal
 from tinyphoon.stages.object_tests import GOAL
 from tinyphoon.stages.rectangle_detection import crossing, post_end
+from tinyphoon.stages.rectangle_ends import LEFT_HIDDEN, RIGHT_HIDDEN, rows_at_end
 from tinyphoon.stores.blobs import (
     ACROSS,
     BLOB_WORDS,
     DOWN,
-    extent_of,
     is_cut,
     is_cut_before,
     is_cut_behind,
-    wider,
 )
 from tinyphoon.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
 from tinyphoon.stores.objects import (
@@ -47,13 +46,13 @@ from tinyphoon.stores.objects import (
 from tinyphoon.stores.rectangles import (
     NO_LINE,
     RECTANGLE_BOTTOM,
+    RECTANGLE_HIDDEN,
     RECTANGLE_LEFT,
     RECTANGLE_RIGHT,
     RECTANGLE_WORDS,
 )
 from tinyphoon.strategy.models import LARGEST_MM, MODEL_FLOOR, MODEL_HEIGHT, MODEL_SHAPE, MODEL_WIDTH
 
-NO_PART = -1
 OPENING_LOSS = SUBPIXELS  # so far above its bottom line the opening may end a blob [ours]
 FLOOR_LINE = 4 * SUBPIXELS  # so far below the feet the line may be that is painted along the goal [ours]
 FAR_APART = 4 * LARGEST_MM  # mm: farther than any goal is wide; three squares of it stay in 32 bits
@@ -81,49 +80,22 @@ def foot_row(
 ) -> i32:
     """Return where a goal stands on the floor at an end of its blob, in 1/16 px; `down` are the rows of the part that is there.
 
-    That is the goal's bottom line, with one exception. If the part ends a little above that line, the part's end is the
+    That is the goal's bottom line, with two exceptions. If the part ends a little above that line, the part's end is the
     foot of a post, and the line is one that is painted on the floor: its front edge is nearer to the camera, and the blur
     moves it further down the thinner it looks. Where the picture has `cut` the part off, or where the goal's `border` at
-    that end goes on below it, its end is no foot.
+    that end goes on below it, its end is no foot. And if the part ends below that line, the line is that of the goal's back,
+    farther away, and what stands before it is the post.
     """
     end = bottom_row(down, rectangles, NO_OUTLINE, lines, column)
     line = bottom_row(down, rectangles, rectangle, lines, column)
+    if line + OPENING_LOSS < end:
+        return end
     if rectangle == NO_OUTLINE or cut != 0:
         return line
     post = i32(rectangles[rectangle * RECTANGLE_WORDS + border])
     if post_end(lines, post, SUBPIXELS * i32(down & 0xFFFF) - HALF_PIXEL, end) > end + OPENING_LOSS:
         return line
     return end if end + OPENING_LOSS < line <= end + FLOOR_LINE else line
-
-
-@kernel
-def is_above(across: u32, other: u32) -> i32:
-    """Return 1 if two blobs have half the columns of the narrower one in common: one stands above the other; else 0."""
-    common = min(i32(across >> 16), i32(other >> 16)) + 1 - max(i32(across & 0xFFFF), i32(other & 0xFFFF))
-    return 1 if 2 * common >= min(extent_of(across), extent_of(other)) else 0
-
-
-@kernel
-def rows_at_end(blob_data: u32[:], parents: u8[:], blob: i32, is_right: i32) -> u32:
-    """Return the rows of the part of a blob that reaches farthest to the left or to the right, with those that it stands on.
-
-    A blob without parts has its own rows. Parts come before the blob.
-    """
-    across = blob_data[blob * BLOB_WORDS + ACROSS]
-    rows = blob_data[blob * BLOB_WORDS + DOWN]
-    end: i32 = NO_PART
-    for part in range(blob):
-        apart = blob_data[part * BLOB_WORDS + ACROSS] ^ across
-        if parents[part] == blob and (apart >> 16 if is_right != 0 else apart & 0xFFFF) == 0:
-            end = part
-            rows = blob_data[part * BLOB_WORDS + DOWN]
-    if end != NO_PART:
-        across = blob_data[end * BLOB_WORDS + ACROSS]
-        for part in range(blob):
-            down = blob_data[part * BLOB_WORDS + DOWN]
-            if parents[part] == blob and is_above(across, blob_data[part * BLOB_WORDS + ACROSS]) != 0:
-                rows = wider(rows, i32(down & 0xFFFF), i32(down >> 16))
-    return rows
 
 
 @kernel
@@ -176,6 +148,7 @@ def stand_between_feet(
     right_row: i32,
     cut_left: i32,
     cut_right: i32,
+    hidden: i32,
     objects: i16[:],
     number: i32,
 ) -> None:
@@ -183,8 +156,8 @@ def stand_between_feet(
 
     If the feet are `wide` apart, give or take a quarter, the middle of the border is between them. If the picture cuts the
     goal off at one side, and at least a quarter of the width is seen, the middle is half of `wide` away from the foot that
-    is seen. Otherwise something hides a part of it, and only the nearer foot tells how deep it stands. Columns and rows
-    are in 1/16 px from the principal point.
+    is seen. Otherwise something hides a part of it, and only the nearer foot tells how deep it stands; of two ends of which
+    one is known to be `hidden`, the other. Columns and rows are in 1/16 px from the principal point.
     """
     at = number * OBJECT_WORDS
     left_z = depth_by_floor(geometry, left_row, 0)
@@ -196,8 +169,9 @@ def stand_between_feet(
     right_x = beside_mm(geometry, right_z, right)
     right_y = beside_mm(geometry, right_z, right_row)
     apart = distance_of(right_x - left_x, right_y - left_y, right_z - left_z)
-    if 4 * apart > 5 * wide or 4 * apart < wide or (cut_left == cut_right and 4 * apart < 3 * wide):
-        if left_z <= right_z:
+    off = 4 * apart > 5 * wide or 4 * apart < wide or (cut_left == cut_right and 4 * apart < 3 * wide)
+    if off or hidden != 0:
+        if hidden == RIGHT_HIDDEN or (hidden != LEFT_HIDDEN and left_z <= right_z):
             stand_at(geometry, left_z, left + right >> 1, left_row, objects, number)
         else:
             stand_at(geometry, right_z, left + right >> 1, right_row, objects, number)
@@ -264,5 +238,10 @@ def see_rectangle(
         wide = models[model + MODEL_WIDTH]
         left = left - middle_x
         right = right - middle_x
-        stand_between_feet(geometry, wide, left, left_row, right, right_row, cut_left, cut_right, seen, place)
+        hidden: i32 = 0
+        if rectangle != NO_OUTLINE:
+            hidden = rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_HIDDEN]
+        stand_between_feet(
+            geometry, wide, left, left_row, right, right_row, cut_left, cut_right, hidden, seen, place
+        )
     lift(geometry, models, model, row, seen, place)
