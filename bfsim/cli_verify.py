@@ -30,7 +30,7 @@ STDOUT = Path("-")
     "--toolchain",
     metavar="FOLDER",
     type=click.Path(path_type=Path, exists=True, file_okay=False),
-    help="Where bfin-elf-gcc and bfin-elf-run are.  [default: the PATH]",
+    help="Where bfin-elf-gcc is, and bfin-elf-run, the GNU simulator.  [default: the PATH]",
 )
 @click.option(
     "--top", metavar="N", type=click.IntRange(min=1), default=20, show_default=True, help="Show N kernels."
@@ -43,18 +43,20 @@ STDOUT = Path("-")
     help="Write the comparison as JSON, too; - writes it to standard output instead of the table.",
 )
 def verify(calls: int, toolchain: Path | None, top: int, json_path: Path | None, **what: Any) -> None:
-    """Run RECORDING, then play the kernels' calls once more: by GCC's code for the Blackfin, under the GNU simulator.
+    """Run RECORDING, then play the kernels' calls once more: by GCC's code for the Blackfin.
 
-    Every kernel is written as C (see `bfsim export`) and compiled by bfin-elf-gcc at the level of --profile. Its cycles are counted
-    by the simulator, without memory, caches and interlocks, and compared with the issue cycles that the run estimates; what it
-    leaves is compared bit for bit. Exit code 1 if a bit differs.
+    Every kernel is written as C (see `bfsim export`) and compiled by bfin-elf-gcc at the level of --profile; that of the built-in
+    firmware comes with bfsim. Its instructions are translated and run here, and also under the GNU simulator if that is installed,
+    whose cycles they must take in every call. These cycles, without memory, caches and interlocks, are compared with the issue cycles
+    that the run estimates; what is left is compared bit for bit. Exit code 1 if a bit, or a cycle of the translation, differs.
 
     \b
     Examples:
       bfsim verify --frames 2
       bfsim verify drive.mcap --firmware my_robot.py:firmware --profile gcc-O0
     """
-    from bfsim.compiling import blackfin_toolchain, object_code, options_of
+    from bfsim.compiling.object_code import level_of, object_code
+    from bfsim.compiling.toolchain import blackfin_compiler
     from bfsim.hardware import find_profile
     from bfsim.loading import entries_of, kernels_of, load_firmware
     from bfsim.report.save import require_place, write_text
@@ -65,8 +67,8 @@ def verify(calls: int, toolchain: Path | None, top: int, json_path: Path | None,
     if json_path and json_path != STDOUT:
         require_place(json_path)
     profile = find_profile(what["profile"]).value
-    options_of(profile)
-    tools = blackfin_toolchain(toolchain)
+    level_of(profile)
+    tools = blackfin_compiler(toolchain)
     sampler = Sampler(calls)
     done = simulated(on_call=sampler.see, **what)
     loaded = load_firmware(what["firmware"])
@@ -79,5 +81,5 @@ def verify(calls: int, toolchain: Path | None, top: int, json_path: Path | None,
         print_report(verification_report(found, top))
         if json_path:
             write_text(json_path, as_json(found) + "\n")
-    if found.different:
+    if found.different or found.unequal:
         raise SystemExit(1)

@@ -29,6 +29,9 @@ from bfsim.trace import (
 
 BRANCHES = {Op.BRANCH_TAKEN, Op.BRANCH_NOT_TAKEN, Op.BRANCH_TAKEN_BP, Op.BRANCH_NOT_TAKEN_BP}
 
+OBJECT_CODE = "as compiled"
+"""Shown in place of a profile of what is no Python."""
+
 
 def explain_named(name: str, firmware: str, profile: str, run: RunRecord | None = None) -> Explanation:
     """Explain the kernel called `name`, FILE.py:NAME, PACKAGE:NAME or the name of a kernel of `firmware`; see `explain`."""
@@ -50,11 +53,11 @@ def explain(
         kernel=function.name,
         file=function.file,
         first_line=function.first_line,
-        profile=profile.name,
+        profile=OBJECT_CODE if kernel.object_code else profile.name,
         code_bytes=sum(each.nbytes for each in counters),
         calls=None if mine is None else sum(each.calls for each in mine),
         lines=_lines(function, counters, mine),
-        kernel_calls=_kernel_calls(function, profile),
+        kernel_calls=() if kernel.object_code else _kernel_calls(function, profile),
         inlined=tuple(
             InlinedKernel(kernel=each.name, file=each.file, lines=_lines(each, counters, None))
             for each in function.callees()

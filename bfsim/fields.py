@@ -12,7 +12,6 @@ import types
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from fractions import Fraction
-from functools import cache
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from bfsim.errors import ConfigError, cut, shown
@@ -46,18 +45,9 @@ class Leaf:
         return self.hint in (int, Fraction, bool)
 
 
-def _hints(record: Any) -> dict[str, Any]:
-    """Return the types of a record's fields."""
-    kind: Any = type(record)
-    return _hints_of(kind)
-
-
-_hints_of = cache(get_type_hints)  # boards and compilers are made of a few types
-
-
 def leaves(record: Any, path: str = "") -> Iterator[Leaf]:
     """Yield all fields of a tree that hold no record, in order; those that follow from others are left out."""
-    hints = _hints(record)
+    hints = get_type_hints(type(record))
     for field in fields(record):
         if not field.init:
             continue
@@ -76,7 +66,7 @@ def require_types(record: Any, what: str) -> None:
 
     `what` is the tree's name in the message. Numbers with a fraction must be of the type Fraction: floats are not exact.
     """
-    hints = _hints(record)
+    hints = get_type_hints(type(record))
     for field in fields(record):
         value, hint = getattr(record, field.name), hints[field.name]
         if not _fits(value, hint):
@@ -122,7 +112,7 @@ def leaf_at(record: Any, path: str, also: Mapping[str, str]) -> Leaf:
         if found is None:
             raise ConfigError(f"{_nearest(name, known)}{_of(where)} has {_listed(known)}")
         where = f"{where}.{found}" if where else found
-        hint = _hints(at)[found] if is_dataclass(at) else type(at[int(found)])
+        hint = get_type_hints(type(at))[found] if is_dataclass(at) else type(at[int(found)])
         at = getattr(at, found) if is_dataclass(at) else at[int(found)]
         if not _names_below(at) and depth < len(names) - 1:
             what = "none" if at is None else "a single value"

@@ -89,7 +89,9 @@ def _add_sources(sources: dict[str, ImportedFile], namespace: Namespace) -> None
         module, root = located(str(file))
         _add_imported(sources, [module], (root, SHIPPED))
         return
-    functions = [value.python if isinstance(value, Kernel) else value for value in namespace.values()]
+    functions = [
+        (value.python or value) if isinstance(value, Kernel) else value for value in namespace.values()
+    ]
     cells = {each.__code__.co_filename for each in functions if isinstance(each, FunctionType)}
     for cell in sorted(cells):
         text = "".join(linecache.getlines(cell))

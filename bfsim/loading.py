@@ -11,7 +11,7 @@ from typing import Generic, TypeVar
 
 from bfsim import shipped
 from bfsim.errors import BfsimError, FirmwareError, cut, shown
-from bfsim.importing import OwnModules, Root
+from bfsim.importing import ImportedFile, OwnModules, Root
 from bfsim.kernel import Kernel
 from bfsim.locating import located, parted
 from bfsim.machine.code import kernels_named
@@ -158,7 +158,7 @@ def entries_of(firmware: Firmware) -> set[Kernel]:
 
 def _apart(kernels: list[Kernel]) -> str:
     """Say by which names kernels of one name are told apart."""
-    names = sorted(f"{each.python.__module__}:{each.name}" for each in kernels)
+    names = sorted(f"{getattr(each.python, '__module__', each.place)}:{each.name}" for each in kernels)
     return f"write {' or '.join(names)}"
 
 
@@ -204,6 +204,9 @@ def import_own(module: str, root: Root) -> tuple[ModuleType, OwnModules]:
                 f"the module {shown(module)} must be in {root.folder}, but there is none"
             ) from None
         raise _failed(module, error) from error
+    for each in kernels_of(own):
+        for path, sha256 in each.object_code.files.items() if each.object_code else ():
+            own.sources[str(path)] = ImportedFile(path, path.name, sha256)
     _imported[module, root] = imported, own
     return imported, own
 

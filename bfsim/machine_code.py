@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
+import llvmlite
 import llvmlite.binding as llvm
 
 HOST_SPEED_LEVEL = 3
@@ -46,6 +47,18 @@ def _new_machine() -> llvm.TargetMachine:
 @cache
 def _engine() -> llvm.ExecutionEngine:
     return llvm.create_mcjit_compiler(llvm.parse_assembly(""), _host_machine())
+
+
+@cache
+def host() -> str:
+    """What machine code depends on beside its IR: LLVM and the host's processor."""
+    parts = (
+        llvm.get_host_cpu_name(),
+        llvm.get_host_cpu_features().flatten(),
+        llvmlite.__version__,
+        llvm.llvm_version_info,
+    )
+    return str(parts)
 
 
 def add(code: bytes) -> None:

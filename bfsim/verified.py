@@ -9,7 +9,8 @@ from dataclasses import dataclass
 class VerifiedKernel:
     """One kernel: its calls in a frame, how many were played, and the cycles of a frame, estimated and measured.
 
-    `different`: how many of the calls that were played left other bits than the kernel here.
+    `different`: how many of the calls that were played left other bits than the kernel here. `unequal`: of how many the translated
+    code took other cycles than the GNU simulator counts.
     """
 
     kernel: str
@@ -20,6 +21,7 @@ class VerifiedKernel:
     estimated_cclk: float
     measured_cclk: float
     different: int
+    unequal: int
 
     @property
     def error(self) -> float:
@@ -29,11 +31,15 @@ class VerifiedKernel:
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """All kernels of a run, the one that takes longest first. `compiler`: its version."""
+    """All kernels of a run, the one that takes longest first. `compiler`: its version.
+
+    `is_judged`: whether the GNU simulator played the calls too. If it did not, what is measured are the translated code's cycles.
+    """
 
     profile: str
     compiler: str
     frames: int
+    is_judged: bool
     kernels: tuple[VerifiedKernel, ...]
 
     @property
@@ -57,3 +63,13 @@ class Verification:
     def different(self) -> int:
         """How many calls left other bits than the kernels here."""
         return sum(each.different for each in self.kernels)
+
+    @property
+    def played(self) -> int:
+        """How many calls were played."""
+        return sum(each.played for each in self.kernels)
+
+    @property
+    def unequal(self) -> int:
+        """Of how many calls the translated code took other cycles than the GNU simulator counts."""
+        return sum(each.unequal for each in self.kernels)

@@ -22,12 +22,13 @@ from bfsim.errors import WorkError
 from bfsim.kernel import keys
 from bfsim.machine.retiming.work import (
     ACCESS_COLUMNS,
+    BYTE,
     COPY_COLUMNS,
     DESTINATION_BYTE,
     EVENT_COLUMNS,
     OPERATION_COLUMNS,
     SOURCE_BYTE,
-    Accesses,
+    STAMP,
     FrameWork,
     Place,
     check,
@@ -36,10 +37,10 @@ from bfsim.machine.retiming.work import (
 FORMAT = 2
 WIDTHS = tuple(np.dtype(each) for each in ("<i1", "<i2", "<i4", "<i8"))
 TABLES = {
-    "operations": OPERATION_COLUMNS, "events": EVENT_COLUMNS, "copies": COPY_COLUMNS,
+    "operations": OPERATION_COLUMNS, "accesses": ACCESS_COLUMNS, "events": EVENT_COLUMNS, "copies": COPY_COLUMNS,
 }  # fmt: skip
-IN_STEPS = {"events": (1,), "copies": (SOURCE_BYTE, DESTINATION_BYTE)}
-"""Columns that are written as differences from row to row: bytes and counters, which go up in steps."""
+IN_STEPS = {"accesses": (STAMP, BYTE), "events": (1,), "copies": (SOURCE_BYTE, DESTINATION_BYTE)}
+"""Columns that are written as differences from row to row: stamps, bytes and counters, which go up in steps."""
 LARGEST_FRAME_BYTES = 1 << 30
 """What a frame decompresses to, at most: some hundred times as much as one of the built-in firmware has in SDRAM."""
 
@@ -168,12 +169,9 @@ def _written(work: FrameWork) -> bytes:
             columns.append((WIDTHS.index(width), steps.astype(width)))
     head = {
         "calls": work.calls, "accounts": work.accounts, "widths": [width for width, _ in columns],
-        "rows": {table: len(getattr(work, table)) for table in TABLES}, "accesses": len(work.accesses.stamps),
+        "rows": {table: len(getattr(work, table)) for table in TABLES},
     }  # fmt: skip
-    line = json.dumps(head, default=asdict).encode()
-    wide: tuple[NDArray[Any], ...] = work.accesses
-    accesses = (each.astype(dtype).tobytes() for each, dtype in zip(wide, ACCESS_COLUMNS, strict=True))
-    return b"".join([line, b"\n", *(each.tobytes() for _, each in columns), *accesses])
+    return json.dumps(head, default=asdict).encode() + b"\n" + b"".join(each.tobytes() for _, each in columns)
 
 
 def _read(core: str, content: bytes) -> FrameWork:
@@ -191,19 +189,12 @@ def _read(core: str, content: bytes) -> FrameWork:
             else:
                 table[:, number] = written
             at += rows * width.itemsize
-    accesses = []
-    for dtype in ACCESS_COLUMNS:
-        accesses.append(
-            np.frombuffer(content, dtype, int(head["accesses"]), at).astype(dtype)
-        )  # in one piece of memory of its own
-        at += accesses[-1].nbytes
     return FrameWork(
         core=core,
         calls=tuple(
             (name, tuple(_argument(each) for each in arguments)) for name, arguments in head["calls"]
         ),
         accounts=tuple(head["accounts"]),
-        accesses=Accesses(*accesses),
         **tables,
     )
 

@@ -6,7 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from bfsim.compiling import Toolchain, blackfin_compiler, object_code
+from benchmarks.toolchain.keep import FOLDER, recipes
+from bfsim.blackfin.objects import read_object
+from bfsim.compiling.object_code import object_code
+from bfsim.compiling.recipes import KEPT_COMPILER, shipped
+from bfsim.compiling.toolchain import Toolchain, blackfin_compiler
 from bfsim.errors import ConfigError
 from bfsim.kernel import GCC_O0, GCC_O2
 from tests.kernel import c_kernels
@@ -35,7 +39,7 @@ def test_code_is_made_once_for_each_compiler_and_level() -> None:
 def test_without_a_compiler_code_must_be_kept() -> None:
     """What is missing, whose code it would be, and what helps."""
     with pytest.raises(
-        ConfigError, match=r"bfin-elf-gcc must be on the PATH, for of these kernels no code of GCC 12"
+        ConfigError, match=r"bfin-elf-gcc must be on the PATH, for of c_kernels.c no code of GCC 12"
     ):
         object_code(KERNELS, KERNELS, GCC_O2, None)
 
@@ -44,3 +48,11 @@ def test_a_folder_that_is_named_must_have_a_compiler(tmp_path: Path) -> None:
     """On the PATH there may be none."""
     with pytest.raises(ConfigError, match=f"bfin-elf-gcc must be in {tmp_path}"):
         blackfin_compiler(tmp_path)
+
+
+def test_what_comes_with_bfsim_is_the_code_of_what_it_is_now() -> None:
+    """Kernels of the built-in firmware, and examples: `python -m benchmarks.toolchain.keep` compiles what was changed."""
+    wanted = {each.digest(KEPT_COMPILER) for each in recipes()}
+    assert {each.name for each in FOLDER.iterdir()} == wanted
+    for each in wanted:
+        assert read_object(shipped(each) or b"", each).symbols

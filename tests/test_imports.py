@@ -29,10 +29,10 @@ MAY_IMPORT = {
     "machine_code": set(),
     "blackfin": {"errors", "fields", "machine_code", "store"},
     "kernel": {"blackfin", "errors", "machine_code", "store"},
-    "compiling": {"errors", "kernel", "store"},
+    "compiling": {"blackfin", "errors", "kernel", "store"},
     "linker": {"file_content", "errors", "chip", "store"},
     "machine": {"errors", "store", "signals", "clocks", "seen", "spans", "trace", "chip", "kernel", "linker"},
-    "api": {"chip", "errors", "kernel", "machine", "seen", "trace"},
+    "api": {"chip", "compiling", "errors", "kernel", "machine", "seen", "trace"},
     "recording": {"errors", "drafts", "seen"},
     "report": {
         "file_content",

@@ -14,7 +14,7 @@ import zstandard
 
 from bfsim.errors import ConfigError, WorkError
 from bfsim.machine.bus import state as w
-from bfsim.machine.retiming.work import ACCESS_COLUMNS, CALL, Accesses, FrameWork, check
+from bfsim.machine.retiming.work import CALL, FrameWork, check
 from bfsim.result import Run
 from bfsim.run import Feed, Fidelity, simulate
 from tests.test_run import FIRMWARE, record
@@ -205,7 +205,7 @@ def test_a_frame_takes_less_than_200_kb(work: Path) -> None:
 NOTHING = FrameWork(
     core="A",
     operations=np.zeros((0, 5), np.int64),
-    accesses=Accesses(*(np.zeros(0, each) for each in ACCESS_COLUMNS)),
+    accesses=np.zeros((0, 5), np.int64),
     events=np.zeros((0, 3), np.int64),
     copies=np.zeros((0, 6), np.int64),
     calls=(),

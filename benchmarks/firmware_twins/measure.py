@@ -20,7 +20,7 @@ from benchmarks.firmware_twins.measured import MEASURED
 from benchmarks.firmware_twins.recorded import recorded
 from benchmarks.firmware_twins.twins import TWINS, of_all
 from bfsim.api import Kernel
-from bfsim.compiling import Toolchain, blackfin_toolchain
+from bfsim.compiling.toolchain import Toolchain, blackfin_toolchain
 from bfsim.verifying.player import write_player
 
 HERE = Path(__file__).parent

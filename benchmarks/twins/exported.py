@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from benchmarks.twins.case import Case
-from bfsim.compiling import blackfin_toolchain, object_code
+from bfsim.compiling.object_code import object_code
+from bfsim.compiling.toolchain import blackfin_toolchain
 from bfsim.kernel import CompilerProfile
 from bfsim.verifying.player import PLAYER_OPTIONS, checksum, write_player
 

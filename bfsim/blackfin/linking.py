@@ -6,7 +6,9 @@ memory, or as far beyond as they reach: nothing of the timing depends on it, for
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import struct
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -18,6 +20,7 @@ BASE = {Use.CODE: 0xFFA00000, Use.DATA: 0xFF900000}
 """[HRM] Core A's L1 instruction memory; L1 data bank B, which has a MB of addresses to itself."""
 ADDRESSES = 1 << 32
 LONGEST_ALIGN = 4096
+WORD_BYTES = 4
 MOST_NAMES = 5
 """As many names are listed of what is missing."""
 
@@ -49,16 +52,29 @@ class Routine:
 class Image:
     """A program in memory: its segments, addresses by symbol, its functions in the order of their addresses.
 
-    `octets` is the file with its relocations applied, and `section_addresses` are where its sections went, for what reads
-    debugging information.
+    `pointers`: addresses of code that its data holds, such as those of a switch; of a linked program all words that may be. `octets`: the file with
+    its relocations applied, for what reads debugging information.
     """
 
     name: str
     segments: tuple[Segment, ...]
     symbols: Mapping[str, int]
     routines: tuple[Routine, ...]
+    pointers: frozenset[int]
     octets: bytes
-    section_addresses: tuple[int, ...]
+
+    def octets_of(self, first: int, end: int) -> bytes:
+        """Return the bytes of a range of addresses, as far as one segment has them."""
+        for each in self.segments:
+            if each.address <= first < each.end:
+                return each.octets[first - each.address : end - each.address]
+        return b""
+
+    def routine_at(self, address: int) -> Routine | None:
+        """Return the function that an address is in, or None outside of all."""
+        number = bisect_right(self.routines, address, key=lambda each: each.address)
+        found = self.routines[number - 1] if number else None
+        return found if found and address < found.end else None
 
     def address_of(self, symbol: str) -> int:
         """Return the address of a symbol. Raises KernelError if there is none of that name."""
@@ -98,7 +114,8 @@ def link(file: ObjectFile) -> Image:
     symbols = {
         each.name: _value(each, file, places) for each in file.symbols if each.is_defined and each.name
     }
-    return Image(file.name, tuple(segments), symbols, _routines(file, places), bytes(octets), places)
+    pointers = frozenset(_likely_pointers(segments) if file.is_linked else _pointers(file, places))
+    return Image(file.name, tuple(segments), symbols, _routines(file, places), pointers, bytes(octets))
 
 
 def _places(file: ObjectFile) -> tuple[int, ...]:
@@ -140,12 +157,43 @@ def _value(symbol: Symbol, file: ObjectFile, places: tuple[int, ...]) -> int:
 
 
 def _routines(file: ObjectFile, places: tuple[int, ...]) -> tuple[Routine, ...]:
-    found: dict[int, Routine] = {}
+    """Functions. One whose size the assembler was not told ends where the next one begins, or its section ends."""
+    found: dict[int, tuple[Symbol, int]] = {}
     for each in file.symbols:
         if each.is_function and each.section is not None and file.sections[each.section].use is Use.CODE:
-            first = _value(each, file, places)
-            found.setdefault(first, Routine(each.name, first, first + each.nbytes))
-    return tuple(found[each] for each in sorted(found))
+            section = file.sections[each.section]
+            found.setdefault(_value(each, file, places), (each, places[each.section] + section.nbytes))
+    starts = sorted(found)
+    behind = dict(pairwise(starts))
+    return tuple(
+        Routine(
+            symbol.name,
+            first,
+            first + symbol.nbytes if symbol.nbytes else min(end, behind.get(first, end)),
+        )
+        for first, (symbol, end) in ((each, found[each]) for each in starts)
+    )
+
+
+def _pointers(file: ObjectFile, places: tuple[int, ...]) -> Iterator[int]:
+    """Yield what words of memory hold the addresses of code."""
+    for each in file.relocations:
+        if each.kind == Kind.WORD and file.sections[each.section].use is not Use.NOTES:
+            symbol = file.symbols[each.symbol]
+            if symbol.section is not None and file.sections[symbol.section].use is Use.CODE:
+                yield _value(symbol, file, places) + each.addend
+
+
+def _likely_pointers(segments: Iterable[Segment]) -> Iterator[int]:
+    """Yield the words of data that may be addresses of code, whose relocations are gone."""
+    segments = list(segments)
+    code = [each for each in segments if each.use is Use.CODE]
+    for data in segments:
+        if data.use is Use.DATA and data.address % WORD_BYTES == 0:
+            whole = len(data.octets) // WORD_BYTES * WORD_BYTES
+            for (word,) in struct.iter_unpack("<I", data.octets[:whole]):
+                if word % 2 == 0 and any(each.address <= word < each.end for each in code):
+                    yield word
 
 
 def _apply(each: Relocation, file: ObjectFile, places: tuple[int, ...], contents: list[bytearray]) -> None:

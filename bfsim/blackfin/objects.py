@@ -23,7 +23,8 @@ MACHINE = "EM_BLACKFIN"
 RELOCATABLE, EXECUTABLE = "ET_REL", "ET_EXEC"
 MOST_BYTES = 64 << 20
 """[ours] Of a file, and of what it wants in memory: as much as the largest board has of SDRAM."""
-ANYWHERE = ("SHN_ABS", "SHN_COMMON", "SHN_UNDEF")
+FUNCTIONS = (("STT_NOTYPE", "STB_GLOBAL"), ("STT_NOTYPE", "STB_WEAK"))
+"""Of assembler without .type: names that other files see, if they are of code."""
 
 
 class Use(StrEnum):
@@ -166,7 +167,8 @@ def _symbol(entry: Any, sections: int) -> Symbol:
         value=entry["st_value"],
         nbytes=entry["st_size"],
         section=place if isinstance(place, int) and place < sections else None,
-        is_function=entry["st_info"]["type"] == "STT_FUNC",
+        is_function=(entry["st_info"]["type"], entry["st_info"]["bind"]) in FUNCTIONS
+        or entry["st_info"]["type"] == "STT_FUNC",
         is_defined=place not in ("SHN_UNDEF", "SHN_COMMON"),
     )
 

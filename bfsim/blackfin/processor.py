@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, field
 
 import llvmlite.binding as llvm
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim import machine_code
+from bfsim import machine_code, store
 from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.blocks import Code
 from bfsim.blackfin.decode import InstructionError
@@ -79,6 +80,12 @@ class Processor:
     state: State = field(default_factory=State)
     translated: Translated | None = None
 
+    def prepared(self) -> Translated:
+        """Return the native code of all that can be reached from the entries."""
+        if self.translated is None:
+            self.translated = self._translate()
+        return self.translated
+
     def call(self, address: int) -> Event:
         """Run a subroutine until it returns. Returns the event that it was left for: UNKNOWN_TARGET with PC outside if it returned."""
         self.state["RETS"] = OUTSIDE
@@ -122,8 +129,7 @@ class Processor:
 
     def _translate(self) -> Translated:
         code = Code(self.space.fetch, frozenset(self.entries))
-        text = translate(code, self.timing, fuel=self.fuel is not None)
-        native = machine_code.loaded(machine_code.host_code(text))
+        native = machine_code.loaded(_native(translate(code, self.timing, fuel=self.fuel is not None)))
         counted = counters(code, self.timing)
         return Translated(
             code,
@@ -137,3 +143,13 @@ class Processor:
         assert self.translated
         blocks = self.translated.code.blocks.values()
         return next(each.refused for each in blocks if each.refused and each.end == address)
+
+
+def _native(text: str) -> bytes:
+    """Compile a module, or take its machine code from the cache on disk."""
+    key = hashlib.sha256(f"object code\0{machine_code.host()}\0{text}".encode()).hexdigest()
+    kept = store.load(key)
+    if kept is None:
+        kept = machine_code.host_code(text)
+        store.save(key, kept)
+    return kept

@@ -84,6 +84,8 @@ class Program:
     costs: Costs
     arrays: tuple[str, ...]
     """The kernel's array parameters."""
+    together: bool = False
+    """Whether the calls of a routine are counted together, whatever path they come by."""
     paths: tuple[CallPath, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -151,6 +153,8 @@ class Program:
 
     @cached_property
     def _has_tree(self) -> bool:
+        if self.together:
+            return False
         return self._size(self.symbol).counter <= max(MOST_COUNTERS, len(self.costs.counters))
 
     def _own_size(self, routine: str) -> Offset:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from operator import itemgetter
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +25,32 @@ from bfsim.kernel.profile import GCC_O0, VDSP_O2, CompilerProfile, profile_named
 from bfsim.kernel.types import ArrayType, FloatType, IntType
 from bfsim.kernel.work import PreparedCall, Work, is_single
 
+if TYPE_CHECKING:
+    from bfsim.kernel.objects.compiled import CompiledObject
+
 AS_WRITTEN = GCC_O0
 """A profile that leaves every access and division in the code."""
+
+
+class ObjectCode(Protocol):
+    """The object code of a kernel that is not written in Python. `files`: what it was made of, with their SHA-256."""
+
+    @property
+    def files(self) -> Mapping[Path, str]: ...
+
+    def compiled(self) -> CompiledObject:
+        """Return it ready to run."""
+
+
+class RunnableCall(Protocol):
+    """A kernel bound to its arrays, ready to run."""
+
+    @property
+    def stays_in_l1(self) -> bool:
+        """Whether no access of it can leave L1."""
+
+    def run(self, arguments: Sequence[Any]) -> Work:
+        """Run the kernel now and say what it cost. Of `arguments`, only the numbers are read."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,11 +58,12 @@ class Kernel:
     """A kernel. Calling it runs the compiled code on numpy arrays, and `cost` says the cycles of a call.
 
     `python` is the function as it was written, to be called with lists and ints: elements of numpy arrays would wrap at
-    their own width.
+    their own width. A kernel of another language has none, but `object_code`, which runs as it is, whatever the profile.
     """
 
     function: tree.Function
-    python: Callable[..., Any]
+    python: Callable[..., Any] | None
+    object_code: ObjectCode | None = None
 
     @property
     def name(self) -> str:
@@ -66,16 +92,25 @@ class Kernel:
 
     def compile(
         self, profile: CompilerProfile, *, traced: bool = False, counted: bool = True, checked: bool = True
-    ) -> CompiledKernel:
+    ) -> CompiledKernel | CompiledObject:
         """Compile for `profile`, or take it from the cache on disk. See `jit.compile_kernel`.
 
-        Raises KernelError where the kernel has floats and the profile has no library for them.
+        Raises KernelError where the kernel has floats and the profile has no library for them, and for `traced` object code.
         """
+        if self.object_code:
+            if traced:
+                raise KernelError(
+                    f"{self.name} must get rows in the L1 of its core, for it is object code, whose accesses to other memories "
+                    f"are not followed; copy them there ({self.place})"
+                )
+            return self.object_code.compiled()
         self._refuse_floats(profile)
         return compile_kernel(self.function, profile, traced=traced, counted=counted, checked=checked)
 
     def counters(self, profile: CompilerProfile) -> tuple[Counter, ...]:
         """Return what is counted in a run and what it costs, callees included. Raises KernelError as `compiled`."""
+        if self.object_code:
+            return self.object_code.compiled().program.costs.counters
         self._refuse_floats(profile)
         return costs_of(self.function, profile).counters
 
@@ -88,22 +123,25 @@ class Kernel:
 
     def prepare(
         self,
-        code: CompiledKernel,
+        code: CompiledKernel | CompiledObject,
         arrays: Sequence[NDArray[Any]],
         totals: NDArray[np.int64],
         access_trace: AccessTrace | None = None,
         first_site: int = 0,
-    ) -> PreparedCall:
+    ) -> RunnableCall:
         """Bind `arrays`, in the order of the array parameters. Raises KernelError when one does not fit its type.
 
         `first_site`: what the access trace calls the first site of the program.
         """
-        slots = self._slots()
-        bound = []
         for position, array in zip(self.array_positions, arrays, strict=True):
             self.check_array(position, array)
-            bound.append((slots[position], array))
+        if not isinstance(code, CompiledKernel):
+            from bfsim.kernel.objects.calls import ObjectCall  # most firmware is Python
+
+            return ObjectCall(code, arrays, self.check, totals)
         self._check_overlaps(arrays)
+        slots = self._slots()
+        bound = [(slots[position], each) for position, each in zip(self.array_positions, arrays, strict=True)]
         integers = [(slots[each], each) for each in self.integer_positions]
         floats = [(slots[each], each) for each in self.float_positions]
         result = self.function.result
@@ -215,8 +253,10 @@ class Kernel:
     def sanitize(self, arguments: Sequence[Any]) -> None:
         """Run the kernel as it is written, unoptimised, with every index and divisor checked, and undo what it stored.
 
-        Raises KernelError at the first that is wrong, even where the compiler would leave it out.
+        Raises KernelError at the first that is wrong, even where the compiler would leave it out. Of object code nothing is checked.
         """
+        if self.object_code:
+            return
         arrays = [arguments[each] for each in self.array_positions]
         before = [each.copy() for each in arrays]
         code = compile_kernel(self.function, AS_WRITTEN, counted=False)

@@ -34,6 +34,8 @@ class CompiledKernel:
     program: Program
     failure: Callable[[], KernelError]
     """Returns what a guard has noted in the last call; see `guards`."""
+    functions: tuple[tree.Function, ...]
+    """The kernel and all that it calls."""
 
     @property
     def counters(self) -> tuple[Counter, ...]:
@@ -81,6 +83,7 @@ def compile_kernel(
         ctypes.c_int64.from_address(machine_code.address_of(cell_name(entry))),
         program,
         partial(_failure, function, profile, entry),
+        (*function.callees(), function),
     )
 
 

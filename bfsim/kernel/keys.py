@@ -10,9 +10,6 @@ import hashlib
 from functools import cache
 from pathlib import Path
 
-import llvmlite
-import llvmlite.binding as llvm
-
 from bfsim import machine_code
 from bfsim.kernel import tree
 from bfsim.kernel.profile import CompilerProfile, Inlines
@@ -70,10 +67,4 @@ def compiler() -> str:
 @cache
 def tools() -> str:
     """The compiler's own sources, LLVM and the host's processor."""
-    host = (
-        llvm.get_host_cpu_name(),
-        llvm.get_host_cpu_features().flatten(),
-        llvmlite.__version__,
-        llvm.llvm_version_info,
-    )
-    return f"{compiler()} {host}"
+    return f"{compiler()} {machine_code.host()}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import sys
-from functools import cache, lru_cache
+from functools import cache
 from importlib.resources import files
 from io import BytesIO
 
@@ -50,15 +50,9 @@ _READABLE = {
 def parse_tree(source: Source) -> Tree[Token]:
     """Parse a preprocessed LDF; raise LinkError with place, source line and caret."""
     try:
-        return _parsed(source.expanded)
+        return _grammar().parse(source.expanded, start="start")
     except UnexpectedInput as error:
         raise _syntax_error(source, error) from None
-
-
-@lru_cache(maxsize=16)
-def _parsed(text: str) -> Tree[Token]:
-    """Parse an LDF; the runs of a sweep have few different ones."""
-    return _grammar().parse(text, start="start")
 
 
 def parse_condition(text: str) -> int:

@@ -29,7 +29,7 @@ def verification_report(found: Verification, top: int) -> RenderableType:
         )
     left_out = len(found.kernels) - len(table.rows)
     note = (
-        f"Issue cycles, both cores, without memory and interlocks; {sum(each.played for each in found.kernels):,} calls "
+        f"Issue cycles, both cores, without memory and interlocks; {found.played:,} calls "
         f"of {len(found.kernels)} kernels were played, spread evenly over {found.frames} frames."
         + (f" {left_out} more with --top {len(found.kernels)}." if left_out else "")
     )
@@ -47,8 +47,18 @@ def verdict(found: Verification) -> str:
     )
     return (
         f"GCC {found.compiler}'s code takes {found.measured_cclk / MILLION:.2f} M cycles a frame; the estimate is off by "
-        f"{100 * found.signed_error:+.1f} %, and by {100 * found.error_by_share:.1f} % if no kernel makes up for another. {bits}"
+        f"{100 * found.signed_error:+.1f} %, and by {100 * found.error_by_share:.1f} % if no kernel makes up for another. {bits} {_judged(found)}"
     )
+
+
+def _judged(found: Verification) -> str:
+    """Say what counted the cycles, and whether the translated code and the simulator agree."""
+    if not found.is_judged:
+        return "The cycles are those of its instructions, translated; there was no GNU simulator to compare with."
+    if not found.unequal:
+        return "Translated, it takes the GNU simulator's cycles in every call: difference 0."
+    names = ", ".join(each.kernel for each in found.kernels if each.unequal)
+    return f"Translated, it takes OTHER CYCLES than under the GNU simulator in {found.unequal} calls, of {names}."
 
 
 def as_json(found: Verification) -> str:
@@ -57,5 +67,6 @@ def as_json(found: Verification) -> str:
         "signed_error": found.signed_error,
         "error_by_share": found.error_by_share,
         "different": found.different,
+        "unequal": found.unequal,
     }
     return json.dumps({"schema": SCHEMA, **totals, **to_jsonable_python(found)}, indent=2)

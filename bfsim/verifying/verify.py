@@ -2,59 +2,63 @@
 
 from __future__ import annotations
 
-import tempfile
-from collections.abc import Iterator, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 
 import numpy as np
 
-from bfsim.compiling import ObjectCode, Toolchain
+from bfsim.compiling.object_code import ObjectCode
+from bfsim.compiling.toolchain import Toolchain
 from bfsim.kernel import CompilerProfile, Kernel
 from bfsim.verified import Verification, VerifiedKernel
-from bfsim.verifying.player import PLAYER_OPTIONS, checksum, write_player
-from bfsim.verifying.sample import Argument, Sample, Sampler
+from bfsim.verifying.played import Calls, Played, copied, simulated, translated
+from bfsim.verifying.player import checksum
+from bfsim.verifying.sample import Sample, Sampler
 
 
 def verify(
-    sampler: Sampler, frames: int, profile: CompilerProfile, code: ObjectCode, toolchain: Toolchain
+    sampler: Sampler, frames: int, profile: CompilerProfile, code: ObjectCode, toolchain: Toolchain | None
 ) -> Verification:
-    """Play the calls that `sampler` kept of a run of `frames`, by the kernels here and by their object code under the simulator.
+    """Play the calls that `sampler` kept of a run of `frames`, by the kernels here and by their object code.
 
+    The code is played by its translation and, with a `toolchain` that has one, under the GNU simulator, whose cycles then count.
     Raises ConfigError for what the compiler refuses.
     """
-    kernels = list(sampler.of)
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "kernels.o").write_bytes(code.octets)
-        functions = [each.function for each in kernels]
-        source = write_player(folder, code.header, functions, code.names, _calls(kernels, sampler))
-        built = toolchain.build(folder, ["kernels.o", source], PLAYER_OPTIONS)
-        lines = iter(toolchain.run(built).splitlines())
-    found = [_compared(each, sampler.of[each], frames, profile, lines) for each in kernels]
+    ours = translated(sampler, code)
+    judged = simulated(sampler, code, toolchain) if toolchain and toolchain.runner else None
+    return compared(sampler, frames, profile, code.compiler, ours, judged)
+
+
+def compared(
+    sampler: Sampler, frames: int, profile: CompilerProfile, compiler: str, ours: Calls, judged: Calls | None
+) -> Verification:
+    """Compare the calls of a sample as the kernels make them here with those of their code: translated, and under the simulator."""
+    found = [
+        _compared(each, sampler.of[each], frames, profile, ours[each], judged[each] if judged else None)
+        for each in sampler.of
+    ]
     found.sort(key=lambda each: -each.measured_cclk)
-    return Verification(profile.name, code.compiler, frames, tuple(found))
-
-
-def _calls(kernels: Sequence[Kernel], sampler: Sampler) -> Iterator[tuple[int, tuple[Argument, ...]]]:
-    for number, kernel in enumerate(kernels):
-        for arguments in sampler.of[kernel].kept:
-            yield number, arguments
+    return Verification(profile.name, compiler, frames, judged is not None, tuple(found))
 
 
 def _compared(
-    kernel: Kernel, sample: Sample, frames: int, profile: CompilerProfile, lines: Iterator[str]
+    kernel: Kernel,
+    sample: Sample,
+    frames: int,
+    profile: CompilerProfile,
+    ours: Sequence[Played],
+    judged: Sequence[Played] | None,
 ) -> VerifiedKernel:
-    """Make the same calls here; `lines` are what the program told of its own, one for each call."""
-    estimated = measured = different = 0
-    code = kernel.compile(profile)
-    for arguments in sample.kept:
-        cclk, there = map(int, next(lines).split())
-        copies = [each.copy() if isinstance(each, np.ndarray) else each for each in arguments]
+    """Make the same calls here, and compare."""
+    compiled = kernel.compile(profile)
+    estimated = different = unequal = 0
+    truth = judged or ours
+    for arguments, translation, real in zip(sample.kept, ours, truth, strict=True):
+        copies = copied(arguments)
         arrays = [each for each in copies if isinstance(each, np.ndarray)]
-        work = kernel.prepare(code, arrays, code.new_totals()).run(copies)
+        work = kernel.prepare(compiled, arrays, compiled.new_totals()).run(copies)
         estimated += work.issue_cclk
-        measured += cclk
-        different += checksum(copies, work.value) != there
+        different += {checksum(copies, work.value)} != {translation.checksum, real.checksum}
+        unequal += translation.cclk != real.cclk
     weight = sample.seen / frames / len(sample.kept)
     return VerifiedKernel(
         kernel=kernel.name,
@@ -63,6 +67,7 @@ def _compared(
         calls=sample.seen / frames,
         played=len(sample.kept),
         estimated_cclk=weight * estimated,
-        measured_cclk=weight * measured,
+        measured_cclk=weight * sum(each.cclk for each in truth),
         different=different,
+        unequal=unequal,
     )

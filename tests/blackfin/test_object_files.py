@@ -30,7 +30,7 @@ def test_relocations_are_applied_as_by_the_linker() -> None:
         assert ours.address == theirs.address == BASE[use]
         assert ours.octets == theirs.octets
     assert made.symbols["_behind"] == judge.symbols["_behind"] == judge.routines[-1].address
-    assert [each.name for each in made.routines] == ["_start", "_behind"]
+    assert [each.name for each in made.routines] == ["_start", "_near", "_behind"]
 
 
 def test_memory_that_is_only_zeroed_takes_its_place() -> None:
@@ -65,7 +65,9 @@ def test_a_symbol_that_is_not_there_is_told() -> None:
     """With the names of functions that are."""
     image = link(read_object(octets_of("reaching.o"), "reaching.o"))
     assert image.address_of("_start") == BASE[Use.CODE]
-    with pytest.raises(KernelError, match=r"reaching.o must define _nowhere, but has only _start, _behind"):
+    with pytest.raises(
+        KernelError, match=r"reaching.o must define _nowhere, but has only _start, _near, _behind"
+    ):
         image.address_of("_nowhere")
 
 

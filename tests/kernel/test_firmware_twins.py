@@ -13,7 +13,7 @@ from benchmarks.firmware_twins.measured import measured
 from benchmarks.firmware_twins.recorded import SAMPLES, recorded
 from benchmarks.firmware_twins.twins import TWINS, predict
 from benchmarks.twins.measure import missing_tools, traced
-from bfsim.compiling import blackfin_toolchain
+from bfsim.compiling.toolchain import blackfin_toolchain
 from bfsim.kernel import GCC_O2, tree
 from tinyphoon.stages.hysteresis import group_edges_row
 from tinyphoon.stages.line_scan import segments_row

@@ -123,8 +123,6 @@ class Bus:
         self._memory: Any = memories.arena.view(np.uint32)
         self.words: Any = self._state.data
         """The whole state, word by word."""
-        self.state: NDArray[np.int64] = self._state
-        """The same, for compiled code."""
         self.owners = MemoryOwners(self.words, memories.sdram_end, memories.l2_end)
         self._advance = weave(self._state, self._memory)
         self._plans = 0
@@ -359,19 +357,26 @@ class Bus:
         ):  # fmt: skip
             self.words[job + word] = value
 
-    def play(self, core: int, clock_cclk: int, operations: int) -> simpy.Event:
-        """Let a core do by itself what stands in the state as its `operations`, its clock being at a cycle; return the end.
+    def play(
+        self, core: int, clock_cclk: int, operations: NDArray[np.int64], accesses: NDArray[np.int64]
+    ) -> simpy.Event:
+        """Let a core do `operations` by itself from now on, its clock being at a cycle; return the end.
 
-        They are rows of OPERATION_WORDS as in `bus.state`, at most MAX_OPERATIONS of them; those that are calls refer to its log.
+        `operations`: rows of OPERATION_WORDS as in `bus.state`, at most MAX_OPERATIONS of them. `accesses`: the log that those
+        of their calls refer to, a row of entries and one of sites.
         """
         play = w.PLAYS_AT + core * w.PLAY_WORDS
         copies = self.words[play + w.COPIES]
         self._state[play : play + w.PLAY_WORDS] = 0
         for word, value in (
-            (w.OPERATIONS_END, operations), (w.CLOCK, clock_cclk), (w.ACTS_AT, self._env.tick),
+            (w.OPERATIONS_END, len(operations)), (w.CLOCK, clock_cclk), (w.ACTS_AT, self._env.tick),
             (w.AWAITED, w.NONE), (w.COPIES, copies),
         ):  # fmt: skip
             self.words[play + word] = value
+        first = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS
+        self._state[first : first + operations.size] = operations.reshape(-1)
+        room, count = self.room_of(core)[log.LOG :], accesses.shape[1]
+        room[:count], room[w.LOG_ENTRIES : w.LOG_ENTRIES + count] = accesses
         return self._await(end_of_stretch(core))
 
     def played(self, core: int) -> Played:

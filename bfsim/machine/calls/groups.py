@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,9 @@ from bfsim.kernel.counters import Counter
 from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.jit import CompiledKernel
 from bfsim.machine.bus.state import NO_BUFFER
+
+if TYPE_CHECKING:
+    from bfsim.kernel.objects.compiled import CompiledObject
 
 Label = TypeVar("Label")
 
@@ -40,7 +43,7 @@ class CallGroup:
     kernel: Kernel
     owners: tuple[int, ...]
     fetched: tuple[str, ...]
-    code: CompiledKernel
+    code: CompiledKernel | CompiledObject
     totals: NDArray[np.int64]
     first_event: int
     first_site: int

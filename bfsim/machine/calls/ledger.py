@@ -77,7 +77,7 @@ class Ledger:
 
     def add(self, group: CallGroup) -> None:
         """Note who owns what a new group counts."""
-        names = {each.symbol: each.name for each in (*group.kernel.function.callees(), group.kernel.function)}
+        names = {each.symbol: each.name for each in group.code.functions}
 
         def owner(symbol: str) -> int:
             return self._owners.setdefault(Owner(group.stage, names[symbol], symbol), len(self._owners))

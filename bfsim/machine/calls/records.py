@@ -137,8 +137,7 @@ class CoreRecords:
     def _kernel(self, group: CallGroup, symbol: str) -> _Kernel:
         key = (group.stage, symbol)
         if key not in self._kernels:
-            functions = (*group.kernel.function.callees(), group.kernel.function)
-            self._kernels[key] = _Kernel(next(each for each in functions if each.symbol == symbol))
+            self._kernels[key] = _Kernel(next(each for each in group.code.functions if each.symbol == symbol))
         return self._kernels[key]
 
     def _add_events(self, group: CallGroup, totals: Sequence[int]) -> None:

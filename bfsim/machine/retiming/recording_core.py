@@ -23,7 +23,7 @@ from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.memory_dma import MemoryDma
 from bfsim.machine.memories import Row
 from bfsim.machine.program import FrameSize
-from bfsim.machine.retiming.work import CALL, COPY_COLUMNS, FrameWork, Place, accesses_of
+from bfsim.machine.retiming.work import ACCESS_COLUMNS, CALL, COPY_COLUMNS, FrameWork, Place
 from bfsim.trace import StallReason
 
 STALLED = {StallReason.RING_EMPTY: w.RING_EMPTY, StallReason.RING_FULL: w.RING_FULL}
@@ -309,12 +309,18 @@ class RecordingCore(Core):
 
     def _hand_over(self) -> None:
         """Hand what was noted over, and begin anew."""
+        count = sum(len(entries) for entries, _ in self._accesses)
         entries, sites = (
             np.concatenate([each[side] for each in self._accesses] or [np.zeros(0, np.int64)])
             for side in (0, 1)
         )
-        owners = self._bus.owners.of_all(entries & log.OFFSET_MASK)
-        firsts = np.array(self._bus.owners.first)[owners]
+        offsets = entries & log.OFFSET_MASK
+        owners = self._bus.owners.of_all(offsets)
+        accesses = np.empty((count, ACCESS_COLUMNS), np.int64)
+        accesses.T[:] = (
+            entries >> log.STAMP_BIT, entries >> log.KIND_BIT & log.KIND_MASK, owners,
+            offsets - np.array(self._bus.owners.first)[owners], sites,
+        )  # fmt: skip
         events = [
             np.column_stack([np.full(len(each), number), each, since])
             for number, each, since in self._counted
@@ -323,7 +329,7 @@ class RecordingCore(Core):
             FrameWork(
                 core=self.name,
                 operations=np.array(self._operations, np.int64).reshape(-1, w.OPERATION_WORDS),
-                accesses=accesses_of(entries, sites, owners, firsts),
+                accesses=accesses,
                 events=np.concatenate(events or [np.zeros((0, 3), np.int64)]),
                 copies=np.array(self._new_copies, np.int64).reshape(-1, COPY_COLUMNS),
                 calls=tuple(self._noted),

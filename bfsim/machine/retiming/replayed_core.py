@@ -20,9 +20,8 @@ from bfsim.machine.core.spin_lock import SpinLock
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.machine.program import FrameSize
-from bfsim.machine.retiming.translate import Translator
+from bfsim.machine.retiming.translated import Stretch, translated
 from bfsim.machine.retiming.work import (
-    CALL,
     DESTINATION,
     DESTINATION_BYTE,
     NBYTES,
@@ -61,8 +60,10 @@ class ReplayedCore(Core):
         self._works = works
         self._kernels = kernels
         self._firsts = np.array(bus.owners.first, np.int64)
-        self._translator = Translator(bus, self._number, self._board.chip.events)
+        self._is_outside = self._firsts < int(bus.words[w.L2_END])
+        self._kinds_of_calls: list[int] = []  # of those that were prepared: what running them is to the bus
         self._account_names: list[str] = []
+        self._plans = np.zeros(0, np.int64)
         self._known_calls: dict[str, Callable[..., Any]] = {
             "prepare": self._prepare,
             "stage": self._enter,
@@ -99,35 +100,34 @@ class ReplayedCore(Core):
     def _play_work(self, work: FrameWork) -> Wait:
         self._account_names += work.accounts
         if len(work.copies):
-            self._translator.add_copies(self._planned(work.copies))
-        self._translator.begin(work)
-        calls_at = np.flatnonzero(work.operations[:, 0] == CALL).tolist()
-        events = np.searchsorted(work.events[:, 0], np.arange(len(calls_at) + 1)).tolist()
-        for number, at in enumerate(calls_at):
-            yield from self._stretches(at)
-            _, counters, since = work.events[events[number] : events[number + 1]].T
-            self._calls.events[counters] += since
-            name, arguments = work.calls[number]
-            yield from self._call(name, arguments)
-        yield from self._stretches(len(work.operations))
+            self._plans = np.concatenate([self._plans, self._planned(work.copies)])
+        frame = translated(work, self._firsts, self._is_outside, self._plans, self._board.chip.events)
+        events = np.searchsorted(work.events[:, 0], np.arange(len(work.calls) + 1)).tolist()
+        for number, stretches in enumerate(frame.stretches()):
+            for each in stretches:
+                yield from self._stretch(each)
+            if number < len(work.calls):
+                _, counters, since = work.events[events[number] : events[number + 1]].T
+                self._calls.events[counters] += since
+                name, arguments = work.calls[number]
+                yield from self._call(name, arguments)
 
-    def _stretches(self, end: int) -> Wait:
-        for operations in self._translator.stretches(end):
-            yield self._bus.play(self._number, self._cclk, operations)
-            self._charge_stretch()
-
-    def _charge_stretch(self) -> None:
+    def _stretch(self, stretch: Stretch) -> Wait:
+        runs_at, kernels = stretch.calls
+        if len(runs_at):
+            stretch.operations[runs_at, 0] = np.array(self._kinds_of_calls)[kernels]
+        yield self._bus.play(self._number, self._cclk, stretch.operations, stretch.accesses)
         played = self._bus.played(self._number)
         self._cclk = played.clock_cclk
-        kernels = self._account.kernels
-        kernels.issue_cclk += played.issue_cclk
+        kernels_account = self._account.kernels
+        kernels_account.issue_cclk += played.issue_cclk
         for reason, cclk in zip(
             (StallReason.INTERLOCK, *BUS_STALLS),
             (played.interlocks_cclk, *played.bus_stalls_cclk),
             strict=True,
         ):
             if cclk:
-                kernels.stall(reason, cclk)
+                kernels_account.stall(reason, cclk)
         for number, words in played.accounts.items():
             account = self._account.of(self._account_names[number])
             for word, reason in REASONS.items():
@@ -233,7 +233,7 @@ class ReplayedCore(Core):
                 f"{', '.join(dict.fromkeys(moved_out))} must be in L1, for it was when the run was recorded, and of what lies there "
                 "the accesses are not; record a run with this LDF, which can be played where it is in L1, too"
             )
-        self._translator.add_call(w.RUN if call.stays_in_l1 else w.ACCESS)
+        self._kinds_of_calls.append(w.RUN if call.stays_in_l1 else w.ACCESS)
 
     def _offset(self, place: Place) -> int:
         return int(self._firsts[place.owner]) + place.first

@@ -6,7 +6,7 @@ Memory is named by its owner (`bus.memory_owners`) and the byte there, never by 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +17,13 @@ from bfsim.machine.bus import state as w
 CALL = w.AWAIT + 1
 """An operation besides those of a stretch (`bus.state`): the next call of its firmware, which is played in Python."""
 
+STAMP, KIND, OWNER, BYTE, SITE = range(5)
+"""Columns of an access: cycle in its call, kind (`kernel.access_trace`), owner of the memory, byte there, and the core's site."""
+
 STREAM, SOURCE, SOURCE_BYTE, DESTINATION, DESTINATION_BYTE, NBYTES = range(6)
 """Columns of a copy: the stream of the core, owner of the memory and byte there of each side, and how many bytes."""
 
-OPERATION_COLUMNS, EVENT_COLUMNS, COPY_COLUMNS = w.OPERATION_WORDS, 3, 6
+OPERATION_COLUMNS, ACCESS_COLUMNS, EVENT_COLUMNS, COPY_COLUMNS = w.OPERATION_WORDS, 5, 3, 6
 
 Table = NDArray[np.int64]
 
@@ -34,48 +37,20 @@ class Place:
     nbytes: int
 
 
-class Accesses(NamedTuple):
-    """Accesses, column by column: there may be millions in a frame, of which compiled code makes a log.
-
-    `stamps`: cycle in its call; `places`: kind, and from KIND_BIT down the byte in the memory of its owner (`kernel.access_trace`).
-    Both are steps from the access before, modulo 2^32. `owners`: of the memory; `sites`: of the core.
-    """
-
-    stamps: NDArray[np.uint32]
-    places: NDArray[np.uint32]
-    owners: NDArray[np.uint16]
-    sites: NDArray[np.uint32]
-
-
-ACCESS_COLUMNS = tuple(np.dtype(each) for each in ("<u4", "<u4", "<u2", "<u4"))
-
-
-def accesses_of(entries: Table, sites: Table, owners: Table, firsts: Table) -> Accesses:
-    """Return the columns of a log, the memory of whose entries belongs to `owners`, which begins at `firsts` in the arena."""
-    places = (entries & ((1 << log.STAMP_BIT) - 1)) - firsts
-    return Accesses(
-        _steps(entries >> log.STAMP_BIT), _steps(places), owners.astype(np.uint16), sites.astype(np.uint32)
-    )
-
-
-def _steps(numbers: Table) -> NDArray[np.uint32]:
-    return (np.diff(numbers, prepend=0) & 0xFFFF_FFFF).astype(np.uint32)
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrameWork:
     """What one core did, from its call of `next_frame` to before the next one, or to its end.
 
     `operations`: rows of a kind and four numbers as in `bus.state`, with differences: of ACCESS the last two are how many accesses it
     has, and the number of its call among those prepared; SET_UP has register writes and reads before its account.
-    `accesses`: of all calls one after the other. `events`: rows of a call's number here, a counter of the
+    `accesses`: rows as above, of all calls one after the other. `events`: rows of a call's number here, a counter of the
     core and what that has counted since it was written down last, up to that call. `copies`: rows as above, and `accounts`,
     of those used for the first time. `calls`: name and arguments.
     """
 
     core: str
     operations: Table
-    accesses: Accesses
+    accesses: Table
     events: Table
     copies: Table
     calls: tuple[tuple[str, tuple[Any, ...]], ...]
@@ -83,11 +58,8 @@ class FrameWork:
 
 
 def check(work: FrameWork, owners: int) -> None:
-    """Raise ValueError unless all numbers but those of accesses are such as the bus can play: a file may hold anything.
-
-    `owners`: how many there are. Accesses are checked where they are translated.
-    """
-    operations, accesses = work.operations, len(work.accesses.stamps)
+    """Raise ValueError unless all numbers are such as the bus can play: a file may hold anything. `owners`: how many there are."""
+    operations, accesses = work.operations, work.accesses
     kinds = operations[:, 0]
     counts, accounts = operations[kinds == w.ACCESS, 3], operations[kinds == w.SET_UP, 3]
     awaits = operations[kinds == w.AWAIT]
@@ -98,7 +70,11 @@ def check(work: FrameWork, owners: int) -> None:
         (awaits[:, 1], 1, w.ENDS - 1),
         (awaits[:, 2], w.SETTING_UP, w.RING_FULL),
         (awaits[:, 3], 0, w.MAX_ACCOUNTS - 1),
-        (counts, 0, accesses),
+        (accesses[:, STAMP], 0, (1 << 32) - 1),
+        (accesses[:, KIND], 0, log.FETCH_LINE),
+        (accesses[:, OWNER], 0, owners - 1),
+        (accesses[:, BYTE], 0, log.OFFSET_MASK),
+        (accesses[:, SITE], 0, w.MAX_SITES - 1),
         (work.copies[:, STREAM], 0, 1),
         (work.copies[:, [SOURCE, DESTINATION]], 0, owners - 1),
         (work.copies[:, [SOURCE_BYTE, DESTINATION_BYTE]], 0, log.OFFSET_MASK),
@@ -109,5 +85,5 @@ def check(work: FrameWork, owners: int) -> None:
         len(each) and not (lowest <= each.min() and each.max() <= highest) for each, lowest, highest in ranges
     ):
         raise ValueError("a number is out of its range")
-    if counts.sum() != accesses or (kinds == CALL).sum() != len(work.calls):
+    if counts.sum() != len(accesses) or (kinds == CALL).sum() != len(work.calls):
         raise ValueError("there must be as many accesses and calls as the operations have")

@@ -1,0 +1,104 @@
+"""The code of one file of the user: compiled if it is source, placed in memory, and made a kernel."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from bfsim.blackfin.lines import lines_of
+from bfsim.blackfin.linking import Routine, link
+from bfsim.blackfin.objects import MOST_BYTES, read_object
+from bfsim.blackfin.subroutines import LoadedImage
+from bfsim.compiling.recipes import Recipe, code_of
+from bfsim.compiling.toolchain import blackfin_compiler
+from bfsim.errors import KernelError
+from bfsim.kernel import Kernel, tree
+from bfsim.kernel.objects.compiled import CompiledObject, compiled_object
+from bfsim.kernel.objects.places import Places, object_function
+from bfsim.kernel.objects.sources import source_of
+from bfsim.kernel.types import Number
+
+SOURCES = (".c", ".s", ".S")
+OBJECTS = (".o", ".elf")
+LEVEL = "-O2"
+INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"/]+)"', re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class FileCode:
+    """The object code of one file, as one of its functions has it. `files`: what it was made of, with their SHA-256."""
+
+    files: Mapping[Path, str]
+    function: tree.Function
+    symbol: str
+    loaded: LoadedImage
+    places: Places
+
+    def compiled(self) -> CompiledObject:
+        """Return it ready to run; it is translated once."""
+        return self._compiled
+
+    @cached_property
+    def _compiled(self) -> CompiledObject:
+        return compiled_object(self.function, self.symbol, self.loaded, self.places)
+
+
+def file_kernel(
+    path: Path, name: str, parameters: tuple[tree.Parameter, ...], result: Number | None
+) -> Kernel:
+    """Return the function `name` of a file as a kernel. Raises as `kernel_from`."""
+    files = _files(path)
+    image = link(read_object(_object_file(path, files), path.name))
+    symbol = next((each for each in (f"_{name}", name) if each in image.symbols), f"_{name}")
+    address = image.address_of(symbol)
+    routine = image.routine_at(address) or Routine(symbol, address, address)
+    lines = lines_of(image)
+    source = source_of(image, lines, routine, path.parent)
+    own = re.sub(r"\W", "_", f"{path.name}_{name}", flags=re.ASCII)
+    function = object_function(name, own, source, parameters, result)
+    places = Places(image, lines, {routine.name: function}, folder=path.parent)
+    digests = {path.parent / each: hashlib.sha256(octets).hexdigest() for each, octets in files.items()}
+    return Kernel(function, None, FileCode(digests, function, symbol, LoadedImage(image), places))
+
+
+def _files(path: Path) -> dict[str, bytes]:
+    """Read a file, and what it includes if it is source, by their names."""
+    kinds = (*SOURCES, *OBJECTS)
+    if path.suffix not in kinds:
+        raise KernelError(f"a kernel must come from a file {', '.join(kinds)}, not from {path.name}")
+    found: dict[str, bytes] = {}
+    waiting = [path.name]
+    while waiting:
+        name = waiting.pop()
+        found[name] = octets = _read(path.parent / name)
+        if path.suffix in SOURCES:
+            beside = INCLUDE.findall(octets.decode(errors="replace"))
+            waiting += [each for each in beside if each not in found and (path.parent / each).is_file()]
+    return found
+
+
+def _object_file(path: Path, files: Mapping[str, bytes]) -> bytes:
+    if path.suffix in OBJECTS:
+        return files[path.name]
+    return code_of(recipe_of_source(files, path.name), blackfin_compiler())[0]
+
+
+def recipe_of_source(files: Mapping[str, bytes], name: str) -> Recipe:
+    """Return what the code of the source file `name` is made of; `files`: it and what it includes."""
+    texts = {each: octets.decode(errors="replace") for each, octets in files.items()}
+    return Recipe(texts, (name,), (LEVEL,))
+
+
+def _read(path: Path) -> bytes:
+    try:
+        with path.open("rb") as stream:
+            octets = stream.read(MOST_BYTES + 1)
+    except OSError as error:
+        raise KernelError(f"{path} must be a file that can be read ({error.strerror})") from None
+    if len(octets) > MOST_BYTES:
+        raise KernelError(f"{path} must have at most {MOST_BYTES:,} bytes")
+    return octets

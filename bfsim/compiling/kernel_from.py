@@ -1,0 +1,36 @@
+"""Kernels that are not written in Python: C and assembler, which the Blackfin's compiler translates, and object code of any."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from bfsim.errors import KernelError
+from bfsim.kernel import Kernel, tree
+from bfsim.kernel.types import ArrayType, FloatType, IntType, Number
+
+NUMBERS = (IntType, FloatType)
+
+
+def kernel_from(
+    file: str | Path, name: str, /, *, result: Number | None = None, **parameters: Number | ArrayType
+) -> Kernel:
+    """Return the function `name` of a file as a kernel: `kernel_from("sobel.c", "sobel_row", line=u8[:], out=u8[:], n=i32)`.
+
+    `file` is C (.c), assembler (.s), an object file (.o) or a program (.elf), beside the Python file that calls this. C and assembler
+    are compiled by bfin-elf-gcc -O2; where it is not on the PATH, code must be kept from before. `parameters` are declared in the
+    function's order, as those of a `@kernel` are; an array is a pointer to its first element. `result`: the type of what it returns.
+
+    Raises KernelError for a file that is no code for the Blackfin or has no such function, and ConfigError where there is no
+    compiler, or with what it says.
+    """
+    for parameter, kind in parameters.items():
+        if not isinstance(kind, (*NUMBERS, ArrayType)):
+            raise KernelError(f"{parameter} of {name} must have a type such as i32 or u8[:], not {kind!r}")
+    if result is not None and not isinstance(result, NUMBERS):
+        raise KernelError(f"the result of {name} must have a type such as i32, not {result!r}")
+    from bfsim.compiling.file_code import file_kernel  # firmware that is all Python needs none of it
+
+    beside = Path(sys._getframe(1).f_globals.get("__file__", "")).parent  # noqa: SLF001
+    declared = tuple(tree.Parameter(each, kind) for each, kind in parameters.items())
+    return file_kernel(beside / file, name, declared, result)

@@ -1,0 +1,35 @@
+"""The object code of Python kernels in an address space, ready to be called kernel by kernel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from bfsim.blackfin.lines import lines_of
+from bfsim.blackfin.linking import link
+from bfsim.blackfin.objects import read_object
+from bfsim.blackfin.subroutines import LoadedImage
+from bfsim.compiling.object_code import ObjectCode
+from bfsim.kernel import tree
+from bfsim.kernel.objects.compiled import CompiledObject, compiled_object
+from bfsim.kernel.objects.places import Places
+
+
+@dataclass
+class LoadedCode:
+    """Kernels by their object code. Each is translated when it is asked for, and once."""
+
+    code: ObjectCode
+    _compiled: dict[tree.Function, CompiledObject] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        image = link(read_object(self.code.octets, "kernels.o"))
+        kernels = {self.code.symbol_of(each): each for each in self.code.names}
+        of_file = {each.symbol: each for each in self.code.names}
+        self._loaded, self._places = LoadedImage(image), Places(image, lines_of(image), kernels, of_file)
+
+    def compiled(self, function: tree.Function) -> CompiledObject:
+        """Return a kernel ready to run. Raises KernelError if the code has no function for it, as for helpers that are inlined."""
+        if function not in self._compiled:
+            symbol = self.code.symbol_of(function)
+            self._compiled[function] = compiled_object(function, symbol, self._loaded, self._places)
+        return self._compiled[function]

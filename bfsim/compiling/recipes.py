@@ -1,0 +1,74 @@
+"""What object code is made of, and the code: kept under a digest of that, or compiled.
+
+Code is kept in the user's cache. That of the built-in firmware, and of the examples of the documentation, comes with bfsim, so that it
+is there without a compiler (`benchmarks/toolchain/keep.py` makes it).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import tempfile
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
+from bfsim import store
+from bfsim.compiling.toolchain import ADVICE, CPU, GCC, Compiler, Toolchain
+from bfsim.errors import ConfigError
+
+OPTIONS = ("-std=gnu99", "-g1")
+"""-g1: lines, but no word of variables. It changes no code."""
+KEPT_COMPILER = Compiler("bfin-elf", "12.2.0", CPU)
+"""Whose code comes with bfsim, and is looked for where no compiler is at hand."""
+KEPT = "kept"
+
+
+@dataclass(frozen=True, slots=True)
+class Recipe:
+    """Files by name, which of them are compiled, and what the compiler is told beside `OPTIONS`."""
+
+    texts: Mapping[str, str]
+    sources: tuple[str, ...]
+    options: tuple[str, ...]
+
+    def digest(self, compiler: Compiler) -> str:
+        """Return the name under which the code is kept that a compiler makes of it."""
+        made_by = repr(("object code", compiler, *OPTIONS, *self.options, self.sources))
+        parts = [made_by, *(part for file in self.texts.items() for part in file)]
+        return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+    def made(self, toolchain: Toolchain) -> bytes:
+        """Compile it now. Raises ConfigError with what the compiler says."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            for file, text in self.texts.items():
+                (folder / file).write_text(text, encoding="utf-8")
+            return toolchain.build_object(folder, self.sources, (*OPTIONS, *self.options)).read_bytes()
+
+
+def code_of(recipe: Recipe, toolchain: Toolchain | None) -> tuple[bytes, str]:
+    """Return the object file that is kept, or made now, and the version of its compiler.
+
+    Raises ConfigError where there is neither kept code nor a compiler, and with what the compiler says if it refuses.
+    """
+    compiler = toolchain.identity if toolchain else KEPT_COMPILER
+    name = recipe.digest(compiler)
+    octets = store.load(name) or shipped(name)
+    if octets is None:
+        if toolchain is None:
+            first, *others = recipe.sources
+            what = f"{first} and {len(others)} more files" if others else first
+            raise ConfigError(
+                f"{GCC} must be on the PATH, for of {what} no code of GCC {compiler.version} is kept; {ADVICE}"
+            )
+        octets = recipe.made(toolchain)
+        store.save(name, octets)
+    return octets, compiler.version
+
+
+def shipped(name: str) -> bytes | None:
+    """Return the object file that comes with bfsim under a digest, or None."""
+    kept = files(__package__) / KEPT / name
+    return zlib.decompress(kept.read_bytes()) if kept.is_file() else None

@@ -1,0 +1,56 @@
+"""A kernel's object code, ready to run: translated to native code, and counted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.blackfin.subroutines import LoadedImage, Subroutine
+from bfsim.blackfin.timing import GNU, Timing
+from bfsim.kernel import tree
+from bfsim.kernel.call_paths import Program
+from bfsim.kernel.costs import Costs
+from bfsim.kernel.counters import Counter
+from bfsim.kernel.objects.counted import calls, counters
+from bfsim.kernel.objects.places import Places
+
+
+@dataclass(frozen=True)
+class CompiledObject:
+    """A kernel's object code. `functions`: the kernels, and functions of libraries, that its instructions are of."""
+
+    function: tree.Function
+    subroutine: Subroutine
+    program: Program
+    functions: tuple[tree.Function, ...]
+    order: NDArray[np.int64]
+    """Of each counter of the program, the number of the translated code's counter."""
+
+    @property
+    def counters(self) -> tuple[Counter, ...]:
+        """What is counted, in the order of the totals."""
+        return self.program.counters
+
+    def new_totals(self) -> NDArray[np.int64]:
+        """Return zeros for the events of each counter."""
+        return np.zeros(max(1, len(self.counters)), np.int64)
+
+
+def compiled_object(
+    function: tree.Function, symbol: str, loaded: LoadedImage, places: Places, timing: Timing = GNU
+) -> CompiledObject:
+    """Translate the function that `symbol` names in an image. Raises KernelError where there is none."""
+    subroutine = loaded.subroutine(symbol, timing)
+    translated = subroutine.translated
+    found = counters(translated.counters, places, timing)
+    reached = calls(translated.code, places, subroutine.address)
+    costs = Costs(tuple(found), reached)
+    program = Program(function.symbol, costs, function.array_names, together=True)
+    numbers = {id(each): number for number, each in enumerate(found)}
+    order = np.array([numbers[id(each)] for each in program.counters], np.int64)
+    used = (places.functions[each] for each in reached)
+    lines = {line.routine for each in found for line, _, _ in each.line_cclk} - set(reached)
+    functions = (*used, *(places.functions[each] for each in sorted(lines)))
+    return CompiledObject(function, subroutine, program, functions, order)

@@ -1,0 +1,52 @@
+"""What is counted of object code: its blocks and taken branches, by source line and class of operation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from bfsim.blackfin import translate
+from bfsim.blackfin.blocks import CALLS, DIRECT, Code, does
+from bfsim.blackfin.timing import Timing
+from bfsim.kernel.call_paths import RoutineCall
+from bfsim.kernel.counters import Counter
+from bfsim.kernel.ir_text import Entrance, SourceLine
+from bfsim.kernel.lowering.charges import Charge, instead
+from bfsim.kernel.objects.operations import TAKEN, operation_of
+from bfsim.kernel.objects.places import Places
+
+
+def counters(counted: Iterable[translate.Counter], places: Places, timing: Timing) -> list[Counter]:
+    """Return a counter of a kernel for each of the translated code, in the same order."""
+    return [_counter(each, places, timing) for each in counted]
+
+
+def _counter(each: translate.Counter, places: Places, timing: Timing) -> Counter:
+    block = each.block
+    charges = [
+        Charge(operation_of(one), places.line_of(one.address), timing.of(one)) for one in block.instructions
+    ]
+    routine, label = places.function_at(block.start).symbol, f"{block.start:08x}"
+    if each.taken:
+        last = charges[-1]
+        taken = Charge(TAKEN[last.op], last.line, timing.taken(block.instructions[-1]))
+        return Counter(routine, label, "taken", None, instead((taken,), (last,)), ())
+    begins = places.entered_at(block.start)
+    enters = (Entrance(begins, SourceLine(begins, 0)),) if begins else ()
+    return Counter(routine, label, None, None, tuple(charges), (), block.end - block.start, enters=enters)
+
+
+def calls(code: Code, places: Places, entry: int) -> Mapping[str, tuple[RoutineCall, ...]]:
+    """Return which function calls, or goes on in, which others; those that only computed jumps lead to are called by the first."""
+    first = places.function_at(entry).symbol
+    found: dict[str, dict[str, None]] = {first: {}}
+    for block in code.blocks.values():
+        caller = places.function_at(block.start).symbol
+        found.setdefault(caller, {})
+        last = block.instructions[-1] if block.instructions else None
+        if last and does(last) in DIRECT | CALLS and "t" in last.operations[0].operands:
+            callee = places.function_at(int(last.operations[0].operands["t"])).symbol
+            if callee != caller:
+                found[caller][callee] = None
+    called = {callee for callees in found.values() for callee in callees}
+    found[first] |= {each: None for each in found if each not in called and each != first}
+    return {caller: tuple(RoutineCall(each, ()) for each in callees) for caller, callees in found.items()}

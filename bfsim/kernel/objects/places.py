@@ -1,0 +1,86 @@
+"""Which kernel, and which line of it, the instructions of an image are of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from bfsim.blackfin.lines import LineTable
+from bfsim.blackfin.linking import Image, Routine
+from bfsim.kernel import tree
+from bfsim.kernel.ir_text import SourceLine
+from bfsim.kernel.objects.sources import Source, source_of
+from bfsim.kernel.types import Number
+
+
+@dataclass
+class Places:
+    """The lines of an image.
+
+    `kernels`: those that are functions in it, by their symbols there. `of_file`: those whose lines the debugging information calls
+    lines of such a file. `folder`: where other source files are.
+    """
+
+    image: Image
+    lines: LineTable
+    kernels: Mapping[str, tree.Function]
+    of_file: Mapping[str, tree.Function] = field(default_factory=dict)
+    folder: Path | None = None
+    functions: dict[str, tree.Function] = field(default_factory=dict)
+    """All that instructions were found to be of, by their own symbols."""
+    _sources: dict[str, tuple[tree.Function, Source]] = field(default_factory=dict)
+
+    def line_of(self, address: int) -> SourceLine:
+        """Return the line of the instruction at an address."""
+        line = self.lines.at(address)
+        if line is not None and line.file in self.of_file:
+            function = self.of_file[line.file]
+            self.functions[function.symbol] = function
+            return SourceLine(function.symbol, line.line)
+        function, source = self._source(self._routine(address))
+        return SourceLine(function.symbol, source.lines.get(address, 1))
+
+    def function_at(self, address: int) -> tree.Function:
+        """Return the kernel, or other function, that has the code at an address."""
+        return self.functions[self.line_of(self._routine(address).address).routine]
+
+    def entered_at(self, address: int) -> str | None:
+        """Return the symbol of what begins at an address."""
+        routine = self._routine(address)
+        return self.function_at(address).symbol if routine.address == address else None
+
+    def _routine(self, address: int) -> Routine:
+        return self.image.routine_at(address) or Routine(f"code_{address:08x}", address, address)
+
+    def _source(self, routine: Routine) -> tuple[tree.Function, Source]:
+        if routine.name not in self._sources:
+            source = source_of(self.image, self.lines, routine, self.folder)
+            known = self.kernels.get(routine.name)
+            function = known or object_function(routine.name.removeprefix("_"), routine.name, source)
+            self.functions[function.symbol] = function
+            self._sources[routine.name] = function, source
+        return self._sources[routine.name]
+
+
+def object_function(
+    name: str,
+    symbol: str,
+    source: Source,
+    parameters: tuple[tree.Parameter, ...] = (),
+    result: Number | None = None,
+) -> tree.Function:
+    """Return a function of which there is object code, and no Python."""
+    return tree.Function(
+        name=name,
+        symbol=symbol,
+        file=source.file,
+        first_line=source.first_line,
+        source=source.text,
+        names={},
+        is_static=False,
+        parameters=parameters,
+        result=result,
+        locals=(),
+        body=(),
+    )

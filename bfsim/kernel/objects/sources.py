@@ -1,0 +1,79 @@
+"""The source of a function in an image: the lines of a file that it was made of, or where none is known, its instructions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from bfsim.blackfin.decode import InstructionError, disassemble
+from bfsim.blackfin.lines import LineTable
+from bfsim.blackfin.linking import Image, Routine
+from bfsim.blackfin.text import text
+
+MOST_BYTES = 1 << 20
+"""[ours] Of a source file that is shown."""
+LONGEST_HEAD = 10
+"""[ours] Lines of a function's name and parameters."""
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Text of a function from line `first_line` of `file`. `lines`: of each instruction its line, counted from 1 in the text."""
+
+    file: str
+    first_line: int
+    text: str
+    lines: Mapping[int, int]
+
+
+def source_of(image: Image, table: LineTable, routine: Routine, folder: Path | None) -> Source:
+    """Return the source of a function. Files are looked for in `folder`, by their names without folders."""
+    first = table.at(routine.address)
+    rows = file_lines(folder / Path(first.file).name) if folder and first else None
+    if folder is None or first is None or not rows:
+        return _disassembly(image, routine)
+    lines, at = dict[int, int](), first.line
+    for address in range(routine.address, routine.end, 2):
+        line = table.at(address)
+        if line and line.file == first.file and 0 < line.line <= len(rows):
+            at = line.line
+        lines[address] = at
+    begin, end = min(lines.values(), default=1), max(lines.values(), default=1)
+    begin = _head(rows, begin, routine.name.removeprefix("_"))
+    return Source(
+        str(folder / Path(first.file).name),
+        begin,
+        "\n".join(rows[begin - 1 : end]),
+        {address: line - begin + 1 for address, line in lines.items()},
+    )
+
+
+def file_lines(path: Path) -> list[str] | None:
+    """Return the lines of a source file, or None if it cannot be shown."""
+    try:
+        with path.open("rb") as file:
+            octets = file.read(MOST_BYTES + 1)
+    except OSError:
+        return None
+    return None if len(octets) > MOST_BYTES else octets.decode(errors="replace").splitlines()
+
+
+def _head(rows: list[str], begin: int, name: str) -> int:
+    """The line above `begin`, not far from it, that names a function; debugging information points to what is behind its name."""
+    above = range(begin, max(0, begin - LONGEST_HEAD), -1)
+    return next((each for each in above if re.search(rf"\b_?{re.escape(name)}\b", rows[each - 1])), begin)
+
+
+def _disassembly(image: Image, routine: Routine) -> Source:
+    rows, lines = [], {}
+    try:
+        for number, each in enumerate(
+            disassemble(image.octets_of(routine.address, routine.end), routine.address), 1
+        ):
+            rows.append(f"{each.address:08x}  {text(each)}")
+            lines[each.address] = number
+    except InstructionError:
+        pass  # constants between functions are no instructions
+    return Source(image.name, 1, "\n".join(rows) or routine.name, lines)

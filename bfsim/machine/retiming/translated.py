@@ -1,0 +1,104 @@
+"""The work of a frame as the bus of another board plays it: operations, stretch by stretch, and the accesses that they refer to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.chip.spec import EventSpec
+from bfsim.kernel import access_trace as log
+from bfsim.machine.bus import state as w
+from bfsim.machine.retiming.work import BYTE, CALL, KIND, OWNER, SITE, STAMP, FrameWork, Table
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Operations up to the next call of firmware. `calls`: where those are that run a kernel which may have accesses, and its number.
+
+    `accesses`: the log of these, a row of entries and one of sites.
+    """
+
+    operations: Table
+    calls: tuple[NDArray[np.int64], NDArray[np.int64]]
+    accesses: Table
+
+
+@dataclass(frozen=True, slots=True)
+class Translated:
+    """A frame. `calls_at`: the numbers of the operations that are calls of its firmware."""
+
+    operations: Table
+    calls_at: list[int]
+    log: Table
+    _log_ends: NDArray[np.int64]  # of each operation, in the log
+    _runs_at: NDArray[np.int64]  # the operations that run a kernel which may have accesses,
+    _kernels: NDArray[np.int64]  # and which one each of them runs
+
+    def stretches(self) -> Iterator[list[Stretch]]:
+        """Yield what is done before each call of firmware, and after the last one; most often that is one stretch."""
+        begin = 0
+        for end in (*self.calls_at, len(self.operations)):
+            firsts = range(begin, end, w.MAX_OPERATIONS)
+            yield [self._stretch(first, min(first + w.MAX_OPERATIONS, end)) for first in firsts]
+            begin = end + 1
+
+    def _stretch(self, first: int, last: int) -> Stretch:
+        log_first = int(self._log_ends[first - 1]) if first else 0
+        runs = slice(*np.searchsorted(self._runs_at, (first, last)))
+        runs_at = self._runs_at[runs] - first
+        operations = self.operations[first:last]
+        operations[runs_at, 3:5] -= log_first
+        return Stretch(
+            operations,
+            (runs_at, self._kernels[runs]),
+            self.log[:, log_first : int(self._log_ends[last - 1])],
+        )
+
+
+def translated(
+    work: FrameWork,
+    firsts: NDArray[np.int64],
+    outside: NDArray[np.bool_],
+    plans: NDArray[np.int64],
+    events: EventSpec,
+) -> Translated:
+    """Return the operations of a frame for a board.
+
+    `firsts`: where in the arena the memory of each owner begins, and `outside`: whether it is outside of L1. `plans`: of the copies,
+    in the order of their first use. `events`: what the board's cores take for registers.
+    """
+    operations, kinds = np.ascontiguousarray(work.operations), work.operations[:, 0]
+    accesses = work.accesses.T
+    behind = np.arange(accesses.shape[1] + 1)
+    kept = outside[accesses[OWNER]]
+    if not kept.all():
+        behind = np.concatenate([[0], np.cumsum(kept)])
+        accesses = accesses[:, kept]
+    runs = np.flatnonzero(kinds == w.ACCESS)
+    counts = np.zeros(len(kinds), np.int64)
+    counts[runs] = work.operations[runs, 3]
+    ends = np.cumsum(counts)
+    log_ends = behind[ends]
+    operations[runs, 3], operations[runs, 4] = behind[ends[runs] - counts[runs]], log_ends[runs]
+    setups = np.flatnonzero(kinds == w.SET_UP)
+    _, writes, reads, accounts, _ = work.operations[setups].T
+    operations[setups, 1] = writes * events.mmr_write_cclk + reads * events.mmr_read_cclk
+    operations[setups, 2] = accounts
+    copies = np.flatnonzero(kinds == w.COPY)
+    operations[copies, 1] = plans[work.operations[copies, 1]]
+    log_of_frame = np.stack([firsts[accesses[OWNER]], accesses[SITE]])
+    entries = log_of_frame[0]
+    entries += accesses[BYTE]
+    for column, bit in ((STAMP, log.STAMP_BIT), (KIND, log.KIND_BIT)):
+        entries |= accesses[column] << bit
+    return Translated(
+        operations,
+        np.flatnonzero(kinds == CALL).tolist(),
+        log_of_frame,
+        log_ends,
+        runs,
+        work.operations[runs, 4],
+    )

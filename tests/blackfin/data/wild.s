@@ -1,0 +1,6 @@
+.text
+.global _wild
+_wild:
+  P0 = R0;
+  [P0] = R0;
+  RTS;

@@ -1,0 +1,155 @@
+"""Kernels from C, assembler and object code: what they compute, count and cost, and what is refused. `blackfin/data/make` makes files."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bfsim.api import Kernel, f32, i32, kernel_from, u8
+from bfsim.compiling import file_code
+from bfsim.errors import ConfigError, KernelError
+from bfsim.explain import explain
+from bfsim.kernel import GCC_O2
+
+DATA = Path(__file__).parent / "blackfin" / "data"
+ROW = np.arange(0, 96, 3, dtype=np.uint8)
+
+
+def sums(folder: Path = DATA, file: str = "sums.o") -> Kernel:
+    """The function of `sums.c`: of each place, the weighted sum of four elements from there on."""
+    return kernel_from(folder / file, "sums", row=u8[:], out=i32[:], n=i32, first=i32, result=i32)
+
+
+def expected(row: np.ndarray) -> np.ndarray:
+    """What it leaves in `out` from the element 2 on."""
+    weights = (1, -2, 3, -4)
+    return np.array(
+        [
+            sum(weights[(x + k) % 4] * int(row[x + k]) for k in range(4)) if 2 <= x <= len(row) - 4 else 0
+            for x in range(len(row))
+        ]
+    )
+
+
+def test_object_code_computes_on_arrays() -> None:
+    """Five arguments, two of them on the stack; a static function of the file is called; the result comes back."""
+    out = np.zeros(len(ROW), np.int32)
+    assert sums()(ROW, out, len(ROW), 2) == expected(ROW).sum()
+    assert (out == expected(ROW)).all()
+
+
+def test_arrays_that_overlap_do_so_in_the_blackfin_s_memory() -> None:
+    """`out` lies over the row: what is stored is read again."""
+    octets = np.zeros(256, np.uint8)
+    octets[:32] = ROW
+    out = octets.view(np.int32)
+    apart = np.zeros(32, np.int32)
+    sums()(octets[:32].copy(), apart, 32, 8)
+    sums()(octets[:32], out[:32], 32, 8)
+    assert out[8] == apart[8]  # beyond the row: stored at 32, behind all that is read
+    before = octets.copy()
+    sums()(octets[:32], out[:32], 32, 0)
+    assert (octets != before).any()
+
+
+def test_the_counters_add_up_to_the_cycles_of_a_call() -> None:
+    """Each counter's events times its cycles; calls of both functions; the lines are those of `sums.c`."""
+    kernel = sums()
+    code = kernel.compile(GCC_O2)
+    totals = code.new_totals()
+    work = kernel.prepare(code, [ROW, np.zeros(32, np.int32)], totals).run([ROW, None, 32, 2])
+    pairs = list(zip(totals.tolist(), code.counters, strict=True))
+    assert sum(events * each.issue_cclk for events, each in pairs) == work.issue_cclk
+    calls = {one.symbol: events for events, each in pairs for one in each.enters}
+    assert calls == {"sums_o_sums": 1, "_weighted": 27}
+    source = (DATA / "sums.c").read_text().splitlines()
+    for each in code.functions:
+        text = each.source.splitlines()
+        assert text == source[each.first_line - 1 : each.first_line - 1 + len(text)]
+        lines = {
+            line.line for one in code.counters for line, _, _ in one.line_cclk if line.routine == each.symbol
+        }
+        assert lines <= set(range(1, len(text) + 1))
+
+
+def test_a_kernel_without_lines_is_shown_by_its_instructions() -> None:
+    """`reaching.o` has no debugging information: its source is what objdump prints."""
+    kernel = kernel_from(DATA / "reaching.o", "near")
+    assert kernel.function.source.split("\n") == ["ffa0001a  NOP", "ffa0001c  RTS"]
+    assert kernel.cost() == 6
+
+
+def test_code_without_a_name_is_refused() -> None:
+    """With the functions that there are."""
+    with pytest.raises(KernelError, match="sums.o must define _nothing, but has only _weighted, _sums"):
+        kernel_from(DATA / "sums.o", "nothing")
+
+
+@pytest.mark.parametrize(
+    ("file", "what", "why"),
+    [
+        ("sums.txt", {}, r"must come from a file .c, .s, .S, .o, .elf, not from sums.txt"),
+        ("nowhere.o", {}, r"nowhere.o must be a file that can be read \(No such file or directory\)"),
+        ("sums.o", {"row": "u8"}, r"row of sums must have a type such as i32 or u8\[:\], not 'u8'"),
+        ("sums.o", {"result": u8[:]}, r"the result of sums must have a type such as i32"),
+    ],
+)
+def test_what_is_no_kernel_is_refused(file: str, what: dict, why: str) -> None:
+    """Other files, files that are not there, types that are none."""
+    with pytest.raises(KernelError, match=why):
+        kernel_from(DATA / file, "sums", **what)
+
+
+def test_arguments_are_checked_as_those_of_other_kernels() -> None:
+    """Numbers by their types, arrays by their elements."""
+    kernel = sums()
+    out = np.zeros(32, np.int32)
+    with pytest.raises(KernelError, match="n must be an int in"):
+        kernel(ROW, out, 1 << 40, 2)
+    with pytest.raises(KernelError, match="out must be one contiguous row of int32"):
+        kernel(ROW, ROW, 32, 2)
+
+
+def test_a_source_needs_a_compiler_or_kept_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What would be compiled by what, and how one gets it."""
+    monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.setattr(file_code, "blackfin_compiler", lambda: None)
+    (tmp_path / "sums.c").write_text("int sums(void) { return 1; }")
+    with pytest.raises(
+        ConfigError, match="bfin-elf-gcc must be on the PATH, for of sums.c no code of GCC 12.2.0 is kept"
+    ):
+        sums(tmp_path, "sums.c")
+
+
+@pytest.mark.toolchain
+@pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
+def test_c_is_compiled_with_what_it_includes(tmp_path: Path) -> None:
+    """A changed header is another code, a float comes back as one, and a library's function is shown beside the own ones."""
+    (tmp_path / "half.c").write_text('#include "part.h"\nfloat half(float a) { return PART * a; }\n')
+    for part in (0.5, 0.25):
+        (tmp_path / "part.h").write_text(f"#define PART {part}f\n")
+        kernel = kernel_from(tmp_path / "half.c", "half", a=f32, result=f32)
+        assert kernel(6.0) == 6 * part
+    assert {"half", "__mulsf3"} <= {each.name for each in kernel.compile(GCC_O2).functions}
+
+
+def test_explain_shows_the_lines_of_c() -> None:
+    """Each line with its operations; the text is the file's."""
+    shown = explain(sums(), GCC_O2)
+    assert shown.kernel == "sums"
+    assert shown.file.endswith("sums.c")
+    assert shown.lines[0].text.startswith("int32_t sums(")
+    assert {each.line for each in shown.lines if each.operations} >= {17, 18, 21}
+
+
+def test_a_wild_access_is_refused() -> None:
+    """It is no access of the process, and the kernel can be called again."""
+    kernel = kernel_from(DATA / "wild.o", "wild", at=i32)
+    with pytest.raises(
+        KernelError, match="_wild failed: code must access memory where there is some, .* 0x40000000"
+    ):
+        kernel(0x40000000)
+    assert kernel.cost(0x20000000) == 7
