@@ -1,4 +1,4 @@
-"""What it costs to look: a profile, a trace and a flame graph beside the plain run, in processor time and memory.
+"""What it costs to look: a profile, a trace, a flame graph, pictures and a page beside the plain run, in processor time and memory.
 
     python benchmarks/cost_of_looking.py
     python benchmarks/cost_of_looking.py --frames 8 --pairs 9
@@ -90,6 +90,8 @@ def main() -> None:
             "profile": (["profile", *what], HERE),
             "run --trace": (["run", *what, "--trace", f"{folder}/run.pftrace"], HERE),
             "run --flame": (["run", *what, "--flame", f"{folder}/run.speedscope.json"], HERE),
+            "run --overlay": (["run", *what, "--overlay", f"{folder}/overlay"], HERE),
+            "run --html": (["run", *what, "--html", f"{folder}/run.html"], HERE),
         }
         if given.against:
             cases = {"run": plain}

@@ -9,8 +9,9 @@ from typing import Any
 
 from bfsim import shipped
 from bfsim.errors import ConfigError, cut, shown
+from bfsim.identifying import recording_digest
 from bfsim.report.check.baseline import Case, Configuration, MeasuredOn, measured_on
-from bfsim.run import Feed, Fidelity, identified, recording_digest
+from bfsim.run import Feed, Fidelity, identified
 
 
 def arguments_of(configuration: Configuration, folder: Path) -> dict[str, Any]:
@@ -34,7 +35,7 @@ def arguments_of(configuration: Configuration, folder: Path) -> dict[str, Any]:
     return arguments
 
 
-def configuration_of(given: Mapping[str, Any], folder: Path) -> Configuration:
+def configuration_given(given: Mapping[str, Any], folder: Path) -> Configuration:
     """Return what options say, as a baseline file in `folder` has it; `given` are those that are not their defaults."""
     plain = dict(given)
     for key in ("recording", "script"):

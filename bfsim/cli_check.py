@@ -104,13 +104,13 @@ def check(
 
 def _given(what: dict[str, Any], folder: Path) -> Configuration | None:
     """Return what the command line says to run, None if nothing."""
-    from bfsim.checking import configuration_of
+    from bfsim.checking import configuration_given
 
     ctx = click.get_current_context()
     words = {each for each in what if ctx.get_parameter_source(each) is ParameterSource.COMMANDLINE}
     defaults = {each.name: each.default for each in ctx.command.params}
     is_given = {each: what[each] for each in words if what[each] != defaults[each]}
-    return configuration_of(is_given, folder) if words else None
+    return configuration_given(is_given, folder) if words else None
 
 
 def _cases(path: Path, given: Configuration | None, name: str | None, *, update: bool) -> list[Case]:

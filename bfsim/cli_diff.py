@@ -81,10 +81,10 @@ def diff(before: str, after: str, top: int, as_json: bool, markdown: bool, html:
         results = [_result(stack, *each) for each in zip(sides, pictures, strict=True)]
         difference = _difference(*results)
         if html:
-            from bfsim.report.html.diff_page import DiffPage, Side
+            from bfsim.report.html.diff_page import DiffPage, PagedSide
             from bfsim.report.save import write_text
 
-            named = (Side(*each) for each in zip((before, after), pictures, strict=True))
+            named = (PagedSide(*each) for each in zip((before, after), pictures, strict=True))
             write_text(html, DiffPage(difference, *named).chunks())
     if as_json:
         from bfsim.report.diff.as_json import diff_json

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from bfsim.errors import ConfigError, WorkError
+from bfsim.identifying import DigestedFrames
 from bfsim.kernel import Kernel
 from bfsim.loading import LoadedFirmware, kernels_of
 from bfsim.machine.board import Board, Fidelity
@@ -31,16 +32,6 @@ SAME = {
     "llvm_version": "version of LLVM",
 }
 """Fields of an identity in which a recorded run and the one that it is played for must be the same, in words."""
-
-
-class DigestedFrames(Protocol):
-    """The frames of a recording as they are read. `expect` has them compared with those that were read before."""
-
-    digests: list[str]
-    total: int
-
-    def expect(self, digests: Sequence[str]) -> None:
-        """Compare each frame from now on."""
 
 
 @contextmanager

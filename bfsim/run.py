@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -13,31 +11,31 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, ParamSpec, TypeVar
 
-import llvmlite.binding as llvm
-
-from bfsim import __version__, shipped
+from bfsim import shipped
+from bfsim.assumptions import assumed_clocks, assumed_geometry, geometry_in_words
 from bfsim.chip.spec import BoardSpec
 from bfsim.device_script import read_script
-from bfsim.errors import ConfigError, FirmwareError, RecordingError, WorkError, shown
+from bfsim.errors import ConfigError, FirmwareError, RecordingError, shown
 from bfsim.given import given_firmware
-from bfsim.hardware import Found, find_board, find_profile
-from bfsim.kernel import VDSP_O2, CompilerProfile
+from bfsim.hardware import find_board, find_profile
+from bfsim.identifying import DigestedFrames, identity_of, recording_digest, written
+from bfsim.kernel import VDSP_O2
 from bfsim.linker import LinkerScript, LinkMap
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Fidelity, Outcome, require_cores
 from bfsim.machine.bus.ahead import compiled_ahead
 from bfsim.machine.calls.call_cache import BeforeCall, sanitized
 from bfsim.machine.cameras.capture import Feed
-from bfsim.machine.program import Calibration, Firmware, FrameSize
+from bfsim.machine.program import Firmware, FrameSize
 from bfsim.machine.spi.device import SpiDevice
-from bfsim.recording import RecordingReader, StereoFrame
+from bfsim.recording import RecordingReader
 from bfsim.result import Run
 from bfsim.retiming import retimed
 from bfsim.room import place
 from bfsim.run_inputs import calibration_of, read_placement
 from bfsim.seen import Seen, SeenFrame
 from bfsim.spans import Span
-from bfsim.trace import BudgetRow, Identity, MemoryRecord, RunWarning, WarningKind
+from bfsim.trace import BudgetRow, Identity, MemoryRecord, RunWarning
 
 BUILT_IN_RECORDING = shipped.RECORDING
 PLACEMENTS = shipped.LDF_FOLDER
@@ -151,8 +149,8 @@ def simulate(
         total = min(frames or reader.frame_count, reader.frame_count)
         if not total:
             raise RecordingError(f"{reader.path}: a recording must have at least one stereo frame, not none")
-        source = _DigestedFrames(reader, total)
-        identity = _identity(
+        source = DigestedFrames(reader, total)
+        identity = identity_of(
             found_board,
             loaded,
             placement,
@@ -186,7 +184,7 @@ def simulate(
     identity = replace(
         identity, recording_digest=source.digest, firmware_digest=loaded.digest, firmware_files=loaded.files
     )
-    assumptions = (*assumed_geometry(program, calibration), *_assumed_clocks(spec))
+    assumptions = (*assumed_geometry(program, calibration), *assumed_clocks(spec))
     geometry = geometry_in_words(program, calibration)
     memories = tuple(_memories(link_map, spec))
     return _record(outcome, identity, geometry, assumptions, loaded, placement, memories)
@@ -238,44 +236,6 @@ def _memories(link_map: LinkMap, spec: BoardSpec) -> Iterator[MemoryRecord]:
             yield MemoryRecord(memory=region.name, nbytes=region.nbytes, used_bytes=used_bytes)
 
 
-def geometry_in_words(program: Firmware, calibration: Calibration) -> str:
-    """Return which geometry the firmware computes with; nothing for firmware that takes none."""
-    if program.calibration is not None:
-        for each in calibration.geometries:
-            return f"{each} (of the recording)"
-    return f"assumed: {program.assumed_geometry}" if program.assumed_geometry else ""
-
-
-def assumed_geometry(program: Firmware, calibration: Calibration) -> Iterator[RunWarning]:
-    """Yield a warning where the firmware has to assume where the cameras are, or their height or tilt."""
-    if not program.assumed_geometry:
-        return
-    for each in calibration.geometries:
-        stance = {"height": each.height_mm, "tilt": each.tilt_deg}
-        unknown = " and ".join(name for name, value in stance.items() if value is None)
-        if unknown:
-            text = (
-                f"the recording does not say the {unknown} of its cameras: taken from an assumed geometry, "
-                f"{program.assumed_geometry}, and what is measured by it may be wrong; `bfsim record calibrate --height "
-                "--tilt` or `bfsim record import --geometry` puts yours into a recording"
-            )
-            yield RunWarning(kind=WarningKind.GEOMETRY, text=text)
-    if not calibration.geometries:
-        text = (
-            f"the recording does not say where its cameras are: {program.assumed_geometry} was assumed, and what is "
-            "measured by it may be wrong; `bfsim record calibrate` or `bfsim record import --geometry` puts yours into a "
-            "recording"
-        )
-        yield RunWarning(kind=WarningKind.GEOMETRY, text=text)
-
-
-def _assumed_clocks(spec: BoardSpec) -> Iterator[RunWarning]:
-    if spec.pll is None:
-        clocks = f"{float(spec.clocks.cclk_hz) / 1e6:.6g} and {float(spec.clocks.sclk_hz) / 1e6:.6g} MHz"
-        text = f"no PLL setting makes the clocks of {spec.name}, {clocks}, of one crystal"
-        yield RunWarning(kind=WarningKind.CLOCKS, text=text)
-
-
 def has_view(firmware: str) -> bool:
     """Whether `firmware` can tell what it sees. Raises FirmwareError as `simulate`."""
     return load_firmware(firmware).firmware.view is not None
@@ -301,103 +261,6 @@ def _device(path: Path | None, loaded: LoadedFirmware) -> tuple[SpiDevice, str]:
         raise ConfigError(f"{path}: {error}") from error
 
 
-class _DigestedFrames:
-    """The frames of a recording as they are read, and the digest of those that were."""
-
-    def __init__(self, reader: RecordingReader, total: int) -> None:
-        self.name = _name(Path(reader.path))
-        self._reader = reader
-        self.total = total
-        self._digest = hashlib.sha256()
-        self.digests: list[str] = []
-        """Of the recording up to each frame that was read."""
-        self._expected: Sequence[str] = ()
-        self._times_ns: dict[int, dict[str, int]] = {}
-
-    def __iter__(self) -> Iterator[StereoFrame]:
-        for frame in self._reader.frames(self.total):
-            self._digest.update(f"{frame.left.shape} {frame.left_ns} {frame.right_ns}\n".encode())
-            self._digest.update(frame.left.tobytes())
-            self._digest.update(frame.right.tobytes())
-            self.digests.append(self._digest.hexdigest())
-            if self._expected and self._expected[frame.index] != self.digests[-1]:
-                raise WorkError(
-                    f"{self.name} must be as it was when its run was recorded, and frame {frame.index} is another: record it again"
-                )
-            self._times_ns[frame.index] = {"left": frame.left_ns, "right": frame.right_ns}
-            yield frame
-
-    def expect(self, digests: Sequence[str]) -> None:
-        """Compare each frame that is read from now on with what was read before. Raises WorkError for another one."""
-        self._expected = digests
-
-    def take_times_ns(self, index: int) -> dict[str, int]:
-        """Return when the pictures of a frame were taken, by camera."""
-        return self._times_ns.pop(index)
-
-    @property
-    def digest(self) -> str:
-        """Digest of the pixels and time stamps read so far."""
-        return self._digest.hexdigest()
-
-
-def recording_digest(recording: Path | str | None, frames: int) -> str:
-    """Digest of the first `frames` frames of a recording, as in the identity of a run; empty where there are fewer."""
-    with RecordingReader(recording or BUILT_IN_RECORDING) as reader:
-        source = _DigestedFrames(reader, frames)
-        return source.digest if sum(1 for _ in source) == frames else ""
-
-
-def _name(path: Path) -> str:
-    return _written(path.name)
-
-
-def _written(path: str | Path) -> str:
-    """Return a path or a name as text that can be written, also where it is none."""
-    return os.fsencode(path).decode(errors="replace")
-
-
-def _identity(
-    board: Found[BoardSpec],
-    loaded: LoadedFirmware,
-    placement: LinkerScript,
-    defines: Mapping[str, str],
-    feed: Feed,
-    fidelity: Fidelity,
-    size: FrameSize,
-    recording: str,
-    compiler: Found[CompilerProfile],
-    script_digest: str,
-) -> Identity:
-    spec = board.value
-    return Identity(
-        recording=recording,
-        recording_digest="",
-        firmware=loaded.name,
-        firmware_digest=loaded.digest,
-        firmware_files=loaded.files,
-        board=spec.name,
-        board_digest=board.digest,
-        board_files=board.files,
-        board_numbers=board.numbers,
-        ldf=" -D ".join([_name(placement.path), *(f"{name}={value}" for name, value in defines.items())]),
-        ldf_digest=hashlib.sha256(placement.source.expanded.encode()).hexdigest(),
-        compiler=compiler.value.name,
-        compiler_digest=compiler.digest,
-        compiler_files=compiler.files,
-        compiler_numbers=compiler.numbers,
-        feed=feed.value,
-        script_digest=script_digest,
-        fidelity=fidelity.value,
-        bfsim_version=__version__,
-        llvm_version=".".join(map(str, llvm.llvm_version_info)),
-        cclk_hz=float(spec.clocks.cclk_hz),
-        sclk_hz=float(spec.clocks.sclk_hz),
-        width_px=size.width_px,
-        height_px=size.height_px,
-    )
-
-
 def _record(
     outcome: Outcome,
     identity: Identity,
@@ -409,10 +272,10 @@ def _record(
 ) -> Run:
     return Run(
         identity=identity,
-        firmware_place="built in" if loaded.is_built_in else _written(loaded.path),
+        firmware_place="built in" if loaded.is_built_in else written(loaded.path),
         ldf_place="shipped"
         if placement.path.parent == shipped.LDF_FOLDER
-        else _written(placement.path.absolute()),
+        else written(placement.path.absolute()),
         rows=loaded.firmware.rows,
         reference=loaded.firmware.reference,
         frames=outcome.frames,

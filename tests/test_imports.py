@@ -74,9 +74,24 @@ MAY_IMPORT = {
     "scenery": {"errors", "loading", "locating", "recording", "shipped"},
     "room": {"chip", "errors", "kernel", "linker", "machine"},
     "work_file": {"errors", "kernel", "machine"},
-    "retiming": {"errors", "kernel", "loading", "machine", "report", "trace", "work_file"},
+    "retiming": {"errors", "identifying", "kernel", "loading", "machine", "report", "trace", "work_file"},
+    "assumptions": {"chip", "machine", "trace"},
+    "identifying": {
+        "chip",
+        "errors",
+        "hardware",
+        "kernel",
+        "linker",
+        "loading",
+        "machine",
+        "recording",
+        "shipped",
+        "trace",
+    },
     "run": {
+        "assumptions",
         "device_script",
+        "identifying",
         "errors",
         "given",
         "result",
@@ -96,7 +111,7 @@ MAY_IMPORT = {
         "shipped",
     },
     "pytest_plugin": {"errors", "report", "result", "run", "seen"},
-    "checking": {"errors", "report", "run", "shipped"},
+    "checking": {"errors", "identifying", "report", "run", "shipped"},
     "sweeping": {
         "file_content",
         "run_inputs",
@@ -105,6 +120,7 @@ MAY_IMPORT = {
         "drafts",
         "errors",
         "fields",
+        "identifying",
         "report",
         "result",
         "run",
@@ -224,7 +240,7 @@ MACHINE = {
     },
 }
 """Each block of the machine and what it may import of the others. The board wires them: it imports them all."""
-READ_VERSION = {"recording", "report", "run", "cli"}  # these also read `bfsim.__version__`
+READ_VERSION = {"recording", "report", "identifying", "cli"}  # these also read `bfsim.__version__`
 
 
 def imported_modules(path: Path) -> Iterator[str]:

@@ -73,7 +73,7 @@ DIGESTS = """\
 import json, sys
 from pathlib import Path
 from bfsim.report.digest import cycle_digest, identity_digest
-from bfsim.run import BUILT_IN_RECORDING, PLACEMENTS, Feed, Fidelity, simulate
+from bfsim.run import Feed, Fidelity, simulate
 runs = [simulate(Path(sys.argv[1]), firmware="fw_eyes:eyes", feed=feed) for feed in Feed]
 print(json.dumps([[identity_digest(run.identity), cycle_digest(run.frames)] for run in runs]))
 """

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from bfsim.placing.stretches import LEVELS, Level
-from bfsim.report.bound import busy_cclk
 from bfsim.report.budget import budget_of, frame_rate_hz
+from bfsim.report.waits import busy_cclk
 from bfsim.trace import RunRecord
 
 CODE = ""
@@ -70,7 +70,7 @@ class Measured:
 
 def busy_of(run: RunRecord) -> dict[str, float]:
     """Return the cycles a frame of each core without its waits for pictures and for the other core."""
-    return {each.core: busy_cclk(each.frame) / len(run.frames) for each in budget_of(run).cores}
+    return {each.core: busy_cclk([each.frame]) / len(run.frames) for each in budget_of(run).cores}
 
 
 def frame_cclk(run: RunRecord) -> float:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 
 from bfsim.report.budget import Budget, CoreBudget, StageRow
-from bfsim.trace import StallReason
+from bfsim.report.waits import busy_cclk, other_core_cclk
 
 
 class Cause(Enum):
@@ -33,21 +33,15 @@ def bound_of(budget: Budget) -> Bound:
     Of the cores, the one that waits least for pictures and for the other core decides; of its stages and its waits, the
     longest one. Waits for memory and DMA belong to the stage that they are in.
     """
-    core = max(budget.cores, key=lambda each: busy_cclk(each.frame))
+    core = max(budget.cores, key=lambda each: busy_cclk([each.frame]))
     found = [
-        Bound(core=core, cause=Cause.STAGE, row=row, cclk=busy_cclk(row))
+        Bound(core=core, cause=Cause.STAGE, row=row, cclk=busy_cclk([row]))
         for row in core.rows
         if row.within is None
     ]
     frame = core.frame
     found += [
         Bound(core=core, cause=Cause.PICTURES, cclk=frame.idle_cclk),
-        Bound(core=core, cause=Cause.OTHER_CORE, cclk=frame.stall_cclk.get(StallReason.SEMAPHORE, 0)),
+        Bound(core=core, cause=Cause.OTHER_CORE, cclk=other_core_cclk(frame)),
     ]
     return max(found, key=lambda each: each.cclk)
-
-
-def busy_cclk(row: StageRow) -> int:
-    """Return the cycles of a row over all frames without the waits for pictures and for the other core."""
-    waits = row.idle_cclk + row.stall_cclk.get(StallReason.SEMAPHORE, 0)
-    return row.elapsed_cclk.total - waits

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from bfsim.trace import OwnerCost, RunRecord, StallReason
+from bfsim.report.waits import waiting_cclk
+from bfsim.trace import OwnerCost, RunRecord
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,9 +41,5 @@ def owner_frames(run: RunRecord) -> Iterator[OwnerFrames]:
             symbol=symbol,
             calls=tuple(each.calls if each else 0 for each in in_frames),
             elapsed_cclk=tuple(each.elapsed_cclk if each else 0 for each in in_frames),
-            waiting_cclk=tuple(_waiting(each) if each else 0 for each in in_frames),
+            waiting_cclk=tuple(waiting_cclk(each) if each else 0 for each in in_frames),
         )
-
-
-def _waiting(cost: OwnerCost) -> int:
-    return cost.idle_cclk + (0 if cost.symbol else cost.stall_cclk.get(StallReason.SEMAPHORE, 0))

@@ -8,6 +8,7 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from bfsim.report.bars import IDLE, STALL, WORK, bar_of
 from bfsim.report.bound import Bound, Cause, bound_of
 from bfsim.report.budget import (
     FRAMES_FOR_P95,
@@ -30,8 +31,6 @@ from bfsim.trace import REST, FrameRecord, RunRecord
 
 BAR = 20
 """Characters that stand for a whole frame."""
-WORK, STALL, IDLE = ("█", "cyan"), ("▓", "red"), ("░", "bright_black")
-"""How they are drawn, and in which colour where there are colours."""
 SLIVER = "▏"
 REASONS_TOLD = 3
 REMARKS_TOLD = 3
@@ -106,14 +105,10 @@ def _cells(row: StageRow, hz: float) -> tuple[str, str]:
 
 def bar(row: StageRow, core: CoreBudget) -> Text:
     """Return a row's work, stalls and idling as parts of a frame, `BAR` characters long; a sliver if it is less than one."""
-    whole = core.frame.elapsed_cclk.total
-    parts = (row.issue_cclk, *WORK), (sum(row.stall_cclk.values()), *STALL), (row.idle_cclk, *IDLE)
-    text, cclk = Text(), 0
-    for part, sign, style in parts:
-        cclk += part
-        text.append(sign * (round(BAR * cclk / whole) - len(text)), style)
-    if cclk and not text:
-        text.append(SLIVER, max(parts)[2])
+    text = bar_of(row, core.frame.elapsed_cclk.total, BAR)
+    if row.elapsed_cclk.total and not text:
+        parts = (row.issue_cclk, WORK), (sum(row.stall_cclk.values()), STALL), (row.idle_cclk, IDLE)
+        text.append(SLIVER, max(parts)[1][1])
     return text
 
 

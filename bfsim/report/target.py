@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from bfsim.errors import ConfigError, shown
 from bfsim.report.budget import Spread, budget_rows, costs_of, milliseconds
-from bfsim.trace import CoreFrame, FrameRecord, RunRecord, StallReason
+from bfsim.report.waits import busy_cclk, other_core_cclk
+from bfsim.trace import CoreFrame, FrameRecord, RunRecord
 
 STAGES_TOLD = 3
 WAIT = "waits for the other core"
@@ -102,21 +103,15 @@ def target_words(run: RunRecord, target: Target) -> str:
 
 def _own_core(frame: FrameRecord) -> CoreFrame:
     """Return the core that used most of a frame for itself: the other one waited for it."""
-    return max(frame.cores, key=lambda core: used_cclk(core) - _waited_cclk(core))
-
-
-def _waited_cclk(frame: CoreFrame) -> int:
-    return sum(cost.stall_cclk.get(StallReason.SEMAPHORE, 0) for cost in frame.stages)
+    return max(frame.cores, key=lambda core: busy_cclk(core.stages))
 
 
 def _dearest(run: RunRecord, core: CoreFrame) -> list[tuple[str, float]]:
     """Return what took a core longest in a frame, in ms: stages without their waits for the other core, and these."""
     rows = budget_rows(run)
-    parts = {WAIT: _waited_cclk(core)}
+    parts = {WAIT: other_core_cclk(*core.stages)}
     for row in rows:
         if row.within is None:
-            costs = costs_of(core, row, rows)
-            waited_cclk = sum(cost.stall_cclk.get(StallReason.SEMAPHORE, 0) for cost in costs)
-            parts[row.stage] = sum(cost.elapsed_cclk - cost.idle_cclk for cost in costs) - waited_cclk
+            parts[row.stage] = busy_cclk(costs_of(core, row, rows))
     dearest = sorted(parts.items(), key=lambda each: -each[1])[:STAGES_TOLD]
     return [(name, milliseconds(cclk, run.identity.cclk_hz)) for name, cclk in dearest if cclk]

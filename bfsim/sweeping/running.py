@@ -15,6 +15,7 @@ from typing import Any
 
 from bfsim.checking import arguments_of
 from bfsim.errors import BfsimError, RecordingError, WorkError
+from bfsim.identifying import recording_digest
 from bfsim.report.check.baseline import Configuration
 from bfsim.report.result_file import Result
 from bfsim.report.save import write_text
@@ -22,7 +23,7 @@ from bfsim.report.seen_json import SeenStore
 from bfsim.report.sweep.figures import SEEN, sweep_figures
 from bfsim.report.warnings import warnings_of
 from bfsim.result import Run
-from bfsim.run import has_view, planned, recording_digest, simulate
+from bfsim.run import has_view, planned, simulate
 from bfsim.trace import Identity, StallReason
 
 Figures = Mapping[str, int | float]

@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.api import Calibration, FirmwareError, FrameSize
+from bfsim.assumptions import assumed_geometry, geometry_in_words
 from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
-from bfsim.run import assumed_geometry, geometry_in_words
 from bfsim.run_inputs import calibration_of
 from tests.firmware.whole_pictures import buffer, random_frames, run
 from tinyphoon import one_eye, tinyphoon

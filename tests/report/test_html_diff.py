@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from bfsim.report.diff.contributions import walk
 from bfsim.report.diff.difference import Change, Contribution, Difference, FrameChange, Kind, SeenChange
-from bfsim.report.html.diff_page import FRAMES, DiffPage, Side
+from bfsim.report.html.diff_page import FRAMES, DiffPage, PagedSide
 from bfsim.report.html.pictures import Pictures
 from tests.report.test_html import EVIL, Elements
 from tests.seen_frames import frame as seen_frame
@@ -53,7 +53,9 @@ DIFFERENCE = Difference(
 
 def page(difference: Difference, pictures: Pictures | None = None, name: str = "now") -> Elements:
     """The page of a difference to a result that was read."""
-    return Elements("".join(DiffPage(difference, Side("old.json", None), Side(name, pictures)).chunks()))
+    return Elements(
+        "".join(DiffPage(difference, PagedSide("old.json", None), PagedSide(name, pictures)).chunks())
+    )
 
 
 def test_the_whole_tree_is_there() -> None:
@@ -63,7 +65,7 @@ def test_the_whole_tree_is_there() -> None:
         assert f"{each.cclk:+,}" in found.words
         assert each.name in found.words
     assert found.names.count("summary") == 4 + FRAMES
-    text = "".join(DiffPage(DIFFERENCE, Side("a", None), Side("b", None)).chunks())
+    text = "".join(DiffPage(DIFFERENCE, PagedSide("a", None), PagedSide("b", None)).chunks())
     assert text.count("width:50.00%") == 4
     assert text.count("width:25.00%") == 2
 

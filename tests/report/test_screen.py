@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given, settings
 from rich.console import Console
 
-from bfsim.report.bound import Cause, bound_of, busy_cclk
+from bfsim.report.bound import Cause, bound_of
 from bfsim.report.budget import budget_of
 from bfsim.report.screen import screen
 from bfsim.report.start_up import start_up_cclk, without_start_up
+from bfsim.report.waits import busy_cclk
 from bfsim.trace import REST, CoreFrame, RunRecord, RunWarning, StallReason, WarningKind
 from tests.report.records import core_frame, cost, edge_run, frame, run_of, runs
 
@@ -145,7 +146,7 @@ def test_without_its_start_up_a_run_keeps_its_promises(run: RunRecord) -> None:
     budget = budget_of(settled)
     bound = bound_of(budget)
     assert 0 <= bound.cclk <= bound.core.frame.elapsed_cclk.total
-    assert busy_cclk(bound.core.frame) == max(busy_cclk(each.frame) for each in budget.cores)
+    assert busy_cclk([bound.core.frame]) == max(busy_cclk([each.frame]) for each in budget.cores)
 
 
 def test_the_latency_is_explained() -> None:

@@ -21,7 +21,8 @@ from bfsim.report.budget import (
 )
 from bfsim.report.result_file import Result
 from bfsim.report.seen_json import name_of_object
-from bfsim.trace import REST, RunRecord, StageCost, StallReason
+from bfsim.report.waits import busy_cclk
+from bfsim.trace import REST, RunRecord
 
 Name = tuple[str, ...]
 """Such as ("frame_rate",), ("Thinning", "A") or ("memory", "L2"); the parts of a dotted key of TOML."""
@@ -84,7 +85,7 @@ def figures_of(result: Result) -> dict[Name, Figure]:
         FRAME_RATE: _figure(FRAME_RATE, frame_rate_hz(run.frames, run.identity.cclk_hz)),
         MISSED: _figure(MISSED, len(run.missed)),
         LATENCY: _figure(LATENCY, *(latency_cclk(frame) for frame in run.frames)),
-        FRAME: _figure(FRAME, *(max(_busy(core.stages) for core in frame.cores) for frame in run.frames)),
+        FRAME: _figure(FRAME, *(max(busy_cclk(core.stages) for core in frame.cores) for frame in run.frames)),
     }
     figures |= {name: _figure(name, *values) for name, values in _stages(run) if name not in figures}
     for memory in run.memories:
@@ -129,17 +130,10 @@ def _stages(run: RunRecord) -> Iterator[tuple[Name, tuple[int, ...]]]:
         if row.stage == REST:
             continue
         by_core = [
-            tuple(_busy(costs_of(core, row, rows)) for core in cores)
+            tuple(busy_cclk(costs_of(core, row, rows)) for core in cores)
             for cores in zip(*(frame.cores for frame in run.frames), strict=True)
         ]
         yield (row.stage,), tuple(map(max, zip(*by_core, strict=True)))
         for core, values in zip(run.frames[0].cores, by_core, strict=True):
             if any(values):
                 yield (row.stage, core.core), values
-
-
-def _busy(costs: tuple[StageCost, ...] | list[StageCost]) -> int:
-    """Return the cycles of stages without the waits for pictures and for the other core."""
-    return sum(
-        cost.elapsed_cclk - cost.idle_cclk - cost.stall_cclk.get(StallReason.SEMAPHORE, 0) for cost in costs
-    )

@@ -15,7 +15,7 @@ from bfsim.report.result_file import Result
 
 KEPT_SHARE = 0.001
 """An owner of cycles or a line is kept if it has this share of all work."""
-FRAMES_LISTED = 20
+FRAMES_KEPT = 20
 """Of so many frames the cycles of each are kept."""
 BETWEEN = ", "
 """Between the reason of a stall and the buffer."""
@@ -41,7 +41,7 @@ def kept_costs(side: Side) -> Costs:
         cclk_hz=side.cclk_hz,
         least_cclk=least,
         frame_cclk={str(index): cclk for index, cclk in side.frame_cclk.items()}
-        if len(side.frames) <= FRAMES_LISTED
+        if len(side.frames) <= FRAMES_KEPT
         else {},
         waits={stage: cclk for stage, cclk in side.waits.items() if cclk},
         memories=memories,

@@ -17,6 +17,7 @@ from bfsim.report.diff.as_json import diff_json
 from bfsim.report.diff.markdown import contribution_rows
 from bfsim.report.diff.sentences import reason, work
 from bfsim.report.diff.tables import seen_lines
+from bfsim.report.markdown import escaped
 
 SCHEMA = "bfsim.check/1"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
@@ -118,7 +119,7 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
 
 def _markdown(outcome: Outcome, path: Path) -> Iterator[str]:
     hz = outcome.run.identity.cclk_hz
-    yield f"**{'✅' if outcome.passed else '❌'} {_cell(verdict_line(outcome))}**\n"
+    yield f"**{'✅' if outcome.passed else '❌'} {escaped(verdict_line(outcome))}**\n"
     rows = [*worst_of_each(outcome.broken), *worst_of_each(outcome.better)]
     if rows:
         yield "| | limit | measured | % |\n|---|--:|--:|--:|"
@@ -127,7 +128,7 @@ def _markdown(outcome: Outcome, path: Path) -> Iterator[str]:
             mark = "❌" if each.broken else "faster" if each.unit is Unit.CCLK else "better"
             limit = f"{each.requirement.comparison} {amount(each.allowed, each.unit, hz)}"
             measured = amount(each.measured, each.unit, hz)
-            yield f"| {_cell(name)} {mark} | {limit} | {measured} | {each.by_percent:+.2f} |"
+            yield f"| {escaped(name)} {mark} | {limit} | {measured} | {each.by_percent:+.2f} |"
         yield ""
     yield from _why(outcome) if outcome.broken else ()
     if outcome.better:
@@ -140,25 +141,15 @@ def _why(outcome: Outcome) -> Iterator[str]:
     if difference is None:
         yield from ("```", *explanation(outcome), "```")
         return
-    yield from (f"{_cell(each)}\n" for each in (work(difference), reason(difference)) if each)
+    yield from (f"{escaped(each)}\n" for each in (work(difference), reason(difference)) if each)
     yield from contribution_rows(difference, CAUSES)
     for line in (*counts_that_differ(outcome), *seen_lines(difference)):
-        yield f"- {_cell(line)}"
+        yield f"- {escaped(line)}"
 
 
 def _difference(outcome: Outcome) -> Any:
     difference = difference_of_outcome(outcome)
     return json.loads(diff_json(difference)) if difference else None
-
-
-def _cell(text: str) -> str:
-    return (
-        text.replace("\\", "\\\\")
-        .replace("|", "\\|")
-        .replace("<", "&lt;")
-        .replace("*", "\\*")
-        .replace("_", "\\_")
-    )
 
 
 def _xml(text: str) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from bfsim.report.diff.difference import Difference
 from bfsim.report.diff.sentences import clock, reason, verdict, work
 from bfsim.report.diff.tables import cells, frames_compared, labelled, seen_lines, shown
+from bfsim.report.markdown import escaped
 
 INDENT = "&emsp;"
 
@@ -20,13 +21,13 @@ def _lines(difference: Difference, top: int) -> Iterator[str]:
     yield f"**{verdict(difference)}**"
     for why in (clock(difference), work(difference), reason(difference)):
         if why:
-            yield f"\n{_escaped(why)}"
+            yield f"\n{escaped(why)}"
     if difference.configuration:
         rows = ((each.what, each.before, each.after) for each in difference.configuration)
         yield from _table(("Configuration", "before", "after"), rows)
     yield from contribution_rows(difference, top)
     for each in seen_lines(difference):
-        yield f"- {_escaped(each)}"
+        yield f"- {escaped(each)}"
 
 
 def contribution_rows(difference: Difference, top: int) -> Iterator[str]:
@@ -44,12 +45,5 @@ def _table(heads: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[
     yield f"| {' | '.join(heads)} |"
     yield f"| --- |{' ---: |' * (len(heads) - 1)}"
     for row in rows:
-        yield f"| {' | '.join(_escaped(each) for each in row)} |"
+        yield f"| {' | '.join(escaped(each) for each in row)} |"
     yield ""
-
-
-def _escaped(text: str) -> str:
-    """Return text that no renderer of Markdown takes for markup or for the end of a cell."""
-    for mark in "\\`*_|<>[]":
-        text = text.replace(mark, f"\\{mark}")
-    return text.replace("\n", " ")

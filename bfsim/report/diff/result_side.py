@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import fields
-from pathlib import PurePath
 
 from bfsim.report.budget import frame_rate_hz
 from bfsim.report.diff.side import SEPARATOR, Line, Owner, Side, Source, Stall
+from bfsim.report.profile.lines import LineProfile, lines_of, place_of
 from bfsim.report.result_file import Result
 from bfsim.report.seen_json import name_of_object
-from bfsim.trace import FrameRecord, Identity, KernelRecord, LineCost, RunRecord
+from bfsim.trace import FrameRecord, Identity, KernelRecord, RunRecord
 
 Place = tuple[str, str, int]
 """Stage, symbol and line."""
@@ -30,7 +30,7 @@ def result_side(result: Result, chosen: Collection[int]) -> Side:
         waits[each.stage] += waiting
     names = dict.fromkeys(name for frame in frames for name in frame.results)
     return Side(
-        configuration=configuration_of(run.identity),
+        configuration=identity_words(run.identity),
         cclk_hz=run.identity.cclk_hz,
         frame_ms=1000 / frame_rate_hz(run.frames, run.identity.cclk_hz),
         frames=tuple(each.index for each in frames),
@@ -47,7 +47,7 @@ def result_side(result: Result, chosen: Collection[int]) -> Side:
     )
 
 
-def configuration_of(identity: Identity) -> dict[str, str]:
+def identity_words(identity: Identity) -> dict[str, str]:
     """Return what a result depends on, by what people call it."""
     values = {field.name: getattr(identity, field.name) for field in fields(Identity)}
     return {
@@ -81,44 +81,34 @@ def _stalls(run: RunRecord) -> Mapping[Place, Counter[Stall]]:
     return found
 
 
-def _source(owner: Owner, records: Iterable[KernelRecord], stalls: Mapping[Place, Counter[Stall]]) -> Source:
-    costs: defaultdict[int, list[LineCost]] = defaultdict(list)
-    for line in (line for record in records for line in record.lines):
-        costs[line.line].append(line)
-    first = next(iter(records))
+def _source(owner: Owner, records: Sequence[KernelRecord], stalls: Mapping[Place, Counter[Stall]]) -> Source:
     lines = (
-        _line(text, number, costs[number], stalls.get((owner.stage, owner.symbol, number), Counter()))
-        for number, text in enumerate(first.text, first.first_line)
+        _line(each, stalls.get((owner.stage, owner.symbol, each.line), Counter()))
+        for each in lines_of(records)
     )
-    return Source(place=f"{PurePath(first.file).name}:{first.first_line}", lines=tuple(lines))
+    return Source(place=place_of(records[0]), lines=tuple(lines))
 
 
-def _line(text: str, number: int, costs: Iterable[LineCost], of_buffers: Counter[Stall]) -> Line:
-    """Return a line of the costs that it has on each core. A wait for a buffer is that alone, of all for its reason."""
-    times, operations, stalls = 0, dict[str, tuple[int, int]](), Counter(of_buffers)
-    for each in costs:
-        times += each.executions
-        for name, count, cclk in _operations(each):
-            had_count, had_cclk = operations.get(name, (0, 0))
-            operations[name] = had_count + count, had_cclk + cclk
-        for reason, cclk in each.stall_cclk.items():
-            stalls[Stall(reason.value, "")] += cclk
+def _line(line: LineProfile, of_buffers: Counter[Stall]) -> Line:
+    """Return a line with what it waited for. A wait for a buffer is that alone, of all for its reason."""
+    stalls = Counter(of_buffers)
+    for reason, cclk in line.cost.stall_cclk.items():
+        stalls[Stall(reason.value, "")] += cclk
     for stall, cclk in of_buffers.items():
         stalls[Stall(stall.reason, "")] -= cclk
     return Line(
-        text=text.strip(),
-        number=number,
-        times=times,
-        operations=operations,
+        text=line.text.strip(),
+        number=line.line,
+        times=line.executions,
+        operations=dict(_operations(line)),
         stalls={stall: cclk for stall, cclk in stalls.items() if cclk},
     )
 
 
-def _operations(cost: LineCost) -> Iterator[tuple[str, int, int]]:
+def _operations(line: LineProfile) -> Iterator[tuple[str, tuple[int, int]]]:
     """Yield the operations of a line; those that are not told apart are one."""
-    told = 0
-    for name, (count, cclk) in cost.operations.items():
-        told += cclk
-        yield name, count, cclk
-    if told != cost.issue_cclk:
-        yield "", cost.executions, cost.issue_cclk - told
+    for name, count in line.operations.items():
+        yield name, (count, line.operations_cclk[name])
+    left_cclk = line.cost.issue_cclk - line.operations_cclk.total()
+    if left_cclk:
+        yield "", (line.executions, left_cclk)

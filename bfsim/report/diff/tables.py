@@ -14,7 +14,7 @@ from bfsim.report.diff.sentences import clock, reason, verdict, work
 from bfsim.report.tables import new_table, stacked
 from bfsim.report.units import counted
 
-FRAMES_LISTED = 5
+CHANGED_LISTED = 5
 """Frames that changed most which are listed."""
 
 RESULTS_LISTED = 10
@@ -130,7 +130,7 @@ def _frame_table(difference: Difference) -> Iterator[Table]:
     if changed:
         title = f"Frames that changed most, of {len(changed)} (cycles of the slower core)"
         table = new_table(title, "Frame", "before", "after", "difference")
-        for each in changed[:FRAMES_LISTED]:
+        for each in changed[:CHANGED_LISTED]:
             more = each.after_cclk - each.before_cclk
             table.add_row(str(each.index), f"{each.before_cclk:,}", f"{each.after_cclk:,}", f"{more:+,}")
         yield table

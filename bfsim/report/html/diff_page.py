@@ -17,7 +17,7 @@ FRAMES = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class PagedSide:
     """What was compared: its name, and its pictures if it was run for that. What was read from a file has none."""
 
     name: str
@@ -35,8 +35,8 @@ class DiffPage:
     """All that a page shows of two runs beside each other."""
 
     difference: Difference
-    before: Side
-    after: Side
+    before: PagedSide
+    after: PagedSide
 
     def chunks(self) -> Iterator[str]:
         """Yield the page as HTML, piece by piece."""

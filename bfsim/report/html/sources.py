@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import PurePath
 
-from bfsim.report.profile.costs import Cost
+from bfsim.report.profile.cost import Cost
+from bfsim.report.profile.lines import LineProfile, lines_of, place_of
 from bfsim.trace import KernelRecord, RunRecord
 
 MOST = 12
@@ -56,30 +55,22 @@ def _source(records: Sequence[KernelRecord], whole_cclk: int) -> KernelSource:
     return KernelSource(
         kernel=first.kernel,
         stage=first.stage,
-        place=f"{PurePath(first.file).name}:{first.first_line}",
+        place=place_of(first),
         calls=sum(record.calls for record in records),
         cost=cost,
         share=_part(cost.elapsed_cclk, whole_cclk),
-        lines=_lines(records, cost.elapsed_cclk),
+        lines=tuple(_line(each, cost.elapsed_cclk) for each in lines_of(records)),
     )
 
 
-def _lines(records: Sequence[KernelRecord], kernel_cclk: int) -> tuple[SourceLine, ...]:
-    """Add up the lines of a kernel on different cores; those without a cost stand among them."""
-    executions, costs = Counter[int](), defaultdict[int, Cost](Cost)
-    for line in (line for record in records for line in record.lines):
-        executions[line.line] += line.executions
-        costs[line.line].add(line.issue_cclk, line.stall_cclk)
-    return tuple(
-        SourceLine(
-            line=number,
-            text=text.expandtabs().rstrip(),
-            executions=executions[number],
-            cost=costs[number],
-            share=_part(costs[number].elapsed_cclk, kernel_cclk),
-            issue_share=_part(costs[number].issue_cclk, kernel_cclk),
-        )
-        for number, text in enumerate(records[0].text, start=records[0].first_line)
+def _line(line: LineProfile, kernel_cclk: int) -> SourceLine:
+    return SourceLine(
+        line=line.line,
+        text=line.text.expandtabs().rstrip(),
+        executions=line.executions,
+        cost=line.cost,
+        share=_part(line.cost.elapsed_cclk, kernel_cclk),
+        issue_share=_part(line.cost.issue_cclk, kernel_cclk),
     )
 
 

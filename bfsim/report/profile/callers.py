@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from bfsim.report.columns import kernel_names
-from bfsim.report.profile.costs import Cost, cores_of, stages_in
+from bfsim.report.profile.cost import Cost
+from bfsim.report.profile.costs import cores_of, stages_in
 from bfsim.trace import RunRecord
 
 

@@ -2,49 +2,14 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from pathlib import PurePath
 
 from bfsim.report.budget import budget_rows, stage_names
+from bfsim.report.profile.cost import Cost, sum_of
+from bfsim.report.profile.lines import LineProfile, lines_of, place_of
 from bfsim.report.start_up import without_start_up
-from bfsim.trace import CoreFrame, KernelRecord, OwnerCost, RunRecord, StallReason
-
-
-@dataclass(slots=True)
-class Cost:
-    """Cycles that add up: issue + stall + idle = elapsed."""
-
-    issue_cclk: int = 0
-    stall_cclk: Counter[StallReason] = field(default_factory=Counter)
-    idle_cclk: int = 0
-
-    @property
-    def stalled_cclk(self) -> int:
-        """Stalls for whatever reason."""
-        return sum(self.stall_cclk.values())
-
-    @property
-    def elapsed_cclk(self) -> int:
-        """All cycles."""
-        return self.issue_cclk + self.stalled_cclk + self.idle_cclk
-
-    def add(self, issue_cclk: int, stall_cclk: Mapping[StallReason, int], idle_cclk: int = 0) -> None:
-        """Add cycles of each kind."""
-        self.issue_cclk += issue_cclk
-        self.stall_cclk.update(stall_cclk)
-        self.idle_cclk += idle_cclk
-
-
-@dataclass(slots=True, kw_only=True)
-class LineProfile:
-    """One source line of a kernel; `text` is the line as it is in the file."""
-
-    line: int
-    text: str
-    executions: int = 0
-    cost: Cost = field(default_factory=Cost)
+from bfsim.trace import CoreFrame, KernelRecord, OwnerCost, RunRecord
 
 
 @dataclass(slots=True, kw_only=True)
@@ -90,14 +55,6 @@ class Profile:
         return cclk / self.whole.elapsed_cclk if self.whole.elapsed_cclk else 0.0
 
 
-def sum_of(costs: Iterable[Cost]) -> Cost:
-    """Return all costs together."""
-    result = Cost()
-    for each in costs:
-        result.add(each.issue_cclk, each.stall_cclk, each.idle_cclk)
-    return result
-
-
 def stages_in(run: RunRecord, stage: str | None) -> tuple[str, ...]:
     """Return the stages that a row of the budget holds, itself and its parts; without a name all of them."""
     within = {each.stage: each.within for each in budget_rows(run)}
@@ -127,11 +84,13 @@ def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None
             costs.setdefault(each.stage, Cost()).add(each.issue_cclk, each.stall_cclk, each.idle_cclk)
         for owner in frame.owners:
             _add_owner(owners.setdefault(owner.stage, {}), owner)
-    for record in run.kernels:
-        if record.core in cores and record.symbol:
-            found = owners.get(record.stage, {}).get((record.kernel, record.symbol))
-            if found:
-                _add_lines(found, record)
+    for (name, kernel, symbol), records in kernel_records(run, cores).items():
+        found = owners.get(name, {}).get((kernel, symbol))
+        if found:
+            found.place = place_of(records[0])
+            found.lines = tuple(
+                each for each in lines_of(records) if each.executions or each.cost.elapsed_cclk
+            )
     return Profile(
         cores=cores,
         frames=len(run.frames),
@@ -144,6 +103,15 @@ def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None
     )
 
 
+def kernel_records(run: RunRecord, cores: Sequence[str]) -> dict[tuple[str, str, str], list[KernelRecord]]:
+    """Return the records of each kernel in each stage, by stage, name and symbol."""
+    found: dict[tuple[str, str, str], list[KernelRecord]] = {}
+    for each in run.kernels:
+        if each.core in cores and each.symbol:
+            found.setdefault((each.stage, each.kernel, each.symbol), []).append(each)
+    return found
+
+
 def _dearest(owners: Iterable[OwnerProfile]) -> tuple[OwnerProfile, ...]:
     return tuple(sorted(owners, key=lambda each: -each.cost.elapsed_cclk))
 
@@ -153,15 +121,3 @@ def _add_owner(owners: dict[tuple[str, str], OwnerProfile], cost: OwnerCost) -> 
     found = owners.setdefault(key, OwnerProfile(owner=cost.owner, symbol=cost.symbol))
     found.calls += cost.calls
     found.cost.add(cost.issue_cclk, cost.stall_cclk, cost.idle_cclk)
-
-
-def _add_lines(found: OwnerProfile, record: KernelRecord) -> None:
-    """Add the lines of a kernel on one core to those on others."""
-    text = dict(enumerate(record.text, start=record.first_line))
-    lines = {each.line: each for each in found.lines}
-    for cost in record.lines:
-        line = lines.setdefault(cost.line, LineProfile(line=cost.line, text=text.get(cost.line, "")))
-        line.executions += cost.executions
-        line.cost.add(cost.issue_cclk, cost.stall_cclk)
-    found.place = f"{PurePath(record.file).name}:{record.first_line}"
-    found.lines = tuple(lines[number] for number in sorted(lines))

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from bfsim.report.profile.costs import cores_of, stages_in
 from bfsim.report.start_up import without_start_up
-from bfsim.trace import FrameRecord, OwnerCost, RunRecord, StallReason
+from bfsim.report.waits import busy_cclk
+from bfsim.trace import FrameRecord, OwnerCost, RunRecord
 
 WORK = "work"
 
@@ -63,14 +64,8 @@ def _owners(frame: FrameRecord, cores: Sequence[str], stages: Sequence[str]) -> 
     return found
 
 
-def _busy(costs: Sequence[OwnerCost]) -> int:
-    """Return the cycles of owners without idling and without the waits for the other core, which has its own reasons."""
-    waits = (each.idle_cclk + each.stall_cclk.get(StallReason.SEMAPHORE, 0) for each in costs)
-    return sum(each.elapsed_cclk for each in costs) - sum(waits)
-
-
 def _cclk(owners: _Owners) -> int:
-    return sum(map(_busy, owners.values()))
+    return sum(map(busy_cclk, owners.values()))
 
 
 def _compared(frame: _Frame, median: _Frame) -> FrameProfile:
@@ -80,7 +75,7 @@ def _compared(frame: _Frame, median: _Frame) -> FrameProfile:
     owners = []
     for key in dict.fromkeys((*here, *there)):
         mine, usual = here.get(key, []), there.get(key, [])
-        cclk = _busy(mine) - _busy(usual)
+        cclk = busy_cclk(mine) - busy_cclk(usual)
         stages[key[0]] += cclk
         calls = sum(each.calls for each in mine) - sum(each.calls for each in usual)
         if cclk or calls:

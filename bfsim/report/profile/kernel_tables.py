@@ -6,7 +6,9 @@ from collections.abc import Iterator
 
 from rich.table import Table
 
-from bfsim.report.profile.costs import Cost, LineProfile, OwnerProfile, Profile, StageProfile, sum_of
+from bfsim.report.profile.cost import Cost, sum_of
+from bfsim.report.profile.costs import OwnerProfile, Profile, StageProfile
+from bfsim.report.profile.lines import LineProfile
 from bfsim.report.profile.view import COST_HEADS, NO_KERNEL, View, others_row, with_bar
 from bfsim.report.tables import new_table
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 from bfsim.report.bound import bound_of
 from bfsim.report.budget import budget_of, milliseconds
 from bfsim.report.profile.buffers import buffers_of
-from bfsim.report.profile.costs import Cost, LineProfile, OwnerProfile, Profile, cores_of, profile_of
+from bfsim.report.profile.cost import Cost
+from bfsim.report.profile.costs import OwnerProfile, Profile, cores_of, profile_of
+from bfsim.report.profile.lines import lines_of
 from bfsim.report.start_up import without_start_up
+from bfsim.report.waits import busy_cclk, other_core_cclk
 from bfsim.trace import REST, RunRecord, StallReason
 
 DMA = "DMA"
@@ -40,18 +43,13 @@ def sentences_of(run: RunRecord, core: str | None = None, stage: str | None = No
     profile.whole = profile.cost
     if not profile.whole.elapsed_cclk:
         return first, "No kernel ran in it.", "It waited for nothing."
-    return first, _of_kernels(profile), _of_waits(run, profile, name, stage)
+    return first, _of_kernels(run, profile), _of_waits(run, profile, name, stage)
 
 
 def _busiest(run: RunRecord, stage: str | None) -> str:
     if stage is None:
         return bound_of(budget_of(without_start_up(run))).core.core
-    return max(cores_of(run), key=lambda core: _busy_cclk(profile_of(run, core, stage).cost))
-
-
-def _busy_cclk(cost: Cost) -> int:
-    """Return the cycles without the waits for pictures and for the other core."""
-    return cost.elapsed_cclk - cost.idle_cclk - cost.stall_cclk[StallReason.SEMAPHORE]
+    return max(cores_of(run), key=lambda core: busy_cclk([profile_of(run, core, stage).cost]))
 
 
 def _percent(share: float) -> str:
@@ -79,9 +77,9 @@ def _of_frame(run: RunRecord, profile: Profile, core: str) -> str:
     parts: Counter[str] = Counter()
     for each in profile.stages:
         row = within.get(each.stage) or each.stage
-        parts["work outside of stages" if row == REST else row] += _busy_cclk(each.cost)
+        parts["work outside of stages" if row == REST else row] += busy_cclk([each.cost])
     parts["waiting for pictures"] = profile.whole.idle_cclk
-    parts["waiting for the other core"] = profile.whole.stall_cclk[StallReason.SEMAPHORE]
+    parts["waiting for the other core"] = other_core_cclk(profile.whole)
     (name, cclk), *others = parts.most_common()
     told = [
         f"{other} {_percent(profile.share(cclk))}"
@@ -95,7 +93,7 @@ def _of_frame(run: RunRecord, profile: Profile, core: str) -> str:
     return f"{_percent(profile.share(cclk))} of core {core}'s frame ({frame}) is {name}{then}."
 
 
-def _of_kernels(profile: Profile) -> str:
+def _of_kernels(run: RunRecord, profile: Profile) -> str:
     kernels: dict[str, OwnerProfile] = {}
     for each in (owner for stage in profile.stages for owner in stage.owners if owner.symbol):
         mine = kernels.setdefault(
@@ -103,10 +101,16 @@ def _of_kernels(profile: Profile) -> str:
         )
         mine.calls += each.calls
         mine.cost.add(each.cost.issue_cclk, each.cost.stall_cclk)
-        mine.lines = tuple(_merged(mine.lines, each.lines))
     if not kernels:
         return "No kernel ran in it."
     first = max(kernels.values(), key=lambda each: each.cost.elapsed_cclk)
+    stages = {stage.stage for stage in profile.stages}
+    records = [
+        each
+        for each in run.kernels
+        if each.symbol == first.symbol and each.core in profile.cores and each.stage in stages
+    ]
+    first.lines = lines_of(records) if records else ()
     cclk = first.cost.elapsed_cclk
     text = f"The dearest kernel is {first.owner} ({first.place}), {_percent(profile.share(cclk))}"
     if first.calls:
@@ -114,15 +118,6 @@ def _of_kernels(profile: Profile) -> str:
         calls = f"{count} {'call' if count == '1' else 'calls'} a frame of {cclk / first.calls:,.0f} cycles"
         text += f": {calls}{_of_lines(first)}"
     return f"{text}."
-
-
-def _merged(*parts: tuple[LineProfile, ...]) -> Iterator[LineProfile]:
-    found: dict[int, LineProfile] = {}
-    for each in (line for part in parts for line in part):
-        mine = found.setdefault(each.line, LineProfile(line=each.line, text=each.text))
-        mine.executions += each.executions
-        mine.cost.add(each.cost.issue_cclk, each.cost.stall_cclk)
-    yield from found.values()
 
 
 def _of_lines(kernel: OwnerProfile) -> str:

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from rich.table import Table
 from rich.text import Text
 
+from bfsim.report.bars import IDLE, STALL, WORK, bar_of
 from bfsim.report.budget import milliseconds
-from bfsim.report.profile.costs import Cost, Profile, profile_of, sum_of
+from bfsim.report.profile.cost import Cost, sum_of
+from bfsim.report.profile.costs import Profile, profile_of
 from bfsim.report.tables import percent
 from bfsim.trace import RunRecord
 
@@ -16,8 +18,6 @@ NO_KERNEL = "(no kernel)"
 """The row of what rings, semaphores, interrupts and the cameras have."""
 BAR = 10
 """Characters that stand for the whole."""
-WORK, STALL, IDLE = ("█", "cyan"), ("▓", "red"), ("░", "bright_black")
-"""How they are drawn, and in which colour where there are colours: as in the report of a run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,15 +60,7 @@ class View:
 
     def bar(self, cost: Cost) -> Text:
         """Return work, stalls and idling as parts of the whole."""
-        text, cclk = Text(), 0
-        for part, (sign, style) in (
-            (cost.issue_cclk, WORK),
-            (cost.stalled_cclk, STALL),
-            (cost.idle_cclk, IDLE),
-        ):
-            cclk += part
-            text.append(sign * (round(BAR * self.profile.share(cclk)) - len(text)), style)
-        return text
+        return bar_of(cost, self.profile.whole.elapsed_cclk, BAR)
 
     def cost_cells(self, cost: Cost) -> tuple[str, str, str, Text]:
         """Return ms, stall %, share and bar of a cost."""

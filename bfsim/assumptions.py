@@ -1,0 +1,48 @@
+"""What a run takes from nowhere but bfsim: a geometry of cameras that nobody gave, clocks that no PLL makes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from bfsim.chip.spec import BoardSpec
+from bfsim.machine.program import Calibration, Firmware
+from bfsim.trace import RunWarning, WarningKind
+
+
+def geometry_in_words(program: Firmware, calibration: Calibration) -> str:
+    """Return which geometry the firmware computes with; nothing for firmware that takes none."""
+    if program.calibration is not None:
+        for each in calibration.geometries:
+            return f"{each} (of the recording)"
+    return f"assumed: {program.assumed_geometry}" if program.assumed_geometry else ""
+
+
+def assumed_geometry(program: Firmware, calibration: Calibration) -> Iterator[RunWarning]:
+    """Yield a warning where the firmware has to assume where the cameras are, or their height or tilt."""
+    if not program.assumed_geometry:
+        return
+    for each in calibration.geometries:
+        stance = {"height": each.height_mm, "tilt": each.tilt_deg}
+        unknown = " and ".join(name for name, value in stance.items() if value is None)
+        if unknown:
+            text = (
+                f"the recording does not say the {unknown} of its cameras: taken from an assumed geometry, "
+                f"{program.assumed_geometry}, and what is measured by it may be wrong; `bfsim record calibrate --height "
+                "--tilt` or `bfsim record import --geometry` puts yours into a recording"
+            )
+            yield RunWarning(kind=WarningKind.GEOMETRY, text=text)
+    if not calibration.geometries:
+        text = (
+            f"the recording does not say where its cameras are: {program.assumed_geometry} was assumed, and what is "
+            "measured by it may be wrong; `bfsim record calibrate` or `bfsim record import --geometry` puts yours into a "
+            "recording"
+        )
+        yield RunWarning(kind=WarningKind.GEOMETRY, text=text)
+
+
+def assumed_clocks(spec: BoardSpec) -> Iterator[RunWarning]:
+    """Yield a warning where the clocks of a board are none that its chip can have."""
+    if spec.pll is None:
+        clocks = f"{float(spec.clocks.cclk_hz) / 1e6:.6g} and {float(spec.clocks.sclk_hz) / 1e6:.6g} MHz"
+        text = f"no PLL setting makes the clocks of {spec.name}, {clocks}, of one crystal"
+        yield RunWarning(kind=WarningKind.CLOCKS, text=text)

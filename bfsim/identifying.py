@@ -1,0 +1,122 @@
+"""What a run depends on: names and digests, and the frames of a recording, whose digest grows as they are read."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+import llvmlite.binding as llvm
+
+from bfsim import __version__, shipped
+from bfsim.chip.spec import BoardSpec
+from bfsim.errors import WorkError
+from bfsim.hardware import Found
+from bfsim.kernel import CompilerProfile
+from bfsim.linker import LinkerScript
+from bfsim.loading import LoadedFirmware
+from bfsim.machine.board import Fidelity
+from bfsim.machine.cameras.capture import Feed
+from bfsim.machine.program import FrameSize
+from bfsim.recording import RecordingReader, StereoFrame
+from bfsim.trace import Identity
+
+
+class DigestedFrames:
+    """The frames of a recording as they are read, and the digest of those that were."""
+
+    def __init__(self, reader: RecordingReader, total: int) -> None:
+        self.name = name_of(Path(reader.path))
+        self._reader = reader
+        self.total = total
+        self._digest = hashlib.sha256()
+        self.digests: list[str] = []
+        """Of the recording up to each frame that was read."""
+        self._expected: Sequence[str] = ()
+        self._times_ns: dict[int, dict[str, int]] = {}
+
+    def __iter__(self) -> Iterator[StereoFrame]:
+        for frame in self._reader.frames(self.total):
+            self._digest.update(f"{frame.left.shape} {frame.left_ns} {frame.right_ns}\n".encode())
+            self._digest.update(frame.left.tobytes())
+            self._digest.update(frame.right.tobytes())
+            self.digests.append(self._digest.hexdigest())
+            if self._expected and self._expected[frame.index] != self.digests[-1]:
+                raise WorkError(
+                    f"{self.name} must be as it was when its run was recorded, and frame {frame.index} is another: record it again"
+                )
+            self._times_ns[frame.index] = {"left": frame.left_ns, "right": frame.right_ns}
+            yield frame
+
+    def expect(self, digests: Sequence[str]) -> None:
+        """Compare each frame that is read from now on with what was read before. Raises WorkError for another one."""
+        self._expected = digests
+
+    def take_times_ns(self, index: int) -> dict[str, int]:
+        """Return when the pictures of a frame were taken, by camera."""
+        return self._times_ns.pop(index)
+
+    @property
+    def digest(self) -> str:
+        """Digest of the pixels and time stamps read so far."""
+        return self._digest.hexdigest()
+
+
+def recording_digest(recording: Path | str | None, frames: int) -> str:
+    """Digest of the first `frames` frames of a recording, as in the identity of a run; empty where there are fewer."""
+    with RecordingReader(recording or shipped.RECORDING) as reader:
+        source = DigestedFrames(reader, frames)
+        return source.digest if sum(1 for _ in source) == frames else ""
+
+
+def name_of(path: Path) -> str:
+    """Return the name of a file as an identity has it."""
+    return written(path.name)
+
+
+def written(path: str | Path) -> str:
+    """Return a path or a name as text that can be written, also where it is none."""
+    return os.fsencode(path).decode(errors="replace")
+
+
+def identity_of(
+    board: Found[BoardSpec],
+    loaded: LoadedFirmware,
+    placement: LinkerScript,
+    defines: Mapping[str, str],
+    feed: Feed,
+    fidelity: Fidelity,
+    size: FrameSize,
+    recording: str,
+    compiler: Found[CompilerProfile],
+    script_digest: str,
+) -> Identity:
+    """Return what a run depends on; the digest of the recording is known only when its frames have been read."""
+    spec = board.value
+    return Identity(
+        recording=recording,
+        recording_digest="",
+        firmware=loaded.name,
+        firmware_digest=loaded.digest,
+        firmware_files=loaded.files,
+        board=spec.name,
+        board_digest=board.digest,
+        board_files=board.files,
+        board_numbers=board.numbers,
+        ldf=" -D ".join([name_of(placement.path), *(f"{name}={value}" for name, value in defines.items())]),
+        ldf_digest=hashlib.sha256(placement.source.expanded.encode()).hexdigest(),
+        compiler=compiler.value.name,
+        compiler_digest=compiler.digest,
+        compiler_files=compiler.files,
+        compiler_numbers=compiler.numbers,
+        feed=feed.value,
+        script_digest=script_digest,
+        fidelity=fidelity.value,
+        bfsim_version=__version__,
+        llvm_version=".".join(map(str, llvm.llvm_version_info)),
+        cclk_hz=float(spec.clocks.cclk_hz),
+        sclk_hz=float(spec.clocks.sclk_hz),
+        width_px=size.width_px,
+        height_px=size.height_px,
+    )

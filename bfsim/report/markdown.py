@@ -1,0 +1,12 @@
+"""Foreign text in Markdown."""
+
+from __future__ import annotations
+
+MARKUP = "\\`*_|<>[]"
+
+
+def escaped(text: str) -> str:
+    """Return text that no renderer of Markdown takes for markup or for the end of a cell."""
+    for mark in MARKUP:
+        text = text.replace(mark, f"\\{mark}")
+    return text.replace("\n", " ")

@@ -1,0 +1,41 @@
+"""What is no work of a core itself: the waits for pictures and for the other core. All else keeps it busy, stalls included."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Protocol
+
+from bfsim.trace import StallReason
+
+
+class Cycles(Protocol):
+    """Cycles of any kind of owner: issue + stall + idle are all of them."""
+
+    @property
+    def issue_cclk(self) -> int:
+        """Work."""
+
+    @property
+    def stall_cclk(self) -> Mapping[StallReason, int]:
+        """Stalls by reason."""
+
+    @property
+    def idle_cclk(self) -> int:
+        """Waits for pictures."""
+
+
+def other_core_cclk(*costs: Cycles) -> int:
+    """Return how long the other core was waited for."""
+    return sum(each.stall_cclk.get(StallReason.SEMAPHORE, 0) for each in costs)
+
+
+def waiting_cclk(*costs: Cycles) -> int:
+    """Return how long pictures and the other core were waited for."""
+    return sum(each.idle_cclk for each in costs) + other_core_cclk(*costs)
+
+
+def busy_cclk(costs: Iterable[Cycles]) -> int:
+    """Return all other cycles."""
+    found = list(costs)
+    used = sum(each.issue_cclk + sum(each.stall_cclk.values()) for each in found)
+    return used - other_core_cclk(*found)

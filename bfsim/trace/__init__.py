@@ -1,0 +1,48 @@
+"""What a run leaves behind: flat records of facts. Every statistic is derived from them later, in `report/`.
+
+Cycles are CCLK cycles counted from the start of the run. For each core and frame, always:
+issue + stall + idle = elapsed.
+"""
+
+from __future__ import annotations
+
+from bfsim.trace.explanation import (
+    ExplainedCall,
+    ExplainedLine,
+    ExplainedOperation,
+    Explanation,
+    InlinedKernel,
+)
+from bfsim.trace.frames import REST, CoreFrame, FrameRecord, OwnerCost, StageCost, StallReason
+from bfsim.trace.hardware import BufferRecord, CodeRecord, MemoryRecord, MessageRecord, TrafficRecord
+from bfsim.trace.kernels import AccessRecord, KernelRecord, LineCost, PathRecord
+from bfsim.trace.run import BudgetRow, Identity, Reference, RunRecord, RunWarning, WarningKind
+
+__all__ = [
+    "REST",
+    "AccessRecord",
+    "BudgetRow",
+    "BufferRecord",
+    "CodeRecord",
+    "CoreFrame",
+    "ExplainedCall",
+    "ExplainedLine",
+    "ExplainedOperation",
+    "Explanation",
+    "FrameRecord",
+    "Identity",
+    "InlinedKernel",
+    "KernelRecord",
+    "LineCost",
+    "MemoryRecord",
+    "MessageRecord",
+    "OwnerCost",
+    "PathRecord",
+    "Reference",
+    "RunRecord",
+    "RunWarning",
+    "StageCost",
+    "StallReason",
+    "TrafficRecord",
+    "WarningKind",
+]

@@ -1,0 +1,99 @@
+"""What frames cost: cycles by core, stage and owner, and why a core did not work."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+REST = "(the rest)"
+"""The row of everything that a core does outside of a stage."""
+
+
+class StallReason(StrEnum):
+    """Why a core did not retire work although it had work to do."""
+
+    L1_CONFLICT = "L1 conflict"
+    L2_LATENCY = "L2 latency"
+    L2_PORT = "L2 port"
+    SDRAM_PAGE_HIT = "SDRAM page hit"
+    SDRAM_PAGE_MISS = "SDRAM page miss"
+    SDRAM_PAGE_CONFLICT = "SDRAM page conflict"
+    SDRAM_REFRESH = "SDRAM refresh"
+    EBIU_ARBITRATION = "EBIU arbitration"
+    STORE_BUFFER = "store buffer full"
+    CACHE_FILL = "cache fill"
+    CODE_FETCH = "code fetch"
+    DMA_SETUP = "DMA set-up"
+    INTERRUPT = "interrupt"
+    RING_EMPTY = "ring empty"
+    RING_FULL = "ring full"
+    SEMAPHORE = "semaphore"
+    INTERLOCK = "interlocks"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StageCost:
+    """What one stage cost one core in one frame. A stall of no cycles is left out of `stall_cclk`."""
+
+    stage: str
+    issue_cclk: int
+    stall_cclk: Mapping[StallReason, int]
+    idle_cclk: int
+
+    @property
+    def elapsed_cclk(self) -> int:
+        """Cycles from first to last, whatever the core did in them."""
+        return self.issue_cclk + sum(self.stall_cclk.values()) + self.idle_cclk
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnerCost:
+    """What one owner cost one core in one stage of one frame: a kernel without its callees, or something that no kernel does.
+
+    `symbol` is the kernel's in the machine code (`KernelRecord`); it is empty for a ring, a semaphore, an interrupt, the
+    cameras ..., which `owner` then names. A stall of no cycles is left out of `stall_cclk`.
+    """
+
+    stage: str
+    owner: str
+    symbol: str
+    calls: int
+    issue_cclk: int
+    stall_cclk: Mapping[StallReason, int]
+    idle_cclk: int
+
+    @property
+    def elapsed_cclk(self) -> int:
+        """Cycles from first to last, whatever the core did in them."""
+        return self.issue_cclk + sum(self.stall_cclk.values()) + self.idle_cclk
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoreFrame:
+    """One frame on one core, from the end of the frame before to its own end; the stages fill it exactly.
+
+    The `owners` of each stage fill that exactly: issue, each reason of a stall, and idle.
+    """
+
+    core: str
+    begin_cclk: int
+    end_cclk: int
+    stages: tuple[StageCost, ...]
+    owners: Sequence[OwnerCost] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrameRecord:
+    """One stereo frame. `index` counts in the recording; latency runs from `last_line_cclk` to `result_cclk`.
+
+    `cores` holds core A first. `results` are numbers that the firmware published for the frame (edges found ...),
+    `remarks` its sentences (an order refused ...).
+    """
+
+    index: int
+    last_line_cclk: int
+    result_cclk: int
+    cores: tuple[CoreFrame, ...]
+    results: Mapping[str, int]
+    remarks: tuple[str, ...] = ()

@@ -1,0 +1,77 @@
+"""What lay where, and what moved: buffers, code and memories, traffic on the buses, messages over SPI."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BufferRecord:
+    """A buffer of the firmware, and where it lies. `core` is that which declares it, or "shared".
+
+    `buffer` is the name that other records have for it: its own, and that of the core behind it where both declare one.
+    """
+
+    buffer: str
+    core: str
+    memory: str
+    address: int
+    nbytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrafficRecord:
+    """What one master moved to and from one buffer over the whole run, over a bus; a core's accesses of L1 are not among it.
+
+    `memory` is where the buffer lies; `buffer` is empty for what is in no buffer, such as code and semaphores. `master` is a core,
+    an MDMA stream or a PPI; a DMA transfer counts for the buffers that it begins in. The page counts are zero for memories
+    without pages. `busy_cclk` is how long it held the memory's bus, in CCLK cycles.
+    """
+
+    memory: str
+    buffer: str
+    master: str
+    read_bytes: int
+    written_bytes: int
+    page_hits: int
+    page_misses: int
+    page_conflicts: int
+    busy_cclk: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CodeRecord:
+    """Code of one core's kernels in one segment of the LDF: how many kernels, their bytes, and what the segment has left.
+
+    Without `in_l1`, fetches take cycles that are not in the kernels' costs.
+    """
+
+    core: str
+    segment: str
+    in_l1: bool
+    kernels: int
+    nbytes: int
+    free_bytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MemoryRecord:
+    """One memory of the chip, such as L2 or COREA_L1_DATA_A: its size, and what code, buffers and reserves take of it."""
+
+    memory: str
+    nbytes: int
+    used_bytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MessageRecord:
+    """One message over SPI: `direction` is out or in, seen from the board; the cycles are of core A's clock.
+
+    `type` is what the device calls it. Where the firmware's buffer had no room for all of it, "(cut short)" follows.
+    """
+
+    direction: str
+    type: str
+    nbytes: int
+    begin_cclk: int
+    end_cclk: int

@@ -1,0 +1,85 @@
+"""What kernels cost over a run: by source line, by buffer, and by who called them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from bfsim.trace.frames import StallReason
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LineCost:
+    """One source line of a kernel: how often its first operation ran, and the cycles of all of them.
+
+    `operations` are how often each ran and its issue cycles, which add up to `issue_cclk`; those of a routine of the run-time
+    library have the routine's name.
+    """
+
+    line: int
+    executions: int
+    issue_cclk: int
+    stall_cclk: Mapping[StallReason, int]
+    operations: Mapping[str, tuple[int, int]] = field(default_factory=dict)
+
+    @property
+    def elapsed_cclk(self) -> int:
+        """Cycles of the line, its stalls included."""
+        return self.issue_cclk + sum(self.stall_cclk.values())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KernelRecord:
+    """All calls of one kernel (or of a kernel called by it) by one core in one stage, over all frames, without its callees.
+
+    `symbol` tells kernels of one name apart. `file` and `LineCost.line` say where the source is; `text` holds its lines, the
+    first one being `first_line`. The `lines` add up to `issue_cclk` and `stall_cclk`; where code lies outside L1, the kernel's
+    first line has the waits for it.
+    """
+
+    core: str
+    stage: str
+    kernel: str
+    symbol: str
+    file: str
+    first_line: int
+    text: tuple[str, ...]
+    calls: int
+    issue_cclk: int
+    stall_cclk: Mapping[StallReason, int]
+    lines: tuple[LineCost, ...]
+
+    @property
+    def elapsed_cclk(self) -> int:
+        """Cycles of its calls, their stalls included, without its callees."""
+        return self.issue_cclk + sum(self.stall_cclk.values())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AccessRecord:
+    """What one line of a kernel accessed in one buffer, over all frames: elements that it read and wrote, and what it waited for them.
+
+    `fills` are lines that the data cache fetched for it. `buffer` is empty where the kernel's own code was waited for.
+    """
+
+    core: str
+    stage: str
+    symbol: str
+    line: int
+    buffer: str
+    reads: int
+    writes: int
+    fills: int
+    stall_cclk: Mapping[StallReason, int]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathRecord:
+    """One path of calls: what the last kernel of `path` (symbols) cost when called through the others, without its own callees."""
+
+    core: str
+    stage: str
+    path: tuple[str, ...]
+    calls: int
+    issue_cclk: int
+    stall_cclk: Mapping[StallReason, int]

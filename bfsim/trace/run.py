@@ -1,0 +1,126 @@
+"""A whole run: what ran on what, and all that it left behind."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from bfsim.trace.frames import FrameRecord
+from bfsim.trace.hardware import BufferRecord, CodeRecord, MemoryRecord, MessageRecord, TrafficRecord
+from bfsim.trace.kernels import AccessRecord, KernelRecord, PathRecord
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reference:
+    """Measurements from elsewhere that the budget stands beside, such as those of a real board.
+
+    `name` heads their column in the report, `about` says in one sentence what they are and where they come from.
+    """
+
+    name: str
+    about: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BudgetRow:
+    """A row of the budget: a stage of the firmware, and its milliseconds in the firmware's `Reference`, if they are known.
+
+    `within` is the stage that this one is a part of; its row holds the cycles of its parts too. One level is all.
+    """
+
+    stage: str
+    reference_ms: float | None = None
+    within: str | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Identity:
+    """All that a result depends on. Digests are sha256 in hex, or empty.
+
+    `..._numbers` say of a board or compiler that is not shipped which shipped one it is like, and what it has otherwise.
+    Paths are left out on purpose: `..._files` are relative to the folder that they were imported from; a shipped board or
+    compiler has none. `board` ends in --set PATH=VALUE for each number that was changed.
+    """
+
+    recording: str
+    recording_digest: str
+    firmware: str
+    firmware_digest: str
+    firmware_files: tuple[str, ...]
+    board: str
+    board_digest: str
+    ldf: str
+    ldf_digest: str
+    compiler: str
+    feed: str
+    script_digest: str
+    fidelity: str
+    bfsim_version: str
+    llvm_version: str
+    cclk_hz: float
+    sclk_hz: float
+    width_px: int
+    height_px: int
+    compiler_digest: str = ""
+    board_files: tuple[str, ...] = ()
+    compiler_files: tuple[str, ...] = ()
+    board_numbers: tuple[str, ...] = ()
+    compiler_numbers: tuple[str, ...] = ()
+
+
+class WarningKind(StrEnum):
+    """What a warning is about."""
+
+    GEOMETRY = "geometry"
+    CLOCKS = "clocks"
+    MISSED = "missed frames"
+    DEVICE = "SPI device"
+    LOST = "lost"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunWarning:
+    """Something about a run that must not be overlooked, and the numbers in its text. `result` is the published number, if it is of one."""
+
+    kind: WarningKind
+    text: str
+    numbers: Mapping[str, int] = field(default_factory=dict)
+    result: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunRecord:
+    """One run. `messages` went over SPI; `interrupts` were taken, by core and source. `missed` are the recording's frames that came while the firmware was busy.
+
+    `firmware_place` is the file that was named as firmware, or "built in"; `ldf_place` is the LDF's, or "shipped".
+    `device_notes` are what the device on the SPI had to say when the run was over.
+    `reference` says what the `reference_ms` of `rows` are, None where the firmware has no reference.
+    `geometry` says where the firmware takes the cameras to be, and whether the recording said so; it is empty for firmware
+    that does not ask. `assumptions` are warnings of what was not given and had to be assumed; `losses` say in words what those published
+    numbers count that the firmware lost.
+    When `interrupted` by Ctrl-C, `traffic` also holds what was moved of the frame that was not finished.
+    """
+
+    identity: Identity
+    firmware_place: str
+    ldf_place: str
+    rows: tuple[BudgetRow, ...]
+    reference: Reference | None
+    frames: tuple[FrameRecord, ...]
+    missed: tuple[int, ...]
+    interrupted: bool
+    kernels: tuple[KernelRecord, ...]
+    accesses: tuple[AccessRecord, ...]
+    paths: tuple[PathRecord, ...]
+    buffers: tuple[BufferRecord, ...]
+    traffic: tuple[TrafficRecord, ...]
+    code: tuple[CodeRecord, ...]
+    messages: tuple[MessageRecord, ...]
+    device_notes: tuple[str, ...]
+    geometry: str
+    assumptions: tuple[RunWarning, ...]
+    losses: Mapping[str, str]
+    interrupts: Mapping[str, int]
+    events: int
+    memories: tuple[MemoryRecord, ...] = ()
