@@ -15,10 +15,13 @@ DIRECT = {"jump", "call", "branch", "branch_predicted"}
 COMPUTED = {"jump_to", "jump_relative", "call_to", "call_relative", "return_"}
 CALLS = {"call", "call_to", "call_relative"}
 BRANCHES = {"branch", "branch_predicted"}
+ASSERTIONS = {"assert_low", "assert_high"}
+"""What these do ends a program, if it does anything."""
 EVENTS = {
     *("return_from_interrupt", "return_from_exception", "return_from_nmi", "return_from_emulation"),
     *("raise_interrupt", "exception", "emulation_exception", "idle"),
-    *("output", "output_register", "halt", "abort", "assert_low", "assert_high", "debug"),
+    *("output", "output_register", "halt", "abort", "debug"),
+    *ASSERTIONS,
 }
 """What these do may leave native code, which goes on with what follows."""
 NEVER_ON = (DIRECT | COMPUTED) - CALLS - BRANCHES
@@ -111,7 +114,7 @@ class Code:
             self.loop_starts.setdefault((end, counter), set()).add(start)
             return {start}
         found = {int(operands["t"])} if what in DIRECT else set()
-        if what in CALLS | EVENTS:
+        if what in CALLS | EVENTS - ASSERTIONS:
             self.resumed.add(instruction.end)
         return found | ({instruction.end} if what in CALLS | EVENTS | BRANCHES else set())
 

@@ -1,0 +1,1 @@
+"""The parts of `benchmarks/instruction_set.py`."""
