@@ -237,15 +237,39 @@ def weights(steep: Sequence[int]) -> list[Weights]:
     ]
 
 
-def refined(circle: Circle, points: Sequence[Point], counts: Sequence[Weights], limit: int) -> Circle:
+Bulge = tuple[
+    int, int
+]  # by how much a radius grows along the picture's axes and along its diagonals, in 1/4096
+
+
+def bulge_of(circle: Circle, focal_px: int, size: tuple[int, int]) -> Bulge:
+    """How far the image of a sphere is from a circle, whose centre is so far from the middle of a picture."""
+    x, y = (
+        min(max((each - 32 * (pixels - 1)) // 64, -511), 511)
+        for each, pixels in zip(circle[:2], size, strict=True)
+    )
+    square = max((focal_px + isqrt(focal_px**2 + x * x + y * y)) ** 2, 1)
+    return 4096 * (x * x - y * y) // square, 4096 * 2 * x * y // square
+
+
+def off_outline(point: Point, circle: Circle, bulge: Bulge) -> tuple[int, int, int]:
+    """The unit vector from the centre to a point, in 1/128, and how far the point is outside the outline, in 1/64 px."""
+    x, y, radius = circle
+    away = max(distance(point, (x, y)), 1)
+    nx, ny = (point[0] - x) * 128 // away, (point[1] - y) * 128 // away
+    more = (bulge[0] * (nx * nx - ny * ny) + 2 * bulge[1] * nx * ny) >> 14
+    return nx, ny, away - radius - (radius * more >> 12)
+
+
+def refined(
+    circle: Circle, points: Sequence[Point], counts: Sequence[Weights], limit: int, bulge: Bulge = (0, 0)
+) -> Circle:
     """One round of the fit over the points nearer to the circle than `limit`: the nearer, the more they count, up to 32."""
     x, y, radius = circle
     rows = []
     for point, count in zip(points, counts, strict=True):
-        away = distance(point, (x, y))
-        off = away - radius
-        if away and abs(off) < limit:
-            nx, ny = (point[0] - x) * 128 // away, (point[1] - y) * 128 // away
+        nx, ny, off = off_outline(point, circle, bulge)
+        if abs(off) < limit:
             near = ((limit**2 - off**2) * ((64 << 16) // limit**2)) >> 16
             rows.append(((near * count[off > 0] + 256) >> 9, nx, ny, off))
     weight = sum(row[0] for row in rows)
@@ -269,10 +293,10 @@ def refined(circle: Circle, points: Sequence[Point], counts: Sequence[Weights], 
     return x + dx, y + dy, radius + (2 * (total(3) - towards) + weight) // (2 * weight)
 
 
-def arc(circle: Circle, points: Sequence[Point]) -> int:
-    """How much of a circle has a point within a pixel, in 1/256: 8 for each of its 32 sectors."""
-    x, y, radius = circle
-    near = [each for each in points if abs(distance(each, (x, y)) - radius) <= FINE]
+def arc(circle: Circle, points: Sequence[Point], bulge: Bulge = (0, 0)) -> int:
+    """How much of an outline has a point within a pixel, in 1/256: 8 for each of its 32 sectors."""
+    x, y, _ = circle
+    near = [each for each in points if abs(off_outline(each, circle, bulge)[2]) <= FINE]
     if not near:
         return 0
     off = np.array(near) - (x, y)
@@ -309,7 +333,14 @@ class Blob:
 
 
 def circle(
-    number: int, blob: Blob, edges: Sequence[Edge], opened: Picture, luma: Picture, colours: int, limits: Any
+    number: int,
+    blob: Blob,
+    edges: Sequence[Edge],
+    opened: Picture,
+    luma: Picture,
+    colours: int,
+    limits: Any,
+    focal_px: int,
 ) -> list[int]:
     """The words of the circle of blob `number`; `limits` are the stage's thresholds."""
     height, width = opened.shape
@@ -358,11 +389,13 @@ def circle(
     if agreed is None or (record[7] != 3 and share <= limits.consensus_share):
         return record
     record[7] = 3
-    fitted, arc_seen = fit(agreed, found, luma, limits)
+    fitted, arc_seen = fit(agreed, found, luma, limits, bulge_of(agreed, focal_px, (width, height)))
     return [*((each + 2) // 4 for each in fitted), *record[3:8], arc_seen]
 
 
-def fit(circle: Circle, edges: Sequence[Edge], luma: Picture, limits: Any) -> tuple[Circle, int]:
+def fit(
+    circle: Circle, edges: Sequence[Edge], luma: Picture, limits: Any, bulge: Bulge
+) -> tuple[Circle, int]:
     """The circle that fits the outline at the edges near one, and how much of it is seen."""
     x, y, radius = circle
     limit = FINE * limits.fit_range
@@ -372,6 +405,6 @@ def fit(circle: Circle, edges: Sequence[Edge], luma: Picture, limits: Any) -> tu
     points = [point for point, _ in outline]
     counts = weights([steep for _, steep in outline])
     for _ in range(limits.fit_rounds):
-        circle = refined(circle, points, counts, limit)
+        circle = refined(circle, points, counts, limit, bulge)
         limit = max(limit // 2, min(near_of(circle[2]), limit))
-    return circle, arc(circle, points)
+    return circle, arc(circle, points, bulge)

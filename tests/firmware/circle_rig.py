@@ -29,6 +29,9 @@ YELLOW = hues(21, 23)
 
 BALL_RGB, FLOOR_RGB, WHITE_RGB = (225, 170, 20), (8, 8, 8), (235, 235, 235)
 
+FOCAL_PX = 2000
+"""So far away discs look as balls do."""
+
 Canvas = NDArray[np.float64]
 Where = Callable[[NDArray[Any], NDArray[Any]], NDArray[Any]]
 
@@ -147,10 +150,11 @@ class Seen:
             for word, y in zip(self.edge_data.tolist(), rows.tolist(), strict=False)
         ]
 
-    def expected(self, colours: int, limits: CircleThresholds) -> list[list[int]]:
+    def expected(self, colours: int, limits: CircleThresholds, focal_px: int = FOCAL_PX) -> list[list[int]]:
         """The words of all circles, by the reference."""
+        grey = luma(self.uyvy)
         return [
-            reference_circle(number, blob, self.edges, self.opened, luma(self.uyvy), colours, limits)
+            reference_circle(number, blob, self.edges, self.opened, grey, colours, limits, focal_px)
             for number, blob in enumerate(map(Blob.of, self.blobs))
             if blob.colours & colours
         ]
@@ -204,6 +208,7 @@ def circles_of(picture: Seen, thresholds: CircleThresholds, colours: int = YELLO
     blob_data[: len(picture.blobs)] = np.array(picture.blobs or np.zeros((0, BLOB_WORDS)), np.uint32)
     core = CircleCore(
         {
+            "geometry": [np.array([16 * FOCAL_PX, 0, 0, 0, 0, 0, 0, 0, 16 * FOCAL_PX], np.int32)],
             "edge_data": [picture.edge_data],
             "edge_index": [picture.edge_index],
             "edge_counts": [picture.edge_counts],

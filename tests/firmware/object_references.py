@@ -247,14 +247,30 @@ def ball_at(
         if found["tests"] & 16:
             extent = 2 * circle["radius"]
             found = found | {"width": extent, "height": extent}
+            if refined:
+                found, extent = sphere(found, geometry, extent, size)
             if extent > 0:
                 depth = (geometry[FOCAL] * model.width_mm + extent // 2) // extent
             depth = depth if depth <= FARTHEST else 0
             if depth:
-                found = found | {"measures": 1, "extent": extent}
+                found = found | {"measures": 1, "extent": found["width"]}
                 if refined:
                     depth = min((isqrt(4 * (depth**2 + (model.width_mm // 2) ** 2)) + 1) // 2, FARTHEST)
     return placed(found, geometry, depth, size)
+
+
+def sphere(found: Record, geometry: Sequence[int], mean: int, size: tuple[int, int]) -> tuple[Record, int]:
+    """A ball's image at its centre, and its size across, given the ellipse's middle and the mean of its axes."""
+    focal = geometry[FOCAL]
+    x, y = (found[name] - 8 * (each - 1) for name, each in zip(("image_x", "image_y"), size, strict=True))
+    reach = focal + isqrt(focal**2 + x**2 + y**2)
+    across = (focal * mean + (reach >> 2)) // (reach >> 1)
+    square = (across >> 1) ** 2
+    beyond = square // max((focal**2 + square) >> 12, 1)
+    return found | {
+        "image_x": found["image_x"] - (x * beyond >> 12),
+        "image_y": found["image_y"] - (y * beyond >> 12),
+    }, across
 
 
 def row_below(line: Sequence[int] | None, bottom: int, column: int) -> int:

@@ -30,7 +30,7 @@ from tinyphoon.stages.circle_edges import (
     open_area,
     select_edges_row,
 )
-from tinyphoon.stages.circle_fit import FIT_WORDS, OUTSIDE_BITS, REFINED, arc_of, fit_circle
+from tinyphoon.stages.circle_fit import FIT_WORDS, OUTSIDE_BITS, REFINED, arc_of, expect_bulge, fit_circle
 from tinyphoon.stages.circle_outline import (
     LUMA_LINES,
     REACH_LINES,
@@ -225,9 +225,11 @@ def words_of(weights: list[expected.Weights]) -> list[int]:
     return [inside | outside << OUTSIDE_BITS for inside, outside in weights]
 
 
-@given(points_near, st.integers(1, 100), st.integers(0, 4))
-def test_rounds_of_the_fit(around: list[tuple[float, int, int]], radius: int, rounds: int) -> None:
-    """Scattered points, arcs, a single point and none."""
+@given(points_near, st.integers(1, 100), st.integers(0, 4), st.integers(1, 2000))
+def test_rounds_of_the_fit(
+    around: list[tuple[float, int, int]], radius: int, rounds: int, focal_px: int
+) -> None:
+    """Scattered points, arcs, a single point and none, with lenses from one pixel to 2000."""
     points = [
         (int(8000 + (64 * radius + off) * np.cos(angle)), int(7900 + (64 * radius + off) * np.sin(angle)))
         for angle, off, _ in around
@@ -238,12 +240,14 @@ def test_rounds_of_the_fit(around: list[tuple[float, int, int]], radius: int, ro
     fit[REFINED] = len(points)
     words = np.array([x | y << 16 for x, y in points] or [0], np.uint32)
     counts = np.array(steep or [0], np.uint16)
-    fit_circle(words, counts, fit, 3, rounds)
     circle, limit = (8010, 7890, 64 * radius), 192
+    bulge = expected.bulge_of(circle, focal_px, (640, 480))
+    expect_bulge(fit, np.array([16 * focal_px, *[0] * 8], np.int32), 640, 480)
+    fit_circle(words, counts, fit, 3, rounds)
     wanted = expected.weights(steep)
     assert counts[: len(points)].tolist() == words_of(wanted)
     for _ in range(rounds):
-        circle = expected.refined(circle, points, wanted, limit)
+        circle = expected.refined(circle, points, wanted, limit, bulge)
         limit = max(limit // 2, min(expected.near_of(circle[2]), limit))
     assert tuple(fit[:3].tolist()) == circle
 
@@ -282,6 +286,38 @@ def test_points_in_the_shade_do_not_pull_the_circle_in() -> None:
     """A third of the outline, four times less steep, lies three quarters of a pixel further in."""
     shade = np.arange(120) % 3 == 0
     assert fitted_radius(np.where(shade, -48, 0), np.where(shade, 20, 80)) == pytest.approx(20, abs=0.1)
+
+
+@pytest.mark.parametrize("seen", [(0, 6.28), (3.6, 5.8)])
+@pytest.mark.parametrize(("x_px", "y_px"), [(0, 0), (120, 0), (0, -100), (-140, 90)])
+def test_the_image_of_a_sphere(x_px: float, y_px: float, seen: tuple[float, float]) -> None:
+    """A cone of rays round the way to a ball, cut askew by the picture: the mean of its half axes, of the whole and of a part."""
+    focal, radius = 386.0, 0.15
+    axis = np.array([x_px / focal, y_px / focal, 1.0])
+    axis /= np.linalg.norm(axis)
+    aside = np.cross(axis, [0.0, 1.0, 0.0])
+    aside /= np.linalg.norm(aside)
+    turns = np.linspace(0, 6.28, 900)
+    rays = axis + radius * (np.cos(turns)[:, None] * aside + np.sin(turns)[:, None] * np.cross(axis, aside))
+    outline = focal * rays[:, :2] / rays[:, 2:] + (319.5, 239.5)
+    middle = (outline.min(axis=0) + outline.max(axis=0)) / 2
+    from_middle = np.hypot(*(outline - middle).T)
+    mean = (from_middle.max() + from_middle.min()) / 2
+    angles = np.arctan2(*(outline - middle).T[::-1]) % 6.2832
+    kept = outline[(angles >= seen[0]) & (angles <= seen[1])]
+    points = np.rint(64 * kept).astype(int)
+    fit = np.zeros(FIT_WORDS, np.int32)
+    fit[:3], fit[REFINED] = (*np.rint(64 * (middle + 1)), 64 * (mean - 1)), len(points)
+    expect_bulge(fit, np.array([16 * focal, *[0] * 8], np.int32), 640, 480)
+    fit_circle(
+        (points[:, 0] | points[:, 1] << 16).astype(np.uint32),
+        np.full(len(points), EVEN, np.uint16),
+        fit,
+        3,
+        12,
+    )
+    assert fit[2] / 64 == pytest.approx(mean, abs=0.4)
+    assert np.hypot(*(fit[:2] / 64 - middle)) < 0.4
 
 
 @pytest.mark.parametrize("off", [1, 64, 148, 250])

@@ -13,6 +13,7 @@ from benchmarks.seen_circles import see
 from bfsim.recording import StereoFrame
 from tests.firmware.circle_rig import WHITE_RGB, YELLOW, Circles, Drawing, Seen, circles_of, seen
 from tests.firmware.pictures import random_uyvy
+from tinyphoon.geometry import THESIS_FOCAL_PX, THESIS_WIDTH_PX
 from tinyphoon.stages.circle_detection import CIRCLE_CAPACITY, CircleThresholds
 from tinyphoon.stores.circles import CIRCLE_ARC, CIRCLE_CENTRE, CIRCLE_EDGES, CIRCLE_RADIUS_SHARE
 from tinyphoon.strategy.modes import FITTED_CIRCLES, INDOOR_FIELD, PLAIN_CIRCLES
@@ -318,7 +319,8 @@ def test_the_machine_finds_the_same() -> None:
     for found, picture in zip(
         see([StereoFrame(0, *pictures, 0, 0, truth=None)], INDOOR_FIELD), pictures, strict=True
     ):
-        wanted = seen(picture).expected(INDOOR_FIELD.ball_colours, INDOOR_FIELD.circles)
+        focal_px = round(THESIS_FOCAL_PX * 160 / THESIS_WIDTH_PX)
+        wanted = seen(picture).expected(INDOOR_FIELD.ball_colours, INDOOR_FIELD.circles, focal_px)
         assert found.words.tolist() == wanted
         assert found.results["circles"] == len(wanted)
         assert 0.1 < found.stages_ms["Shape detection"] < 10

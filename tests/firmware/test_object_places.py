@@ -10,7 +10,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.recording import StereoGeometry
-from tests.firmware.object_rig import HEIGHT, WIDTH, as_dicts, geometries, geometry_words, object_words
+from tests.firmware.object_rig import (
+    HEIGHT,
+    THESIS,
+    WIDTH,
+    as_dicts,
+    geometries,
+    geometry_words,
+    object_words,
+)
 from tinyphoon.geometry import FARTHEST_MM
 from tinyphoon.stages.object_places import (
     depth_by_floor,
@@ -19,6 +27,7 @@ from tinyphoon.stages.object_places import (
     floor_extent,
     place_object,
     principal,
+    see_sphere,
 )
 from tinyphoon.stores.objects import DIRECTION_Z
 
@@ -32,6 +41,34 @@ def test_depth_by_size(geometry: StereoGeometry, size_mm: int, extent: int) -> N
         assert true <= 0.51 or true > FARTHEST_MM * (1 - 1 / geometry.focal_px)
     else:
         assert abs(depth - true) <= 0.5 + true / (32 * geometry.focal_px) + 1e-6
+
+
+@pytest.mark.parametrize("place_mm", [(0, 0, 150), (90, 60, 150), (-200, 150, 400), (300, -200, 1000)])
+@pytest.mark.parametrize("radius_mm", [21, 30])
+def test_the_image_of_a_sphere(place_mm: tuple[int, int, int], radius_mm: int) -> None:
+    """The ellipse that a cone of rays makes gives back the way to the centre, and the depth to half a hundredth.
+
+    That much the middle of the ellipse of a ball 150 mm away is farther out than its centre.
+    """
+    x, y, z = place_mm
+    focal = THESIS.focal_px
+    # along x/z, rays at the angles of the axis plus and minus that of the cone; across as on the axis
+    off = math.atan(math.hypot(x, y) / z)
+    cone = math.asin(radius_mm / math.sqrt(x * x + y * y + z * z))
+    inner, outer = (focal * math.tan(off + each) for each in (-cone, cone))
+    half_across = focal * radius_mm / math.sqrt(z * z - radius_mm**2)
+    mean = round(16 * (half_across + (outer - inner) / 2) / 2)
+    along = np.array([x, y]) / max(math.hypot(x, y), 1)
+    middle = np.add(np.rint(8 * along * (inner + outer)).astype(int), (principal(WIDTH), principal(HEIGHT)))
+    seen = object_words({"image_x": middle[0], "image_y": middle[1]})
+    words = geometry_words(THESIS)
+    across = see_sphere(words, seen, 0, 2 * mean, WIDTH, HEIGHT)
+    (found,) = as_dicts(seen)
+    assert across / 32 == pytest.approx(half_across, rel=0.005, abs=0.1)
+    assert found["image_x"] == pytest.approx(principal(WIDTH) + 16 * focal * x / z, abs=3)
+    assert found["image_y"] == pytest.approx(principal(HEIGHT) + 16 * focal * y / z, abs=3)
+    depth = depth_of_sphere(depth_by_size(words, 2 * radius_mm, across), radius_mm)
+    assert depth == pytest.approx(z, rel=0.005, abs=1)
 
 
 @given(geometries, st.integers(0, 600), st.integers(-16 * 240, 16 * 240))

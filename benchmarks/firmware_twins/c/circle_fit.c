@@ -12,6 +12,7 @@
 #define TAPER_BITS 16
 #define WEIGHT_BITS 9
 #define NORMAL_BITS 7
+#define BULGE_BITS 12
 #define SHORTEST_ARC (1 << 10)
 
 KERNEL int32_t distance(int32_t x, int32_t y, const int32_t fit[])
@@ -19,6 +20,12 @@ KERNEL int32_t distance(int32_t x, int32_t y, const int32_t fit[])
     int32_t dx = x - fit[CENTRE_X];
     int32_t dy = y - fit[CENTRE_Y];
     return (int32_t)isqrt32((uint32_t)(dx * dx) + (uint32_t)(dy * dy));
+}
+
+HELPER int32_t outside_of(int32_t nx, int32_t ny, int32_t away, const int32_t fit[])
+{
+    int32_t bulge = (fit[BULGE_COSINE] * (nx * nx - ny * ny) + 2 * fit[BULGE_SINE] * nx * ny) >> (2 * NORMAL_BITS);
+    return away - fit[RADIUS] - (fit[RADIUS] * bulge >> BULGE_BITS);
 }
 
 HELPER void weigh(uint16_t weights[], int32_t fit[])
@@ -45,14 +52,14 @@ HELPER void sum_up(const uint32_t points[], const uint16_t weights[], int32_t co
     for (int32_t number = 0; number < count; number++) {
         int32_t x = (int32_t)(points[number] & 0xFFFF);
         int32_t y = (int32_t)(points[number] >> 16);
-        int32_t away = distance(x, y, fit);
-        int32_t outside = away - fit[RADIUS];
-        if (away > 0 && abs(outside) < fit_range) {
+        int32_t away = max(distance(x, y, fit), 1);
+        int32_t nx = floor_div((x - fit[CENTRE_X]) << NORMAL_BITS, away);
+        int32_t ny = floor_div((y - fit[CENTRE_Y]) << NORMAL_BITS, away);
+        int32_t outside = outside_of(nx, ny, away, fit);
+        if (abs(outside) < fit_range) {
             int32_t near = (widest - outside * outside) * scale >> TAPER_BITS;
             int32_t counts = outside > 0 ? weights[number] >> OUTSIDE_BITS : weights[number] & MOST;
             int32_t weight = (near * counts + (1 << (WEIGHT_BITS - 1))) >> WEIGHT_BITS;
-            int32_t nx = floor_div((x - fit[CENTRE_X]) << NORMAL_BITS, away);
-            int32_t ny = floor_div((y - fit[CENTRE_Y]) << NORMAL_BITS, away);
             fit[WEIGHT] = fit[WEIGHT] + weight;
             fit[SUM_NX] = fit[SUM_NX] + weight * nx;
             fit[SUM_NY] = fit[SUM_NY] + weight * ny;

@@ -18,6 +18,8 @@
 #define SUM_NYE 11
 #define NEXT_EDGE 12
 #define REFINED 13
+#define BULGE_COSINE 14
+#define BULGE_SINE 15
 
 KERNEL int32_t distance(int32_t x, int32_t y, const int32_t fit[]);
 

@@ -28,7 +28,15 @@ from tinyphoon.stages.circle_edges import (
     rows_of,
     select_edges_row,
 )
-from tinyphoon.stages.circle_fit import CENTRE_X, CENTRE_Y, FIT_WORDS, RADIUS, arc_of, fit_circle
+from tinyphoon.stages.circle_fit import (
+    CENTRE_X,
+    CENTRE_Y,
+    FIT_WORDS,
+    RADIUS,
+    arc_of,
+    expect_bulge,
+    fit_circle,
+)
 from tinyphoon.stages.circle_outline import LUMA_LINES, REACH_LINES, RISES, clear_points, luma_row, refine_row
 from tinyphoon.stages.circle_radius import edges_round, fill_histogram, find_radius, mean_radius
 from tinyphoon.stages.circle_votes import clear_votes, draw_lines, find_peak, mean_offset, votes_round
@@ -341,6 +349,7 @@ def _refine(
         y = ahead - REACH_LINES
         if top <= y:
             yield core.run(refine_row, selected, count, y, luma, height, *profile)
+    yield core.run(expect_bulge, fit, core.array("geometry"), frame.width, height)
     yield core.run(fit_circle, selected, weights, fit, thresholds.fit_range, thresholds.fit_rounds)
 
 

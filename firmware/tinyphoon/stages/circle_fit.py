@@ -12,6 +12,10 @@ at the outline and the rest behind it, over the next pixel or two: the edge lies
 it would be in good light. It never lies further out. So on a ball in even light both sides count alike, and the circle
 has no bias; on one that is lit from above it settles on the outermost points that agree.
 
+A sphere off the middle of the picture is no circle there but an ellipse, longer along the way to the middle [ours]: its outline is
+a cone of rays, and the picture cuts it askew. To the first order it is a circle whose radius grows and shrinks twice
+a turn, and the fit takes off that bulge. Centre and mean radius of the ellipse are what is fitted.
+
 A point also counts the less the further it is from the circle, down to nothing (Beaton and Tukey's weights): what lies
 beside the ball, or on it, does not pull it over.
 """
@@ -20,8 +24,10 @@ from __future__ import annotations
 
 from bfsim.api import i32, kernel, u8, u16, u32
 from tinyphoon.arithmetic import angle8, isqrt32
+from tinyphoon.geometry import GEOMETRY_FOCAL, GEOMETRY_SHIFT_X, GEOMETRY_SHIFT_Y
 from tinyphoon.stages.circle_edges import FINE
 from tinyphoon.stages.line_fit import spread
+from tinyphoon.stores.lines import SUBPIXELS
 
 # What is fitted and from what, all in one array of words.
 CENTRE_X = 0  # 1/64 px
@@ -38,7 +44,13 @@ SUM_NXE = 10
 SUM_NYE = 11
 NEXT_EDGE = 12  # how many selected edges have been refined
 REFINED = 13  # how many of them became points
-FIT_WORDS = 14
+BULGE_COSINE = (
+    14  # of the radius, in 1/4096: by how much it grows along the picture's axes, and along its diagonals
+)
+BULGE_SINE = 15
+FIT_WORDS = 16
+BULGE_BITS = 12
+FARTHEST_OFF = 511  # px from the principal point; two squares of it have room above BULGE_BITS
 
 # Of the variance of a place, in parts of PLACE^2: an eighth of a pixel, to which points of sharp outlines scatter.
 NOISE = 256  # (2 grey levels / PLACE)^2; by steepness squared
@@ -75,6 +87,31 @@ def distance(x: i32, y: i32, fit: i32[:]) -> i32:
 
 
 @kernel
+def expect_bulge(fit: i32[:], geometry: i32[:], width: i32, height: i32) -> None:
+    """Set the bulge of a sphere whose image has its centre where the circle has, in a picture of `width` by `height`.
+
+    With the distance r from the principal point and the focal length f the half axes are (1 + e) and (1 - e) of their mean,
+    e = r^2 / (f + sqrt(f^2 + r^2))^2.
+    """
+    focal = geometry[GEOMETRY_FOCAL] // SUBPIXELS
+    middle_x = (width - 1) * (FINE >> 1) + geometry[GEOMETRY_SHIFT_X] * (FINE // SUBPIXELS)
+    middle_y = (height - 1) * (FINE >> 1) + geometry[GEOMETRY_SHIFT_Y] * (FINE // SUBPIXELS)
+    x = min(max((fit[CENTRE_X] - middle_x) // FINE, -FARTHEST_OFF), FARTHEST_OFF)
+    y = min(max((fit[CENTRE_Y] - middle_y) // FINE, -FARTHEST_OFF), FARTHEST_OFF)
+    reach = focal + i32(isqrt32(u32(focal * focal + x * x + y * y)))
+    square = max(reach * reach, 1)
+    fit[BULGE_COSINE] = (x * x - y * y << BULGE_BITS) // square
+    fit[BULGE_SINE] = (2 * x * y << BULGE_BITS) // square
+
+
+@kernel
+def outside_of(nx: i32, ny: i32, away: i32, fit: i32[:]) -> i32:
+    """Return how far outside the outline a point is, in 1/64 px, that is `away` from the centre along a unit vector in 1/128."""
+    bulge = fit[BULGE_COSINE] * (nx * nx - ny * ny) + 2 * fit[BULGE_SINE] * nx * ny >> 2 * NORMAL_BITS
+    return away - fit[RADIUS] - (fit[RADIUS] * bulge >> BULGE_BITS)
+
+
+@kernel
 def near_of(radius: i32) -> i32:
     """Return how far from a circle its points may be, in 1/64 px."""
     return max(NEAR, radius >> NEAR_BITS)
@@ -105,14 +142,14 @@ def sum_up(points: u32[:], weights: u16[:], count: i32, fit: i32[:], fit_range: 
     for number in range(count):
         x = i32(points[number] & 0xFFFF)
         y = i32(points[number] >> 16)
-        away = distance(x, y, fit)
-        outside = away - fit[RADIUS]
-        if away > 0 and abs(outside) < fit_range:
+        away = max(distance(x, y, fit), 1)
+        nx = (x - fit[CENTRE_X] << NORMAL_BITS) // away
+        ny = (y - fit[CENTRE_Y] << NORMAL_BITS) // away
+        outside = outside_of(nx, ny, away, fit)
+        if abs(outside) < fit_range:
             near = (widest - outside * outside) * scale >> TAPER_BITS
             counts = weights[number] >> OUTSIDE_BITS if outside > 0 else weights[number] & MOST
             weight = near * counts + (1 << WEIGHT_BITS - 1) >> WEIGHT_BITS
-            nx = (x - fit[CENTRE_X] << NORMAL_BITS) // away
-            ny = (y - fit[CENTRE_Y] << NORMAL_BITS) // away
             fit[WEIGHT] = fit[WEIGHT] + weight
             fit[SUM_NX] = fit[SUM_NX] + weight * nx
             fit[SUM_NY] = fit[SUM_NY] + weight * ny
@@ -175,7 +212,10 @@ def arc_of(points: u32[:], fit: i32[:], atan: u8[:]) -> i32:
     for number in range(fit[REFINED]):
         x = i32(points[number] & 0xFFFF)
         y = i32(points[number] >> 16)
-        if abs(distance(x, y, fit) - fit[RADIUS]) <= FINE:
+        away = max(distance(x, y, fit), 1)
+        nx = (x - fit[CENTRE_X] << NORMAL_BITS) // away
+        ny = (y - fit[CENTRE_Y] << NORMAL_BITS) // away
+        if abs(outside_of(nx, ny, away, fit)) <= FINE:
             angle = angle8(x - fit[CENTRE_X], y - fit[CENTRE_Y], atan)
             sectors = sectors | u32(1) << (angle >> SECTOR_BITS)
     arc: i32 = 0

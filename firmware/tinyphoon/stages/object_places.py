@@ -39,6 +39,7 @@ from tinyphoon.stores.objects import (
 )
 
 HALF_PIXEL = 8  # 1/16 px
+SPHERE_BITS = 12
 
 
 @kernel
@@ -70,6 +71,29 @@ def depth_of_sphere(depth: i32, radius_mm: i32) -> i32:
     if square - root * root > root:
         root = root + 1
     return min(i32(root), FARTHEST_MM)
+
+
+@kernel
+def see_sphere(geometry: i32[:], objects: i16[:], number: i32, size: i32, width: i32, height: i32) -> i32:
+    """Move a ball's image to where its centre is, and return how large it looks across: it is seen as an ellipse `size` in the mean.
+
+    Its outline is longer along the way to the principal point, at a distance of r, by 1 over the cosine there; across, it looks as on
+    the axis: b = f r_ball / sqrt(Z^2 - r_ball^2). And the middle of the ellipse is farther out than the centre, by
+    1 + b^2 / f^2. `width` and `height` are those of the picture in pixels.
+    """
+    at = number * OBJECT_WORDS
+    focal = geometry[GEOMETRY_FOCAL]
+    middle_x = principal(width) + geometry[GEOMETRY_SHIFT_X]
+    middle_y = principal(height) + geometry[GEOMETRY_SHIFT_Y]
+    x = objects[at + OBJECT_IMAGE_X] - middle_x
+    y = objects[at + OBJECT_IMAGE_Y] - middle_y
+    reach = focal + i32(isqrt32(u32(focal * focal) + u32(x * x) + u32(y * y)))
+    across = (2 * focal * (size >> 1) + (reach >> 2)) // (reach >> 1)
+    square = u32(across >> 1) * u32(across >> 1)
+    beyond = i32(square // max(u32(focal * focal) + square >> SPHERE_BITS, 1))
+    objects[at + OBJECT_IMAGE_X] = middle_x + x - (x * beyond >> SPHERE_BITS)
+    objects[at + OBJECT_IMAGE_Y] = middle_y + y - (y * beyond >> SPHERE_BITS)
+    return across
 
 
 @kernel

@@ -8,6 +8,7 @@ from tinyphoon.stages.object_places import (
     depth_by_size,
     depth_of_sphere,
     place_object,
+    see_sphere,
 )
 from tinyphoon.stages.object_tests import (
     BALL,
@@ -101,6 +102,8 @@ def see_ball(
             size = 2 * circles[circle + CIRCLE_RADIUS]
             seen[at + OBJECT_WIDTH] = size
             seen[at + OBJECT_HEIGHT] = size
+            if refined != 0:
+                size = see_sphere(geometry, seen, place, size, width, height)
             depth = depth_by_size(geometry, models[model + MODEL_WIDTH], size)
             if depth != 0:
                 if refined:
