@@ -10,11 +10,13 @@ from __future__ import annotations
 import re
 import shlex
 import subprocess
+import sys
 from collections.abc import Iterator, Mapping
 from contextlib import chdir
 from dataclasses import dataclass
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner
 
 from bfsim.cli import main
@@ -83,7 +85,7 @@ def play(block: Block, folder: Path, environment: Mapping[str, str]) -> None:
                 output = _run(["bash", "-c", f"set -euo pipefail\n{command}"], folder, environment)
             _compare(printed, output, f"{command} (line {block.line})")
     elif block.language == "python":
-        _run(["python", "-c", block.text], folder, environment)
+        _execute(block, folder)
 
 
 def _called(command: str, folder: Path, environment: Mapping[str, str]) -> str:
@@ -91,6 +93,17 @@ def _called(command: str, folder: Path, environment: Mapping[str, str]) -> str:
         done = CliRunner().invoke(main, shlex.split(command)[1:], env=environment, prog_name="bfsim")
     assert done.exit_code == 0, f"{command}\n{done.output}"
     return done.output
+
+
+def _execute(block: Block, folder: Path) -> None:
+    """Do what a script would, in this process too; what it imports from `folder` is forgotten afterwards."""
+    known = set(sys.modules)
+    with chdir(folder), pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(folder)
+        exec(compile(block.text, f"line {block.line}", "exec"), {"__name__": "__main__"})
+    for name in set(sys.modules) - known:
+        if (getattr(sys.modules[name], "__file__", None) or "").startswith(str(folder)):
+            del sys.modules[name]
 
 
 def _run(command: list[str], folder: Path, environment: Mapping[str, str]) -> str:

@@ -13,23 +13,13 @@ from bfsim.api import Core, Frame, i32, kernel
 from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import GCC_O0, VDSP_O2, CompilerProfile, call_paths
 from bfsim.linker import link
-from bfsim.machine.board import Board, Fidelity, Outcome, symbols_of
-from bfsim.machine.cameras.capture import Feed
+from bfsim.machine.board import Board, Outcome, symbols_of
 from bfsim.trace import OwnerCost, StallReason
 from tests.machine.kernels import copy, spin
 from tests.machine.made_boards import in_work, play
 from tests.machine.owners import assert_owned
 from tests.machine.rig import WORDS, Play, cycles_of, every_frame
-from tests.machine.test_timeline import EVERYTHING, LDFS, STEPS, Step, main_of
-
-
-@pytest.mark.parametrize("feed", Feed)
-@pytest.mark.parametrize("ldf", LDFS)
-@pytest.mark.parametrize("fidelity", Fidelity)
-def test_owners_fill_every_stage(ldf: str, feed: Feed, fidelity: Fidelity) -> None:
-    """Rings, locks, semaphores, interrupts, kernels in every memory: the sums are exact."""
-    mains = main_of(EVERYTHING, handles=True), main_of(EVERYTHING[::-1], handles=True)
-    assert_owned(play(*mains, frames=3, ldf=LDFS[ldf], feed=feed, fidelity=fidelity))
+from tests.machine.test_timeline import LDFS, STEPS, Step, main_of
 
 
 @given(STEPS, STEPS, st.booleans(), st.sampled_from(list(LDFS)))

@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bfsim.api import Core, Frame
-from bfsim.machine.board import Fidelity
-from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.program import Main
 from bfsim.spans import Span, SpanKind
 from bfsim.trace import StallReason
@@ -119,24 +116,6 @@ def main_of(steps: Sequence[Step], *, handles: bool) -> Main:
 
 
 EVERYTHING = [(thing, 200) for thing in THINGS]
-
-
-@pytest.mark.parametrize("feed", Feed)
-@pytest.mark.parametrize("ldf", LDFS)
-@pytest.mark.parametrize("fidelity", Fidelity)
-def test_spans_fill_the_time_of_a_core_and_add_up_to_its_budget(
-    ldf: str, feed: Feed, fidelity: Fidelity
-) -> None:
-    """To the cycle, by stage: issue, every reason of a stall, and idle; with and without a timeline a run is the same."""
-    mains = main_of(EVERYTHING, handles=True), main_of(EVERYTHING[::-1], handles=True)
-    how: dict[str, Any] = {"ldf": LDFS[ldf], "feed": feed, "fidelity": fidelity}
-    outcome, spans = told(made_board(*mains, **how))
-    assert len(outcome.frames) == 2
-    assert_orderly(spans)
-    assert_tiled(outcome.frames, spans)
-    assert_flows(spans)
-    board = made_board(*mains, **how)
-    assert board.run(noise(2, board.size)) == outcome
 
 
 @given(STEPS, STEPS, st.booleans(), st.booleans(), st.sampled_from(list(LDFS)))

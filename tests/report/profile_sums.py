@@ -24,8 +24,9 @@ def assert_profile_adds_up(run: RunRecord) -> None:
     for core in (None, *(each.core for each in run.frames[0].cores)):
         for stage in stages:
             assert_cycles_add_up(run, core, stage)
+            view = View.of(run, core, stage, 3)
             for by in VIEWS:
-                assert_rows_add_up(View.of(run, core, stage, 3), by)
+                assert_rows_add_up(view, by)
 
 
 def assert_cycles_add_up(run: RunRecord, core: str | None, stage: str | None) -> None:

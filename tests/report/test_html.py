@@ -187,6 +187,7 @@ def restless(record: FrameRecord) -> list[Span]:
 
 def test_a_page_of_a_hundred_full_frames_has_at_most_8_mb(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every picture is as large as it may be, and no slice of time is like the one before."""
+    monkeypatch.setattr("bfsim.report.html.pictures.overlay_of", lambda *_: noise(1, 1))
     monkeypatch.setattr("bfsim.report.html.pictures.webp_of", lambda _image, nbytes: bytes(nbytes))
     with Pictures() as pictures, Gantts() as gantts:
         pictures.frames = frames.MOST

@@ -1,4 +1,4 @@
-"""Every cycle has an owner in every table of the profile: real runs, under every placement, feed and fidelity."""
+"""Every cycle has an owner in every table of the profile: real runs; see also tests/machine/test_every_placement.py."""
 
 from __future__ import annotations
 
@@ -9,13 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bfsim.machine.board import Fidelity, Outcome
-from bfsim.machine.cameras.capture import Feed
+from bfsim.machine.board import Outcome
 from bfsim.run import simulate
 from bfsim.trace import BudgetRow, RunRecord
 from tests.machine.made_boards import play
 from tests.machine.rig import STAGES
-from tests.machine.test_timeline import EVERYTHING, LDFS, STEPS, Step, main_of
+from tests.machine.test_timeline import LDFS, STEPS, Step, main_of
 from tests.report.profile_sums import assert_profile_adds_up
 from tests.report.records import IDENTITY, run_of
 
@@ -34,15 +33,6 @@ def run_from(outcome: Outcome) -> RunRecord:
         buffers=outcome.buffers,
         traffic=outcome.traffic,
     )
-
-
-@pytest.mark.parametrize("feed", Feed)
-@pytest.mark.parametrize("ldf", LDFS)
-@pytest.mark.parametrize("fidelity", Fidelity)
-def test_rows_add_up_under_every_placement(ldf: str, feed: Feed, fidelity: Fidelity) -> None:
-    """Rings, locks, semaphores, interrupts, kernels in every memory, stages within stages."""
-    mains = main_of(EVERYTHING, handles=True), main_of(EVERYTHING[::-1], handles=True)
-    assert_profile_adds_up(run_from(play(*mains, frames=3, ldf=LDFS[ldf], feed=feed, fidelity=fidelity)))
 
 
 @given(STEPS, STEPS, st.booleans(), st.sampled_from(list(LDFS)), st.integers(1, 3))

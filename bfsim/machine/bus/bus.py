@@ -44,6 +44,7 @@ INTERNAL = (w.IMDMA_0, w.IMDMA_1)
 PARTNERS = ((w.MDMA1_0, w.MDMA1_1), (w.MDMA2_0, w.MDMA2_1))
 CORE_FIRST, CORE_LAST = -100, 200  # ranks of core A; core B has its own turn after A had the bus
 STORES_AFTER = 10  # loads overtake stores (Programming Reference p.294)
+ONE_TICK = Fraction(1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,13 +209,13 @@ class Bus:
     # ---- transfers
 
     def plan_copy(
-        self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, setup: int
-    ) -> TransferPlan:
-        """Plan to move `count` elements by a memory DMA that takes `setup` ticks to start."""
+        self, master: int, source: Walk, destination: Walk, count: int, *, element_bytes: int, setup: int, name: str = ""
+    ) -> TransferPlan:  # fmt: skip
+        """Plan to move `count` elements by a memory DMA that takes `setup` ticks to start. `name`: what is moved, for people."""
         mode = self._mode_of_copy(master, source.offset, destination.offset)
-        word = self._on_chip_ticks(master) if mode in (w.ON_CHIP, w.THROUGH_L2_PORT) else Fraction(1)
+        word = self._on_chip_ticks(master) if mode in (w.ON_CHIP, w.THROUGH_L2_PORT) else ONE_TICK
         return self._plan(
-            master, mode, source, destination, count, element_bytes, setup, Pace(0, 1, word, Fraction(1))
+            master, mode, source, destination, count, element_bytes, setup, Pace(0, 1, word, ONE_TICK), name
         )
 
     def plan_fetch(self, master: int, offset: int, elements: int, setup: int) -> TransferPlan:
@@ -222,7 +223,9 @@ class Bus:
         memory, registers = (
             Walk(first, elements, ELEMENT_BYTES, ELEMENT_BYTES) for first in (offset, self._registers)
         )
-        return self.plan_copy(master, memory, registers, elements, element_bytes=ELEMENT_BYTES, setup=setup)
+        return self.plan_copy(
+            master, memory, registers, elements, element_bytes=ELEMENT_BYTES, setup=setup, name="descriptor"
+        )
 
     def _mode_of_copy(self, master: int, source: int, destination: int) -> int:
         sdram_end, l2_end = self.words[w.SDRAM_END], self.words[w.L2_END]
@@ -252,7 +255,8 @@ class Bus:
         return self._plan(master, w.PACED_OUT, source, destination, count, element_bytes, 0, pace)
 
     def _plan(
-        self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, setup: int, pace: Pace
+        self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, setup: int, pace: Pace,
+        name: str = "",
     ) -> TransferPlan:  # fmt: skip
         for side in (source, destination):
             if count % side.x_count:
@@ -260,7 +264,9 @@ class Bus:
                     f"a DMA transfer must have whole lines of {side.x_count} elements, not {count} in all"
                 )
         parts = lcm(pace.element_ticks.denominator, pace.line_ticks.denominator)
-        element, line = int(pace.element_ticks * parts), int(pace.line_ticks * parts)
+        element, line = (
+            ticks.numerator * (parts // ticks.denominator) for ticks in (pace.element_ticks, pace.line_ticks)
+        )
         return TransferPlan(
             master,
             (
@@ -271,6 +277,7 @@ class Bus:
                 master, self.owners.of(source.offset), self.owners.of(destination.offset),
             ),
             count * element_bytes,
+            name=name,
         )  # fmt: skip
 
     def post(self, plan: TransferPlan, at: int = 0) -> Transfer:

@@ -57,7 +57,8 @@ class DetailedBus(Bus):
     # ---- transfers
 
     def _plan(
-        self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, setup: int, pace: Pace
+        self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, setup: int, pace: Pace,
+        name: str = "",
     ) -> TransferPlan:  # fmt: skip
         return DetailedPlan(
             master,
@@ -71,6 +72,7 @@ class DetailedBus(Bus):
             setup,
             pace,
             (self.owners.of(source.offset), self.owners.of(destination.offset)),
+            name=name,
         )
 
     def post(self, plan: TransferPlan, at: int = 0) -> Transfer:

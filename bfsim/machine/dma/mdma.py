@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus.bus import Bus, Transfer, TransferPlan, Walk
 from bfsim.machine.memories import Row
@@ -42,7 +40,12 @@ class MdmaStream:
         size = element_bytes(self._word_bytes, source.offset, destination.offset, source.nbytes)
         count = source.nbytes // size
         inward, outward = (Walk(each.offset, count, size, size) for each in (source, destination))
-        plan = self._bus.plan_copy(
-            self._master, inward, outward, count, element_bytes=size, setup=self._startup_ticks
+        return self._bus.plan_copy(
+            self._master,
+            inward,
+            outward,
+            count,
+            element_bytes=size,
+            setup=self._startup_ticks,
+            name=f"{source.buffer} → {destination.buffer}",
         )
-        return replace(plan, name=f"{source.buffer} → {destination.buffer}")

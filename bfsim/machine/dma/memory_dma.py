@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import simpy
@@ -166,7 +165,7 @@ class MemoryDma:
                 offset = self._memories.offset_of(step.fetch.address, elements * ELEMENT_BYTES)
                 setup_sclk = elements * self._dma.descriptor_sclk
                 fetch = self._bus.plan_fetch(master, offset, elements, setup_sclk * self._sclk_ticks)
-                self._bus.post(replace(fetch, name="descriptor"))
+                self._bus.post(fetch)
         plan = self._bus.plan_copy(
             master,
             self._walk(source.unit),
@@ -174,8 +173,9 @@ class MemoryDma:
             destination.unit.words,
             element_bytes=destination.unit.word_bytes,
             setup=self._dma.startup_sclk * self._sclk_ticks,
+            name="work unit",
         )
-        return self._bus.post(replace(plan, name="work unit"))
+        return self._bus.post(plan)
 
     def _walk(self, unit: WorkUnit) -> Walk:
         offset = self._memories.offset_of(unit.start_address, unit.word_bytes)
