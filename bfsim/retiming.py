@@ -72,8 +72,7 @@ def recording_work(
         raise ConfigError(
             "--record-work must go with --fidelity fast: only there the same buses play it again"
         )
-    with growing_file(path) as stream:
-        writer = WorkWriter(stream)
+    with growing_file(path) as stream, WorkWriter(stream, path) as writer:
         machine.core = partial(RecordingCore, on_work=writer.add, on_obstacle=writer.add_obstacle)
         writer.begin(
             identity={

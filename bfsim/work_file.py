@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -33,6 +33,7 @@ from bfsim.machine.retiming.work import (
     Place,
     check,
 )
+from bfsim.report.save import writing
 
 FORMAT = 2
 WIDTHS = tuple(np.dtype(each) for each in ("<i1", "<i2", "<i4", "<i8"))
@@ -62,10 +63,12 @@ class Recorded:
     obstacles: Sequence[str]
 
 
-class WorkWriter:
-    """Writes a file as the run goes on."""
+class WorkWriter(AbstractContextManager["WorkWriter"]):
+    """Writes a file as the run goes on. Without `end` it is none."""
 
-    def __init__(self, stream: IO[bytes]) -> None:
+    def __init__(self, stream: IO[bytes], path: Path) -> None:
+        """`path`: where the file will be, for messages."""
+        self._path = path
         self._zip = zipfile.ZipFile(stream, "w")
         self._counts: dict[str, int] = {}
         self._obstacles: dict[str, None] = {}
@@ -86,10 +89,16 @@ class WorkWriter:
     def end(self, **what: Any) -> None:
         """Write what is known at the end: the file is whole then."""
         self._write("end.json", json.dumps({"obstacles": list(self._obstacles), **what}).encode())
-        self._zip.close()
+        with writing(self._path):
+            self._zip.close()
+
+    def __exit__(self, *_: object) -> None:
+        with suppress(OSError):  # what went wrong is on its way to be told
+            self._zip.close()
 
     def _write(self, name: str, content: bytes) -> None:
-        self._zip.writestr(zipfile.ZipInfo(name), content)
+        with writing(self._path):
+            self._zip.writestr(zipfile.ZipInfo(name), content)
 
 
 class WorkReader:

@@ -73,7 +73,7 @@ MAY_IMPORT = {
     "device_script": {"file_content", "errors"},
     "scenery": {"errors", "loading", "locating", "recording", "shipped"},
     "room": {"chip", "errors", "kernel", "linker", "machine"},
-    "work_file": {"errors", "kernel", "machine"},
+    "work_file": {"errors", "kernel", "machine", "report"},
     "retiming": {"errors", "identifying", "kernel", "loading", "machine", "report", "trace", "work_file"},
     "assumptions": {"chip", "machine", "trace"},
     "identifying": {

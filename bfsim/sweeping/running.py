@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -14,13 +13,12 @@ from time import perf_counter
 from typing import Any
 
 from bfsim.checking import arguments_of
-from bfsim.errors import BfsimError, RecordingError, WorkError
+from bfsim.errors import BfsimError, ConfigError, RecordingError, WorkError
 from bfsim.identifying import recording_digest
 from bfsim.report.check.baseline import Configuration
 from bfsim.report.result_file import Result
-from bfsim.report.save import write_text
 from bfsim.report.seen_json import SeenStore
-from bfsim.report.sweep.figures import SEEN, sweep_figures
+from bfsim.report.sweep.figures import sweep_figures
 from bfsim.report.warnings import warnings_of
 from bfsim.result import Run
 from bfsim.run import has_view, planned, simulate
@@ -37,6 +35,7 @@ class Outcome:
     """What became of a point: the figures of its run by name, or in words why there are none.
 
     `is_final`: it would become the same again. `frames` are those that were done, and `seconds` what that took.
+    `waits`: the part of the time that kernels waited for memory outside of L1; all of it where code lies there.
     """
 
     identity: Identity | None = None
@@ -46,12 +45,21 @@ class Outcome:
     warnings: tuple[str, ...] = ()
     error: str = ""
     is_final: bool = True
+    waits: float = 0
 
 
-def run_point(configuration: Configuration, folder: Path, code: str, work: Path | None = None) -> Outcome:
+@dataclass(frozen=True, slots=True)
+class Work:
+    """The place of a recorded run: to be played where it is known what was `seen` in it, and else to be recorded."""
+
+    path: Path
+    seen: Figures | None = None
+
+
+def run_point(configuration: Configuration, folder: Path, code: str, work: Work | None = None) -> Outcome:
     """Simulate a point whose paths are relative to `folder`, by a bfsim whose `code_digest` is `code`. Raises nothing.
 
-    `work` is the place of a recorded run of the same on another board: it is played if it is there, or made if that pays.
+    `work` is that of a run of the same on another board. Where it cannot be recorded or played, the point is run.
     """
     if code != code_digest():
         return Outcome(
@@ -61,7 +69,7 @@ def run_point(configuration: Configuration, folder: Path, code: str, work: Path 
     try:
         with _one_run:
             arguments = {**arguments_of(configuration, folder), "before": lambda *_: has_begun.set()}
-            run, figures = _played(arguments, work) or _simulated(arguments, work)
+            run, figures = _played(arguments, work) or _recorded(arguments, work) or _simulated(arguments)
     except BfsimError as error:
         is_final = has_begun.is_set() and not isinstance(
             error, RecordingError
@@ -79,34 +87,37 @@ def run_point(configuration: Configuration, folder: Path, code: str, work: Path 
         seconds=perf_counter() - began,
         figures=figures,
         warnings=tuple(f"{each.kind}: {each.text}" for each in warnings_of(run)),
+        waits=_waits(run),
     )
 
 
-def _played(arguments: Mapping[str, Any], work: Path | None) -> tuple[Run, Figures] | None:
+Arguments = Mapping[str, Any]
+
+
+def _played(arguments: Arguments, work: Work | None) -> tuple[Run, Figures] | None:
     """Play a recorded run; None if there is none, or it cannot be played. What was seen is what the recorded run saw."""
-    seen = _seen_with(work) if work and work.exists() else None
-    if seen is not None:
+    if work and work.seen is not None:
         with suppress(WorkError):
-            run = simulate(**arguments, work=work)
-            return run, {**(sweep_figures(Result(run, {}, ())) if run.frames else {}), **seen}
+            run = simulate(**arguments, work=work.path)
+            return run, {**(sweep_figures(Result(run, {}, ())) if run.frames else {}), **work.seen}
     return None
 
 
-def _simulated(arguments: Mapping[str, Any], work: Path | None) -> tuple[Run, Figures]:
-    """Run the firmware. The first run with a place for its work tells whether recording pays, and the next one is recorded."""
-    record_work = work if work and _seen_with(work) is not None and not work.exists() else None
+def _recorded(arguments: Arguments, work: Work | None) -> tuple[Run, Figures] | None:
+    """Run the firmware and record it; None if that is not wanted, or does not go: the disk may be full."""
+    if work and work.seen is None:
+        with suppress(ConfigError):
+            return _simulated({**arguments, "record_work": work.path})
+    return None
+
+
+def _simulated(arguments: Arguments) -> tuple[Run, Figures]:
+    """Run the firmware."""
     with SeenStore(with_features=False) as store:
         telling = store.add if has_view(arguments["firmware"]) else None
-        run = simulate(**arguments, on_seen=telling, record_work=record_work)
-        figures = sweep_figures(Result(run, store, ())) if run.frames else {}
-    if work and not record_work:
-        seen = {name: value for name, value in figures.items() if name.startswith(SEEN)}
-        write_text(_beside(work), json.dumps(seen if _pays(run) else None))
-    return run, figures
+        run = simulate(**arguments, on_seen=telling)
+        return run, sweep_figures(Result(run, store, ())) if run.frames else {}
 
-
-MOST_WAITS = 0.02
-"""Of the time [assumed]: measured, playing is 2.8 times as fast as running with 0.6 %, and half as fast with 45 %."""
 
 OF_MEMORY = frozenset(StallReason) - {
     StallReason.L1_CONFLICT,
@@ -120,26 +131,12 @@ OF_MEMORY = frozenset(StallReason) - {
 """What kernels wait for outside of L1."""
 
 
-def _pays(run: Run) -> bool:
-    """Whether playing is sooner than running: not where kernels read much outside of L1, where each access is recorded."""
+def _waits(run: Run) -> float:
+    """Return the part of the time that kernels waited for memory outside of L1; all of it where code lies there."""
     costs = [cost for frame in run.frames for core in frame.cores for cost in core.stages]
     waits = sum(cclk for cost in costs for reason, cclk in cost.stall_cclk.items() if reason in OF_MEMORY)
-    return all(each.in_l1 for each in run.code) and waits <= MOST_WAITS * sum(
-        each.elapsed_cclk for each in costs
-    )
-
-
-def _seen_with(work: Path) -> Figures | None:
-    """Return what a run of this work saw; None if there was none yet, or recording does not pay."""
-    try:
-        seen = json.loads(_beside(work).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    return seen if isinstance(seen, dict) else None
-
-
-def _beside(work: Path) -> Path:
-    return work.with_suffix(".json")
+    elapsed = sum(each.elapsed_cclk for each in costs)
+    return waits / elapsed if elapsed and all(each.in_l1 for each in run.code) else 1
 
 
 def plan_point(configuration: Configuration, folder: Path) -> tuple[Identity, int] | str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator
@@ -19,6 +18,7 @@ from bfsim.shipped import RECORDING
 from bfsim.sweeping.file import Point, read_sweep
 from bfsim.sweeping.running import Outcome, code_digest, digest_recording, plan_point, run_point
 from bfsim.sweeping.store import Store, key_of
+from bfsim.sweeping.works import Works
 from bfsim.trace import Identity
 
 POLL_S = 1.0
@@ -33,9 +33,6 @@ GONE = (
     "the scheduler must be within reach until all points are done, but is no more; what is done is kept, and the same command "
     "goes on with the rest"
 )
-
-WORKS = "works"
-"""Folder of the store with recorded work."""
 
 Task = TypeVar("Task")
 
@@ -68,35 +65,6 @@ class Planned:
     def work(self) -> int:
         """How much there is to simulate: pixels."""
         return self.frames * self.identity.width_px * self.identity.height_px if self.identity else 0
-
-
-class Works:
-    """Where the work of runs is recorded, so that what differs in the board alone is played and not run again.
-
-    What several points have in common is kept until the last of them is done.
-    """
-
-    def __init__(self, folder: Path, points: Iterable[Planned]) -> None:
-        self._folder = folder
-        names = {each.key: _work_of(each) for each in points if each.point.configuration.fidelity == "fast"}
-        self._left = Counter(names.values())
-        self._names = {key: name for key, name in names.items() if self._left[name] > 1}
-
-    def of(self, key: str) -> Path | None:
-        """Return the place for a point; None if it has nothing in common with another one."""
-        if key not in self._names:
-            return None
-        self._folder.mkdir(parents=True, exist_ok=True)
-        return self._folder / f"{self._names[key]}.work"
-
-    def done(self, key: str) -> None:
-        """Forget what no point needs any more."""
-        name = self._names.get(key)
-        if name is not None:
-            self._left[name] -= 1
-            if not self._left[name]:
-                for each in sorted(self._folder.glob(f"{name}.*")):  # what says that it is whole goes first
-                    each.unlink(missing_ok=True)
 
 
 class Sweep:
@@ -156,33 +124,46 @@ class Sweep:
         """
         waiting, tries = deque(self.todo), Counter[str]()
         running: dict[Future[Any], Planned] = {}
-        works = Works(self.store.folder / WORKS, waiting if workers.is_here else ())
-        while waiting or running:
-            for _ in range(len(waiting)):
-                if len(running) >= workers.room():
-                    break
-                each = waiting.popleft()
-                if not self.store.claim(each.key):
-                    waiting.append(each)
-                elif known := self.store.outcome(each.key):
-                    works.done(each.key)
-                    self._done(each, known, tell)
-                else:
-                    call = (*self._call(each.point), code_digest(), works.of(each.key))
-                    running[workers.submit(run_point, *call)] = each
-            if waiting and not running:
-                time.sleep(POLL_S)
-            for future in wait(running, POLL_S, FIRST_COMPLETED).done if running else ():
-                each = running.pop(future)
-                outcome = _outcome(future, each, workers, tries)
-                if outcome is None:
-                    self.store.release(each.key)
-                    waiting.append(each)
-                    continue
-                if outcome.is_final:
-                    self.store.keep(each.key, outcome)
-                works.done(each.key)
-                self._done(each, outcome, tell)
+        with Works(self.store, waiting if workers.is_here else ()) as works:
+            while waiting or running:
+                for each in self._claimed(waiting, workers.room() - len(running)):
+                    if known := self.store.outcome(each.key):
+                        self._done(each, known, works, tell)
+                    else:
+                        call = (*self._call(each.point), code_digest(), works.order(each.key))
+                        running[workers.submit(run_point, *call)] = each
+                if waiting and not running:
+                    time.sleep(POLL_S)
+                for future in wait(running, POLL_S, FIRST_COMPLETED).done if running else ():
+                    each = running.pop(future)
+                    outcome = _outcome(future, each, workers, tries)
+                    if outcome is None:
+                        self.store.release(each.key)
+                        waiting.append(each)
+                    else:
+                        self._done(each, outcome, works, tell)
+
+    def _claimed(self, waiting: deque[Planned], room: int) -> Iterator[Planned]:
+        """Yield up to so many points that are this sweep's alone now; those that another one has go to the end."""
+        for _ in range(len(waiting)):
+            if room <= 0:
+                return
+            each = waiting.popleft()
+            if self.store.claim(each.key):
+                room -= 1
+                yield each
+            else:
+                waiting.append(each)
+
+    def _done(
+        self, planned: Planned, outcome: Outcome, works: Works, tell: Callable[[Planned, Outcome], None]
+    ) -> None:
+        if outcome.is_final:
+            self.store.keep(planned.key, outcome)
+        works.done(planned.key, outcome)
+        self.store.release(planned.key)
+        self.outcomes[planned.key] = outcome
+        tell(planned, outcome)
 
     def try_out(self, planned: Planned, frames: int, workers: Workers) -> Outcome:
         """Run the first frames of a point, twice, so that its kernels are compiled; nothing is kept."""
@@ -192,11 +173,6 @@ class Sweep:
         for _ in range(2):
             outcome: Outcome = workers.submit(run_point, *self._call(trial), code_digest()).result()
         return outcome
-
-    def _done(self, planned: Planned, outcome: Outcome, tell: Callable[[Planned, Outcome], None]) -> None:
-        self.store.release(planned.key)
-        self.outcomes[planned.key] = outcome
-        tell(planned, outcome)
 
     def _call(self, point: Point) -> tuple[Configuration, Path]:
         return point.configuration, self._folder
@@ -213,25 +189,6 @@ class Sweep:
             if digests[each]:
                 self.store.keep_recording_digest(*each, digests[each])
         return digests
-
-
-def _work_of(planned: Planned) -> str:
-    """Return a digest of all that the work of a run depends on: the identity but for the board, and bfsim's code."""
-    identity = planned.identity
-    assert identity
-    parts = (
-        identity.recording_digest,
-        identity.firmware,
-        identity.firmware_digest,
-        identity.compiler,
-        identity.compiler_digest,
-        identity.script_digest,
-        identity.ldf_digest,  # what lies outside of L1 is another work
-        identity.feed,
-        identity.llvm_version,
-        code_digest(),
-    )
-    return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
 def _planned(

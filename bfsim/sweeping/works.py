@@ -1,0 +1,128 @@
+"""Recorded work in a sweep: which point records its run, so that others that differ in the board alone are played and not run."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import shutil
+import uuid
+from collections.abc import Iterable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+from bfsim.report.sweep.figures import SEEN
+from bfsim.sweeping.running import Figures, Outcome, Work, code_digest
+
+if TYPE_CHECKING:
+    from bfsim.sweeping.store import Store
+    from bfsim.sweeping.sweep import Planned
+
+WORKS = "works"
+"""Folder of the store: in it each sweep that runs has one of its own."""
+
+LEAST_LEFT = 2
+"""The least points that are left for the first of them to be recorded.
+
+With thesis.ldf recording takes 1.5 times as long as a run, and playing a third of it with 4 frames, a sixth with 60.
+"""
+
+MOST_WAITS = 0.02
+"""Of the time, for memory outside of L1 [assumed]: measured, what thesis.ldf has, 0.6 %, pays.
+
+With l2.ldf, 45 %, recording takes three times as long as a run, and playing four fifths of it.
+"""
+
+
+@dataclass(slots=True)
+class _Group:
+    """Points with the same work: those that have not begun, and those that are not done."""
+
+    path: Path
+    waiting: set[str] = field(default_factory=set)
+    left: set[str] = field(default_factory=set)
+    pays: bool | None = None
+    recorder: str = ""
+    seen: Figures | None = None
+    is_recorded: bool = False
+
+    def learn(self, key: str, outcome: Outcome) -> None:
+        """Note what became of a point."""
+        if self.pays is None and outcome.figures:
+            self.pays = outcome.waits <= MOST_WAITS
+            self.seen = {name: value for name, value in outcome.figures.items() if name.startswith(SEEN)}
+        if key == self.recorder:
+            self.is_recorded = self.path.exists()
+
+
+class Works(AbstractContextManager["Works"]):
+    """The recorded work of one sweep. It is gone at the end, as is that of sweeps that were killed."""
+
+    def __init__(self, store: Store, points: Iterable[Planned]) -> None:
+        self._store = store
+        self._own = uuid.uuid4().hex
+        self._groups: dict[str, _Group] = {}
+        groups: dict[str, _Group] = {}
+        for each in points:
+            if each.point.configuration.fidelity == "fast":
+                name = work_of(each)
+                group = groups.setdefault(name, _Group(store.folder / WORKS / self._own / f"{name}.work"))
+                group.waiting.add(each.key)
+                group.left.add(each.key)
+                self._groups[each.key] = group
+
+    def __enter__(self) -> Self:
+        for each in (self._store.folder / WORKS).glob("*"):
+            if re.fullmatch("[0-9a-f]{32}", each.name) and self._store.claim(each.name):
+                shutil.rmtree(each, ignore_errors=True)
+                self._store.release(each.name)
+        self._store.claim(self._own)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        shutil.rmtree(self._store.folder / WORKS / self._own, ignore_errors=True)
+        self._store.release(self._own)
+
+    def order(self, key: str) -> Work | None:
+        """Return what a point that begins now is to record or to play; None if it shall just run."""
+        group = self._groups.get(key)
+        if group is None:
+            return None
+        is_again = key not in group.waiting
+        group.waiting.discard(key)
+        if group.is_recorded:
+            return Work(group.path, group.seen)
+        if group.pays and not group.recorder and not is_again and len(group.waiting) >= LEAST_LEFT - 1:
+            group.recorder = key
+            group.path.parent.mkdir(parents=True, exist_ok=True)
+            return Work(group.path)
+        return None
+
+    def done(self, key: str, outcome: Outcome) -> None:
+        """Learn from a point, and forget what no point needs any more."""
+        if group := self._groups.get(key):
+            group.learn(key, outcome)
+            group.waiting.discard(key)
+            group.left.discard(key)
+            if not group.left:
+                group.path.unlink(missing_ok=True)
+
+
+def work_of(planned: Planned) -> str:
+    """Return a digest of all that the work of a run depends on: the identity but for the board, and bfsim's code."""
+    identity = planned.identity
+    assert identity
+    parts = (
+        identity.recording_digest,
+        identity.firmware,
+        identity.firmware_digest,
+        identity.compiler,
+        identity.compiler_digest,
+        identity.script_digest,
+        identity.ldf_digest,  # what lies outside of L1 is another work
+        identity.feed,
+        identity.llvm_version,
+        code_digest(),
+    )
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]

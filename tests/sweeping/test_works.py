@@ -1,0 +1,114 @@
+"""Recorded work in a sweep: one point of those that differ in the board alone records it, if that pays, and nothing stays behind."""
+
+from __future__ import annotations
+
+import errno
+import os
+import subprocess
+import sys
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from bfsim.sweeping.running import Outcome, Work, code_digest, run_point
+from bfsim.sweeping.sweep import Sweep
+from bfsim.sweeping.works import MOST_WAITS, WORKS, Works
+from tests.sweeping.rig import BASE, home_in, planned
+from tests.sweeping.test_store import CLAIM
+
+BOARDS = "[axes]\nset.sdram.nRP = [2, 3, 4, 5, 6]\n"
+RUN = Outcome(frames=1, figures={"objects.ball.total": 3, "frame_rate Hz": 10.0})
+
+
+@pytest.fixture
+def sweep(tmp_path: Path) -> Sweep:
+    """Five points that differ in the board."""
+    return planned(home_in(tmp_path, BASE + BOARDS))
+
+
+def test_one_records_while_others_run_and_the_rest_is_played(sweep: Sweep) -> None:
+    """Whoever is asked: what has begun before the recording was whole runs."""
+    first, second, third, *rest = (each.key for each in sweep.todo)
+    with Works(sweep.store, sweep.todo) as works:
+        assert works.order(first) is None  # nothing is known yet
+        works.done(first, RUN)
+        order = works.order(second)
+        assert order is not None
+        assert order.seen is None
+        assert works.order(third) is None  # the other one records
+        order.path.write_text("whole")
+        works.done(second, RUN)
+        works.done(third, RUN)
+        for key in rest:
+            assert works.order(key) == Work(order.path, {"objects.ball.total": 3})
+            works.done(key, RUN)
+        assert not order.path.exists()
+    assert not list((sweep.store.folder / WORKS).iterdir())
+
+
+@pytest.mark.parametrize(("left", "waits"), [(5, MOST_WAITS + 0.01), (2, 0)])
+def test_what_does_not_pay_is_not_recorded(sweep: Sweep, left: int, waits: float) -> None:
+    """With many waits for memory playing takes as long as running; and of two points the second would be recorded for nobody."""
+    points = sweep.todo[:left]
+    with Works(sweep.store, points) as works:
+        for each in points:
+            assert works.order(each.key) is None
+            works.done(each.key, replace(RUN, waits=waits))
+
+
+def test_a_point_that_dies_as_it_records_is_run(sweep: Sweep) -> None:
+    """It may have been the recording that took the memory; the others are run, too."""
+    first, second, *rest = (each.key for each in sweep.todo)
+    with Works(sweep.store, sweep.todo) as works:
+        works.order(first)
+        works.done(first, RUN)
+        assert works.order(second) is not None
+        assert [works.order(each) for each in (second, *rest)] == [None] * 4
+
+
+def test_works_of_a_killed_sweep_are_removed_and_those_of_another_one_stay(sweep: Sweep) -> None:
+    """Whoever runs has a claim on its folder, which ends with the process."""
+    folder = sweep.store.folder / WORKS
+    killed, running, other = folder / ("a" * 32), folder / ("b" * 32), folder / "notes"
+    for each in (killed, running, other):
+        each.mkdir(parents=True)
+        (each / "some.work").touch()
+    command = [sys.executable, "-c", CLAIM, str(sweep.store.folder), running.name]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout
+        assert process.stdout.readline() == "True\n"
+        with Works(sweep.store, sweep.todo):
+            assert not killed.exists()
+            assert (running / "some.work").exists()
+            assert (other / "some.work").exists()
+        process.kill()
+
+
+def test_a_full_disk_costs_only_the_recording(
+    sweep: Sweep, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The point is run without."""
+
+    def full(*_: Any, **__: Any) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(zipfile.ZipFile, "writestr", full)
+    (point, *_), path = sweep.points, tmp_path / "run.work"
+    outcome = run_point(point.configuration, tmp_path, code_digest(), Work(path))
+    assert not outcome.error
+    assert outcome.frames == 2
+    assert not path.exists()
+
+
+@pytest.mark.parametrize("content", [None, b"", b"no zip"])
+def test_work_that_cannot_be_read_is_run(sweep: Sweep, tmp_path: Path, content: bytes | None) -> None:
+    """Somebody has removed it, or cut it."""
+    path = tmp_path / "run.work"
+    if content is not None:
+        path.write_bytes(content)
+    outcome = run_point(sweep.points[0].configuration, tmp_path, code_digest(), Work(path, {}))
+    assert not outcome.error
+    assert outcome.frames == 2
