@@ -1,6 +1,6 @@
-"""What a sweep of 8 configurations costs in time and memory: worker processes of this machine against a Dask cluster on it.
+"""What a sweep of 8 configurations costs in time and memory: processes of this machine, a Dask cluster on it, and re-timing.
 
-The processes play what they can from a recorded run, as `bfsim sweep` does; the cluster runs all.
+Processes with re-timing play what they can from a recorded run, as `bfsim sweep` does; without, and on the cluster, all runs.
 
     python benchmarks/sweeps.py                  1000 frames: half an hour on two cores
     python benchmarks/sweeps.py --frames 40
@@ -58,6 +58,12 @@ def record(path: Path, frames: int) -> None:
                 writer.add(frame.left, frame.right, number * PERIOD_NS, number * PERIOD_NS)
 
 
+class PlainPool(Pool):
+    """Processes that are not offered recorded work."""
+
+    is_here = False
+
+
 @contextmanager
 def dask(workers: int) -> Iterator[Workers]:
     """Yield the workers of a cluster on this machine."""
@@ -73,7 +79,7 @@ def dask(workers: int) -> Iterator[Workers]:
         yield ours
 
 
-WAYS: dict[str, Callable[[int], object]] = {"pool": Pool, "dask": dask}
+WAYS: dict[str, Callable[[int], object]] = {"pool": PlainPool, "Dask": dask, "re-timing": Pool}
 
 
 def sweep_in(folder: Path, way: str, workers: int) -> dict[str, float]:

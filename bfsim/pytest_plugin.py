@@ -1,4 +1,4 @@
-"""The pytest plugin: a fixture `bfsim` that runs firmware, and `@pytest.mark.frame_budget` that limits what a frame costs.
+"""The pytest plugin: a fixture `bfsim` that runs firmware, `@pytest.mark.frame_budget` that limits what a frame costs, and `bfsim_check`.
 
 Nothing is imported until a test asks for the fixture.
 """
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
+    from bfsim.report.check.judge import Outcome
     from bfsim.report.result_file import Result
     from bfsim.result import Run
     from bfsim.seen import SeenFrame
@@ -35,26 +36,63 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.fixture
 def bfsim(request: pytest.FixtureRequest) -> Callable[..., Run]:
     """Return `bfsim.run.simulate`, which runs the same configuration once a session, and fails the test if a run breaks its `frame_budget`."""
-    from bfsim.errors import ConfigError
     from bfsim.result import Run
 
     marks = list(request.node.iter_markers(MARK))
     required = [sentence for mark in marks for sentence in _sentences(*mark.args, **mark.kwargs)]
-    runs = request.config.stash[_RUNS]
 
     def run(*recording: Any, **what: Any) -> Run:
-        key = f"{recording} {sorted(what.items(), key=lambda each: each[0])}"
-        if key not in runs:
-            runs[key] = _result(*recording, **what)
-        done = runs[key].run
-        assert isinstance(done, Run)
-        if not done.frames:
-            raise ConfigError("a run must have at least one frame to hold against a budget")
-        if broken := _broken(runs[key], required):
+        result = _once(request.config, *recording, **what)
+        if broken := _broken(result, required):
             pytest.fail(broken, pytrace=False)
-        return done
+        assert isinstance(result.run, Run)
+        return result.run
 
     return run
+
+
+@pytest.fixture
+def bfsim_check(request: pytest.FixtureRequest) -> Callable[..., dict[str, Run]]:
+    """Return a function that does what `bfsim check` does: `bfsim_check("budget.toml", case=None)` fails the test if a run breaks its limits.
+
+    The file lies beside the test. Returns the runs by their names: all of the file, or the one of that name.
+    """
+    from bfsim.checking import arguments_of, require_comparable
+    from bfsim.report.check.baseline import read_baseline
+    from bfsim.report.check.choice import chosen
+    from bfsim.report.check.judge import judge
+    from bfsim.report.check.tables import verdict_line
+    from bfsim.result import Run
+
+    def check(baseline: str = "budget.toml", case: str | None = None) -> dict[str, Run]:
+        path = request.path.parent / baseline
+        cases = chosen(read_baseline(path), path, None, case, "", update=False)
+        for each in cases:
+            require_comparable(each, path)
+        results = {
+            each.name: _once(request.config, **arguments_of(each.configuration, path.parent))
+            for each in cases
+        }
+        outcomes = [judge(each, results[each.name], path) for each in cases]
+        told = [f"{verdict_line(each)}\n{_told(each)}" for each in outcomes if not each.passed]
+        if told:
+            pytest.fail("\n\n".join(told), pytrace=False)
+        return {name: each.run for name, each in results.items() if isinstance(each.run, Run)}
+
+    return check
+
+
+def _once(config: pytest.Config, *recording: Any, **what: Any) -> Result:
+    """Run firmware, or return the run of the same configuration that this session has done."""
+    from bfsim.errors import ConfigError
+
+    runs = config.stash[_RUNS]
+    key = f"{recording} {sorted(what.items(), key=lambda each: each[0])}"
+    if key not in runs:
+        runs[key] = _result(*recording, **what)
+    if not runs[key].run.frames:
+        raise ConfigError("a run must have at least one frame to hold against a budget")
+    return runs[key]
 
 
 def _result(*recording: Any, on_seen: Callable[[SeenFrame], None] | None = None, **what: Any) -> Result:
@@ -83,14 +121,19 @@ def _sentences(
 def _broken(result: Result, required: list[str]) -> str:
     """Return what a run breaks, and the kernels and lines that take most; nothing if it breaks nothing."""
     from bfsim.report.check.baseline import Case
-    from bfsim.report.check.cause import explanation
     from bfsim.report.check.judge import judge
+
+    case = Case(name=result.run.identity.firmware, require=required)
+    return _told(judge(case, result, Path(f"@pytest.mark.{MARK}")))
+
+
+def _told(outcome: Outcome) -> str:
+    """Return what is broken, and why; nothing if nothing is."""
+    from bfsim.report.check.cause import explanation
     from bfsim.report.check.outputs import broken_lines
     from bfsim.result import Run
 
-    name, run = result.run.identity.firmware, result.run
-    outcome = judge(Case(name=name, require=required), result, Path(f"@pytest.mark.{MARK}"))
     if outcome.passed:
         return ""
-    assert isinstance(run, Run)
-    return "\n".join([*broken_lines(outcome), "", *explanation(outcome), "", run.report()])
+    assert isinstance(outcome.run, Run)
+    return "\n".join([*broken_lines(outcome), "", *explanation(outcome), "", outcome.run.report()])

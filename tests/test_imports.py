@@ -110,7 +110,7 @@ MAY_IMPORT = {
         "room",
         "shipped",
     },
-    "pytest_plugin": {"errors", "report", "result", "run", "seen"},
+    "pytest_plugin": {"checking", "errors", "report", "result", "run", "seen"},
     "checking": {"errors", "identifying", "report", "run", "shipped"},
     "sweeping": {
         "file_content",

@@ -32,12 +32,31 @@ def test_broken(bfsim):
 @pytest.mark.frame_budget("latency <= 500 parsecs")
 def test_misspelt(bfsim):
     bfsim(frames=1)
+
+def test_kept_limits(bfsim_check):
+    runs = bfsim_check("budget.toml", "kept")
+    assert list(runs) == ["kept"] and runs["kept"].frames
+
+def test_broken_limits(bfsim_check):
+    bfsim_check()
+"""
+BASELINE = """
+[[run]]
+name = "kept"
+frames = 1
+require = ["missed == 0"]
+[[run]]
+name = "faster than light"
+frames = 1
+tolerance_percent = 1
+limits = ["frame_rate >= 1000 Hz", '"Edge detection".max <= 1 ms']
 """
 
 
 def suite(folder: Path, *options: str) -> str:
     """Run the suite in a process of its own, and return what it prints."""
     (folder / "test_budget.py").write_text(SUITE)
+    (folder / "budget.toml").write_text(BASELINE)
     (folder / "pytest.ini").write_text("[pytest]\naddopts = --strict-markers\n")
     command = [
         sys.executable,
@@ -58,14 +77,19 @@ def suite(folder: Path, *options: str) -> str:
 def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     """The text of the failure is what broke, stages, kernels and lines, and the screen; in one process and in two workers."""
     told = suite(tmp_path, *options)
-    assert "2 failed, 3 passed" in told
+    assert "3 failed, 4 passed" in told
+    assert "FAILED: faster than light: " in told
+    assert "FAILED: kept" not in told
+    assert "frame_rate must be >= 990.00 Hz, not " in told
     assert "frame_rate must be >= 15.00 Hz, not " in told
     assert '"Edge detection".max must be <= 10.500 ms, not ' in told
     assert "Edge detection takes 1" in told
     assert re.search(
         r"  isqrt32 \(arithmetic\.py:\d+\): [\d.]+ ms\n    \d+  .* times x [\d.]+ cycles: ", told
     )
-    assert "bound by core A's Edge detection" in told
+    assert "frames/s (of one frame, with the wait for its picture)" in told
+    lines = " ".join(told.split())
+    assert "a frame (of one frame, with the wait for its picture): bound by core A's Edge detection" in lines
     assert "the unit of latency must be cycles or s or ms or us, not 'parsecs'" in told
 
 

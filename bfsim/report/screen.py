@@ -22,7 +22,7 @@ from bfsim.report.budget import (
     milliseconds,
 )
 from bfsim.report.digest import cycle_digest, identity_digest
-from bfsim.report.start_up import start_up_cclk, without_start_up
+from bfsim.report.start_up import of_one_frame, start_up_cclk, without_start_up
 from bfsim.report.tables import missed, named, new_table, percent, stacked
 from bfsim.report.target import Target, target_words
 from bfsim.report.units import mhz
@@ -62,7 +62,10 @@ def verdict(run: RunRecord) -> Text:
         Cause.OTHER_CORE: f"the cores' turns, core {core.core} waits for its own ({share} %)",
     }[bound.cause]
     rate_hz = budget_of(run).frame_rate_hz
-    return Text(f"{rate_hz:.2f} frames/s, {1000 / rate_hz:.2f} ms a frame: bound by {by}.", style="bold")
+    return Text(
+        f"{rate_hz:.2f} frames/s, {1000 / rate_hz:.2f} ms a frame{of_one_frame(run)}: bound by {by}.",
+        style="bold",
+    )
 
 
 def _stage(row: StageRow | None) -> str:

@@ -18,6 +18,13 @@ def start_up_cclk(run: RunRecord) -> int:
     return max(after.begin_cclk - before.begin_cclk for before, after in apart)
 
 
+def of_one_frame(run: RunRecord) -> str:
+    """Return in brackets that a run has one frame, and its rate the wait for the picture in it; nothing where there is none."""
+    if len(run.frames) == 1 and any(cost.idle_cclk for core in run.frames[0].cores for cost in core.stages):
+        return " (of one frame, with the wait for its picture)"
+    return ""
+
+
 def without_start_up(run: RunRecord) -> RunRecord:
     """Return the run with a first frame that begins later and idles as the median of the others, stage by stage, if it idled longer."""
     first, *others = run.frames

@@ -26,6 +26,7 @@ from bfsim.report.budget import (
 )
 from bfsim.report.configuration import configuration_of
 from bfsim.report.split_table import SplitTable
+from bfsim.report.start_up import of_one_frame
 from bfsim.report.target import Target, target_words
 from bfsim.report.warnings import MISSED_LISTED, warnings_of
 from bfsim.trace import REST, BudgetRow, FrameRecord, RunRecord, StallReason
@@ -86,7 +87,7 @@ def headline(run: RunRecord, budget: Budget) -> Text:
     latency, hz = budget.latency_cclk, run.identity.cclk_hz
     median, maximum = milliseconds(latency.median, hz), milliseconds(latency.maximum, hz)
     lines = [
-        f"{budget.frame_rate_hz:.2f} frames/s, {1000 / budget.frame_rate_hz:.2f} ms a frame",
+        f"{budget.frame_rate_hz:.2f} frames/s, {1000 / budget.frame_rate_hz:.2f} ms a frame{of_one_frame(run)}",
         f"Latency from last line in to result out: median {median:.2f} ms, max {maximum:.2f} ms",
         f"Frames done: {len(run.frames)}, missed: {missed(run)}",
     ]

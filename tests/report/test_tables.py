@@ -244,6 +244,6 @@ def test_check_report_of_a_pass_is_short(tmp_path: Path) -> None:
     path, run = tmp_path / "bfsim.toml", edge_run(950)
     measured(path, run)
     assert [line for line in printed(check_report(hold(run, path), path)) if line] == [
-        "Passed: drive: all 10 limits kept, 1000.00 frames/s.",
+        "Passed: drive: all 10 limits kept, 1000.00 frames/s (of one frame, with the wait for its picture).",
         "Firmware tinyphoon (built in) is the same as when the limits were measured.",
     ]

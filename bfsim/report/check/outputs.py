@@ -18,6 +18,7 @@ from bfsim.report.diff.markdown import contribution_rows
 from bfsim.report.diff.sentences import reason, work
 from bfsim.report.diff.tables import seen_lines
 from bfsim.report.markdown import escaped
+from bfsim.report.start_up import of_one_frame
 
 SCHEMA = "bfsim.check/1"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
@@ -100,7 +101,8 @@ def broken_lines(outcome: Outcome) -> Iterator[str]:
         label, hz = each.requirement.dotted, outcome.run.identity.cclk_hz
         measured = amount(each.measured, each.unit, hz)
         limit = f"{each.requirement.comparison} {amount(each.allowed, each.unit, hz)}"
-        yield f"{label} must be {limit}, not {measured} ({each.by_percent:+.2f} %)"
+        once = of_one_frame(outcome.run) if each.unit is Unit.HZ else ""
+        yield f"{label} must be {limit}, not {measured}{once} ({each.by_percent:+.2f} %)"
 
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:

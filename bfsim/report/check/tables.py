@@ -14,6 +14,7 @@ from bfsim.report.check.figures import Unit
 from bfsim.report.check.judge import Outcome, Verdict, worst_of_each
 from bfsim.report.diff.sentences import reason, work
 from bfsim.report.diff.tables import contribution_table, scope, seen_lines
+from bfsim.report.start_up import of_one_frame
 from bfsim.report.tables import new_table, stacked, warning_table
 from bfsim.report.units import milliseconds_of, size
 
@@ -37,7 +38,7 @@ def verdict_line(outcome: Outcome) -> str:
     count = f"{len(list(worst_of_each(outcome.broken)))} of {len(outcome.verdicts)} limits broken"
     kept = f"all {len(outcome.verdicts)} limits kept"
     word = "Passed" if outcome.passed else "FAILED"
-    return f"{word}: {outcome.case.name}: {kept if outcome.passed else count}, {rate:.2f} frames/s."
+    return f"{word}: {outcome.case.name}: {kept if outcome.passed else count}, {rate:.2f} frames/s{of_one_frame(outcome.run)}."
 
 
 def _why(outcome: Outcome) -> Iterator[RenderableType]:
