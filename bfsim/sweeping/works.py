@@ -25,11 +25,11 @@ WORKS = "works"
 LEAST_LEFT = 2
 """The least points that are left for the first of them to be recorded.
 
-With thesis.ldf recording takes 1.5 times as long as a run, and playing a third of it with 4 frames, a sixth with 60.
+With all that kernels work on in L1 recording takes 1.5 times as long as a run, and playing a third of it with 4 frames, a sixth with 60.
 """
 
 MOST_WAITS = 0.02
-"""Of the time, for memory outside of L1 [assumed]: measured, what thesis.ldf has, 0.6 %, pays.
+"""Of the time, for memory outside of L1 [assumed]: measured, the 0.6 % of the default LDF pay.
 
 With l2.ldf, 45 %, recording takes three times as long as a run, and playing four fifths of it.
 """
