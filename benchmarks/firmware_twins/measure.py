@@ -64,7 +64,7 @@ def measure(kernel: Kernel, folder: Path) -> dict[str, Any]:
 def build(kernel: Kernel, variant: str, folder: Path, toolchain: Toolchain) -> Path:
     """Compile the program that plays the recorded calls of a kernel; return it."""
     function, twins = kernel.function, []
-    options = _options(variant)
+    options = options_of(variant)
     if VARIANTS[variant].one_file:
         files = dict.fromkeys(Path(each.file).stem for each in (function, *function.callees()))
         entry = "".join(f'#include "{each}.c"\n' for each in files)
@@ -83,11 +83,12 @@ def _twins(variant: str, folder: Path, toolchain: Toolchain) -> str:
     linked = folder / f"{variant}.o"
     if not linked.exists():
         sources = [str(each) for each in sorted(SOURCES.glob("*.c"))]
-        toolchain.build(folder, sources, ("-r", *_options(variant))).rename(linked)
+        toolchain.build(folder, sources, ("-r", *options_of(variant))).rename(linked)
     return linked.name
 
 
-def _options(variant: str) -> tuple[str, ...]:
+def options_of(variant: str) -> tuple[str, ...]:
+    """Return what the compiler is told for a variant."""
     each = VARIANTS[variant]
     meanings = (f"-DKERNEL={each.kernels}", f"-DHELPER={each.helpers}", f"-I{SOURCES}", "-I.")
     return ("-std=gnu99", each.level, "-w", *meanings)

@@ -20,7 +20,7 @@ def played(case: Case, profile: CompilerProfile, folder: Path) -> tuple[Path, in
     Raises SystemExit unless every call leaves what the Python kernel leaves.
     """
     kernel, toolchain = case.kernel, blackfin_toolchain()
-    calls, left = _calls(case)
+    calls, left = calls_of(case)
     code = object_code([kernel], [kernel], profile, toolchain)
     (folder / "kernels.o").write_bytes(code.octets)
     numbered = ((0, each) for each in calls)
@@ -32,8 +32,8 @@ def played(case: Case, profile: CompilerProfile, folder: Path) -> tuple[Path, in
     return built, sum(cclk for cclk, _ in lines)
 
 
-def _calls(case: Case) -> tuple[list[tuple[Any, ...]], list[int]]:
-    """Arguments of the calls of a case, and the checksum of what each leaves."""
+def calls_of(case: Case) -> tuple[list[tuple[Any, ...]], list[int]]:
+    """Return the arguments of the calls of a case, and the checksum of what each leaves."""
     calls, left = [], []
 
     def run(*arguments: Any) -> Any:

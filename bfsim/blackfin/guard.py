@@ -76,10 +76,14 @@ class _Action(ctypes.Structure):
 
 @dataclass(frozen=True, slots=True)
 class Runner:
-    """`run(code, memory, state, counts)`: calls native code and returns its event; `fault`: the address of the last fault."""
+    """`run(code, memory, state, counts)`: calls native code and returns its event; `fault`: the address of the last fault.
+
+    `address`: of `run`, for native code.
+    """
 
     run: Callable[[int, int, int, int], int]
     fault: ctypes.c_int64
+    address: int
 
 
 @cache
@@ -93,4 +97,5 @@ def runner() -> Runner:
     return Runner(
         kind(machine_code.address_of("bfsim_run")),
         ctypes.c_int64.from_address(machine_code.address_of("bfsim_run_fault")),
+        machine_code.address_of("bfsim_run"),
     )

@@ -11,17 +11,17 @@ import mmap
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.blocks import Code
-from bfsim.blackfin.decode import InstructionError
 from bfsim.blackfin.effects import Event
+from bfsim.blackfin.guard import runner
 from bfsim.blackfin.linking import ADDRESSES, Image
-from bfsim.blackfin.processor import OUTSIDE, AccessError, Processor, Translated
+from bfsim.blackfin.processor import Processor, Translated
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.errors import KernelError
 
@@ -34,15 +34,6 @@ ARRAYS, ARRAYS_BYTES = 0x20000000, 64 << 20
 ARRAY_ALIGN = 32
 WORD_BYTES = 4
 REGISTERS = ("R0", "R1", "R2")
-M32 = 0xFFFFFFFF
-
-
-@dataclass(frozen=True, slots=True)
-class Returned:
-    """What a call left: R0, and the core clock cycles that it took, from its first instruction to its return."""
-
-    value: int
-    cclk: int
 
 
 @dataclass
@@ -91,38 +82,18 @@ class Subroutine:
         """Its native code, with all that it calls."""
         return self.processor.prepared()
 
-    def take_counts(self) -> NDArray[np.int64]:
-        """Return what its counters have counted since this was asked last."""
-        counts = self.translated.counts.copy()
+    def refuse(self, event: Event) -> NoReturn:
+        """Raise KernelError for an event for which a call was left without returning. The next call begins anew."""
+        address = self.processor.state["PC"]
+        self.processor.state.slots[:] = 0
         self.translated.counts[:] = 0
-        return counts
-
-    def call(self, words: Sequence[int]) -> Returned:
-        """Call it with arguments of 32 bits. Raises KernelError where it does anything else than to return."""
-        state, space = self.processor.state, self.processor.space
-        room = WORD_BYTES * max(len(REGISTERS), len(words))
-        top = STACK + STACK_BYTES - room
-        for register, word in zip(REGISTERS, words, strict=False):
-            state[register] = word & M32
-        beyond = [each & M32 for each in words[len(REGISTERS) :]]
-        first = top + WORD_BYTES * len(REGISTERS)
-        space.at(first, WORD_BYTES * len(beyond)).view("<u4")[:] = beyond
-        state["SP"], state["FP"], state["CLOCK"] = top, 0, 0
-        known = self.translated
-        try:
-            event = self.processor.call(self.address)
-        except (AccessError, InstructionError) as error:
-            raise KernelError(f"{self.symbol} failed: {error}") from None
-        if self.translated is not known:
-            raise KernelError(
-                f"{self.symbol} must jump only where its code and the words of its data say, but it computed another address; "
-                "then its counters are not known before it runs"
-            )
-        if event is not Event.UNKNOWN_TARGET or state["PC"] != OUTSIDE:
-            raise KernelError(
-                f"{self.symbol} must return to its caller, but at 0x{state['PC']:08X} there is {event.name.lower()}"
-            )
-        return Returned(state["R0"], state["CLOCK"])
+        if event is Event.FAULT:
+            what = f"it accesses 0x{runner().fault.value:08X}, where there is no memory"
+        elif event is Event.UNKNOWN_TARGET:
+            what = f"it goes to 0x{address:08X}, an address that neither its code nor its data names"
+        else:
+            what = f"at 0x{address:08X} there is {event.name.lower()}"
+        raise KernelError(f"{self.symbol} must run and return to its caller, but {what}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,15 +103,6 @@ class Placed:
     octets: Octets
     copy: Octets
     is_writeable: bool
-
-    def bring(self) -> None:
-        """Copy it to the Blackfin's memory."""
-        self.copy[:] = self.octets
-
-    def fetch(self) -> None:
-        """Copy it back."""
-        if self.is_writeable:
-            self.octets[:] = self.copy
 
 
 def placed(arrays: Sequence[NDArray[Any]], space: AddressSpace) -> tuple[list[Placed], list[int]]:

@@ -1,0 +1,216 @@
+"""Calls of subroutines by one native function: memory is copied in and out, arguments are handed over, and counts are added up.
+
+From Python a call is one C call with one argument, the address of its block: words of 64 bits with all that it needs.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim import machine_code
+from bfsim.blackfin.effects import Event
+from bfsim.blackfin.guard import runner
+from bfsim.blackfin.processor import OUTSIDE
+from bfsim.blackfin.registers import SLOTS
+from bfsim.blackfin.subroutines import REGISTERS, STACK, STACK_BYTES, WORD_BYTES, Placed, Subroutine
+
+(
+    CODE, MEMORY, STATE, COUNTS, COUNTED,  # the native code, its memory, registers and counts, and how many these are
+    TOTALS, ORDER, TOTALLED,  # where counts are added, in which order, and how many
+    ADDRESS, TOP, WORDS, PARTS,  # of the subroutine, of its stack; numbers of arguments and of copied parts
+) = range(12)  # fmt: skip
+HEAD = 12
+PART_WORDS = 4
+"""Of memory that is copied: its address here, that of its copy, how many bytes, and how many of them are copied back."""
+RUN = "bfsim_run_object"
+
+
+def _field(name: str, number: int, kind: str = "i64") -> str:
+    return f"  %{name}.at = getelementptr i64, ptr %block, i64 {number}\n  %{name} = load {kind}, ptr %{name}.at\n"
+
+
+def _set(register: str, value: str) -> str:
+    name = f"%set.{register}"
+    return (
+        f"  {name} = getelementptr i64, ptr %state, i64 {SLOTS[register]}\n  store i64 {value}, ptr {name}\n"
+    )
+
+
+def _loop(name: str, count: str, body: str, after: str) -> str:
+    """Return a loop that runs `body` for `%NAME` from 0 to `count`; control comes from `%before.NAME`, and goes to `after`."""
+    return f"""\
+  br label %before.{name}
+before.{name}:
+  br label %head.{name}
+head.{name}:
+  %{name} = phi i64 [ 0, %before.{name} ], [ %{name}.next, %body.{name} ]
+  %{name}.more = icmp slt i64 %{name}, {count}
+  br i1 %{name}.more, label %body.{name}, label %{after}
+body.{name}:
+{body}  %{name}.next = add i64 %{name}, 1
+  br label %head.{name}
+{after}:
+"""
+
+
+def _copy(name: str, *, back: bool) -> str:
+    """Return what copies part number `%NAME`."""
+    rows = f"  %{name}.first = mul i64 %{name}, {PART_WORDS}\n  %{name}.part = getelementptr i64, ptr %copied, i64 %{name}.first\n"
+    for field, (each, kind) in enumerate((("here", "ptr"), ("there", "ptr"), ("in", "i64"), ("out", "i64"))):
+        rows += f"  %{name}.{each}.at = getelementptr i64, ptr %{name}.part, i64 {field}\n"
+        rows += f"  %{name}.{each} = load {kind}, ptr %{name}.{each}.at\n"
+    target, source, nbytes = ("here", "there", "out") if back else ("there", "here", "in")
+    return f"{rows}  call void @llvm.memcpy.p0.p0.i64(ptr %{name}.{target}, ptr %{name}.{source}, i64 %{name}.{nbytes}, i1 false)\n"
+
+
+def _registers() -> str:
+    """Return what puts the first arguments into registers."""
+    rows = ""
+    for number, each in enumerate(REGISTERS):
+        rows += f"  %{each}.at = getelementptr i32, ptr %stack, i64 {number}\n  %{each} = load i32, ptr %{each}.at\n"
+        rows += f"  %{each}.wide = zext i32 %{each} to i64\n{_set(each, f'%{each}.wide')}"
+    return rows
+
+
+FIELDS = "".join(
+    _field(name, number, kind)
+    for name, number, kind in (
+        ("code", CODE, "ptr"), ("memory", MEMORY, "ptr"), ("state", STATE, "ptr"), ("counts", COUNTS, "ptr"),
+        ("counted", COUNTED, "i64"), ("totals", TOTALS, "ptr"), ("order", ORDER, "ptr"), ("totalled", TOTALLED, "i64"),
+        ("address", ADDRESS, "i64"), ("top", TOP, "i64"), ("words", WORDS, "i64"), ("parts", PARTS, "i64"),
+    )
+)  # fmt: skip
+HAND_OVER = """\
+  %word.at = getelementptr i64, ptr %arguments, i64 %argument
+  %word = load i64, ptr %word.at
+  %word.low = trunc i64 %word to i32
+  %argument.at = getelementptr i32, ptr %stack, i64 %argument
+  store i32 %word.low, ptr %argument.at
+"""
+ADD_UP = """\
+  %number.at = getelementptr i64, ptr %order, i64 %total
+  %number = load i64, ptr %number.at
+  %count.at = getelementptr i64, ptr %counts, i64 %number
+  %count = load i64, ptr %count.at
+  %total.at = getelementptr i64, ptr %totals, i64 %total
+  %old = load i64, ptr %total.at
+  %new = add i64 %old, %count
+  store i64 %new, ptr %total.at
+"""
+START = "".join(
+    _set(register, value)
+    for register, value in (
+        ("SP", "%top"),
+        ("FP", "0"),
+        ("CLOCK", "0"),
+        ("RETS", str(OUTSIDE)),
+        ("PC", "%address"),
+    )
+)
+ENTRY = f"""
+declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)
+declare void @llvm.memset.p0.i64(ptr, i8, i64, i1)
+
+define i64 @{RUN}(ptr %block, ptr %run) {{
+{FIELDS}\
+  %arguments = getelementptr i64, ptr %block, i64 {HEAD}
+  %copied = getelementptr i64, ptr %arguments, i64 %words
+{_loop("brought", "%parts", _copy("brought", back=False), "hand_over")}\
+  %stack = getelementptr i8, ptr %memory, i64 %top
+{_loop("argument", "%words", HAND_OVER, "start")}\
+{_registers()}\
+{START}\
+  %event = call i32 %run(ptr %code, ptr %memory, ptr %state, ptr %counts)
+  %pc = load i64, ptr %set.PC
+  %is_outside = icmp eq i64 %pc, {OUTSIDE}
+  %is_left = icmp eq i32 %event, {int(Event.UNKNOWN_TARGET)}
+  %returned = and i1 %is_outside, %is_left
+  br i1 %returned, label %take, label %refuse
+refuse:
+  %event.wide = zext i32 %event to i64
+  %failed = sub i64 -1, %event.wide
+  ret i64 %failed
+take:
+{_loop("fetched", "%parts", _copy("fetched", back=True), "add_up")}\
+{_loop("total", "%totalled", ADD_UP, "done")}\
+  %nbytes = mul i64 %counted, 8
+  call void @llvm.memset.p0.i64(ptr %counts, i8 0, i64 %nbytes, i1 false)
+  %cclk = load i64, ptr %set.CLOCK
+  ret i64 %cclk
+}}
+"""
+"""Its result: the cycles, or -1 less the number of the event for which the code was left."""
+
+
+@cache
+def _entry() -> Callable[[int, int], int]:
+    machine_code.add(machine_code.host_code(ENTRY))
+    kind = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p)
+    return kind(machine_code.address_of(RUN))
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """Where the counts of a call are added: to each of `totals` the count of the translated code whose number is in `order`."""
+
+    totals: NDArray[np.int64]
+    order: NDArray[np.int64]
+
+
+class BoundCall:
+    """A subroutine bound to its memory. `arguments`: its words, of which the lower 32 bits count, to be set before it is called."""
+
+    def __init__(self, subroutine: Subroutine, words: int, parts: Sequence[Placed], counts: Counts) -> None:
+        self._subroutine = subroutine
+        self._kept = parts, counts  # the block has their addresses only
+        translated, state = subroutine.translated, subroutine.processor.state
+        room = max(len(REGISTERS), words)
+        head = {
+            CODE: translated.entry,
+            MEMORY: subroutine.processor.space.origin,
+            STATE: state.slots.ctypes.data,
+            COUNTS: translated.counts.ctypes.data,
+            COUNTED: len(translated.counts),
+            TOTALS: counts.totals.ctypes.data,
+            ORDER: counts.order.ctypes.data,
+            TOTALLED: len(counts.order),
+            ADDRESS: subroutine.address,
+            TOP: STACK + STACK_BYTES - WORD_BYTES * room,
+            WORDS: room,
+            PARTS: len(parts),
+        }
+        copies = [
+            word
+            for each in parts
+            for word in (
+                each.octets.ctypes.data,
+                each.copy.ctypes.data,
+                len(each.octets),
+                len(each.octets) * each.is_writeable,
+            )
+        ]
+        values = [*(head[each] for each in range(HEAD)), *(room * [0]), *copies]
+        self._block = (ctypes.c_int64 * len(values))(*values)
+        self._at = ctypes.addressof(self._block)
+        self.arguments: Any = (ctypes.c_int64 * room).from_buffer(self._block, 8 * HEAD)
+        self._result = ctypes.c_uint32.from_address(state.slots.ctypes.data + 8 * SLOTS["R0"])
+        self._entry, self._run = _entry(), runner().address
+
+    def run(self) -> int:
+        """Call it and return its cycles. Raises KernelError where it does anything else than to return."""
+        cclk = self._entry(self._at, self._run)
+        if cclk < 0:
+            self._subroutine.refuse(Event(-1 - cclk))
+        return cclk
+
+    @property
+    def result(self) -> int:
+        """What the last call left in R0."""
+        return int(self._result.value)
