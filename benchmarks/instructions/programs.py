@@ -17,11 +17,12 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.instructions.compiling import at_once
 from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.decode import InstructionError
 from bfsim.blackfin.effects import Event
 from bfsim.blackfin.objects import Use, read_object
-from bfsim.blackfin.processor import Processor
+from bfsim.blackfin.processor import AccessError, Processor
 
 STACK = 128 << 20
 """Where the simulator's memory ends without an operating system, and the stack begins."""
@@ -97,6 +98,8 @@ def _run(program: Path, seconds: int) -> tuple[Outcome, str]:
     while True:
         try:
             event = processor.run()
+        except AccessError as error:
+            return Outcome.MEMORY, str(error)
         except InstructionError as error:
             return Outcome.FAILS, str(error)
         argument, pc = processor.state["ARGUMENT"], processor.state["PC"]
@@ -128,7 +131,7 @@ def _loaded(program: Path) -> Processor:
     for section in sections:
         if section.octets:
             space.at(section.address, section.nbytes)[:] = np.frombuffer(section.octets, np.uint8)
-    processor = Processor(space, fuel=FUEL)
+    processor = Processor(space, fuel=FUEL, compiled=at_once)
     (processor.state["PC"],) = struct.unpack_from("<I", octets, 0x18)
     processor.state["SP"] = STACK
     return processor

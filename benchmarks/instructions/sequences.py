@@ -14,6 +14,7 @@ from random import Random
 
 import numpy as np
 
+from benchmarks.instructions.compiling import at_once
 from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.effects import Event
 from bfsim.blackfin.form import Beside, Form
@@ -232,7 +233,7 @@ def _may_use(letter: str, operand: Operand) -> bool:
 
 
 def translated(sequences: Several[Sequence]) -> list[Registers]:
-    """Return the registers behind sequences, as bfsim computes them: some at once, for LLVM's time grows with the square of them."""
+    """Return the registers behind sequences, as bfsim computes them."""
     starts = range(0, len(sequences), BATCH)
     return [each for start in starts for each in _translated(sequences[start : start + BATCH])]
 
@@ -246,7 +247,7 @@ def _translated(sequences: Several[Sequence]) -> list[Registers]:
     for start, each in zip(starts, sequences, strict=True):
         code = each.code + HALT
         space.at(start, len(code))[:] = np.frombuffer(code, np.uint8)
-    processor = Processor(space, entries=set(starts))
+    processor = Processor(space, entries=set(starts), compiled=at_once)
     return [_run(processor, start, each.before) for start, each in zip(starts, sequences, strict=True)]
 
 

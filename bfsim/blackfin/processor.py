@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import llvmlite.binding as llvm
@@ -70,13 +71,15 @@ class Processor:
     """A core, its registers and its address space.
 
     `entries`: addresses at which it can be started or that its code computes; others are found when control comes there, and the
-    code is translated anew with them. `fuel`: with it, at most so many blocks are run by a call of `run`.
+    code is translated anew with them. `fuel`: with it, at most so many blocks are run by a call of `run`. `compiled`: makes machine
+    code of an LLVM module.
     """
 
     space: AddressSpace
     timing: Timing = GNU
     entries: set[int] = field(default_factory=set)
     fuel: int | None = None
+    compiled: Callable[[str], bytes] = field(default_factory=lambda: optimised)
     state: State = field(default_factory=State)
     translated: Translated | None = None
 
@@ -129,7 +132,7 @@ class Processor:
 
     def _translate(self) -> Translated:
         code = Code(self.space.fetch, frozenset(self.entries))
-        native = machine_code.loaded(_native(translate(code, self.timing, fuel=self.fuel is not None)))
+        native = machine_code.loaded(self.compiled(translate(code, self.timing, fuel=self.fuel is not None)))
         counted = counters(code, self.timing)
         return Translated(
             code,
@@ -145,8 +148,8 @@ class Processor:
         return next(each.refused for each in blocks if each.refused and each.end == address)
 
 
-def _native(text: str) -> bytes:
-    """Compile a module, or take its machine code from the cache on disk."""
+def optimised(text: str) -> bytes:
+    """Compile a module to run fast, or take its machine code from the cache on disk."""
     key = hashlib.sha256(f"object code\0{machine_code.host()}\0{text}".encode()).hexdigest()
     kept = store.load(key)
     if kept is None:
