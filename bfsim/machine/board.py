@@ -40,6 +40,7 @@ from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.memory_dma import Dma
 from bfsim.machine.firmware_lines import line_of, place_of
 from bfsim.machine.memories import Memories, Row
+from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import Buffer, Buffers, Firmware, FrameSize
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi.device import LARGEST_MESSAGE_BYTES, SpiDevice, device_at_work
@@ -49,14 +50,8 @@ from bfsim.seen import Seen
 from bfsim.signals import uninterrupted
 from bfsim.spans import Span
 from bfsim.trace import (
-    AccessRecord,
     BufferRecord,
-    CodeRecord,
     FrameRecord,
-    KernelRecord,
-    MessageRecord,
-    PathRecord,
-    TrafficRecord,
 )
 
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
@@ -79,25 +74,6 @@ OnSeen = Callable[[int, tuple[Seen, ...]], None]
 OnSpans = Callable[[Sequence[Span]], None]
 SPANS_TOLD = 256
 """Spans are told so many at a time, or some more: few enough to be gone before Python's garbage collector looks at them."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Outcome:
-    """What a board reports when the recording is over, or the user stopped it."""
-
-    frames: tuple[FrameRecord, ...]
-    missed: tuple[int, ...]
-    interrupted: bool
-    kernels: tuple[KernelRecord, ...]
-    accesses: tuple[AccessRecord, ...]
-    paths: tuple[PathRecord, ...]
-    buffers: tuple[BufferRecord, ...]
-    traffic: tuple[TrafficRecord, ...]
-    code: tuple[CodeRecord, ...]
-    messages: tuple[MessageRecord, ...]
-    device_notes: tuple[str, ...]
-    interrupts: Mapping[str, int]
-    events: int
 
 
 def require_cores(firmware: Firmware, spec: BoardSpec) -> None:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from bfsim.api import Firmware
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link
-from bfsim.machine.board import Board, Outcome, symbols_of
+from bfsim.machine.board import Board, symbols_of
+from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import FrameSize
 from bfsim.recording import StereoFrame
 from tests.firmware import (

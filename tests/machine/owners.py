@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 
-from bfsim.machine.board import Outcome
+from bfsim.machine.outcome import Outcome
 from bfsim.trace import OwnerCost, StageCost, StallReason
 
 Sums = Counter[tuple[str, str, str, object]]

@@ -21,14 +21,16 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import Kernel
 from bfsim.kernel import access_trace as log
 from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
-from bfsim.machine.board import Board, Outcome, symbols_of
+from bfsim.machine.board import Board, symbols_of
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Bus, Transfer
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.calls.ledger import BUS_STALLS
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
+from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import Main
 from bfsim.machine.simulation import END_OF_TIME, Simulation
 from bfsim.run import DEFAULT_LDF

@@ -17,7 +17,7 @@ from bfsim.chip.boards import board_named
 from bfsim.kernel.access_trace import FETCH, FETCH_LINE, FILL, LOAD, STORE, WRITE_BACK
 from bfsim.machine.bus import core_requests, dma_requests, runs
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Pace, Transfer, TransferPlan, Walk
+from bfsim.machine.bus.transfer_plans import Pace, Transfer, TransferPlan, Walk
 from bfsim.machine.bus.weave import Weave, compiled_weave, plain_weave
 from tests.machine.rig import Bench, Call, Play
 

@@ -14,8 +14,9 @@ from bfsim.api import BudgetRow, Buffer, Core, Firmware, Frame, FrameSize, i16, 
 from bfsim.chip.boards import BOARDS, board_named
 from bfsim.errors import ConfigError, FirmwareError, LinkError
 from bfsim.linker import LinkMap
-from bfsim.machine.board import Board, Outcome
+from bfsim.machine.board import Board
 from bfsim.machine.cameras.capture import Feed
+from bfsim.machine.outcome import Outcome
 from bfsim.trace import FrameRecord
 from tests.machine.kernels import copy, spin
 from tests.machine.rig import (

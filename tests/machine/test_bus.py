@@ -12,7 +12,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
 from bfsim.kernel.access_trace import LOAD, STORE
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Pace, Transfer, Walk
+from bfsim.machine.bus.transfer_plans import Pace, Transfer, Walk
 from bfsim.trace import StallReason
 from tests.machine.rig import Bench, Call
 

@@ -15,9 +15,10 @@ from bfsim.api import Buffer, Core, Frame, i32, kernel, u8
 from bfsim.chip.boards import CM_BF561
 from bfsim.errors import FirmwareError, LinkError, MmrError
 from bfsim.linker import LinkerScript, link
-from bfsim.machine.board import Board, Outcome, symbols_of
+from bfsim.machine.board import Board, symbols_of
 from bfsim.machine.calls.caches import caches_of
 from bfsim.machine.dma.config import DmaConfig
+from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import FrameSize
 from bfsim.trace import StallReason
 from tests.machine.kernels import copy, fill, first, spin, total

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from bfsim.api import Buffer, Core, Frame, i32
-from bfsim.machine.board import Outcome
 from bfsim.machine.dma.config import DmaConfig
+from bfsim.machine.outcome import Outcome
 from bfsim.trace import REST, StallReason
 from tests.machine.kernels import spin, total
 from tests.machine.made_boards import CHIP, assert_accounted, in_work, play

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from bfsim.api import Core, Frame
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, KernelError
-from bfsim.machine.board import Outcome
 from bfsim.machine.cameras.capture import Feed
+from bfsim.machine.outcome import Outcome
 from bfsim.trace import REST, StallReason
 from tests.machine.kernels import copy, first, negate, spin, total
 from tests.machine.rig import (

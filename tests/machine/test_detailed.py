@@ -17,7 +17,8 @@ from hypothesis import strategies as st
 from bfsim.chip.boards import BOARDS, board_named
 from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Bus, Pace, Transfer, Walk
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.transfer_plans import Pace, Transfer, Walk
 from bfsim.machine.detailed.arbiter import Grant, MdmaTurns, Request, SdramArbiter
 from bfsim.machine.detailed.bus import DetailedBus
 from bfsim.machine.detailed.sdram import Page, SdramBanks

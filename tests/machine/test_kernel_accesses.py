@@ -12,7 +12,7 @@ from bfsim.api import Core, Frame
 from bfsim.chip.boards import BOARDS, board_named
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
-from bfsim.machine.board import Outcome
+from bfsim.machine.outcome import Outcome
 from bfsim.trace import StallReason
 from tests.machine.kernels import fill, spin, total
 from tests.machine.rig import WORDS, Play, every_frame, load, noise, run, stage_of

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Transfer
+from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.memories import Row
 from tests.machine.rig import Bench
 

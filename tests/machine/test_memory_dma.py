@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from bfsim.api import Core, Frame
 from bfsim.chip.dma_registers import WdSize
-from bfsim.machine.board import Outcome
 from bfsim.machine.dma.config import DmaConfig
+from bfsim.machine.outcome import Outcome
 from bfsim.trace import StallReason
 from tests.machine.kernels import spin
 from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, cclk_now, in_work, play

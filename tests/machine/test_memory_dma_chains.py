@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from bfsim.api import Core, Frame
 from bfsim.chip.dma_registers import ELEMENT_BYTES, Flow
 from bfsim.errors import DeadlockError
-from bfsim.machine.board import Outcome
 from bfsim.machine.dma.config import DmaConfig
+from bfsim.machine.outcome import Outcome
 from bfsim.machine.simulation import Simulation
 from tests.machine.kernels import spin
 from tests.machine.made_boards import assert_accounted, cclk_now, in_work, play

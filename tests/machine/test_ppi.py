@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Pace, Transfer, Walk
+from bfsim.machine.bus.transfer_plans import Pace, Transfer, Walk
 from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.memories import Row
 from bfsim.machine.program import FrameSize

@@ -18,7 +18,7 @@ from bfsim.api import Buffer, Core, Frame, SpiDevice, SpiMessage, u16
 from bfsim.chip.boards import CM_BF561, CM_BF561_RATINGS
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
-from bfsim.machine.board import Outcome
+from bfsim.machine.outcome import Outcome
 from bfsim.trace import MessageRecord, StallReason
 from tests.machine.kernels import spin
 from tests.machine.made_boards import CHIP, assert_accounted, cclk_now, in_work, made_board

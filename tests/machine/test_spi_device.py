@@ -14,7 +14,7 @@ from bfsim.api import Buffer, Core, Frame, SpiDevice, SpiMessage, u16
 from bfsim.chip.boards import CM_BF561
 from bfsim.device_script import read_script
 from bfsim.errors import BfsimError, ConfigError, FirmwareError
-from bfsim.machine.board import Outcome
+from bfsim.machine.outcome import Outcome
 from bfsim.run import simulate
 from tests.machine.kernels import spin
 from tests.machine.made_boards import made_board

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Walk
+from bfsim.machine.bus.transfer_plans import Walk
 from tests.machine.rig import Bench
 
 # From the middle of each of these the longest walk stays within it.

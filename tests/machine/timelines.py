@@ -6,7 +6,8 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
-from bfsim.machine.board import Board, Outcome
+from bfsim.machine.board import Board
+from bfsim.machine.outcome import Outcome
 from bfsim.spans import Span, SpanKind
 from bfsim.trace import CoreFrame, FrameRecord, StageCost
 from tests.machine.rig import noise

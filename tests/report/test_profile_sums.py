@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bfsim.machine.board import Outcome
+from bfsim.machine.outcome import Outcome
 from bfsim.run import simulate
 from bfsim.trace import BudgetRow, RunRecord
 from tests.machine.made_boards import play

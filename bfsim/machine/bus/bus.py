@@ -7,8 +7,7 @@ done settles it first; while anybody waits, the simulation plays it up to each e
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 from fractions import Fraction
 from math import lcm
 from typing import Any
@@ -27,6 +26,7 @@ from bfsim.machine.bus.sdram import new_sdram
 from bfsim.machine.bus.stretches import end_of_stretch
 from bfsim.machine.bus.told import ToldBus
 from bfsim.machine.bus.traffic import traffic_records
+from bfsim.machine.bus.transfer_plans import Pace, Played, Transfer, TransferPlan, Walk
 from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
@@ -45,68 +45,6 @@ PARTNERS = ((w.MDMA1_0, w.MDMA1_1), (w.MDMA2_0, w.MDMA2_1))
 CORE_FIRST, CORE_LAST = -100, 200  # ranks of core A; core B has its own turn after A had the bus
 STORES_AFTER = 10  # loads overtake stores (Programming Reference p.294)
 ONE_TICK = Fraction(1)
-
-
-@dataclass(frozen=True, slots=True)
-class Walk:
-    """One side of a transfer: `x_count` elements a line, `x_modify` bytes apart, and `y_modify` to the next line."""
-
-    offset: int
-    x_count: int
-    x_modify: int
-    y_modify: int
-
-
-@dataclass(frozen=True, slots=True)
-class Pace:
-    """How a device delivers or takes elements: from tick `start`, so many ticks an element and a line (exact)."""
-
-    start: int
-    line_elements: int
-    element_ticks: Fraction
-    line_ticks: Fraction
-
-
-@dataclass(frozen=True, slots=True)
-class TransferPlan:
-    """A transfer of one master, ready to be posted as often as needed. `words`: its own in `bus.state`, from SETUP on."""
-
-    master: int
-    words: tuple[int, ...]
-    nbytes: int
-    name: str = field(default="", kw_only=True)
-    """What is moved, for people."""
-
-
-@dataclass(frozen=True, slots=True)
-class Played:
-    """What a stretch of a core took, in cycles. `clock_cclk`: where the core's clock is now.
-
-    `accounts`: of each that was used, in the order of their first use, the words from TOUCH on (`bus.state`).
-    """
-
-    clock_cclk: int
-    issue_cclk: int
-    interlocks_cclk: int
-    bus_stalls_cclk: Sequence[int]
-    accounts: Mapping[int, Sequence[int]]
-
-
-class Transfer:
-    """One transfer of a DMA on its way. `end` is the tick at which it is done, or None as long as nobody can know."""
-
-    __slots__ = ("_bus", "number", "place")
-
-    def __init__(self, bus: Bus, number: int, place: int) -> None:
-        self._bus = bus
-        self.number = number
-        self.place = place
-
-    @property
-    def end(self) -> int | None:
-        """Tick at which it is done."""
-        tick = self._bus.words[w.ENDS_AT + self.number % w.ENDS]
-        return None if tick == w.NONE else tick
 
 
 class Bus:

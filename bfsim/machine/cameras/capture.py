@@ -17,7 +17,7 @@ import simpy
 from numpy.typing import NDArray
 
 from bfsim.clocks import Clocks
-from bfsim.machine.bus.bus import Transfer
+from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.memories import Row

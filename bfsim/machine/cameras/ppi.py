@@ -16,7 +16,8 @@ from bfsim.clocks import PeriodicEdges
 from bfsim.errors import FirmwareError
 from bfsim.kernel.types import u8
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Bus, Pace, Transfer, Walk
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.transfer_plans import Pace, Transfer, Walk
 from bfsim.machine.cameras.oscillator import Oscillator
 from bfsim.machine.cameras.ppi_status import PpiStatus
 from bfsim.machine.cameras.settling import CameraSettings, Settling

@@ -14,7 +14,8 @@ from typing import Any
 import simpy
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.machine.bus.bus import Bus, Transfer
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.core.accounts import FrameAccounts
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.timeline import CoreTimeline

@@ -12,7 +12,8 @@ import simpy
 from bfsim.chip.spec import BoardSpec, L2Spec
 from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import RANKS, Bus, Pace, Transfer, TransferPlan, Walk
+from bfsim.machine.bus.bus import RANKS, Bus
+from bfsim.machine.bus.transfer_plans import Pace, Transfer, TransferPlan, Walk
 from bfsim.machine.bus.weave import plain_weave
 from bfsim.machine.detailed.arbiter import L2Port, SdramArbiter
 from bfsim.machine.detailed.core import CorePort, Spin

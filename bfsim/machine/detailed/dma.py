@@ -16,7 +16,7 @@ import simpy
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Pace, TransferPlan, Walk
+from bfsim.machine.bus.transfer_plans import Pace, TransferPlan, Walk
 from bfsim.machine.detailed.arbiter import Grant, L2Port, SdramArbiter, count_bytes, wait_until
 from bfsim.machine.detailed.fifo import Element, Fifo
 from bfsim.machine.memories import Memories

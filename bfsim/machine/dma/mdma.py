@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.machine.bus.bus import Bus, Transfer, TransferPlan, Walk
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.transfer_plans import Transfer, TransferPlan, Walk
 from bfsim.machine.memories import Row
 
 

@@ -12,7 +12,8 @@ from bfsim.chip.dma_registers import ELEMENT_BYTES
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Bus, Transfer, Walk
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.transfer_plans import Transfer, Walk
 from bfsim.machine.core.waits import Waits, awaited
 from bfsim.machine.dma.channel import ChannelStep, DmaChannel, check_pair
 from bfsim.machine.dma.checks import DmaSpace

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from bfsim.chip.dma_registers import COPY_READS, COPY_WRITES
 from bfsim.errors import FirmwareError
-from bfsim.machine.bus.bus import Transfer
+from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.core.waits import Waits, awaited
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row

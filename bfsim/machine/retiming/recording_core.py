@@ -13,7 +13,8 @@ import simpy
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Bus, Transfer
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.accounts import Account

@@ -15,7 +15,8 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.chip.spi_registers import SpiRate
 from bfsim.errors import FirmwareError, shown
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Bus, Pace, Transfer, Walk
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.transfer_plans import Pace, Transfer, Walk
 from bfsim.machine.memories import Memories, Row
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi.device import LARGEST_MESSAGE_BYTES, WORD_BYTES, SpiDevice, SpiMessage, device_at_work
