@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
-from bfsim.machine.board import Board, Fidelity, Outcome
+from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.cameras.capture import Feed
+from bfsim.machine.outcome import Outcome
 from bfsim.spans import Span
 from tests.machine.made_boards import made_board
 from tests.machine.owners import assert_owned
