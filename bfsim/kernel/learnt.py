@@ -29,9 +29,6 @@ class Learnt(StrEnum):
     ACCUMULATORS = "what a loop only adds to may live in another bank, for one move"
     DIFFERENCE = "the absolute value of a difference, written as an `if`, is a branch"
     COMMON_LOADS = "what both sides of a test load first is loaded before it"
-    LEAVING_SIDE = (
-        "of two equally likely sides of a test in a loop, the one that may leave the loop is not in line"
-    )
     CLEARED_BIT = "half of a number that is the index of half-words is the number with its last bit cleared"
     KNOWN_SIGN = "a value known to be positive is divided by a constant with the signed routine"
     DIVIDED_COUNTS = "a loop whose number of iterations takes a division to find is not counted"
@@ -73,7 +70,6 @@ LEARNT_FROM: dict[Learnt, tuple[str, ...]] = {
     Learnt.ACCUMULATORS: ("moments",),
     Learnt.DIFFERENCE: ("sad_search",),
     Learnt.COMMON_LOADS: ("cordic_atan",),
-    Learnt.LEAVING_SIDE: ("grow_segments",),
     Learnt.CLEARED_BIT: ("lower_bound", "table_search", "quick_sort"),
     Learnt.KNOWN_SIGN: ("digits",),
     Learnt.DIVIDED_COUNTS: ("base64_encode",),

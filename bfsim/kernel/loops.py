@@ -20,12 +20,13 @@ OUTER = ".outer"  # ending of the label that LLVM gives the outer of two loops w
 
 @dataclass(slots=True)
 class Loop:
-    """A natural loop. `inner` are the loops directly inside it."""
+    """A natural loop. `inner` are the loops directly inside it, `leaving` blocks that a threaded jump takes out of it."""
 
     header: str
     latch: str
     blocks: frozenset[str]
     inner: list[Loop] = field(default_factory=list)
+    leaving: frozenset[str] = frozenset()
 
     @property
     def height(self) -> int:

@@ -1,24 +1,28 @@
 """The order of the blocks in the code, and what their branches cost each way.
 
-The order is that of GCC's reordering pass in outline [bb-reorder.cc; Pettis and Hansen, PLDI 1990]: from the
-entry along the likeliest edges; then from the likeliest block that is left.
+The order is that of GCC's reordering pass (`traces`).
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Mapping
 from itertools import pairwise
 
 from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.isa import Op
-from bfsim.kernel.loops import ControlFlow, Loop
-from bfsim.kernel.lowering.charges import Charge, charge
+from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.charges import Charge, charge, instead
 from bfsim.kernel.lowering.predict import EVEN, Likelihood
+from bfsim.kernel.lowering.traces import Edge, Graph, Layout, laid_out
 
 
 class BlockLayout:
     """Positions of the blocks of one routine.
 
-    `skipped` blocks hold no code. An edge with copies of its own is a block, too: `copies` holds their cost by edge.
+    `skipped` blocks hold no code. An edge with copies of its own is a block, too: `copies` holds their cost by edge. `nbytes`: of the
+    code of a block or an edge. `counted`: the ways back of counted loops, which are jumps.
+    `threaded`: where edges lead whose jumps are threaded.
     """
 
     def __init__(
@@ -27,13 +31,15 @@ class BlockLayout:
         likelihood: Likelihood,
         skipped: frozenset[str],
         copies: dict[tuple[str, str], list[Charge]],
-        *,
-        leaving_side_last: bool,
+        nbytes: Callable[[str], int],
+        counted: frozenset[tuple[str, str]],
+        threaded: Mapping[tuple[str, str], str],
     ) -> None:
         self.flow, self.likelihood, self.skipped, self.copies = flow, likelihood, skipped, copies
-        self.leaving_side_last = leaving_side_last
+        self.threaded = threaded
         self.names = [*self._named(copies)]
-        self.order = self._order()
+        layout = self._laid_out(nbytes, counted)
+        self.order, self.copied = layout.order, layout.copied
         self.next_of = dict(pairwise(self.order))
 
     def _named(self, copies: dict[tuple[str, str], list[Charge]]) -> list[str]:
@@ -51,7 +57,8 @@ class BlockLayout:
             return (self.landing(name.split(">")[1]),)
         found = []
         for way in self.flow.blocks[name].successors:
-            found.append(edge_name((name, way)) if (name, way) in self.copies else self.landing(way))
+            own = (name, way) in self.copies
+            found.append(edge_name((name, way)) if own else self.landing(self.threaded.get((name, way), way)))
         return tuple(found)
 
     def landing(self, label: str) -> str:
@@ -61,99 +68,80 @@ class BlockLayout:
             label = self.likelihood.second_parts.get(label) or next(each for each in ways if each != label)
         return label
 
-    def _order(self) -> list[str]:
-        left = list(self.names)
-        order: list[str] = []
-        while left:
-            name: str | None = left[0] if not order else self._likeliest(left, order)
-            while name is not None:
-                order.append(name)
-                left.remove(name)
-                name = self._onwards(name, left)
-        return self._rotated(order)
+    def _laid_out(self, nbytes: Callable[[str], int], counted: frozenset[tuple[str, str]]) -> Layout:
+        count = {name: self._frequency(name) for name in self.names}
+        edges = {}
+        for name in self.names:
+            chances: dict[str, float] = {}
+            targets = self.flow.blocks[name].successors if name in self.flow.blocks else (edge_of(name)[1],)
+            for way, target in zip(self.ways(name), targets, strict=True):
+                chances[way] = chances.get(way, 0) + self.likelihood.taken.get((name, target), 1.0)
+            edges[name] = tuple(
+                Edge(name, way, chance, count[name] * chance, (name, way) not in counted)
+                for way, chance in chances.items()
+            )
+        headers = {loop.header: loop.blocks for loop in self.flow.loops}
+        back = frozenset(
+            (name, edge.target)
+            for name in self.names
+            for edge in edges[name]
+            if name.split(">")[0] in headers.get(edge.target, ())
+        )
+        ends = frozenset(name for name in self.names if not edges[name])
+        sizes = {each: nbytes(each) for each in self.names}
+        following = {
+            name: min(ways, key=self._place(name)) for name in self.names if (ways := self.ways(name))
+        }
+        return laid_out(Graph(self.names, edges, count, sizes, following, back, ends))
 
-    def _likeliest(self, left: list[str], order: list[str]) -> str:
-        reached = {way for before in order for way in self.ways(before)}
-        ready = [each for each in left if each in reached] or left
-        return max(ready, key=lambda name: (self._frequency(name), -left.index(name)))
+    def _place(self, name: str) -> Callable[[str], tuple[float, int]]:
+        """Where a side of the test at the end of block `name` stands in the source, behind it."""
+        test = self.flow.blocks[name].terminator.line if name in self.flow.blocks else None
+
+        def place(way: str) -> tuple[float, int]:
+            rows = self.flow.blocks[way].instructions if way in self.flow.blocks else ()
+            line = next((each.line for each in rows if each.opcode != "phi"), None)
+            known = line is not None and test is not None and line._replace(line=0) == test._replace(line=0)
+            behind = known and line is not None and test is not None and line.line > test.line
+            return line.line if behind and line else math.inf, self.names.index(way)
+
+        return place
 
     def _frequency(self, name: str) -> float:
         if name in self.flow.blocks:
             return self.likelihood.frequency[name]
-        label, way = name.split(">")
+        label, way = edge_of(name)
         return self.likelihood.frequency[label] * self.likelihood.taken[label, way]
 
-    def _onwards(self, name: str, left: list[str]) -> str | None:
-        """The likeliest way that is still free; of two equal ones the side that the source has first."""
-        chances: dict[str, float] = {}
-        targets = self.flow.blocks[name].successors if name in self.flow.blocks else (name.split(">")[1],)
-        for way, target in zip(self.ways(name), targets, strict=True):
-            chances[way] = chances.get(way, 0) + self.likelihood.taken.get((name, target), 1.0)
-        free = [each for each in chances if each in left]
-        best = max(
-            free,
-            key=lambda way: (chances[way], not self._may_leave(name, way, free), -left.index(way)),
-            default=None,
-        )
-        for way in free:
-            # the body of an `if` stays in line unless it is rare: half as likely as what skips it
-            is_body = way != best and self.ways(way) == (best,) and self._entries(way) == 1
-            if best is not None and is_body and 2 * chances[way] >= chances[best]:
-                return way
-        return best
-
-    def _may_leave(self, name: str, way: str, ways: list[str]) -> bool:
-        """Whether a side of a test may leave the loop before it meets the other side."""
-        loop = self.flow.innermost(name) if name in self.flow.blocks else None
-        if not self.leaving_side_last or loop is None or len(ways) < 2 or way == loop.latch:
-            return False
-        seen, waiting = {*ways, loop.header, loop.latch}, [way]
-        while waiting:
-            for after in self.ways(waiting.pop()):
-                if after in self.flow.blocks and after not in loop.blocks:
-                    return True
-                if after not in seen:
-                    seen.add(after)
-                    waiting.append(after)
-        return False
-
-    def _entries(self, name: str) -> int:
-        return len(self.flow.predecessors[name]) if name in self.flow.blocks else 1
-
-    def _rotated(self, order: list[str]) -> list[str]:
-        """Rotate each loop that would jump back so that it ends with its likeliest exit: the test moves to the bottom."""
-        for loop in self.flow.loops:
-            if len(set(self.flow.blocks[loop.latch].successors)) != 1:
-                continue
-            inside = [name for name in order if name.split(">")[0] in loop.blocks]
-            first = order.index(inside[0])
-            exits = [label for label in self.flow.exits(loop) if label in inside]
-            if order[first : first + len(inside)] != inside or not exits:
-                continue
-            last = max(exits, key=lambda label: (self._leaving(label, loop), inside.index(label)))
-            cut = inside.index(last) + 1
-            order[first : first + len(inside)] = inside[cut:] + inside[:cut]
-        return order
-
-    def _leaving(self, label: str, loop: Loop) -> float:
-        chances = (
-            self.likelihood.taken[label, way] for way in set(self.flow.blocks[label].successors) - loop.blocks
-        )
-        return self.likelihood.frequency[label] * sum(chances)
-
     def falls(self, name: str, target: str) -> bool:
-        """Whether `target` follows `name` in the code."""
-        return self.next_of.get(name) == target
+        """Whether `target`, or a copy of it, follows `name` in the code."""
+        return self.next_of.get(name) == target or (name, target) in self.copied
 
     def jump(self, name: str, target: str, line: SourceLine) -> list[Charge]:
-        """Return the cost of going on to `target`."""
+        """Return the cost of going on to `target`; of a copy, what its end costs more where it usually goes."""
+        if (name, target) in self.copied:
+            return self._more(target, self.next_of.get(name), line)
         return [] if self.falls(name, target) else [charge(Op.JUMP, line)]
+
+    def _more(self, name: str, behind: str | None, line: SourceLine) -> list[Charge]:
+        ways = self.ways(name)
+        if len(set(ways)) == 1:
+            own = [] if behind == ways[0] else [charge(Op.JUMP, line)]
+            return [*instead(own, self.jump(name, ways[0], line))]
+        if name not in self.flow.blocks or len(ways) != 2:
+            return []
+        targets = self.flow.blocks[name].successors
+        likely = 0 if self.likelihood.taken[name, targets[0]] >= EVEN else 1
+        own = [charge(Op.BRANCH_NOT_TAKEN if behind == ways[likely] else Op.BRANCH_TAKEN_BP, line)]
+        through = self._through(name)
+        usual = [charge(Op.BRANCH_NOT_TAKEN if through == likely else Op.BRANCH_TAKEN_BP, line)]
+        return [*instead(own, usual)]
 
     def on(self, label: str, target: str, line: SourceLine) -> list[Charge]:
         """Return the cost of going from the end of `label` to the block `target`, its edge's copies included."""
         edge = edge_name((label, target))
         if (label, target) not in self.copies:
-            return self.jump(label, self.landing(target), line)
+            return self.jump(label, self.landing(self.threaded.get((label, target), target)), line)
         return [*self.jump(label, edge, line), *self._behind(label, target, line)]
 
     def _behind(self, label: str, target: str, line: SourceLine) -> list[Charge]:
@@ -170,19 +158,22 @@ class BlockLayout:
         targets = self.flow.blocks[label].successors
         if ways[0] == ways[1]:
             return [], []
-        yes_chance = self.likelihood.taken[label, targets[0]]
-        if self.falls(label, ways[1]):
-            through = 1
-        elif self.falls(label, ways[0]):
-            through = 0
-        else:  # the likelier side gets the branch, the other one a jump
-            through = 0 if yes_chance < EVEN else 1
+        yes_chance, through = self.likelihood.taken[label, targets[0]], self._through(label)
         predicted = (1 - yes_chance if through == 0 else yes_chance) >= EVEN
         fall = [charge(Op.BRANCH_NOT_TAKEN_BP if predicted else Op.BRANCH_NOT_TAKEN, line)]
         fall += self.jump(label, ways[through], line) + self._behind(label, targets[through], line)
         taken = [charge(Op.BRANCH_TAKEN_BP if predicted else Op.BRANCH_TAKEN, line)]
         taken += self._behind(label, targets[1 - through], line)
         return (fall, taken) if through == 0 else (taken, fall)
+
+    def _through(self, label: str) -> int:
+        """Which side of a branch needs no jump; the likelier one gets the branch if both are elsewhere, the other one a jump."""
+        ways = self.ways(label)
+        if self.falls(label, ways[1]):
+            return 1
+        if self.falls(label, ways[0]):
+            return 0
+        return 0 if self.likelihood.taken[label, self.flow.blocks[label].successors[0]] < EVEN else 1
 
 
 def edge_name(edge: tuple[str, str]) -> str:

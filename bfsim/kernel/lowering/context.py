@@ -29,7 +29,8 @@ class Context:
         self.flow = ControlFlow(routine, joins_split=profile.applies(Learnt.SPLIT_LOOPS))
         self.jump_threading = JumpThreading(self.flow)
         for loop in self.flow.loops if profile.applies(Learnt.THREADED_EXITS) else ():
-            loop.blocks -= self.jump_threading.leaving(loop)
+            loop.leaving = frozenset(self.jump_threading.leaving(loop))
+            loop.blocks -= loop.leaving
         self.code_motion = InvariantCodeMotion(self.flow)
         evaluates = profile.applies(Learnt.EVALUATED_LOOPS)
         self.evolution = ScalarEvolution(self.flow, self.code_motion, evaluates=evaluates)

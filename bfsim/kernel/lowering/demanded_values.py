@@ -105,7 +105,22 @@ class DemandedValues(Folding):
             for variable in self.induction_variables.all
         )
         fixed = self.profile.applies(Learnt.FIXED_STARTS) and self.evolution.starts_fixed(loop)
-        return wide and not fixed
+        return wide and not fixed and not self._may_not_start(loop)
+
+    def _may_not_start(self, loop: Loop) -> bool:
+        """Whether a counter that goes down to a constant is tested before the loop.
+
+        Then GCC knows no bound of the iterations that keeps a pointer of wider steps from wrapping, and no pointer takes the
+        counter's place [may_eliminate_iv in tree-ssa-loop-ivopts.cc].
+        """
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        if test is None or not test.operands[1].lstrip("-").isdigit():
+            return False
+        block = self.flow.blocks[self.flow.entering(loop)]
+        while len(set(block.successors)) == 1 and len(self.flow.predecessors[block.label]) == 1:
+            block = self.flow.blocks[self.flow.predecessors[block.label][0]]
+        guard = self.flow.instruction(block.terminator.operands[0]) if block.terminator.operands else None
+        return guard is not None and guard.opcode == "icmp" and guard.operands[1].lstrip("-").isdigit()
 
     def _is_inclusive(self, loop: Loop) -> bool:
         """Whether a loop runs up to `stop + 1`, which C writes as `<= stop`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from bfsim.kernel import isa
@@ -45,9 +46,42 @@ class _OptimisedLowering:
             self.context.likelihood,
             frozenset(empty | self.context.if_conversion.gone | self.context.second_parts.keys()),
             copies,
-            leaving_side_last=profile.applies(Learnt.LEAVING_SIDE),
+            self._nbytes,
+            frozenset((self.flow.ending(loop), loop.header) for loop in self._counted()),
+            dict(self._threaded()),
         )
         self.hardware = {loop.header for loop in self.flow.loops if self._is_hardware(loop)}
+
+    def _nbytes(self, name: str) -> int:
+        """Code bytes of a block with its branch or return, or of the copies on an edge."""
+        nbytes = sum(each.code_bytes for each in self._code_at(name))
+        block = self.flow.blocks.get(name)
+        if block is not None and block.terminator.opcode == "ret":
+            cost = BlockCost()
+            self._return(cost, block.terminator.line)
+            return nbytes + sum(COSTS[each.op].nbytes for each in cost.charges)
+        if any(self.flow.ending(loop) == name for loop in self._counted()):
+            return nbytes + isa.LOOP_END_BYTES
+        if block is None or self.context.jump_threading.decides(block.terminator):
+            return nbytes
+        branches = len(set(block.successors)) > 1
+        return nbytes + (COSTS[Op.BRANCH_TAKEN].nbytes if branches else 0)
+
+    def _threaded(self) -> Iterator[tuple[tuple[str, str], str]]:
+        """Edges from blocks that set a flag which ends their loop, and where that leads."""
+        for loop in self.flow.loops:
+            tests = [
+                self.flow.blocks[each]
+                for each in self.flow.inside(loop)
+                if self.context.jump_threading.decides(self.flow.blocks[each].terminator)
+            ]
+            ends = [way for test in tests for way in test.successors if way not in loop.blocks | loop.leaving]
+            for label in loop.leaving if ends else ():
+                for way in set(self.flow.blocks[label].successors) & loop.blocks:
+                    yield (label, way), ends[0]
+
+    def _counted(self) -> Iterator[Loop]:
+        return (loop for loop in self.flow.loops if loop.header in self.context.demanded.counted)
 
     def _is_empty(self, label: str) -> bool:
         block = self.flow.blocks[label]

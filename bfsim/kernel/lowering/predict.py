@@ -12,11 +12,11 @@ from functools import cached_property
 
 from bfsim.kernel.ir_text import BasicBlock, Instruction
 from bfsim.kernel.loops import ControlFlow, Loop
-from bfsim.kernel.lowering.preheaders import preheader_of
 
 EVEN = 0.5
 # hit rates [predict.def]
-LOOP_EXIT, EXTRA_EXIT, LOOP_GUARD = 0.89, 0.67, 0.73
+LOOP_EXIT = 0.89
+LEAST_EXIT = 0.02  # of a loop with many exits, which share the chance that it ends
 POSITIVE, NOT_EQUAL, CALL = 0.59, 0.66, 0.67
 CONTINUE = 0.67  # the surest hint of the source: the side without `continue`
 MOST_ITERATIONS = 100  # a loop is guessed to iterate at most so often where its count is a constant
@@ -79,15 +79,19 @@ class Likelihood:
             return float("icmp ne" in self._text_of_test(block))
         loop = self._whole(self.flow.innermost(block.label))
         if loop is not None:
-            leaves = [way not in loop.blocks for way in (yes, no)]
+            inside = loop.blocks | loop.leaving
+            leaves = [way not in inside for way in (yes, no)]
             if leaves[0] != leaves[1]:
-                exits = LOOP_EXIT if block.label == loop.latch else EXTRA_EXIT
-                exits = LOOP_EXIT if self._only_exit(loop) else exits
-                return 1 - exits if leaves[0] else exits
+                leaving = self._leaving(loop)
+                return leaving if leaves[0] else 1 - leaving
+        entered = (self._entered(yes, no, block), self._entered(no, yes, block))
+        for loop_behind, into in zip(entered, (False, True), strict=True):
+            if loop_behind is not None:
+                leaving = self._leaving(loop_behind)
+                return leaving if into else 1 - leaving
         votes = [
             *self._by_opcode(block),
             *self._by_calls(block),
-            *self._by_guard(block, loop),
             *_by_hint(block),
         ]
         return combined(votes)
@@ -99,9 +103,6 @@ class Likelihood:
     def _text_of_test(self, block: BasicBlock) -> str:
         test = self.flow.instruction(block.terminator.operands[0])
         return test.text if test else ""
-
-    def _only_exit(self, loop: Loop) -> bool:
-        return len(self.flow.exits(loop)) == 1
 
     def _by_opcode(self, block: BasicBlock) -> list[float]:
         """Equality is unlikely, and values are positive."""
@@ -129,13 +130,37 @@ class Likelihood:
                 votes.append(vote)
         return votes
 
-    def _by_guard(self, block: BasicBlock, loop: Loop | None) -> list[float]:
-        """A test right before a loop is likely to let it iterate."""
-        votes = []
-        for vote, way in zip((LOOP_GUARD, 1 - LOOP_GUARD), block.successors, strict=True):
-            if any(way in (each.header, preheader_of(each)) and each is not loop for each in self.flow.loops):
-                votes.append(vote)
-        return votes
+    def _leaving(self, loop: Loop) -> float:
+        """How likely each exit of a loop is; before its first iteration, too, as the test there is a copy of its header's."""
+        inside = loop.blocks | loop.leaving
+        exits = sum(bool(set(self.flow.blocks[each].successors) - inside) for each in inside)
+        return max((1 - LOOP_EXIT) / max(exits, 1), LEAST_EXIT)
+
+    def _entered(self, way: str, other: str, block: BasicBlock) -> Loop | None:
+        """The loop that one side of a test right before it enters, while the other one goes where the loop ends."""
+        for loop in self.flow.loops:
+            if loop.header in self._onwards(way) and block.label not in loop.blocks:
+                ends = {
+                    after
+                    for label in self.flow.exits(loop)
+                    for end in set(self.flow.blocks[label].successors) - loop.blocks
+                    for after in self._onwards(end)
+                }
+                if not ends.isdisjoint(self._onwards(other)):
+                    return loop
+        return None
+
+    def _onwards(self, way: str) -> set[str]:
+        """A block, and those that it leads to without an access or a call: what a loop needs may be computed right before it."""
+        found = {way}
+        while len(set(self.flow.blocks[way].successors)) == 1:
+            if any(each.opcode in ("load", "store", "call") for each in self.flow.blocks[way].instructions):
+                break
+            way = self.flow.blocks[way].successors[0]
+            if way in found:
+                break
+            found.add(way)
+        return found
 
 
 def _by_hint(block: BasicBlock) -> list[float]:
