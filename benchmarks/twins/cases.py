@@ -10,6 +10,7 @@ from benchmarks.twins import (
     controllers,
     digits,
     drawing,
+    duties,
     exchanges,
     fills,
     filters,
@@ -19,6 +20,7 @@ from benchmarks.twins import (
     labels,
     lines,
     lookups,
+    maps,
     mixture,
     neighbours,
     ordering,
@@ -33,17 +35,19 @@ from benchmarks.twins import (
     signals,
     sorted_rows,
     sorting,
+    streams,
     tables,
     tallies,
     text,
+    trackers,
     transforms,
     words,
 )
 
 SUBJECTS = (
-    angles, bits, cameras, codes, controllers, digits, drawing, exchanges, fills, filters, grids, heaps,
-    integers, labels, lines, lookups, mixture, neighbours, ordering, patches, pictures, pixels,
-    protocols, regions, rows, samples, shapes, signals, sorted_rows, sorting, tables, tallies, text,
-    transforms, words,
+    angles, bits, cameras, codes, controllers, digits, drawing, duties, exchanges, fills, filters,
+    grids, heaps, integers, labels, lines, lookups, maps, mixture, neighbours, ordering, patches,
+    pictures, pixels, protocols, regions, rows, samples, shapes, signals, sorted_rows, sorting, streams,
+    tables, tallies, text, trackers, transforms, words,
 )  # fmt: skip
 CASES = tuple(case for subject in SUBJECTS for case in subject.CASES)

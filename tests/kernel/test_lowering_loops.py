@@ -165,3 +165,15 @@ def test_the_cache_depends_on_the_lowering() -> None:
     """A rule of the lowering that changes must not meet kernels that were costed without it."""
     assert {"select.py", "keys.py"} <= {path.name for path in keys.sources()}
     assert GCC_O2.library.fill is not None
+
+
+@pytest.mark.parametrize(("behind", "counted"), [("return i", True), ("return a[i]", False)])
+def test_a_counter_that_is_wanted_behind_its_loop_is_counted(
+    behind: str, counted: bool, tmp_path: Path
+) -> None:
+    """Of half-words and with two exits a pointer would take its place, but for its value behind the loop."""
+    text = (
+        "def f(a: i16[:], start: i32, n: i32, x: i32) -> i32:\n    i = start\n"
+        f"    while i < n and a[i] < x:\n        i += 1\n    {behind}\n"
+    )
+    assert (Op.LOOP_SETUP in lowered(text, tmp_path)) is counted

@@ -100,12 +100,30 @@ class DemandedValues(Folding):
             return True
         if self.flow.is_split(loop):
             return not self._steps_by_one(loop)
-        wide = any(
-            variable.loop is loop and abs(variable.increment.constant) > 1
+        steps = {
+            abs(variable.increment.constant)
             for variable in self.induction_variables.all
-        )
+            if variable.loop is loop
+        }
+        wide = bool(steps) and 1 not in steps
         fixed = self.profile.applies(Learnt.FIXED_STARTS) and self.evolution.starts_fixed(loop)
-        return wide and not fixed and not self._may_not_start(loop)
+        return wide and not fixed and not self._may_not_start(loop) and not self._is_wanted_behind(loop)
+
+    def _is_wanted_behind(self, loop: Loop) -> bool:
+        """Whether the counter is wanted behind the loop, and not as an index alone: then no pointer takes its place."""
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        waiting = [each for each in test.operands if not self.flow.is_invariant(each, loop)] if test else []
+        seen: set[str] = set()
+        while waiting:
+            name = waiting.pop()
+            seen.add(name)
+            for user in self.flow.users.get(name, []):
+                inside = any(user in self.flow.blocks[label].instructions for label in loop.blocks)
+                if user.opcode == "phi" and (user.result or "") not in seen:
+                    waiting.append(user.result or "")
+                elif not inside and user.opcode not in ("phi", "getelementptr"):
+                    return True
+        return False
 
     def _may_not_start(self, loop: Loop) -> bool:
         """Whether a counter that goes down to a constant is tested before the loop.
