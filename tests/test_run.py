@@ -242,10 +242,10 @@ def peak_bytes(recording: Path, frames: int) -> int:
 
 def test_memory_does_not_grow_with_the_pictures(home: Path) -> None:
     """Ten times as many frames need no more memory than their records: a few kB each, where a pair of pictures has 20."""
-    recording = record(home / "drive.mcap", 400, width=640, height=8)
+    recording = record(home / "drive.mcap", 200, width=640, height=8)
     peak_bytes(recording, 2)  # what is imported or compiled once
-    growth = peak_bytes(recording, 400) - peak_bytes(recording, 40)
-    assert growth < 360 * 4_000
+    growth = peak_bytes(recording, 200) - peak_bytes(recording, 20)
+    assert growth < 180 * 4_000
 
 
 @pytest.mark.parametrize(
