@@ -125,6 +125,7 @@ MAY_IMPORT = {
         "result",
         "run",
         "shipped",
+        "signals",
         "trace",
     },
     "placing": {

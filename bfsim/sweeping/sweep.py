@@ -15,6 +15,7 @@ from bfsim.checking import arguments_of
 from bfsim.errors import ConfigError
 from bfsim.report.check.baseline import Configuration
 from bfsim.shipped import RECORDING
+from bfsim.signals import uninterrupted
 from bfsim.sweeping.file import Point, read_sweep
 from bfsim.sweeping.running import Outcome, code_digest, digest_recording, plan_point, run_point
 from bfsim.sweeping.store import Store, key_of
@@ -158,12 +159,13 @@ class Sweep:
     def _done(
         self, planned: Planned, outcome: Outcome, works: Works, tell: Callable[[Planned, Outcome], None]
     ) -> None:
-        if outcome.is_final:
-            self.store.keep(planned.key, outcome)
-        works.done(planned.key, outcome)
-        self.store.release(planned.key)
-        self.outcomes[planned.key] = outcome
-        tell(planned, outcome)
+        with uninterrupted():  # what is kept is in the table, too
+            if outcome.is_final:
+                self.store.keep(planned.key, outcome)
+            works.done(planned.key, outcome)
+            self.store.release(planned.key)
+            self.outcomes[planned.key] = outcome
+            tell(planned, outcome)
 
     def try_out(self, planned: Planned, frames: int, workers: Workers) -> Outcome:
         """Run the first frames of a point, twice, so that its kernels are compiled; nothing is kept."""
