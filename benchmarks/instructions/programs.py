@@ -6,6 +6,7 @@ call, or HLT. Each runs in a process of its own, for a program may access memory
 
 from __future__ import annotations
 
+import mmap
 import multiprocessing
 import resource
 import signal
@@ -27,6 +28,7 @@ from bfsim.blackfin.processor import AccessError, Processor
 STACK = 128 << 20
 """Where the simulator's memory ends without an operating system, and the stack begins."""
 STACK_BYTES = 64 << 10
+LOW_BYTES = 1 << 20
 FUEL = 50_000_000
 SYSTEM_CALL, EXIT, WRITE = 0, 1, 5
 
@@ -126,8 +128,10 @@ def _loaded(program: Path) -> Processor:
     space = AddressSpace()
     space.add(STACK - STACK_BYTES, STACK_BYTES)
     sections = [each for each in read_object(octets, program.name).sections if each.use is not Use.NOTES]
-    # Nothing but what the program has: decoding ends where memory does.
     space.add(0, max(each.address + each.nbytes for each in sections if each.address < STACK))
+    # A page that is not there ends what is decoded; behind it is memory that programs use without having it.
+    start = space.memories[-1].end + mmap.PAGESIZE
+    space.add(start, LOW_BYTES - start)
     for section in sections:
         if section.octets:
             space.at(section.address, section.nbytes)[:] = np.frombuffer(section.octets, np.uint8)

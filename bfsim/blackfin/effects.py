@@ -93,8 +93,10 @@ class Effects:
     def write(self, register: str, value: Value | int) -> None:
         """Have a register changed behind the instruction. Of an accumulator the lowest 40 bits are kept, sign-extended.
 
-        A write of AC0 or V also writes its copy. The last write of a register counts.
+        A write of AC0 or V also writes its copy, and one of SEQSTAT nothing. The last write of a register counts.
         """
+        if register == "SEQSTAT":
+            return
         if isinstance(value, int):
             value = self.constant(value, width(register))
         if register == "ASTAT":

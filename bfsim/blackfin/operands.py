@@ -133,6 +133,7 @@ KINDS = {
     "end": option("LO", "HI"),
     "comparison": register(("GT", "GE", "LT", "LE")),
     "right": shift(right=True),
+    "right5": Kind(shift(right=True).value, lambda count: number_text(_signed(-int(count) & 31, 5))),
     "left": shift(right=False),
     "mixed": option("", " (M)"),
     "mode": mode("W32"),

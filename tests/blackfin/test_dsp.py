@@ -165,3 +165,28 @@ def test_saa_adds_distances_of_aligned_bytes_and_saturates_without_sign() -> Non
     # from byte 1 on R1:0 is 50 10 20 30, highest first
     assert core.state["A0"] == 0xFFF0_FFFF
     assert core.state["A1"] == 0x0011_0021
+
+
+def test_w32_clips_the_product_too_and_says_so() -> None:
+    """A0 -= R4.H * R4.H (W32) of two -1: 0x7fffffff is taken away, not 0x80000000 (GNU's random_0009)."""
+    core = processor("63c02416" + HALT)
+    ran(core, R4=0x80007FFF, A0=0x16BA2677, AV0S=0)
+    assert (core.state["A0"], core.state["AV0"], core.state["AV0S"]) == (0x16BA2677 - 0x7FFFFFFF, 1, 1)
+
+
+@pytest.mark.parametrize(
+    ("code", "name", "closed"),
+    [
+        ("80c61939", "R4.H = R1.H >>> 0x1d", lambda r1: (r1 >> 16) << 3 & 0xFFFF),
+        ("80c6f139", "R4.H = R1.H >>> 0x2", lambda r1: high(r1) >> 2 & 0xFFFF),
+        ("80c6f9b1", "R0.H = R1.H >> 0x1", lambda r1: r1 >> 17),
+    ],
+)
+def test_shifts_of_halves_by_more_than_their_width_go_the_other_way(
+    code: str, name: str, closed: Callable[[int], int]
+) -> None:
+    assert text(decode(bytes.fromhex(code), 0)) == name
+    core = processor(code + HALT)
+    for value in EDGES:
+        ran(core, R0=0, R1=value, R4=0)
+        assert core.state[name[:2]] >> 16 == closed(value & 0xFFFFFFFF), value

@@ -38,12 +38,14 @@ class Multiplier:
         product = self.mode.product(*(half(fx, *each) for each in self.factors))
         if self.does == MULTIPLIES:
             return product, product
+        clipped = product.constant(0, 1)
+        if self.mode.name == "W32":
+            near, clipped = saturated(product, 32)
+            product = near.sign_extended(64)
         exact = self._sum(fx.read(accumulator), product)
         kept, over = self.mode.kept(exact, fx.read(accumulator))
         fx.write(accumulator, kept)
-        if self.mode.name == "W32":
-            over |= saturated(product, 32)[1]
-        set_overflow(fx, over, f"AV{self.number}")
+        set_overflow(fx, over | clipped, f"AV{self.number}")
         return kept, exact
 
     def _sum(self, before: Value, product: Value) -> Value:

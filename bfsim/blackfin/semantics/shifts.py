@@ -23,6 +23,29 @@ def _watchful(number: Value, count: Count) -> Shifted:
     return logical(number, count)[0], arithmetic(number, count)[1]
 
 
+def _short(number: Value, count: Count) -> Shifted:
+    """Shift a half by a number of six bits: what is no shift of 16 bits to the right is one to the left, by its lowest four bits."""
+    assert isinstance(count, int)
+    return arithmetic(number, count if -16 <= count <= 0 else count % 16 or 16)
+
+
+def _short_saturating(number: Value, count: Count) -> Shifted:
+    """Shift a half to the left by a number of five bits; from 16 on, it goes to the right."""
+    assert isinstance(count, int)
+    return saturating(number, count if count < 16 else count - 32)
+
+
+def _short_right_saturating(number: Value, count: Count) -> Shifted:
+    """Shift a half to the right, or from 17 on to the left, where it saturates if its sign changes."""
+    assert isinstance(count, int)
+    if count >= -16:
+        return arithmetic(number, count)
+    result = logical(number, 32 + count)[0]
+    turned = (result ^ number).negative()
+    most = number.constant((1 << number.bits - 1) - 1)
+    return turned.choose(number.negative().choose(~most, most), result), turned
+
+
 def _half(fx: Effects, shift: Shift, count: Count, d: str, h: int, t: str, l: int) -> None:
     result, over = shift(half(fx, t, l), count)
     write_half(fx, d, h, result)
@@ -85,11 +108,12 @@ SEMANTICS: dict[str, Semantics] = {
     "lshift_accumulator": _by_register(_accumulator, logical),
     "rotate_register": _by_register(_rotate_register),
     "rotate_accumulator": _by_register(_rotate_accumulator),
-    "shift_half": _by_number(_half, arithmetic),
+    "shift_half": _by_number(_half, _short),
+    "shift_half_right_s": _by_number(_half, _short_right_saturating),
     "shift_half_s": _by_number(_half, saturating),
     "shift_half_logical": _by_number(_half, logical),
-    "shift_pair": _by_number(_pair, arithmetic),
-    "shift_pair_s": _by_number(_pair, saturating),
+    "shift_pair": _by_number(_pair, _short),
+    "shift_pair_s": _by_number(_pair, _short_saturating),
     "shift_pair_logical": _by_number(_pair, logical),
     "shift_register": _by_number(_register, arithmetic),
     "shift_register_s": _by_number(_register, saturating),
