@@ -10,13 +10,14 @@ import llvmlite.binding as llvm
 HOST_SPEED_LEVEL = 3
 
 
-def host_code(text: str) -> bytes:
-    """Compile a module's text to an object file for this host."""
-    machine = _host_machine()
+def host_code(text: str, *, optimised: bool = True) -> bytes:
+    """Compile a module's text to an object file for this host; without optimisation in a tenth of the time or less."""
+    machine = _host_machine(HOST_SPEED_LEVEL if optimised else 0)
     parsed = llvm.parse_assembly(text)
     parsed.triple, parsed.data_layout = machine.triple, str(machine.target_data)
     parsed.verify()
-    _optimise(parsed, machine)
+    if optimised:
+        _optimise(parsed, machine)
     code: bytes = machine.emit_object(parsed)
     return code
 
@@ -32,21 +33,21 @@ def _optimise(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
 
 
 @cache
-def _host_machine() -> llvm.TargetMachine:
-    return _new_machine()
+def _host_machine(level: int) -> llvm.TargetMachine:
+    return _new_machine(level)
 
 
-def _new_machine() -> llvm.TargetMachine:
+def _new_machine(level: int) -> llvm.TargetMachine:
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     return llvm.Target.from_default_triple().create_target_machine(
-        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(), opt=3, jit=True
+        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(), opt=level, jit=True
     )
 
 
 @cache
 def _engine() -> llvm.ExecutionEngine:
-    return llvm.create_mcjit_compiler(llvm.parse_assembly(""), _host_machine())
+    return llvm.create_mcjit_compiler(llvm.parse_assembly(""), _host_machine(HOST_SPEED_LEVEL))
 
 
 @cache
@@ -76,7 +77,9 @@ def address_of(name: str) -> int:
 
 def loaded(code: bytes) -> llvm.ExecutionEngine:
     """Add an object file to this process for as long as what is returned lives; its names are its own."""
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _new_machine())  # which ends with the engine
+    engine = llvm.create_mcjit_compiler(
+        llvm.parse_assembly(""), _new_machine(HOST_SPEED_LEVEL)
+    )  # which ends with the engine
     engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
     return engine

@@ -88,7 +88,7 @@ class Effects:
         if register[0] == "A" and register[2:] in {".X", ".W"}:
             accumulator = self.read(register[:2])
             return (accumulator.shift_right_signed(32) if register[3] == "X" else accumulator).low(32)
-        return Value(self.builder, self.builder.load(self.slots(register)))
+        return self._fetched(register)
 
     def write(self, register: str, value: Value | int) -> None:
         """Have a register changed behind the instruction. Of an accumulator the lowest 40 bits are kept, sign-extended.
@@ -168,7 +168,7 @@ class Effects:
 
     def cycles(self) -> Value:
         """Return all 64 bits of the cycle counter, as it is before the instruction."""
-        offset = Value(self.builder, self.builder.load(self.slots("CYCLES_OFFSET")))
+        offset = self._fetched("CYCLES_OFFSET")
         return _counts(self.read("SYSCFG")).choose(self.clock() + offset, offset)
 
     def _write_clocked(self, register: str, value: Value) -> None:
@@ -187,6 +187,10 @@ class Effects:
         """Make the writes."""
         for name, value in self.pending.items():
             self.builder.store(value.ir, self.slots(name))
+
+    def _fetched(self, register: str) -> Value:
+        slot = self.slots(register)
+        return Value(self.builder, self.builder.load(slot, typ=ir.IntType(width(register))))
 
     def _newest(self, register: str) -> Value:
         return self.pending.get(register) or self.read(register)

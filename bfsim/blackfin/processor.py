@@ -18,7 +18,7 @@ from bfsim.blackfin.effects import Event
 from bfsim.blackfin.guard import runner
 from bfsim.blackfin.registers import ACCUMULATOR_PARTS, ACCUMULATORS, ASTAT_UNUSED, FLAGS, SLOTS
 from bfsim.blackfin.timing import GNU, Timing
-from bfsim.blackfin.translate import NAME, Counter, counters, translate
+from bfsim.blackfin.translate import NAME, Counter, counters, is_large, translate
 from bfsim.errors import BfsimError
 
 OUTSIDE = 0xFFFFFFFE
@@ -108,14 +108,7 @@ class Processor:
             if self.translated is None or (start not in self.translated.code.entries and self._is_new(start)):
                 self.entries.add(start)
                 self.translated = self._translate()
-            event = Event(
-                runner().run(
-                    self.translated.entry,
-                    self.space.origin,
-                    self.state.slots.ctypes.data,
-                    self.translated.counts.ctypes.data,
-                )
-            )
+            event = self._enter(self.translated)
             if event is Event.FAULT:
                 raise AccessError(
                     f"code must access memory where there is some, but what was started at {start:#010x} accesses "
@@ -126,13 +119,19 @@ class Processor:
             if event is not Event.UNKNOWN_TARGET or self.state["PC"] == OUTSIDE:
                 return event
 
+    def _enter(self, translated: Translated) -> Event:
+        """Run native code."""
+        state, counts = self.state.slots, translated.counts
+        return Event(runner().run(translated.entry, self.space.origin, state.ctypes.data, counts.ctypes.data))
+
     def _is_new(self, address: int) -> bool:
         assert self.translated
         return address not in self.translated.code.targets
 
     def _translate(self) -> Translated:
         code = Code(self.space.fetch, frozenset(self.entries))
-        native = machine_code.loaded(self.compiled(translate(code, self.timing, fuel=self.fuel is not None)))
+        text = translate(code, self.timing, fuel=self.fuel is not None)
+        native = machine_code.loaded(_at_once(text) if is_large(code) else self.compiled(text))
         counted = counters(code, self.timing)
         return Translated(
             code,
@@ -156,3 +155,8 @@ def optimised(text: str) -> bytes:
         kept = machine_code.host_code(text)
         store.save(key, kept)
     return kept
+
+
+def _at_once(text: str) -> bytes:
+    """Compile a module in little time."""
+    return machine_code.host_code(text, optimised=False)

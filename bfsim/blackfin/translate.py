@@ -1,7 +1,7 @@
 """Object code → one native function of all that can be reached, with counters of its blocks.
 
 The function is `int(memory, state, counts)`: it goes on from the address in the PC of the state until it meets an event
-(`effects.Event`), which it returns; registers are in the state again then, CLOCK has all cycles, and the counts are added to.
+(`effects.Event`), which it returns; registers are in the state again then, and the counts are added to.
 Registers are slots on its stack, which LLVM turns into its own. Jumps whose target is computed go through one switch over all
 addresses that they may lead to; another address is an event as well, and whoever runs the code may translate it anew with that
 address among its entries. The hardware's loops are checked for behind each instruction with which one ends, as the hardware does:
@@ -24,6 +24,8 @@ from bfsim.blackfin.value import Value
 
 POINTER = ir.PointerType()
 NAME = "blackfin"
+LARGE_PROGRAM_BLOCKS = 500
+"""[ours] LLVM's time to optimise one function of more blocks grows with their square: minutes for a program with newlib's printf."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +35,11 @@ class Counter:
     block: Block
     cclk: int
     taken: bool = False
+
+
+def is_large(code: Code) -> bool:
+    """Whether registers stay in the state and LLVM does not optimise."""
+    return len(code.blocks) > LARGE_PROGRAM_BLOCKS
 
 
 def counters(code: Code, timing: Timing) -> list[Counter]:
@@ -58,19 +65,19 @@ class _Translation:
         self.made = ir.Module(NAME)
         self.function = ir.Function(self.made, ir.FunctionType(I32, (POINTER, POINTER, POINTER)), NAME)
         self.memory, self.state, self.counts = self.function.args
+        for each in self.function.args:
+            each.add_attribute("noalias")
         self.entry = self._new("entry")
         self.dispatch, self.leave = self._new("dispatch"), self._new("leave")
         self.at = {start: self._new(f"at_{start:08x}") for start in code.blocks}
-        self.slots: dict[str, ir.AllocaInstr] = {}
-        self.ticks: list[ir.AllocaInstr] = []
+        self.is_large = is_large(code)
+        self.slots: dict[str, ir.Instruction] = {}
+        self.clock = _sum(self.made, [each.cclk for each in counted])
         self.numbers = {(each.block.start, each.taken): number for number, each in enumerate(counted)}
 
     def module(self) -> ir.Module:
         entry = ir.IRBuilder(self.entry)
-        self.event = entry.alloca(I32)
-        self.ticks = [entry.alloca(I64) for _ in self.counted]
-        for each in self.ticks:
-            entry.store(I64(0), each)
+        self.event, self.base = entry.alloca(I32), entry.alloca(I64)
         for block in self.code.blocks.values():
             self._block(block)
         self._dispatch()
@@ -78,12 +85,19 @@ class _Translation:
         self._enter()
         return self.made
 
-    def slot(self, register: str) -> ir.AllocaInstr:
-        """Return the stack slot of a register."""
+    def slot(self, register: str) -> ir.Instruction:
+        """Return where code has a register: on the stack, which LLVM makes registers of the host; in a large program in the state."""
         if register not in self.slots:
+            kind = ir.IntType(width(register))
             entry = ir.IRBuilder(self.entry)
-            self.slots[register] = entry.alloca(ir.IntType(width(register)), name=register)
+            is_large = self.is_large
+            self.slots[register] = (
+                self._place(entry, register) if is_large else entry.alloca(kind, name=register)
+            )
         return self.slots[register]
+
+    def _read(self, builder: ir.IRBuilder, register: str) -> ir.Value:
+        return builder.load(self.slot(register), typ=ir.IntType(width(register)))
 
     def _new(self, name: str) -> ir.Block:
         return self.function.append_basic_block(name)
@@ -150,8 +164,8 @@ class _Translation:
                 continue
             done = done or self._new("through")
             ends, again, out = self._new("ends"), self._new("again"), self._new("out")
-            left = builder.load(self.slot(f"LC{counter}"))
-            is_end = builder.icmp_unsigned("==", builder.load(self.slot(f"LB{counter}")), I32(address))
+            left = self._read(builder, f"LC{counter}")
+            is_end = builder.icmp_unsigned("==", self._read(builder, f"LB{counter}"), I32(address))
             builder.cbranch(builder.and_(is_end, builder.icmp_unsigned("!=", left, I32(0))), ends, out)
             builder.position_at_end(ends)
             left = builder.sub(left, I32(1))
@@ -159,7 +173,7 @@ class _Translation:
             builder.cbranch(builder.icmp_unsigned("!=", left, I32(0)), again, out)
             builder.position_at_end(again)
             if jumps:
-                self._go_to(builder, builder.load(self.slot(f"LT{counter}")), starts)
+                self._go_to(builder, self._read(builder, f"LT{counter}"), starts)
             else:
                 builder.branch(done)
             builder.position_at_end(out)
@@ -180,7 +194,7 @@ class _Translation:
         for counter in (0, 1):
             if (instruction.address, counter) in self.code.loop_starts:
                 left, end, start = (
-                    Value(builder, builder.load(self.slot(f"{each}{counter}"))) for each in ("LC", "LB", "LT")
+                    Value(builder, self._read(builder, f"{each}{counter}")) for each in ("LC", "LB", "LT")
                 )
                 again = found.constant(1).below(left) & end.equals(instruction.address)
                 found = again.choose(start, found)
@@ -190,7 +204,7 @@ class _Translation:
         self._add(builder, self.numbers[start, False], I64(1))
 
     def _burn(self, builder: ir.IRBuilder, start: int) -> None:
-        left = builder.load(self.slot("FUEL"))
+        left = self._read(builder, "FUEL")
         empty, enough = self._new("empty"), self._new("enough")
         builder.cbranch(builder.icmp_unsigned("==", left, I64(0)), empty, enough)
         builder.position_at_end(empty)
@@ -199,14 +213,13 @@ class _Translation:
         builder.store(builder.sub(left, I64(1)), self.slot("FUEL"))
 
     def _add(self, builder: ir.IRBuilder, number: int, amount: ir.Value) -> None:
-        builder.store(builder.add(builder.load(self.ticks[number]), amount), self.ticks[number])
+        place = builder.gep(self.counts, [I64(8 * number)], source_etype=I8)
+        builder.store(builder.add(builder.load(place, typ=I64, align=8), amount), place, align=8)
 
     def _clock(self, builder: ir.IRBuilder) -> Value:
-        """Add up the cycles of all blocks that were executed."""
-        total = Value(builder, builder.load(self.slot("CLOCK")))
-        for each, ticks in zip(self.counted, self.ticks, strict=True):
-            total += Value(builder, builder.load(ticks)) * each.cclk
-        return total
+        """Add up the cycles of all that was executed: those before this call, and those of the counts; a function adds up these."""
+        counted = builder.call(self.clock, [self.counts])
+        return Value(builder, builder.add(builder.load(self.base), counted))
 
     def _event(self, builder: ir.IRBuilder, event: Event, pc: ir.Value) -> None:
         builder.store(pc, self.slot("PC"))
@@ -216,7 +229,7 @@ class _Translation:
     def _dispatch(self) -> None:
         builder = ir.IRBuilder(self.dispatch)
         unknown = self._new("unknown")
-        choice = builder.switch(builder.load(self.slot("PC")), unknown)
+        choice = builder.switch(self._read(builder, "PC"), unknown)
         for each in self.code.targets:
             choice.add_case(I32(each), self.at[each])
         builder.position_at_end(unknown)
@@ -224,16 +237,10 @@ class _Translation:
         builder.branch(self.leave)
 
     def _leave(self) -> None:
-        """Add the counts to the caller's, and give back the registers."""
+        """Give back the registers."""
         builder = ir.IRBuilder(self.leave)
-        clock = self._clock(builder)
-        builder.store(clock.ir, self.slot("CLOCK"))
-        for number, ticks in enumerate(self.ticks):
-            place = builder.gep(self.counts, [I64(8 * number)], source_etype=I8)
-            builder.store(
-                builder.add(builder.load(place, typ=I64, align=8), builder.load(ticks)), place, align=8
-            )
-        for name, slot in self.slots.items():
+        builder.store(self._clock(builder).ir, self.slot("CLOCK"))
+        for name, slot in self._copied():
             value = builder.load(slot)
             whole = value if width(name) == 64 else builder.zext(value, I64)
             builder.store(whole, self._place(builder, name), align=8)
@@ -242,10 +249,28 @@ class _Translation:
     def _enter(self) -> None:
         """Fetch the registers that the code touches."""
         builder = ir.IRBuilder(self.entry)
-        for name, slot in self.slots.items():
+        for name, slot in self._copied():
             value = builder.load(self._place(builder, name), typ=I64, align=8)
             builder.store(value if width(name) == 64 else builder.trunc(value, ir.IntType(width(name))), slot)
+        before = self._read(builder, "CLOCK")
+        builder.store(builder.sub(before, builder.call(self.clock, [self.counts])), self.base)
         builder.branch(self.dispatch)
+
+    def _copied(self) -> list[tuple[str, ir.Instruction]]:
+        return [] if self.is_large else list(self.slots.items())
 
     def _place(self, builder: ir.IRBuilder, register: str) -> ir.Value:
         return builder.gep(self.state, [I64(8 * SLOTS[register])], source_etype=I8)
+
+
+def _sum(module: ir.Module, factors: list[int]) -> ir.Function:
+    """Add a function that returns the sum of all counts, each times its factor."""
+    function = ir.Function(module, ir.FunctionType(I64, (POINTER,)), "clock")
+    function.linkage = "internal"
+    builder = ir.IRBuilder(function.append_basic_block())
+    total = I64(0)
+    for number, factor in enumerate(factors):
+        place = builder.gep(function.args[0], [I64(8 * number)], source_etype=I8)
+        total = builder.add(total, builder.mul(builder.load(place, typ=I64, align=8), I64(factor)))
+    builder.ret(total)
+    return function
