@@ -24,7 +24,8 @@ EVENTS = {
     *ASSERTIONS,
 }
 """What these do may leave native code, which goes on with what follows."""
-NEVER_ON = (DIRECT | COMPUTED) - CALLS - BRANCHES
+STOPS = {"halt", "abort"}
+NEVER_ON = (DIRECT | COMPUTED | STOPS) - CALLS - BRANCHES
 """Control never goes to what follows."""
 CLOCKED = {"CYCLES", "CYCLES2", "SYSCFG"}
 """An instruction with one of these begins a block: it must know the cycles of what was executed before it."""
@@ -114,9 +115,9 @@ class Code:
             self.loop_starts.setdefault((end, counter), set()).add(start)
             return {start}
         found = {int(operands["t"])} if what in DIRECT else set()
-        if what in CALLS | EVENTS - ASSERTIONS:
+        if what in (CALLS | EVENTS) - ASSERTIONS - STOPS:
             self.resumed.add(instruction.end)
-        return found | ({instruction.end} if what in CALLS | EVENTS | BRANCHES else set())
+        return found | ({instruction.end} if what in (CALLS | EVENTS | BRANCHES) - STOPS else set())
 
     def _block(self, start: int, leaders: set[int]) -> Block:
         instructions: list[Instruction] = []

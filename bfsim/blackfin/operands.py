@@ -44,7 +44,7 @@ def decimal(kind: Kind) -> Kind:
 
 def register(names: Sequence[str]) -> Kind:
     """Return the kind of a register by its number; an empty name is reserved."""
-    return Kind(lambda raw, _: names[raw] or None)
+    return Kind(lambda raw, _: (names[raw] or None) if raw < len(names) else None)
 
 
 def target(bits: int, *, forward: bool = False) -> Kind:

@@ -1,18 +1,20 @@
-"""Random sequences of instructions under the GNU simulator and translated: every register, flag, byte of memory and cycle.
+"""Sequences with loads, stores and the stack under the GNU simulator and translated: registers, flags, memory and cycles.
 
-    python -m benchmarks.random_instructions                    20 sequences of 100 instructions
-    python -m benchmarks.random_instructions 500 --seed 7
-    python -m benchmarks.random_instructions --does add_and_shift      of one semantics only
+    python -m benchmarks.instructions.memory_sequences              20 sequences of 100 instructions
+    python -m benchmarks.instructions.memory_sequences 500 --seed 7
+    python -m benchmarks.instructions.memory_sequences --does add_and_shift      of one semantics only
+    python -m benchmarks.instructions.memory_sequences 6 --record tests/blackfin/data/runs.json
 
-Needs a bfin-elf toolchain on PATH. A sequence has no control flow: programs that GCC has compiled test that (`real_programs.py`). The
-pointer of an access is set before it, to a small memory. Prints the shortest part of a sequence that shows a difference.
-
-Not compared: shifts by a register of 2^31 and more, where the simulator has shifts by negative numbers, which C does not define.
+Needs a bfin-elf toolchain on PATH. The instructions are all but those of the DSP, which `instruction_set.py` compares, and those of control
+flow, for which `control.py` has programs; what is recorded has those too. The pointer of an access is set before it, to a small memory.
+Prints the shortest part of a sequence that shows a difference. Not compared: shifts by a register of 2^31 and more, where the simulator
+shifts by negative numbers, which C does not define.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import random
 import re
 import subprocess
@@ -24,10 +26,11 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.instructions.control import PROGRAMS, assembled
 from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.blocks import COMPUTED, DIRECT, EVENTS
 from bfsim.blackfin.decode import InstructionError, Operation, decode
-from bfsim.blackfin.form import Form
+from bfsim.blackfin.form import Beside, Form
 from bfsim.blackfin.forms import TABLE
 from bfsim.blackfin.processor import Processor
 from bfsim.blackfin.registers import ENCODED
@@ -162,6 +165,7 @@ def shown() -> bytes:
 
 def simulated(code: bytes, folder: Path) -> Outcome:
     """Run code under the GNU simulator."""
+    code += shown()
     program = folder / "program"
     octets = _template(folder)
     at = octets.index(b"\xde\xc0\xad\x0b" * 4)
@@ -187,21 +191,22 @@ def _template(folder: Path) -> bytes:
 
 
 def translated(code: bytes) -> Outcome:
-    """Run code as native code, up to where the simulator is made to print."""
+    """Run code as native code."""
+    code += encoded(the("halt"))
     space = AddressSpace()
     octets = space.add(0, MEMORY + ROOM_BYTES).octets
     octets[CODE : CODE + len(code)] = np.frombuffer(code, np.uint8)
     core = Processor(space)
     core.state["PC"] = CODE
     core.run()
-    core.state["CLOCK"] -= 1  # the simulator has not yet counted the instruction that prints
+    core.state["CLOCK"] -= 1  # HLT, where the simulator prints
     memory = octets[MEMORY : MEMORY + MEMORY_BYTES].tobytes()
     return Outcome({each: core.state[each] & 0xFFFFFFFF for each in SHOWN}, memory)
 
 
 def differences(steps: Sequence[Step], beginning: bytes, folder: Path) -> list[str]:
     """Run a sequence both ways; return what differs."""
-    code = beginning + b"".join(each.before + each.code for each in steps) + shown()
+    code = beginning + b"".join(each.before + each.code for each in steps)
     there, here = simulated(code, folder), translated(code)
     found = [
         f"{name}: {value:#010x} in the simulator, {here.registers[name]:#010x} translated"
@@ -239,8 +244,14 @@ def main() -> None:
     parser.add_argument("--length", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--does")
+    parser.add_argument("--record", type=Path)
     given = parser.parse_args()
-    forms = [each for each in TABLE if each.does not in LEFT_OUT and given.does in {None, each.does}]
+    forms = [
+        each
+        for each in TABLE
+        if each.does not in LEFT_OUT and each.beside is not Beside.DSP and given.does in {None, each.does}
+    ]
+    recorded = []
     with tempfile.TemporaryDirectory() as name:
         for number in range(given.sequences):
             chance = random.Random(given.seed * 1_000_000 + number)
@@ -249,7 +260,25 @@ def main() -> None:
                 few = shortest(steps, beginning, Path(name))
                 lines = [*map(str, few), *differences(few, beginning, Path(name))]
                 raise SystemExit("\n".join([f"sequence {number} of seed {given.seed} differs:", *lines]))
+            recorded.append(beginning + b"".join(each.before + each.code for each in steps))
+        if given.record:
+            programs = [_program(each, Path(name)) for each in PROGRAMS.values()]
+            rows = [json.dumps(_row(each, Path(name))) for each in (*programs, *recorded)]
+            given.record.write_text("[\n" + ",\n".join(rows) + "\n]\n")
     print(f"{given.sequences} sequences of {given.length} instructions of {len(forms)} forms: no difference")
+
+
+def _program(program: str, folder: Path) -> bytes:
+    """Return a program of control flow, behind what it expects to find."""
+    before = setting("SYSCFG", 0x32) + setting("SP", MEMORY + MEMORY_BYTES) + setting("R0", 0)
+    return before + assembled(program, folder, CODE + len(before))
+
+
+def _row(code: bytes, folder: Path) -> dict[str, object]:
+    """Return code with what the simulator leaves behind it: registers that are not 0, and the memory."""
+    there = simulated(code, folder)
+    registers = {name: value for name, value in there.registers.items() if value}
+    return {"code": code.hex(), "registers": registers, "memory": there.memory.rstrip(b"\0").hex()}
 
 
 if __name__ == "__main__":

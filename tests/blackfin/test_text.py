@@ -1,0 +1,34 @@
+"""Every form is printed as GNU objdump prints it, and no bytes make the decoder fail."""
+
+from __future__ import annotations
+
+import json
+import random
+from pathlib import Path
+
+from benchmarks.instructions.printed import plain
+from bfsim.blackfin.decode import InstructionError, decode
+from bfsim.blackfin.forms import TABLE
+from bfsim.blackfin.text import text
+
+RECORDED = json.loads((Path(__file__).parent / "data/text.json").read_text(encoding="utf-8"))
+"""Address, bytes and objdump's text of one instruction of each form, by `benchmarks/instructions/printed.py`."""
+
+
+def test_one_instruction_of_each_form_is_printed_as_objdump_does() -> None:
+    printed = {code: plain(text(decode(bytes.fromhex(code) + bytes(4), at))) for at, code, _ in RECORDED}
+    assert len(RECORDED) == len(TABLE)
+    assert printed == {code: line for _, code, line in RECORDED}
+
+
+def test_bytes_are_an_instruction_or_refused() -> None:
+    """All first halfwords, each with others behind it by chance."""
+    chance = random.Random(1)
+    refused = 0
+    for first in range(1 << 16):
+        code = first.to_bytes(2, "little") + chance.randbytes(6)
+        try:
+            text(decode(code, 0))
+        except InstructionError:
+            refused += 1
+    assert 0 < refused < 1 << 15
