@@ -25,7 +25,7 @@ WORKS = "works"
 LEAST_LEFT = 2
 """The least points that are left for the first of them to be recorded.
 
-With all that kernels work on in L1 recording takes 1.5 times as long as a run, and playing a third of it with 4 frames, a sixth with 60.
+With all that kernels work on in L1 recording takes 1.5 to 2 times as long as a run, and playing a third to a quarter of it.
 """
 
 MOST_WAITS = 0.02
