@@ -119,6 +119,8 @@ def _before(operation: Operation, chance: random.Random) -> bytes:
     middle = MEMORY + 4 * chance.randrange(20, 44)
     if does in {"load", "store", "load_half", "store_half", "test_and_set"}:
         return setting(str(operands["p"]), middle - int(operands.get("n", 0)) & 0xFFFFFFFF)
+    if does == "cache":
+        return setting(str(operands["p"]), MEMORY)  # the simulator wants it where a cache line begins
     if does in {"load_indexed", "store_indexed"}:
         return setting(str(operands["i"]), middle) + _buffer(str(operands["i"])[1], chance)
     if does in {"push", "pop", "push_multiple", "pop_multiple", "link"}:
