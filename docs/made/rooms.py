@@ -11,11 +11,12 @@ FLOORS = (
         ("trace", "records"),
         ("seen", "what a frame showed"),
     ),
-    (("spans", "the timeline"), ("chip", "data: boards, registers"), ("kernel", "Python → code and cost")),
-    (("linker", "LDF → placement"), ("recording", "frames in, results out")),
-    (("machine", "the devices; the only room with SimPy"), ("report", "records → tables, pictures")),
+    (("spans", "the timeline"), ("chip", "data: boards"), ("blackfin", "instructions → native code")),
+    (("kernel", "Python → code and cost"), ("linker", "LDF → placement"), ("recording", "frames in and out")),
+    (("compiling", "C → object code"), ("machine", "the devices; has SimPy"), ("report", "records → tables")),
     (("api", "all that firmware imports"), ("loading", "firmware by name"), ("result", "a run with reports")),
     (("run", "recording + firmware + board + LDF → records"), ("explain", "a kernel line by line")),
+    (("sweeping", "many runs"), ("placing", "the best LDF"), ("verifying", "beside the real compiler")),
     (("cli", "commands: parse, call, print"),),
 )
 WIDTH, HEIGHT, GAP = 760, 46, 12
