@@ -40,6 +40,7 @@ class Op(StrEnum):
     BRANCH_NOT_TAKEN = "branch_not_taken"
     BRANCH_TAKEN_BP = "branch_taken_bp"
     BRANCH_NOT_TAKEN_BP = "branch_not_taken_bp"
+    COPIED_BRANCH = "copied_branch"
     JUMP = "jump"
     CALL = "call"
     TAIL_CALL = "tail_call"
@@ -75,6 +76,7 @@ COSTS: dict[Op, Cost] = {
     Op.BRANCH_NOT_TAKEN: Cost(1, 2), Op.BRANCH_TAKEN: Cost(9, 2),        # [SIM] decode_BRCC_0
     Op.BRANCH_NOT_TAKEN_BP: Cost(9, 2), Op.BRANCH_TAKEN_BP: Cost(5, 2),  # with (bp), predicted taken
     Op.JUMP: Cost(5, 2), Op.CALL: Cost(5, 4), Op.TAIL_CALL: Cost(5, 4), Op.RETURN: Cost(5, 2),     # [SIM] change of flow
+    Op.COPIED_BRANCH: Cost(0, 0),                               # what a copy of a branch costs more: the layout says
     Op.LIBRARY: Cost(0, 0),                                     # inside a library routine: the profile says
     Op.NOP: Cost(1, 2),                                         # [SIM]
     Op.LINK: Cost(3, 4), Op.UNLINK: Cost(2, 4),                 # [SIM]
@@ -91,7 +93,7 @@ MNEMONICS: dict[Op, str] = {
     Op.BIT_TEST: "CC = BITTST(R, n)", Op.COND_MOVE: "IF CC R = R", Op.CC_MOVE: "R = CC",
     Op.LOOP_SETUP: "LSETUP", Op.BRANCH_TAKEN: "IF CC JUMP, taken", Op.BRANCH_NOT_TAKEN: "IF CC JUMP, not taken",
     Op.BRANCH_TAKEN_BP: "IF CC JUMP (bp), taken", Op.BRANCH_NOT_TAKEN_BP: "IF CC JUMP (bp), not taken",
-    Op.JUMP: "JUMP", Op.CALL: "CALL", Op.TAIL_CALL: "JUMP.L", Op.NOP: "NOP", Op.LIBRARY: "run-time library", Op.RETURN: "RTS", Op.LINK: "LINK",
+    Op.COPIED_BRANCH: "IF CC JUMP, in a copy", Op.JUMP: "JUMP", Op.CALL: "CALL", Op.TAIL_CALL: "JUMP.L", Op.NOP: "NOP", Op.LIBRARY: "run-time library", Op.RETURN: "RTS", Op.LINK: "LINK",
     Op.UNLINK: "UNLINK", Op.PUSH: "[--SP] = R", Op.POP: "R = [SP++]",
     Op.PUSH_MULTIPLE: "[--SP] = (R7:n, P5:n)", Op.POP_MULTIPLE: "(R7:n, P5:n) = [SP++]",
 }  # fmt: skip

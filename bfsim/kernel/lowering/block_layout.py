@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from itertools import pairwise
 
 from bfsim.kernel.ir_text import SourceLine
-from bfsim.kernel.isa import Op
+from bfsim.kernel.isa import COSTS, Op
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.charges import Charge, charge, instead
 from bfsim.kernel.lowering.predict import EVEN, Likelihood
@@ -118,13 +118,18 @@ class BlockLayout:
         return self.next_of.get(name) == target or (name, target) in self.copied
 
     def jump(self, name: str, target: str, line: SourceLine) -> list[Charge]:
-        """Return the cost of going on to `target`; of a copy, what its end costs more where it usually goes."""
+        """Return the cost of going on to `target`; of a copy, what its end costs more."""
         if (name, target) in self.copied:
-            return self._more(target, self.next_of.get(name), line)
+            return self._more(target, self.next_of.get(name))
         return [] if self.falls(name, target) else [charge(Op.JUMP, line)]
 
-    def _more(self, name: str, behind: str | None, line: SourceLine) -> list[Charge]:
+    def _more(self, name: str, behind: str | None) -> list[Charge]:
+        """What the end of a copy of `name` costs more than its own; `behind` is what follows the copy.
+
+        The sides of a test are not counted apart for its copies: all of them are charged what the likelier one costs more [assumed].
+        """
         ways = self.ways(name)
+        line = self.flow.blocks[name if name in self.flow.blocks else edge_of(name)[0]].terminator.line
         if len(set(ways)) == 1:
             own = [] if behind == ways[0] else [charge(Op.JUMP, line)]
             return [*instead(own, self.jump(name, ways[0], line))]
@@ -132,10 +137,8 @@ class BlockLayout:
             return []
         targets = self.flow.blocks[name].successors
         likely = 0 if self.likelihood.taken[name, targets[0]] >= EVEN else 1
-        own = [charge(Op.BRANCH_NOT_TAKEN if behind == ways[likely] else Op.BRANCH_TAKEN_BP, line)]
-        through = self._through(name)
-        usual = [charge(Op.BRANCH_NOT_TAKEN if through == likely else Op.BRANCH_TAKEN_BP, line)]
-        return [*instead(own, usual)]
+        more = _likely_cclk(behind == ways[likely]) - _likely_cclk(self._through(name) == likely)
+        return [Charge(Op.COPIED_BRANCH, line, more)] if more else []
 
     def on(self, label: str, target: str, line: SourceLine) -> list[Charge]:
         """Return the cost of going from the end of `label` to the block `target`, its edge's copies included."""
@@ -174,6 +177,11 @@ class BlockLayout:
         if self.falls(label, ways[0]):
             return 0
         return 0 if self.likelihood.taken[label, self.flow.blocks[label].successors[0]] < EVEN else 1
+
+
+def _likely_cclk(falls: bool) -> int:
+    """What a branch costs on its likelier side, which needs no jump or is predicted."""
+    return COSTS[Op.BRANCH_NOT_TAKEN if falls else Op.BRANCH_TAKEN_BP].cclk
 
 
 def edge_name(edge: tuple[str, str]) -> str:
