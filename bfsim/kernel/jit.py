@@ -66,17 +66,18 @@ def compile_kernel(
     entry = _entry_name(key)
     costs = costs_of(function, profile) if counted else Costs()
     program = Program(function.symbol, costs, function.array_names)
-    code = store.load(key)
-    if code is None:
-        from bfsim.kernel.costing import optimised  # most starts find all machine code
-        from bfsim.kernel.instrument import instrument
+    if not machine_code.address_of(entry):  # an equal function may have loaded it: its note must be there once
+        code = store.load(key)
+        if code is None:
+            from bfsim.kernel.costing import optimised  # most starts find all machine code
+            from bfsim.kernel.instrument import instrument
 
-        text = instrument(
-            optimised(function, profile), function, program, entry, traced=traced, checked=checked
-        )
-        code = machine_code.host_code(text)
-        store.save(key, code)
-    machine_code.add(code)
+            text = instrument(
+                optimised(function, profile), function, program, entry, traced=traced, checked=checked
+            )
+            code = machine_code.host_code(text)
+            store.save(key, code)
+        machine_code.add(code)
     crashes.watch(machine_code.address_of(running_name(entry)), function)
     return CompiledKernel(
         ENTRY(machine_code.address_of(entry)),

@@ -94,7 +94,7 @@ def test_lines_of_goals_leave_too() -> None:
     """Posts and bottom line; none of what is no goal, has no rectangle, or has no such line."""
     goal = A_GOAL | {"outline": 1}
     seen = [A_BALL, goal, A_GOAL | {"outline": NO_OUTLINE}, A_GOAL | {"model": 4}, A_GOAL | {"outline": 2}]
-    rectangles = [(0, 0, 0, 0, 0), (1, 2, 0, 0, 1), (NO_LINE, NO_LINE, 0, 0, 2)]
+    rectangles = [(0, 0, 0, 0, 0, 0), (1, 2, 0, 0, 1, 0), (NO_LINE, NO_LINE, 0, 0, 2, 0)]
     found = read(packed([], seen, rectangles)).lines
     assert found == (
         GoalLine(model=2, side=Side.LEFT, ends_px=(59.5, 59.5, 59.5625, 106.25)),
@@ -106,7 +106,7 @@ def test_lines_of_goals_leave_too() -> None:
 
 def test_the_largest_message() -> None:
     """A full history and more lines than there is room: the message has its capacity, and no word more."""
-    octets = packed([A_BALL] * OBJECT_CAPACITY, [A_GOAL] * 5, [(0, 1, 0, 2, 0)])
+    octets = packed([A_BALL] * OBJECT_CAPACITY, [A_GOAL] * 5, [(0, 1, 0, 2, 0, 0)])
     assert len(octets) == 2 * MESSAGE_WORDS
     found = read(octets)
     assert (len(found.objects), len(found.lines)) == (OBJECT_CAPACITY, LINE_CAPACITY)
@@ -126,7 +126,7 @@ def test_places_in_the_picture_count_from_the_corner_of_the_area() -> None:
     """The strategy unit reads those of the whole picture; and why an order was refused."""
     known = 0x0107, 300, 20
     whole, area = (
-        read(packed([A_BALL], [A_GOAL], [(0, 1, 0, 2, 0)], known=each)) for each in ((0, 0, 0), known)
+        read(packed([A_BALL], [A_GOAL], [(0, 1, 0, 2, 0, 0)], known=each)) for each in ((0, 0, 0), known)
     )
     assert (whole.refusal, area.refusal) == (0, 0x0107)
     (before,), (after,) = whole.objects, area.objects
