@@ -66,7 +66,9 @@ def compile_kernel(
     entry = _entry_name(key)
     costs = costs_of(function, profile) if counted else Costs()
     program = Program(function.symbol, costs, function.array_names)
-    if not machine_code.address_of(entry):  # an equal function may have loaded it: its note must be there once
+    if not machine_code.address_of(
+        entry
+    ):  # an equal function may have loaded it: its note must be there once
         code = store.load(key)
         if code is None:
             from bfsim.kernel.costing import optimised  # most starts find all machine code

@@ -45,13 +45,25 @@ def test_a_free_lock_costs_one_testset() -> None:
 
 
 A_CYCLE_OFF = pytest.mark.xfail(
-    strict=True, reason="where A's store asks a cycle or two before B's try, the board is off by one cycle, either way"
+    strict=True,
+    reason="where A's store asks a cycle or two before B's try, the board is off by one cycle, either way",
 )
 
 
 @pytest.mark.parametrize(
     "turns",
-    [0, 1, pytest.param(2, marks=A_CYCLE_OFF), 3, 5, pytest.param(10, marks=A_CYCLE_OFF), 100, 101, 102, 1000],
+    [
+        0,
+        1,
+        pytest.param(2, marks=A_CYCLE_OFF),
+        3,
+        5,
+        pytest.param(10, marks=A_CYCLE_OFF),
+        100,
+        101,
+        102,
+        1000,
+    ],
 )
 def test_a_core_that_spins_has_the_lock_at_its_first_try_after_the_other_gave_it_back(turns: int) -> None:
     """B comes while A has the lock, and tries again every turn; its tries and A's store meet at the port of L2."""
