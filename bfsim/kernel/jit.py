@@ -66,19 +66,17 @@ def compile_kernel(
     entry = _entry_name(key)
     costs = costs_of(function, profile) if counted else Costs()
     program = Program(function.symbol, costs, function.array_names)
-    if not machine_code.address_of(
-        entry
-    ):  # an equal function may have loaded it: its note must be there once
-        code = store.load(key)
-        if code is None:
-            from bfsim.kernel.costing import optimised  # most starts find all machine code
-            from bfsim.kernel.instrument import instrument
+    code = store.load(key)
+    if code is None:
+        from bfsim.kernel.costing import optimised  # most starts find all machine code
+        from bfsim.kernel.instrument import instrument
 
-            text = instrument(
-                optimised(function, profile), function, program, entry, traced=traced, checked=checked
-            )
-            code = machine_code.host_code(text)
-            store.save(key, code)
+        text = instrument(
+            optimised(function, profile), function, program, entry, traced=traced, checked=checked
+        )
+        code = machine_code.host_code(text)
+        store.save(key, code)
+    if not machine_code.address_of(entry):  # else an equal function has loaded it, and its note is there
         machine_code.add(code)
     crashes.watch(machine_code.address_of(running_name(entry)), function)
     return CompiledKernel(
