@@ -50,7 +50,7 @@ def translated(program: Path) -> Run:
     image = link(read_object(program.read_bytes(), program.name))
     space = AddressSpace()
     memory = space.add(0, MEMORY_BYTES).octets
-    core = Processor(space)
+    core = Processor(space, entries={each.address for each in image.routines})
     for _ in range(2):
         memory[:] = 0
         for each in image.segments:

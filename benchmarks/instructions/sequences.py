@@ -14,7 +14,6 @@ from random import Random
 
 import numpy as np
 
-from benchmarks.instructions.compiling import at_once
 from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.effects import Event
 from bfsim.blackfin.form import Beside, Form
@@ -32,7 +31,7 @@ from bfsim.blackfin.forms import (
     video,
 )
 from bfsim.blackfin.operands import Operand
-from bfsim.blackfin.processor import Processor
+from bfsim.blackfin.processor import Processor, unoptimised
 from bfsim.blackfin.registers import ACCUMULATORS, DAG, DATA, ENCODED
 
 POINTERS = tuple(f"P{number}" for number in range(5))
@@ -247,7 +246,7 @@ def _translated(sequences: Several[Sequence]) -> list[Registers]:
     for start, each in zip(starts, sequences, strict=True):
         code = each.code + HALT
         space.at(start, len(code))[:] = np.frombuffer(code, np.uint8)
-    processor = Processor(space, entries=set(starts), compiled=at_once)
+    processor = Processor(space, entries=set(starts), compiled=unoptimised)
     return [_run(processor, start, each.before) for start, each in zip(starts, sequences, strict=True)]
 
 

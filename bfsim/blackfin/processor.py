@@ -131,7 +131,7 @@ class Processor:
     def _translate(self) -> Translated:
         code = Code(self.space.fetch, frozenset(self.entries))
         text = translate(code, self.timing, fuel=self.fuel is not None)
-        native = machine_code.loaded(_at_once(text) if is_large(code) else self.compiled(text))
+        native = machine_code.loaded(unoptimised(text) if is_large(code) else self.compiled(text))
         counted = counters(code, self.timing)
         return Translated(
             code,
@@ -157,6 +157,6 @@ def optimised(text: str) -> bytes:
     return kept
 
 
-def _at_once(text: str) -> bytes:
-    """Compile a module in little time."""
+def unoptimised(text: str) -> bytes:
+    """Compile a module in little time: for long programs that are run once, for whose hundreds of blocks LLVM's optimiser takes minutes."""
     return machine_code.host_code(text, optimised=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bfsim.blackfin.effects import Effects
-from bfsim.blackfin.value import Value
+from bfsim.blackfin.semantics.results import write_half
 
 
 def load(
@@ -20,18 +20,13 @@ def store(fx: Effects, d: str, p: str, nbytes: int, n: int = 0, step: int = 0, i
 
 
 def load_half(fx: Effects, d: str, p: str, half: str, i: str | None = None) -> None:
-    write_half(fx, d, half, fx.load(fx.read(p), 2))
+    write_half(fx, d, half == "high", fx.load(fx.read(p), 2))
     _step(fx, p, 0, i)
 
 
 def store_half(fx: Effects, d: str, p: str, half: str, i: str | None = None) -> None:
     fx.store(fx.read(p), fx.low(d) if half == "low" else fx.high(d))
     _step(fx, p, 0, i)
-
-
-def write_half(fx: Effects, register: str, half: str, value: Value) -> None:
-    """Write 16 bits to the half of a register that is called low or high."""
-    (fx.write_low if half == "low" else fx.write_high)(register, value)
 
 
 def _step(fx: Effects, pointer: str, step: int, index: str | None) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from bfsim.blackfin.effects import Effects
 from bfsim.blackfin.semantics.arithmetic import sum_reversed
-from bfsim.blackfin.semantics.loads import write_half
+from bfsim.blackfin.semantics.results import write_half
 from bfsim.blackfin.value import Value
 
 ALIGNED = 0xFFFFFFFC
@@ -19,7 +19,7 @@ def load_indexed(fx: Effects, d: str, i: str, half: str, step: int = 0, m: str |
     if half == "whole":
         fx.write(d, fx.load(address & ALIGNED if fx.aligns else address, 4))
     else:
-        write_half(fx, d, half, fx.load(address, 2))
+        write_half(fx, d, half == "high", fx.load(address, 2))
     _step(fx, i, step, m)
 
 
