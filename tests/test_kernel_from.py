@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from bfsim.api import Kernel, f32, i32, kernel_from, u8
+from bfsim.blackfin.address_space import AddressSpace
+from bfsim.blackfin.subroutines import ARRAYS, placed
 from bfsim.compiling import file_code
 from bfsim.errors import ConfigError, KernelError
 from bfsim.explain import explain
@@ -53,6 +55,18 @@ def test_arrays_that_overlap_do_so_in_the_blackfin_s_memory() -> None:
     before = octets.copy()
     sums()(octets[:32], out[:32], 32, 0)
     assert (octets != before).any()
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2), (2, 0, 1), (1, 2, 0)])
+def test_arrays_lie_in_the_order_of_the_arguments(order: tuple[int, ...]) -> None:
+    """Wherever they are on the host: code that compares addresses takes the same cycles."""
+    space = AddressSpace()
+    space.add(ARRAYS, 4096)
+    octets = np.zeros(3 * 256, np.uint8)
+    arrays = [octets[256 * each : 256 * each + 100] for each in order]
+    _, addresses = placed(arrays, space)
+    first = addresses[0]
+    assert addresses == [first, first + 112, first + 224]
 
 
 def test_the_counters_add_up_to_the_cycles_of_a_call() -> None:

@@ -20,7 +20,7 @@ from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.blocks import Code
 from bfsim.blackfin.effects import Event
 from bfsim.blackfin.guard import runner
-from bfsim.blackfin.linking import ADDRESSES, Image
+from bfsim.blackfin.linking import Image
 from bfsim.blackfin.processor import Processor, Translated
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.errors import KernelError
@@ -31,7 +31,8 @@ STACK, STACK_BYTES = 0xFFB00000, 4096
 """[HRM] The scratchpad memory of a core."""
 ARRAYS, ARRAYS_BYTES = 0x20000000, 64 << 20
 """[HRM] Asynchronous memory, which programs are not linked to: where arrays are laid."""
-ARRAY_ALIGN = 32
+ARRAY_ALIGN = 16
+"""As numpy's own arrays are aligned on the host, so that where they lie there does not matter."""
 WORD_BYTES = 4
 REGISTERS = ("R0", "R1", "R2")
 
@@ -108,25 +109,30 @@ class Placed:
 def placed(arrays: Sequence[NDArray[Any]], space: AddressSpace) -> tuple[list[Placed], list[int]]:
     """Give arrays places in the Blackfin's memory; return those and the address of each array. What overlaps here does so there.
 
-    Raises KernelError if there is no room for them.
+    They lie there in the order of the arguments, wherever they are here: code may compare addresses, and its cycles must not depend
+    on the host's. Raises KernelError if there is no room for them.
     """
     ranges = [(each.ctypes.data, each.ctypes.data + each.nbytes) for each in arrays]
+    joined = list(_joined(ranges))
+    starts = [low for low, _ in joined]
     parts: list[Placed] = []
-    address, starts = ARRAYS, []
-    for low, high in _joined(ranges):
-        address = -(-address // ARRAY_ALIGN) * ARRAY_ALIGN + low % ARRAY_ALIGN
-        nbytes = high - low
-        if address + nbytes > ARRAYS + ARRAYS_BYTES:
-            raise KernelError(f"the arrays of a call must fit into {ARRAYS_BYTES:,} bytes, but do not")
-        octets = np.ctypeslib.as_array((ctypes.c_uint8 * nbytes).from_address(low))
-        within = (each for each, (first, _) in zip(arrays, ranges, strict=True) if low <= first < high)
-        parts.append(Placed(octets, space.at(address, nbytes), all(each.flags.writeable for each in within)))
-        starts.append((low, address))
-        address += nbytes
-    addresses = []
-    for low, _ in ranges:
-        start, at = starts[bisect_right(starts, (low, ADDRESSES)) - 1]
-        addresses.append(at + low - start)
+    place_of: dict[int, int] = {}
+    address, addresses = ARRAYS, []
+    for first, _ in ranges:
+        number = bisect_right(starts, first) - 1
+        low, high = joined[number]
+        if number not in place_of:
+            place_of[number] = address = -(-address // ARRAY_ALIGN) * ARRAY_ALIGN + low % ARRAY_ALIGN
+            nbytes = high - low
+            if address + nbytes > ARRAYS + ARRAYS_BYTES:
+                raise KernelError(f"the arrays of a call must fit into {ARRAYS_BYTES:,} bytes, but do not")
+            octets = np.ctypeslib.as_array((ctypes.c_uint8 * nbytes).from_address(low))
+            within = (each for each, (begin, _) in zip(arrays, ranges, strict=True) if low <= begin < high)
+            parts.append(
+                Placed(octets, space.at(address, nbytes), all(each.flags.writeable for each in within))
+            )
+            address += nbytes
+        addresses.append(place_of[number] + first - low)
     return parts, addresses
 
 
