@@ -14,9 +14,7 @@ from bfsim.errors import ConfigError
 
 GCC, SIMULATOR = "bfin-elf-gcc", "bfin-elf-run"
 CPU = ("-mcpu=bf561", "-msim")
-ADVICE = (
-    "CONTRIBUTING.md says how to build a toolchain in ten minutes, and --toolchain FOLDER names another place"
-)
+ADVICE = "CONTRIBUTING.md says how to build a toolchain in ten minutes, and `bfsim verify --toolchain FOLDER` takes another than the PATH's"
 LIBRARIES = ("-lm", "-lc", "-lgcc")
 
 
