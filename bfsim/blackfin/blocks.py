@@ -27,6 +27,8 @@ EVENTS = {
 STOPS = {"halt", "abort"}
 NEVER_ON = (DIRECT | COMPUTED | STOPS) - CALLS - BRANCHES
 """Control never goes to what follows."""
+MOST_INSTRUCTIONS = 1 << 18
+"""[ours] Two and a half times all of GCC's and newlib's libraries. A wild jump into memory that is zero meets millions of NOPs."""
 CLOCKED = {"CYCLES", "CYCLES2", "SYSCFG"}
 """An instruction with one of these begins a block: it must know the cycles of what was executed before it."""
 
@@ -55,7 +57,8 @@ class Code:
     """The code that can be reached from `entries`, which are also addresses that a computed jump may lead to.
 
     `blocks`: by their addresses. `resumed`: where calls, and the events that leave native code, come back to. `loop_starts`: of each
-    last instruction of a hardware loop and the number of its counter, where its loops begin.
+    last instruction of a hardware loop and the number of its counter, where its loops begin. Raises InstructionError where more than
+    `MOST_INSTRUCTIONS` can be reached.
     """
 
     fetch: Fetch
@@ -86,6 +89,11 @@ class Code:
             address = waiting.pop()
             if address in self._decoded:
                 continue
+            if len(self._decoded) == MOST_INSTRUCTIONS:
+                raise InstructionError(
+                    f"code must have at most {MOST_INSTRUCTIONS:,} instructions, but from {min(self.entries):#010x} more can be "
+                    f"reached, of which one is at {address:#010x}; jumps must lead to code, not to memory that is all zero"
+                )
             instruction = self._decoded[address] = self._decode(address)
             if isinstance(instruction, InstructionError):
                 continue

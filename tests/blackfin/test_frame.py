@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from bfsim.blackfin import blocks
 from bfsim.blackfin.decode import InstructionError, decode, disassemble
 from bfsim.blackfin.effects import Event
 from bfsim.blackfin.processor import OUTSIDE, AccessError
@@ -38,6 +39,17 @@ def test_bytes_that_are_no_instruction_are_refused_with_address_and_bytes() -> N
         decode(b"\xff\xff\xff\xff", CODE)
     with pytest.raises(InstructionError, match="0x00001002, .*: ff ff"):
         processor("2860 ffff").call(CODE)
+
+
+def test_a_jump_into_memory_of_zeros_is_refused_before_all_of_it_is_code(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A zero is a NOP: a wild call could reach millions of them."""
+    monkeypatch.setattr(blocks, "MOST_INSTRUCTIONS", 1000)
+    with pytest.raises(
+        InstructionError, match="at most 1,000 instructions, .* from 0x00001000 .* at 0x000017d0; jumps must"
+    ):
+        processor("0000").call(CODE)
 
 
 def test_an_access_without_memory_is_refused_and_the_process_goes_on() -> None:
