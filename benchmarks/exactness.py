@@ -63,8 +63,7 @@ def twins() -> Iterator[Set]:
             if not VARIANTS[variant].one_file:
                 sources = [str(each) for each in sorted(WRITTEN.glob("*.c"))]
                 made = toolchain.build_object(Path(name), sources, options_of(variant)).read_bytes()
-                header = "".join(f"extern void {each}(void);\n" for each in names.values())
-                code = ObjectCode(made, toolchain.identity.version, header, names)
+                code = ObjectCode(made, toolchain.identity.version, names)
                 yield f"firmware twins by hand, {variant}", Sampler(CALLS, sample), code
 
 

@@ -77,6 +77,13 @@ def test_the_program_leaves_the_same_bits_under_sanitizers() -> None:
 
 
 @needs_compiler
+def test_a_kernel_may_be_called_as_the_program_calls_its_own_or_as_the_c_library_does() -> None:
+    sampler = sampled(c_kernels.take, c_kernels.free)
+    found = compared(sampler, 1, GCC_O2, "", played(sampler, Toolchain((COMPILER or "",))), None)
+    assert (found.different, len(found.kernels)) == (0, 2)
+
+
+@needs_compiler
 def test_other_bits_are_told() -> None:
     """A program that leaves something else is found out: here it tells 0 of each call."""
     liar = Toolchain((COMPILER or "",), ("sh", "-c", '"$0" | sed "s/ .*/ 0/"'))

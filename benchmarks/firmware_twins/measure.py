@@ -21,11 +21,10 @@ from benchmarks.firmware_twins.recorded import recorded
 from benchmarks.firmware_twins.twins import TWINS, of_all
 from bfsim.api import Kernel
 from bfsim.compiling.toolchain import Toolchain, blackfin_toolchain
-from bfsim.verifying.player import write_player
+from bfsim.verifying.player import entries_of, write_player
 
 HERE = Path(__file__).parent
 SOURCES = HERE / "c"
-ENTRY, HEADER = "entry.c", "extern void *const entry;\n"  # all that the player knows of a twin
 CALLED = "__attribute__((noinline, noclone))"
 
 
@@ -67,15 +66,13 @@ def build(kernel: Kernel, variant: str, folder: Path, toolchain: Toolchain) -> P
     options = options_of(variant)
     if VARIANTS[variant].one_file:
         files = dict.fromkeys(Path(each.file).stem for each in (function, *function.callees()))
-        entry = "".join(f'#include "{each}.c"\n' for each in files)
+        included = "".join(f'#include "{each}.c"\n' for each in files)
+        entries = included + entries_of([kernel.name], declared=False)
     else:
         twins = [_twins(variant, folder, toolchain)]
-        entry = f"extern void {kernel.name}(void);\n"
-    entry += f"void *const entry = (void *){kernel.name};\n"
-    (folder / ENTRY).write_text(entry, encoding="utf-8")
+        entries = entries_of([kernel.name])
     calls = ((0, each) for each in recorded()[kernel].arguments)
-    player = write_player(folder, HEADER, [function], {function: "entry"}, calls)
-    return toolchain.build(folder, [ENTRY, player, *twins], options)
+    return toolchain.build(folder, [*write_player(folder, [function], entries, calls), *twins], options)
 
 
 def _twins(variant: str, folder: Path, toolchain: Toolchain) -> str:

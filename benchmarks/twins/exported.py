@@ -11,7 +11,7 @@ from benchmarks.twins.case import Case
 from bfsim.compiling.object_code import object_code
 from bfsim.compiling.toolchain import blackfin_toolchain
 from bfsim.kernel import CompilerProfile
-from bfsim.verifying.player import PLAYER_OPTIONS, checksum, write_player
+from bfsim.verifying.player import PLAYER_OPTIONS, checksum, entries_of, write_player
 
 
 def played(case: Case, profile: CompilerProfile, folder: Path) -> tuple[Path, int]:
@@ -24,8 +24,9 @@ def played(case: Case, profile: CompilerProfile, folder: Path) -> tuple[Path, in
     code = object_code([kernel], [kernel], profile, toolchain)
     (folder / "kernels.o").write_bytes(code.octets)
     numbered = ((0, each) for each in calls)
-    source = write_player(folder, code.header, [kernel.function], code.names, numbered)
-    built = toolchain.build(folder, ["kernels.o", source], PLAYER_OPTIONS)
+    function = kernel.function
+    sources = write_player(folder, [function], entries_of([code.names[function]]), numbered)
+    built = toolchain.build(folder, ["kernels.o", *sources], PLAYER_OPTIONS)
     lines = [[int(each) for each in line.split()] for line in toolchain.run(built).splitlines()]
     if [there for _, there in lines] != left:
         raise SystemExit(f"{case.name}: the code of {profile.name} must leave what the Python kernel leaves")

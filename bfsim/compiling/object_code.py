@@ -9,7 +9,7 @@ from bfsim.compiling.recipes import Recipe, code_of
 from bfsim.compiling.toolchain import Toolchain
 from bfsim.errors import ConfigError
 from bfsim.kernel import CompilerProfile, Kernel, tree
-from bfsim.kernel.c import HEADER, CProgram, Place, c_program
+from bfsim.kernel.c import CProgram, Place, c_program
 
 LEVELS = {"gcc-O2": "-O2", "gcc-O0": "-O0"}
 """What the compiler is told, for each profile that stands for it."""
@@ -19,12 +19,11 @@ LEVELS = {"gcc-O2": "-O2", "gcc-O0": "-O0"}
 class ObjectCode:
     """Kernels as one relocatable ELF file, with the parts of the libraries that they call.
 
-    `names`: what each kernel is called in C, by the `header`. `compiler`: its version.
+    `names`: what each kernel is called in C. `compiler`: its version.
     """
 
     octets: bytes
     compiler: str
-    header: str
     names: Mapping[tree.Function, str]
 
     def symbol_of(self, function: tree.Function) -> str:
@@ -56,7 +55,7 @@ def object_code(
     if not program.names:
         raise ConfigError("the run must call a kernel for there to be real code, but calls none")
     octets, version = code_of(_recipe(program, level), toolchain)
-    return ObjectCode(octets, version, program.files[HEADER], program.names)
+    return ObjectCode(octets, version, program.names)
 
 
 def recipe_of(kernels: Iterable[Kernel], entries: Iterable[Kernel], profile: CompilerProfile) -> Recipe:

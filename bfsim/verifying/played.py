@@ -14,7 +14,7 @@ from bfsim.compiling.object_code import ObjectCode
 from bfsim.compiling.toolchain import Toolchain
 from bfsim.kernel import Kernel
 from bfsim.kernel.objects.calls import ObjectCall
-from bfsim.verifying.player import PLAYER_OPTIONS, checksum, write_player
+from bfsim.verifying.player import PLAYER_OPTIONS, checksum, entries_of, write_player
 from bfsim.verifying.sample import Argument, Sampler
 
 
@@ -36,8 +36,9 @@ def simulated(sampler: Sampler, code: ObjectCode, toolchain: Toolchain) -> Calls
         folder = Path(name)
         (folder / "kernels.o").write_bytes(code.octets)
         functions = [each.function for each in kernels]
-        source = write_player(folder, code.header, functions, code.names, _numbered(kernels, sampler))
-        built = toolchain.build(folder, ["kernels.o", source], PLAYER_OPTIONS)
+        entries = entries_of([code.names[each] for each in functions])
+        sources = write_player(folder, functions, entries, _numbered(kernels, sampler))
+        built = toolchain.build(folder, ["kernels.o", *sources], PLAYER_OPTIONS)
         lines = iter(toolchain.run(built).splitlines())
     return {
         kernel: [Played(*map(int, next(lines).split())) for _ in sampler.of[kernel].kept]

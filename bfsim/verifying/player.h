@@ -1,6 +1,4 @@
 /* player.h - what the program that plays recorded calls is made of, but for the kernels. */
-#include "kernels.h"
-
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -8,19 +8,20 @@ arrays. Its output is a line for each call: cycles and checksum.
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
 
 from bfsim.kernel import tree
-from bfsim.kernel.c import HEADER
 from bfsim.kernel.c.names import c_type
 from bfsim.kernel.types import ArrayType, FloatType
 from bfsim.verifying.sample import Argument
 
 PLAYER, PLAYER_OPTIONS = "player.c", ("-std=gnu99", "-w", "-O2")
+ENTRIES = "entries.c"
+KERNELS = "_kernels"  # no kernel is called so in C
 FACTOR = 16777619  # of the checksum: the sum of all words, each times a power of it
 END = 0xFFFFFFFF
 M32 = 0xFFFFFFFF
@@ -28,33 +29,43 @@ M32 = 0xFFFFFFFF
 
 def write_player(
     folder: Path,
-    header: str,
     kernels: Sequence[tree.Function],
-    names: Mapping[tree.Function, str],
+    entries: str,
     calls: Iterable[tuple[int, tuple[Argument, ...]]],
-) -> str:
-    """Write what plays `kernels`, as `header` declares them, and their `calls`, by numbers; return the file to be compiled."""
-    (folder / HEADER).write_text(header, encoding="utf-8")
-    (folder / PLAYER).write_text(player(kernels, names), encoding="utf-8")
+) -> list[str]:
+    """Write what plays `kernels`, and their `calls`, by numbers; return the files to be compiled, of which one is `entries`."""
+    (folder / PLAYER).write_text(player(kernels), encoding="utf-8")
+    (folder / ENTRIES).write_text(entries, encoding="utf-8")
     with (folder / "calls.bin").open("wb") as stream:
         stream.writelines(played(calls))
-    return PLAYER
+    return [ENTRIES, PLAYER]
 
 
-def player(kernels: Sequence[tree.Function], names: Mapping[tree.Function, str]) -> str:
-    """Return the program for `kernels`, by their numbers in this order. `names`: what they are called in C."""
+def entries_of(names: Sequence[str], *, declared: bool = True) -> str:
+    """Return the C of a table of kernels by number, in a file of its own so that a kernel may be called as anything in the player is.
+
+    `names`: what they are called in C. `declared`: whether they must be declared here.
+    """
+    lines = [f"extern void {each}(void);\n" for each in names if declared]
+    addresses = ", ".join(f"(void *){each}" for each in names)
+    return "".join((*lines, f"void *const {KERNELS}[] = {{{addresses}}};\n"))
+
+
+def player(kernels: Sequence[tree.Function]) -> str:
+    """Return the program for `kernels`, by their numbers in this order."""
     head = (
         (files(__package__) / "player.h")
         .read_text(encoding="utf-8")
         .replace("FACTOR_OF_CHECKSUM", f"{FACTOR}u")
     )
-    parts = [head, *(_kernel(number, each, names[each]) for number, each in enumerate(kernels))]
+    parts = [head, f"extern void *const {KERNELS}[];\n"]
+    parts += [_kernel(number, each) for number, each in enumerate(kernels)]
     table = ", ".join(f"play_{number}" for number in range(len(kernels)))
     parts.append(f"static void (*const players[])(void) = {{{table}}};\n\nPLAYER_MAIN(players)\n")
     return "\n".join(parts)
 
 
-def _kernel(number: int, function: tree.Function, name: str) -> str:
+def _kernel(number: int, function: tree.Function) -> str:
     """What plays one kernel: `timed_N` makes the call between two readings of the clock, `play_N` has the arguments."""
     measured = tree.measured_arrays(function)
     types, names, take, leave = [], [], [], []
@@ -97,7 +108,7 @@ static void play_{number}(void)
     {" ".join(take)}
     uint32_t empty = timed_{number}(({subject})nothing, {arguments});
     result = 0;
-    uint32_t spent = timed_{number}(({subject}){name}, {arguments}) - empty + RTS_CYCLES;
+    uint32_t spent = timed_{number}(({subject}){KERNELS}[{number}], {arguments}) - empty + RTS_CYCLES;
     {" ".join(leave)}
     told(spent, result);
 }}

@@ -164,3 +164,8 @@ def test_kernels_of_one_name_in_two_files_are_told_apart(tmp_path: Path) -> None
     assert sorted(program.names.values()) == ["one_twice", "other_twice"]
     assert c_program([other.twice.function, one.twice.function]).files == program.files
     assert {"one.c", "other.c"} < set(program.files)
+
+
+def test_a_name_of_the_c_library_is_left_to_it() -> None:
+    """[C99 7.1.3] A program that defines `free` has no other."""
+    assert list(c_program([c_kernels.free.function]).names.values()) == ["free_"]

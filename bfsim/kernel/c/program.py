@@ -12,6 +12,7 @@ from pathlib import PurePath
 from bfsim.kernel import tree
 from bfsim.kernel.c.comments import c_comment
 from bfsim.kernel.c.expressions import number
+from bfsim.kernel.c.library import LIBRARY
 from bfsim.kernel.c.names import WORD, free_name, is_free
 from bfsim.kernel.c.statements import Definition, Place, signature
 from bfsim.kernel.types import Number, f32, i32, u32
@@ -85,7 +86,7 @@ def _names(functions: Iterable[tree.Function], static: frozenset[tree.Function])
         shared = many[each.name] > 1 and each not in static
         wanted = f"{_stem(each.file)}_{each.name}" if shared else each.name
         clashing = {name for other, name in found.items() if other.file == each.file or other not in static}
-        found[each] = free_name(wanted, clashing)
+        found[each] = free_name(wanted, clashing | LIBRARY)
     return found
 
 
