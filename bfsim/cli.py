@@ -13,6 +13,7 @@ from bfsim.cli_boards import boards
 from bfsim.cli_check import check
 from bfsim.cli_colours import colours
 from bfsim.cli_diff import diff
+from bfsim.cli_explain import explain
 from bfsim.cli_export import export
 from bfsim.cli_html import require_told, takes_html, writing_page
 from bfsim.cli_ldf import ldf
@@ -73,6 +74,7 @@ main.add_command(boards)
 main.add_command(check)
 main.add_command(colours)
 main.add_command(diff)
+main.add_command(explain)
 main.add_command(export)
 main.add_command(ldf)
 main.add_command(profile)
@@ -185,36 +187,3 @@ def run(
             if json_path:
                 write_text(json_path, json_chunks(done, seen))
     exit_if_interrupted(done)
-
-
-@main.command(short_help="Print a kernel line by line: operations and cycles.")
-@click.argument("kernel")
-@takes_a_run
-@click.option("--run", "runs", is_flag=True, help="Run the firmware first, and add how often each line ran.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of the table.")
-def explain(kernel: str, runs: bool, as_json: bool, **what: Any) -> None:
-    """Print the source of KERNEL with the operations chosen for each line and their cycles.
-
-    KERNEL is FILE.py:NAME, PACKAGE:NAME, or only the NAME of a kernel of the firmware. With --run, or with a RECORDING,
-    the firmware runs and each line shows how often it was executed and its cycles in all.
-
-    \b
-    Examples:
-      bfsim explain sobel_row
-      bfsim explain sobel_row --run --frames 2
-      bfsim explain my_kernels:convolve --profile gcc-O2 --json
-    """
-    from bfsim.explain import explain_named
-    from bfsim.report.explain_tables import explain_json, explain_report
-
-    named = kernel, what["firmware"], what["profile"]
-    explanation = explain_named(*named)  # a slip in a name is told before the run
-    done = simulated(**what) if runs or what["recording"] else None
-    if done:
-        explanation = explain_named(*named, done)
-    if as_json:
-        click.echo(explain_json(explanation), nl=False)
-    else:
-        print_report(explain_report(explanation))
-    if done:
-        warn(done)

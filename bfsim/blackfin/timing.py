@@ -9,18 +9,21 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from bfsim.blackfin.decode import Instruction
+from bfsim.blackfin.interlocks import Interlock
 
 
 @dataclass(frozen=True, slots=True)
 class Timing:
     """Core clock cycles of instructions. `cclk`: by what they do, where it is not 1; of a branch, if it is not taken.
 
-    `taken_cclk`: of branches that are taken.
+    `about`: how it counts, in words. `taken_cclk`: of branches that are taken. `interlocks`: what else instructions wait for.
     """
 
     name: str
+    about: str
     cclk: Mapping[str, int]
     taken_cclk: Mapping[str, int]
+    interlocks: tuple[Interlock, ...] = ()
 
     def of(self, instruction: Instruction) -> int:
         """Return the cycles of an instruction; if it is a branch, where it is not taken."""
@@ -33,6 +36,7 @@ class Timing:
 
 GNU = Timing(
     "gnu",
+    "as the GNU simulator counts, without interlocks and memories",
     cclk={
         **dict.fromkeys(
             ("jump", "jump_to", "jump_relative", "call", "call_to", "call_relative", "return_"), 5

@@ -8,6 +8,7 @@ from bfsim.blackfin.lines import lines_of
 from bfsim.blackfin.linking import link
 from bfsim.blackfin.objects import read_object
 from bfsim.blackfin.subroutines import LoadedImage
+from bfsim.blackfin.timing import GNU, Timing
 from bfsim.compiling.object_code import ObjectCode
 from bfsim.kernel import tree
 from bfsim.kernel.objects.compiled import CompiledObject, compiled_object
@@ -16,9 +17,10 @@ from bfsim.kernel.objects.places import Places
 
 @dataclass
 class LoadedCode:
-    """Kernels by their object code. Each is translated when it is asked for, and once."""
+    """Kernels by their object code, timed by `timing`. Each is translated when it is asked for, and once."""
 
     code: ObjectCode
+    timing: Timing = GNU
     _compiled: dict[tree.Function, CompiledObject] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -31,5 +33,7 @@ class LoadedCode:
         """Return a kernel ready to run. Raises KernelError if the code has no function for it, as for helpers that are inlined."""
         if function not in self._compiled:
             symbol = self.code.symbol_of(function)
-            self._compiled[function] = compiled_object(function, symbol, self._loaded, self._places)
+            self._compiled[function] = compiled_object(
+                function, symbol, self._loaded, self._places, self.timing
+            )
         return self._compiled[function]

@@ -6,6 +6,7 @@ issue + stall + idle = elapsed.
 
 from __future__ import annotations
 
+from bfsim.trace.assembly import Assembly, AssemblyInstruction, AssemblyLoop, SourceText
 from bfsim.trace.explanation import (
     ExplainedCall,
     ExplainedLine,
@@ -21,6 +22,9 @@ from bfsim.trace.run import BudgetRow, Identity, Reference, RunRecord, RunWarnin
 __all__ = [
     "REST",
     "AccessRecord",
+    "Assembly",
+    "AssemblyInstruction",
+    "AssemblyLoop",
     "BudgetRow",
     "BufferRecord",
     "CodeRecord",
@@ -41,6 +45,7 @@ __all__ = [
     "Reference",
     "RunRecord",
     "RunWarning",
+    "SourceText",
     "StageCost",
     "StallReason",
     "TrafficRecord",

@@ -15,7 +15,11 @@ FLOORS = (
     (("kernel", "Python → code and cost"), ("linker", "LDF → placement"), ("recording", "frames in and out")),
     (("compiling", "C → object code"), ("machine", "the devices; has SimPy"), ("report", "records → tables")),
     (("api", "all that firmware imports"), ("loading", "firmware by name"), ("result", "a run with reports")),
-    (("run", "recording + firmware + board + LDF → records"), ("explain", "a kernel line by line")),
+    (
+        ("run", "recording + firmware + board + LDF → records"),
+        ("explain", "a kernel line by line"),
+        ("assembly", "its instructions"),
+    ),
     (("sweeping", "many runs"), ("placing", "the best LDF"), ("verifying", "beside the real compiler")),
     (("cli", "commands: parse, call, print"),),
 )

@@ -19,12 +19,13 @@ from bfsim.kernel.objects.places import Places
 
 @dataclass(frozen=True)
 class CompiledObject:
-    """A kernel's object code. `functions`: the kernels, and functions of libraries, that its instructions are of."""
+    """A kernel's object code. `functions`: the kernels, and functions of libraries, that its instructions are of; `places`: which are where."""
 
     function: tree.Function
     subroutine: Subroutine
     program: Program
     functions: tuple[tree.Function, ...]
+    places: Places
     order: NDArray[np.int64]
     """Of each counter of the program, the number of the translated code's counter."""
 
@@ -53,4 +54,4 @@ def compiled_object(
     used = (places.functions[each] for each in reached)
     lines = {line.routine for each in found for line, _, _ in each.line_cclk} - set(reached)
     functions = (*used, *(places.functions[each] for each in sorted(lines)))
-    return CompiledObject(function, subroutine, program, functions, order)
+    return CompiledObject(function, subroutine, program, functions, places, order)

@@ -1,0 +1,78 @@
+"""How often the instructions of a kernel ran in a run: each call of it, or of what may call it, is made once more by its object code."""
+
+from __future__ import annotations
+
+from collections import Counter as Tally
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.assembly.finding import KernelCode
+from bfsim.blackfin.edge_counts import Event
+from bfsim.kernel import Kernel
+from bfsim.kernel.objects.calls import ObjectCall
+from bfsim.kernel.objects.compiled import CompiledObject
+from bfsim.machine.memories import Row
+
+
+@dataclass(slots=True)
+class _Caller:
+    """A kernel whose calls may come to the one that is counted. `calls`: bound to arrays, by the lengths of these."""
+
+    kernel: Kernel
+    compiled: CompiledObject
+    totals: NDArray[np.int64]
+    calls: dict[tuple[int, ...], tuple[ObjectCall, list[NDArray[Any]]]] = field(default_factory=dict)
+
+    def play(self, arguments: Sequence[Row | int]) -> None:
+        """Make a call on copies."""
+        arrays = [each.array for each in arguments if isinstance(each, Row)]
+        lengths = tuple(map(len, arrays))
+        if lengths not in self.calls:
+            copies = [each.copy() for each in arrays]
+            self.calls[lengths] = ObjectCall(self.compiled, copies, self.kernel.check, self.totals), copies
+        call, copies = self.calls[lengths]
+        for copy, array in zip(copies, arrays, strict=True):
+            copy[:] = array
+        call.run([each.array if isinstance(each, Row) else each for each in arguments])
+
+    def events(self) -> Tally[Event]:
+        """Return how often each event was counted."""
+        counters = self.compiled.subroutine.translated.counters
+        found: Tally[Event] = Tally()
+        for number, count in zip(self.compiled.order.tolist(), self.totals.tolist(), strict=False):
+            found[Event(counters[number].block.start, counters[number].taken)] += count
+        return found
+
+
+@dataclass(slots=True)
+class Counting:
+    """Counts what the calls of a run do to the code of a kernel. A run is to call `see` before each call."""
+
+    code: KernelCode
+    _callers: dict[Kernel, _Caller | None] = field(default_factory=dict)
+
+    def see(self, kernel: Kernel, arguments: Sequence[Row | int]) -> None:
+        """Take note of a call."""
+        if kernel not in self._callers:
+            self._callers[kernel] = self._caller(kernel)
+        caller = self._callers[kernel]
+        if caller is not None:
+            caller.play(arguments)
+
+    def events(self) -> Tally[Event]:
+        """Return how often each block ran and each branch was taken, of the kernel and of what calls it."""
+        found: Tally[Event] = Tally()
+        for each in self._callers.values():
+            if each is not None:
+                found.update(each.events())
+        return found
+
+    def _caller(self, kernel: Kernel) -> _Caller | None:
+        compiled = self.code.compiled_of(kernel)
+        if compiled is None or self.code.routine.address not in compiled.subroutine.translated.code.blocks:
+            return None
+        return _Caller(kernel, compiled, compiled.new_totals())

@@ -1,0 +1,103 @@
+"""The object code of a kernel, wherever it comes from: compiled now, kept from before, or the user's own."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from functools import cached_property
+
+from bfsim.blackfin.linking import Routine
+from bfsim.blackfin.subroutines import LoadedImage
+from bfsim.blackfin.timing import Timing
+from bfsim.compiling.file_code import FileCode
+from bfsim.compiling.loaded_code import LoadedCode
+from bfsim.compiling.object_code import LEVELS, object_code
+from bfsim.compiling.toolchain import Toolchain
+from bfsim.errors import ConfigError, KernelError, cut
+from bfsim.kernel import CompilerProfile, Kernel
+from bfsim.kernel.objects.compiled import CompiledObject, compiled_object
+from bfsim.kernel.objects.places import Places
+from bfsim.loading import LoadedFirmware, entries_of, kernels_of
+
+AS_IT_IS = "as compiled"
+"""In place of a compiler's name, where nothing is known of it."""
+
+
+@dataclass(frozen=True)
+class KernelCode:
+    """The code of `kernel`. `loaded`: the code of all kernels that were compiled with it; None where it is a file of its own."""
+
+    kernel: Kernel
+    compiler: str
+    timing: Timing
+    loaded: LoadedCode | None
+
+    @cached_property
+    def compiled(self) -> CompiledObject:
+        """The kernel's code, translated."""
+        found = self.compiled_of(self.kernel)
+        assert found
+        return found
+
+    def compiled_of(self, kernel: Kernel) -> CompiledObject | None:
+        """Return the code of a kernel that may call this one, translated, or None if it is none of the kernels with this code."""
+        if kernel.object_code is not None:
+            return self._own if kernel is self.kernel else None
+        if self.loaded is None or kernel.function not in self.loaded.code.names:
+            return None
+        return self.loaded.compiled(kernel.function)
+
+    @cached_property
+    def _own(self) -> CompiledObject:
+        """The code of a file in a memory of its own: to count calls must not change what a run finds in that of its kernel."""
+        file = self.kernel.object_code
+        assert isinstance(file, FileCode)
+        return compiled_object(
+            file.function, file.symbol, LoadedImage(file.loaded.image), file.places, self.timing
+        )
+
+    @property
+    def places(self) -> Places:
+        """What its addresses are."""
+        return self.compiled.places
+
+    @property
+    def routine(self) -> Routine:
+        """Where the kernel lies in its code."""
+        subroutine = self.compiled.subroutine
+        found = self.places.image.routine_at(subroutine.address)
+        return found or Routine(
+            subroutine.symbol, subroutine.address, max(self.compiled.subroutine.translated.code.blocks)
+        )
+
+
+def find_code(
+    kernel: Kernel,
+    firmware: LoadedFirmware,
+    profile: CompilerProfile,
+    toolchain: Toolchain | None,
+    timing: Timing,
+) -> KernelCode:
+    """Find the code of a kernel: with all those of `firmware` if it is one of them, or by itself.
+
+    Raises ConfigError where there is neither kept code nor a compiler, and KernelError where the code has no function for the kernel.
+    """
+    if kernel.object_code is not None:
+        return KernelCode(kernel, AS_IT_IS, timing, None)
+    entries = entries_of(firmware.firmware)
+    kernels: Collection[Kernel] = kernels_of(firmware.own) | entries
+    if kernel not in kernels:
+        kernels, entries = [kernel], {kernel}
+    code = object_code(kernels, entries, profile, toolchain)
+    found = KernelCode(
+        kernel, f"GCC {code.compiler} {LEVELS[profile.name]}", timing, LoadedCode(code, timing)
+    )
+    try:
+        found.compiled  # noqa: B018  # translated now, so that a kernel without a function is told before a run
+    except KernelError:
+        callers = sorted({each.name for each in kernels if kernel.function in each.function.callees()})
+        raise ConfigError(
+            f"{kernel.name} must be a function in its code, but the compiler has put it into those that call it; "
+            f"--asm shows it there: {', '.join(map(cut, callers))}"
+        ) from None
+    return found

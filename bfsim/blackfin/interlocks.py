@@ -1,0 +1,103 @@
+"""Interlocks: an instruction waits until a register that it reads is there.
+
+Each cycle in between hides one of the wait, whether an instruction is issued in it, another one waits, or the code is fetched anew
+behind a jump. An instruction in between hides one however many cycles it takes, as the notes of VisualDSP++ have it [VANN].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from bfsim.blackfin.decode import Instruction
+from bfsim.blackfin.dependences import registers_of
+
+PARTLY = {"set_low", "set_high"}
+"""What these do to a register leaves the other half as it is, but waits for nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Interlock:
+    """An instruction that reads one of `registers` at once waits `cclk` behind one that has written it, in one of these ways.
+
+    `by`: what that does. `loaded`: a word of memory came as it is. `moved_from`: it read one of these registers. `used_by`: what
+    waits, if not all. `source`: who says so.
+    """
+
+    about: str
+    registers: frozenset[str]
+    cclk: int
+    source: str
+    by: frozenset[str] = frozenset()
+    loaded: bool = False
+    moved_from: frozenset[str] = frozenset()
+    used_by: frozenset[str] = frozenset()
+
+    def made_by(self, instruction: Instruction) -> frozenset[str]:
+        """Return the registers that are not there at once behind an instruction."""
+        found = registers_of(instruction)
+        does = {each.form.does for each in instruction.operations}
+        if (self.by and self.by.isdisjoint(does)) or (
+            self.moved_from and self.moved_from.isdisjoint(found.reads)
+        ):
+            return frozenset()
+        return self.registers & (found.loaded if self.loaded else found.writes)
+
+    def holds(self, instruction: Instruction) -> bool:
+        """Whether an instruction that reads such a register waits for it."""
+        does = {each.form.does for each in instruction.operations}
+        return does.isdisjoint(PARTLY) and (not self.used_by or not self.used_by.isdisjoint(does))
+
+
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """How long what is issued next would have to wait for registers, by interlock."""
+
+    cclk: Mapping[tuple[str, Interlock], int]
+
+    def later(self, cclk: int) -> Waiting:
+        """Return it some cycles later."""
+        return Waiting({key: left - cclk for key, left in self.cclk.items() if left > cclk})
+
+    def worst(self, other: Waiting) -> Waiting:
+        """Return the longer waits of two."""
+        keys = self.cclk.keys() | other.cclk.keys()
+        return Waiting({key: max(self.cclk.get(key, 0), other.cclk.get(key, 0)) for key in keys})
+
+
+NOTHING = Waiting({})
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """How long an instruction waits, and for which register; for none, an empty name."""
+
+    cclk: int = 0
+    register: str = ""
+
+
+def issued(
+    instruction: Instruction, before: Waiting, interlocks: Iterable[Interlock]
+) -> tuple[Wait, Waiting]:
+    """Return how long an instruction waits, and what is waited for behind it."""
+    found = registers_of(instruction)
+    waits = [
+        Wait(left, register)
+        for (register, each), left in before.cclk.items()
+        if register in found.reads and each.holds(instruction)
+    ]
+    wait = max(waits, key=lambda each: (each.cclk, each.register), default=Wait())
+    left = {key: cclk for key, cclk in before.later(wait.cclk + 1).cclk.items() if key[0] not in found.writes}
+    made = {(register, each): each.cclk for each in interlocks for register in each.made_by(instruction)}
+    return wait, Waiting(left | made)
+
+
+def issued_in_turn(
+    instructions: Iterable[Instruction], before: Waiting, interlocks: Iterable[Interlock]
+) -> tuple[tuple[Wait, ...], Waiting]:
+    """Return how long each instruction of a sequence waits, and what is waited for behind the last one."""
+    waits = []
+    for each in instructions:
+        wait, before = issued(each, before, interlocks)
+        waits.append(wait)
+    return tuple(waits), before

@@ -1,0 +1,111 @@
+"""`bfsim explain`: a kernel line by line, or instruction by instruction."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.core import ParameterSource
+
+from bfsim.cli_running import simulated, takes_a_run, warn
+from bfsim.errors import ConfigError
+from bfsim.terminal import print_report
+
+if TYPE_CHECKING:
+    from bfsim.trace import RunRecord
+
+
+@click.command(short_help="Print a kernel line by line: operations and cycles.")
+@click.argument("kernel")
+@takes_a_run
+@click.option("--run", "runs", is_flag=True, help="Run the firmware first, and add how often each line ran.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of the table.")
+@click.option(
+    "--asm",
+    "as_assembly",
+    is_flag=True,
+    help="Print the compiler's instructions beneath the source lines, with their cycles, and what bounds each loop. Of a kernel in "
+    "Python, --profile is gcc-O2 then, or gcc-O0.",
+)
+@click.option(
+    "--toolchain",
+    metavar="FOLDER",
+    type=click.Path(path_type=Path, exists=True, file_okay=False),
+    help="With --asm, where bfin-elf-gcc is.  [default: the PATH]",
+)
+@click.pass_context
+def explain(
+    context: click.Context,
+    /,
+    kernel: str,
+    runs: bool,
+    as_json: bool,
+    as_assembly: bool,
+    toolchain: Path | None,
+    **what: Any,
+) -> None:
+    """Print the source of KERNEL with the operations chosen for each line and their cycles.
+
+    KERNEL is FILE.py:NAME, PACKAGE:NAME, or only the NAME of a kernel of the firmware. With --run, or with a RECORDING,
+    the firmware runs and each line shows how often it was executed and its cycles in all. With --asm, the same of each instruction.
+
+    \b
+    Examples:
+      bfsim explain sobel_row
+      bfsim explain sobel_row --run --frames 2
+      bfsim explain sobel_row --asm --run --frames 2
+      bfsim explain my_kernels:convolve --profile gcc-O2 --json
+    """
+    runs = runs or what["recording"] is not None
+    if as_assembly:
+        if context.get_parameter_source("profile") is ParameterSource.DEFAULT:
+            what["profile"] = "gcc-O2"
+        done = _explain_code(kernel, toolchain, runs=runs, as_json=as_json, **what)
+    elif toolchain:
+        raise ConfigError("--toolchain must come with --asm, which shows a compiler's instructions")
+    else:
+        done = _explain_lines(kernel, runs=runs, as_json=as_json, **what)
+    if done:
+        warn(done)
+
+
+def _explain_lines(kernel: str, *, runs: bool, as_json: bool, **what: Any) -> RunRecord | None:
+    """Print a kernel line by line; return the run, if there was one."""
+    from bfsim.explain import explain_named
+    from bfsim.report.explain_tables import explain_json, explain_report
+
+    named = kernel, what["firmware"], what["profile"]
+    explanation = explain_named(*named)  # a slip in a name is told before the run
+    done = simulated(**what) if runs else None
+    if done:
+        explanation = explain_named(*named, done)
+    if as_json:
+        click.echo(explain_json(explanation), nl=False)
+    else:
+        print_report(explain_report(explanation))
+    return done
+
+
+def _explain_code(
+    kernel: str, toolchain: Path | None, *, runs: bool, as_json: bool, **what: Any
+) -> RunRecord | None:
+    """Print the instructions of a kernel; return the run, if there was one."""
+    from bfsim.assembly import Counting, find_code, listed
+    from bfsim.blackfin.timing import GNU
+    from bfsim.compiling.toolchain import blackfin_compiler
+    from bfsim.hardware import find_profile
+    from bfsim.loading import load_firmware, load_kernel
+    from bfsim.report.assembly_tables import assembly_json, assembly_report
+
+    found = load_kernel(kernel, what["firmware"])
+    firmware = load_firmware(what["firmware"])
+    code = find_code(found, firmware, find_profile(what["profile"]).value, blackfin_compiler(toolchain), GNU)
+    counting = Counting(code)
+    done = simulated(on_call=counting.see, **what) if runs else None
+    assembly = listed(code, counting.events() if done else None)
+    if as_json:
+        click.echo(assembly_json(assembly), nl=False)
+    else:
+        print_report(assembly_report(assembly))
+    return done
