@@ -125,9 +125,10 @@ def test_instructions_that_are_issued_slot_by_slot_bound_a_loop() -> None:
 def test_a_kernel_that_was_inlined_is_told() -> None:
     """Its instructions stand where it is called, which the message names."""
     with pytest.raises(
-        ConfigError, match="group_of must be a function in its code, but the compiler has put it into those that call it; --asm shows it there: \w+"
+        ConfigError,
+        match=r"try_triple must be a function in its code, but the compiler has put it into those that call it; --asm shows it there: \w+",
     ):
-        of("group_of")
+        of("try_triple")
 
 
 def bfsim(*arguments: str) -> Result:
