@@ -14,6 +14,7 @@ from llvmlite import ir
 
 from bfsim.kernel import divisions, floats, tree
 from bfsim.kernel.floats import register_type
+from bfsim.kernel.intrinsics.meaning import function_type
 from bfsim.kernel.ir_text import ENTERS
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, u32
 
@@ -409,6 +410,27 @@ class _Emitter:
             self.builder.branch(after)
         self.builder.position_at_end(after)
         return self.builder.load(slot, typ=register_type(node.type))
+
+    def _intrinsiccall(self, node: tree.IntrinsicCall) -> ir.Value:
+        """A call of a function without a body, until the code is compiled for the host: to LLVM, one that only computes."""
+        intrinsic = node.intrinsic
+        target = self.module.globals.get(intrinsic.symbol)
+        if target is None:
+            target = ir.Function(self.module, function_type(intrinsic), intrinsic.symbol)
+            target.attributes.add("readnone")
+            target.attributes.add("nounwind")
+        values = [
+            self.builder.trunc(self.value(each), ir.IntType(kind.bits))
+            if kind.bits < WORD_BITS
+            else self.value(each)
+            for each, kind in zip(node.arguments, intrinsic.takes, strict=True)
+        ]
+        result = self.builder.call(target, values)
+        return self._extend(result, intrinsic.gives) if isinstance(intrinsic.gives, IntType) else result
+
+    def _word(self, node: tree.Word) -> ir.Value:
+        pair = self.value(node.pair)
+        return self.builder.trunc(self.builder.lshr(pair, pair.type(WORD_BITS)) if node.upper else pair, I32)
 
     def _kernelcall(self, node: tree.KernelCall) -> ir.Value:
         arguments: list[ir.Value] = []

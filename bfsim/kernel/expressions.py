@@ -17,6 +17,7 @@ from bfsim.kernel.operators import ALIKE, BINARY, COMPARE, DIVISIONS, FOLD, ON_F
 from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.types import (
     BOOL,
+    PAIR,
     ArrayType,
     FloatType,
     IntType,
@@ -95,6 +96,10 @@ class Expressions:
         return result
 
     def _refuse_nothing(self, node: ast.expr, value: tree.Expr) -> None:
+        if value.type is PAIR:
+            self.source.refuse(
+                node, "this intrinsic has two results", "assign them first: `upper, lower = ...`"
+            )
         if value.type is None:
             self.source.refuse(node, "this kernel returns nothing", "call it on a line of its own")
 

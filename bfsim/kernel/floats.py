@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 from llvmlite import ir
 
-from bfsim.kernel.types import FloatType, IntType, Number, Value, u32
+from bfsim.kernel.types import FloatType, IntType, Number, PairType, Value, u32
 
-I1, I32, FLOAT = ir.IntType(1), ir.IntType(32), ir.FloatType()
+I1, I32, I64, FLOAT = ir.IntType(1), ir.IntType(32), ir.IntType(64), ir.FloatType()
 ARITHMETIC = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv"}
 Intrinsic = Callable[[str, ir.Type, list[ir.Value]], ir.Value]
 """Calls an LLVM intrinsic by name, result type and arguments."""
@@ -18,6 +18,8 @@ def register_type(kind: Value) -> ir.Type:
     """Return the type of a value in a register."""
     if isinstance(kind, FloatType):
         return FLOAT
+    if isinstance(kind, PairType):
+        return I64
     return I32 if isinstance(kind, IntType) else I1
 
 

@@ -15,10 +15,12 @@ def parsed(module: ir.Module) -> llvm.ModuleRef:
     """Return an emitted module as LLVM has it.
 
     "no-builtins": a loop that fills or copies stays a loop, whose iterations can be counted. "optforfuzzing": branches stay
-    branches; what a compiler for the Blackfin makes of them is for the lowering to say.
+    branches; what a compiler for the Blackfin makes of them is for the lowering to say. "willreturn": an intrinsic whose result nothing
+    needs is left out.
     """
     module.triple, module.data_layout = GENERIC_TRIPLE, str(_machine().target_data)
-    return llvm.parse_assembly(str(module).replace(" noinline", ' noinline optforfuzzing "no-builtins"'))
+    text = str(module).replace(" noinline", ' noinline optforfuzzing "no-builtins"')
+    return llvm.parse_assembly(text.replace(" readnone", " memory(none) willreturn"))
 
 
 def run(names: Sequence[str], module: llvm.ModuleRef) -> None:

@@ -20,6 +20,7 @@ from bfsim.kernel.counters import Counter
 from bfsim.kernel.derived import Sum, derived
 from bfsim.kernel.entry import entry_point, globals_of, settle
 from bfsim.kernel.guards import Guarded
+from bfsim.kernel.intrinsics.meaning import defined
 from bfsim.kernel.ir_text import DEFINE, ENTRY, KERNEL_CALL, LABEL, read_module
 from bfsim.kernel.tracing import ROUTINES, SITE, Tracing
 
@@ -63,7 +64,7 @@ def instrument(
     return "\n".join(
         [
             globals_of(entry, traced=traced),
-            _Rewriter(function, program, tracing, known).rewrite(whole),
+            defined(_Rewriter(function, program, tracing, known).rewrite(whole)),
             guarded.run_time() if guarded else "",
             ROUTINES if traced else "",
             entry_point(function, program, entry, traced=traced, checked=checked),

@@ -11,6 +11,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from bfsim.kernel.intrinsics import BY_NAME, PREFIX, Intrinsic
+
 DEFINE = re.compile(r"^define .*?@([\w.$-]+)\((.*)\)")
 LABEL = re.compile(r"^([\w.$-]+):")
 RESULT = re.compile(r"^  (%[\w.$-]+) = (.*)$")
@@ -29,6 +31,7 @@ PHI_ARM = re.compile(r"\[ ([^,\]]+), (%[\w.$-]+) \]")
 CASE = re.compile(r"i\d+ (-?\d+), label (%[\w.$-]+)")
 WIDTH = re.compile(r"\bi(\d+)\b")
 KERNEL_CALL = re.compile(r"\bcall [^@]*@([\w.$-]+)\(")
+INTRINSIC = re.compile(rf"@{re.escape(PREFIX)}(\w+)\(")
 OPCODE_NOISE = {"tail", "musttail", "notail"}
 ENTERS = "bfsim.enters."
 """Before the symbol of a kernel: a call that does nothing, where the code of an inlined kernel begins."""
@@ -88,7 +91,18 @@ class Instruction:
     @property
     def is_call(self) -> bool:
         """Whether it is a call of another kernel."""
-        return self.opcode == "call" and "@llvm." not in self.text
+        return self.opcode == "call" and not self.is_computation
+
+    @property
+    def is_computation(self) -> bool:
+        """Whether it is a call by which LLVM, or the kernel language, writes an operation."""
+        return self.opcode == "call" and ("@llvm." in self.text or f"@{PREFIX}" in self.text)
+
+    @property
+    def intrinsic(self) -> Intrinsic | None:
+        """The intrinsic that it calls."""
+        found = INTRINSIC.search(self.text) if self.opcode == "call" else None
+        return BY_NAME[found[1]] if found else None
 
     @property
     def bits(self) -> int:

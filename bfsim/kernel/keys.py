@@ -10,7 +10,7 @@ import hashlib
 from functools import cache
 from pathlib import Path
 
-from bfsim import machine_code
+from bfsim import blackfin, machine_code
 from bfsim.kernel import tree
 from bfsim.kernel.profile import CompilerProfile, Inlines
 
@@ -54,8 +54,9 @@ def _text(function: tree.Function) -> str:
 
 
 def sources() -> list[Path]:
-    """Files that decide what a kernel becomes: all of this package, and what makes its IR machine code."""
-    return [*sorted(Path(__file__).parent.rglob("*.py")), Path(machine_code.__file__)]
+    """Files that decide what a kernel becomes: all of this package, what instructions do, and what makes its IR machine code."""
+    packages = (Path(__file__).parent, Path(blackfin.__file__).parent)
+    return [*(path for each in packages for path in sorted(each.rglob("*.py"))), Path(machine_code.__file__)]
 
 
 @cache

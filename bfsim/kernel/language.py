@@ -14,6 +14,7 @@ import re
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
+from itertools import count
 from typing import Any
 
 from bfsim.errors import KernelError
@@ -22,7 +23,7 @@ from bfsim.kernel.operators import BINARY
 from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.scope import KernelScope
 from bfsim.kernel.source_files import file_of, marks_of, names_by_use
-from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, f32, i32, u32
+from bfsim.kernel.types import PAIR, ArrayType, FloatType, IntType, Number, f32, i32, u32
 
 SCALARS = (i32, u32, f32)
 STATEMENTS = {"try": "tests with if", "with": "plain statements"}
@@ -224,7 +225,28 @@ class _Reader:
     def _assign(self, node: ast.Assign) -> list[tree.Stmt]:
         if len(node.targets) != 1:
             self.scope.source.refuse(node, "a kernel assigns one name at a time", "write two lines")
+        if isinstance(node.targets[0], ast.Tuple):
+            return self._set_both(node.targets[0], node.value)
         return self._set(node.targets[0], node.value, None)
+
+    def _set_both(self, target: ast.Tuple, value: ast.expr) -> list[tree.Stmt]:
+        """Assign the two results of an intrinsic, by way of a local that only the compiled code has."""
+        scope, names = self.scope, [each for each in target.elts if isinstance(each, ast.Name)]
+        fits = isinstance(value, ast.Call) and len(names) == len(target.elts) == 2
+        pair = scope.expression(value) if fits else None
+        if pair is None or pair.type is not PAIR or names[0].id == names[1].id:
+            scope.source.refuse(
+                target,
+                "only an intrinsic with two results is assigned to two names",
+                "write `upper, lower = add_i4x8(x, y)`, or two lines",
+            )
+        hidden = next(f"pair_{n}" for n in count(1) if f"pair_{n}" not in {*scope.own, *scope.locals})
+        scope.locals[hidden] = PAIR
+        found: list[tree.Stmt] = [tree.Assign(hidden, pair, target.lineno)]
+        for name, upper in zip(names, (True, False), strict=True):
+            word = tree.Word(tree.Local(hidden, PAIR, target.lineno), upper, i32, target.lineno)
+            found += self._assigned(name, word, value)
+        return found
 
     def _annassign(self, node: ast.AnnAssign) -> list[tree.Stmt]:
         kind = _annotation(self.scope.outer, node.annotation)
@@ -265,6 +287,16 @@ class _Reader:
             result = scope.number(value, known)
         else:
             result = scope.expression(value)
+        return self._assigned(target, result, value)
+
+    def _assigned(self, target: ast.Name, result: tree.Expr, value: ast.expr) -> list[tree.Stmt]:
+        scope = self.scope
+        if result.type is PAIR or target.id in scope.arrays:
+            scope.source.refuse(
+                value if result.type is PAIR else target,
+                "an intrinsic with two results is assigned to two names",
+                "write `upper, lower = ...`",
+            )
         scope.locals.setdefault(target.id, result.type or i32)
         if scope.locals[target.id] != result.type:
             scope.source.refuse(

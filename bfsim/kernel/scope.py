@@ -7,8 +7,10 @@ import builtins
 
 from bfsim.kernel import tree
 from bfsim.kernel.expressions import Expressions
+from bfsim.kernel.intrinsics import INTRINSICS, Intrinsic
+from bfsim.kernel.intrinsics.fract import high_of_fr2x16, low_of_fr2x16
 from bfsim.kernel.operators import BUILT_IN, OF_TWO, instead_of
-from bfsim.kernel.types import FloatType, IntType, Number, f32, i32, promoted, sqrt
+from bfsim.kernel.types import PAIR, FloatType, IntType, Number, f32, i16, i32, promoted, sqrt
 
 
 class KernelScope(Expressions):
@@ -26,6 +28,10 @@ class KernelScope(Expressions):
             return self._kernel_call(node, callee)
         if target is len:
             return self._length(node)
+        if (intrinsic := INTRINSICS.get(target)) is not None:
+            return self._intrinsic(node, intrinsic)
+        if target in (high_of_fr2x16, low_of_fr2x16) and len(node.args) == 1:
+            return self._half(node, upper=target is high_of_fr2x16)
         known = OF_TWO.get(target) if callable(target) else None
         if known is not None and len(node.args) == 2:
             return self._arithmetic(node, known, node.args[0], node.args[1])
@@ -79,6 +85,23 @@ class KernelScope(Expressions):
         if len(node.args) == 1 and isinstance(node.args[0], ast.Name) and node.args[0].id in self.arrays:
             return tree.Length(node.args[0].id, i32, node.lineno)
         self.source.refuse(node, "len is for array parameters", "write len(array)")
+
+    def _intrinsic(self, node: ast.Call, intrinsic: Intrinsic) -> tree.IntrinsicCall:
+        if len(node.args) != len(intrinsic.takes):
+            wanted = ", ".join(intrinsic.parameters)
+            self.source.refuse(
+                node, f"{intrinsic.name} takes {wanted}, not {len(node.args)} arguments", "give it these"
+            )
+        arguments = tuple(self.integer(each, i32) for each in node.args)
+        kind = PAIR if intrinsic.gives is PAIR else i32
+        return tree.IntrinsicCall(intrinsic, arguments, kind, node.lineno)
+
+    def _half(self, node: ast.Call, *, upper: bool) -> tree.Expr:
+        """One half of a pair, which needs no instruction of its own."""
+        pair = self.integer(node.args[0], i32)
+        if upper:
+            return tree.Binary(">>", pair, tree.Const(16, i32, node.lineno), i32, node.lineno)
+        return tree.Cast(pair, i16, i32, node.lineno)
 
     def _kernel_call(self, node: ast.Call, callee: tree.Function) -> tree.KernelCall:
         if len(node.args) != len(callee.parameters):

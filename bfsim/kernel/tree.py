@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 
+from bfsim.kernel.intrinsics import Intrinsic
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, Value
 
 
@@ -126,7 +127,30 @@ class KernelCall:
     line: int
 
 
-Expr = Const | Local | Load | Length | Binary | Unary | Compare | Logic | Not | Choose | Cast | KernelCall
+@dataclass(frozen=True, slots=True)
+class IntrinsicCall:
+    """An instruction of the Blackfin, or a few, as a function."""
+
+    intrinsic: Intrinsic
+    arguments: tuple[Expr, ...]
+    type: Value
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """The upper or the lower word of a pair."""
+
+    pair: Expr
+    upper: bool
+    type: IntType
+    line: int
+
+
+Expr = (
+    Const | Local | Load | Length | Binary | Unary | Compare | Logic | Not | Choose | Cast | KernelCall
+    | IntrinsicCall | Word
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -96,6 +96,14 @@ class BoolType:
         return "bool"
 
 
+@dataclass(frozen=True, slots=True)
+class PairType:
+    """What an intrinsic with two results gives: two words, of which each is assigned to a name."""
+
+    def __str__(self) -> str:
+        return "pair"
+
+
 i8 = IntType("i8", 8, signed=True)
 u8 = IntType("u8", 8, signed=False)
 i16 = IntType("i16", 16, signed=True)
@@ -104,9 +112,10 @@ i32 = IntType("i32", 32, signed=True)
 u32 = IntType("u32", 32, signed=False)
 f32 = FloatType("f32", 32)
 BOOL = BoolType()
+PAIR = PairType()
 
 Number = IntType | FloatType
-Value = Number | BoolType
+Value = Number | BoolType | PairType
 
 
 def promoted(element: Number) -> Number:

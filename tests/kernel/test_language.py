@@ -73,7 +73,7 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("match x:\n        case 1:\n            pass", "match x:", "cannot use `match` statements"),
         ("yield x", "yield x", "cannot use `yield`"),
         ("y = z = x", "y = z", "assigns one name at a time; write two lines"),
-        ("y, z = x, x", "y, z", "only a local name or an array element can be assigned"),
+        ("y, z = x, x", "y, z", "only an intrinsic with two results is assigned to two names"),
         ("row = col", "row = col", "only a local name or an array element can be assigned"),
         ("for v in row:\n        pass", "row:", "loops over range(...) only; write for i in range(len(a))"),
         ("for i, j in range(3):\n        pass", "for i, j", "a loop counts one plain name"),

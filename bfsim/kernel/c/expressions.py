@@ -157,6 +157,13 @@ class Expressions:
         test = self.text(node.test, Binds.COMPARISON)
         return f"{test} ? {self.text(node.yes, Binds.OR)} : {self.text(node.no, Binds.OR)}", Binds.CHOICE
 
+    def _intrinsiccall(self, node: tree.IntrinsicCall) -> tuple[str, Binds]:
+        return self._called(node.intrinsic.name, *node.arguments)
+
+    def _word(self, node: tree.Word) -> tuple[str, Binds]:
+        pair = self.text(node.pair, Binds.SHIFT)
+        return f"(int32_t)({pair} >> 32)" if node.upper else f"(int32_t){pair}", Binds.SIGN
+
     def _kernelcall(self, node: tree.KernelCall) -> tuple[str, Binds]:
         given = [self.names.of[each] if isinstance(each, str) else self.text(each) for each in node.arguments]
         measured = tree.measured_arrays(node.callee)

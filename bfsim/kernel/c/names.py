@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from bfsim.kernel import tree
-from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, Value
+from bfsim.kernel.types import PAIR, ArrayType, FloatType, IntType, Number, Value
 
 OPERATORS = (
     "min",
@@ -78,6 +78,8 @@ def c_type(kind: Value) -> str:
     """Return the name in C of a type."""
     if isinstance(kind, IntType):
         return f"{'' if kind.signed else 'u'}int{kind.bits}_t"
+    if kind is PAIR:
+        return "uint64_t"
     return "float" if isinstance(kind, FloatType) else "bool"
 
 

@@ -81,6 +81,8 @@ class _Rewriter:
                 return replace(node, left=left, right=right)
             case tree.Unary() | tree.Not() | tree.Cast():
                 return replace(node, operand=self.expression(node.operand))
+            case tree.IntrinsicCall():
+                return replace(node, arguments=self.group(*node.arguments))
             case tree.Load():
                 return replace(node, index=self.expression(node.index))
             case tree.KernelCall():

@@ -12,6 +12,7 @@ from pathlib import PurePath
 from bfsim.kernel import tree
 from bfsim.kernel.c.comments import c_comment
 from bfsim.kernel.c.expressions import number
+from bfsim.kernel.c.intrinsics import INTRINSICS, intrinsics_header, intrinsics_in, names_in_header
 from bfsim.kernel.c.library import LIBRARY
 from bfsim.kernel.c.names import WORD, free_name, is_free
 from bfsim.kernel.c.statements import Definition, Place, signature
@@ -19,6 +20,7 @@ from bfsim.kernel.types import Number, f32, i32, u32
 
 OPERATORS = "operators.h"
 HEADER = "kernels.h"
+HEADERS = {name.removesuffix(".h") for name in (HEADER, OPERATORS, INTRINSICS)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +56,9 @@ def c_program(
         of_file.setdefault(each.file, []).append(each)
     stems = _stems(of_file)
     texts = {OPERATORS: (files(__package__) / OPERATORS).read_text(encoding="utf-8")}
+    used = intrinsics_in(functions)
+    if used:
+        texts[INTRINSICS] = intrinsics_header(used)
     texts[HEADER] = _header(of_file, stems, names, static)
     for file, members in of_file.items():
         texts[f"{stems[file]}.c"] = _source(file, members, names, static, place)
@@ -81,12 +86,13 @@ def _names(functions: Iterable[tree.Function], static: frozenset[tree.Function])
     """Kernels keep their names; of several with one name, those that other files see get their file's before it."""
     functions = list(functions)
     many = Tally(each.name for each in functions)
+    reserved = names_in_header(intrinsics_in(functions))
     found: dict[tree.Function, str] = {}
     for each in functions:
         shared = many[each.name] > 1 and each not in static
         wanted = f"{_stem(each.file)}_{each.name}" if shared else each.name
         clashing = {name for other, name in found.items() if other.file == each.file or other not in static}
-        found[each] = free_name(wanted, clashing | LIBRARY)
+        found[each] = free_name(wanted, clashing | LIBRARY | reserved)
     return found
 
 
@@ -99,7 +105,7 @@ def _stems(sources: Iterable[str]) -> dict[str, str]:
     found: dict[str, str] = {}
     for file in sources:
         stem, number = _stem(file), 2
-        while stem.lower() in {each.lower() for each in found.values()} or stem in ("kernels", "operators"):
+        while stem.lower() in {each.lower() for each in found.values()} or stem in HEADERS:
             stem, number = f"{_stem(file)}_{number}", number + 1
         found[file] = stem
     return found
@@ -148,6 +154,7 @@ def _source(
         *c_comment(f"Exported by bfsim from {'/'.join(parts)}."),
         f'#include "{HEADER}"',
         f'#include "{OPERATORS}"',
+        *([f'#include "{INTRINSICS}"'] if intrinsics_in(members) else []),
     ]
     if constants:
         lines += [
@@ -166,7 +173,7 @@ def _constants(
     members: Iterable[tree.Function], names: Mapping[tree.Function, str]
 ) -> dict[str, int | float]:
     """Constants of the file that its kernels name, unless the name means something else in one of them too."""
-    taken = set(names.values())
+    taken = {*names.values(), *names_in_header(intrinsics_in(members))}
     wanted: dict[str, int | float] = {}
     for function in members:
         taken.update(name for name, _ in function.locals)

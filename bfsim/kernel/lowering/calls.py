@@ -57,7 +57,9 @@ class Calls:
 
     def _intrinsic(self, each: Instruction) -> None:
         values = tuple((value, DATA) for value in each.operands if not value.startswith(("true", "false")))
-        if "@llvm.sqrt" in each.text or "@llvm.fpto" in each.text:
+        if (intrinsic := each.intrinsic) is not None:
+            self._instructions(each, intrinsic.ops)
+        elif "@llvm.sqrt" in each.text or "@llvm.fpto" in each.text:
             self.float_operation(each)
         elif "@llvm.fabs" in each.text:
             self.sign(each)
@@ -76,6 +78,13 @@ class Calls:
             )
         else:
             self.append(Op.DSP_ALU, each, each.result, DATA, *values)
+
+    def _instructions(self, each: Instruction, ops: tuple[Op, ...]) -> None:
+        """The instructions of an intrinsic, all of which are told to need its operands."""
+        values = tuple((value if value.startswith("%") else f"#{value}", DATA) for value in each.operands)
+        for op in ops[:-1]:
+            self.append(op, each, f"{each.result}.step", DATA, *values)
+        self.append(ops[-1], each, each.result, DATA, *values)
 
     def _shift_by_zeros(self, each: Instruction) -> None:
         """LLVM divides by what it knows to be a power of two with a count of zeros; the Blackfin calls its library."""

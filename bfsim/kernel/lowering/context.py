@@ -17,7 +17,7 @@ from bfsim.kernel.lowering.predict import Likelihood
 from bfsim.kernel.lowering.ranges import ranges
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 from bfsim.kernel.lowering.tail_calls import tail_calls
-from bfsim.kernel.lowering.widths import widest
+from bfsim.kernel.lowering.widths import PAIR, widest
 from bfsim.kernel.profile import CompilerProfile
 
 
@@ -83,7 +83,7 @@ class Context:
 
     def is_alias(self, each: Instruction) -> bool:
         """Whether an instruction only renames a register: widening what a load has extended already, or narrowing."""
-        if each.opcode in ("trunc", "freeze"):
+        if each.opcode in ("trunc", "freeze") or (each.opcode == "lshr" and each.bits == PAIR):
             return True
         return (
             each.opcode in ("sext", "zext") and " i1 " not in each.text and self._is_clean(each.operands[0])

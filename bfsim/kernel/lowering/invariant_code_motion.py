@@ -49,7 +49,7 @@ class InvariantCodeMotion:
         return all(home in self.flow.dominators[label] for home in homes)
 
     def _place(self, each: Instruction, label: str) -> str:
-        if each.opcode in FIXED and "@llvm." not in each.text:
+        if each.opcode in FIXED and not each.is_computation:
             return label
         label = place = self.hoisted.get(each.result or "", label)
         for loop in self.flow.loops_of(label):

@@ -64,7 +64,7 @@ class _Hoisting:
     def _may_leave(self, each: Instruction) -> bool:
         if each.opcode == "load":
             return self._is_always_made(each) and not self._is_written(each)
-        return (each.opcode not in FIXED or "@llvm." in each.text) and not each.is_division
+        return (each.opcode not in FIXED or each.is_computation) and not each.is_division
 
     def _is_always_made(self, load: Instruction) -> bool:
         """Whether a load is made whenever the loop is entered: no way leaves the loop before it."""

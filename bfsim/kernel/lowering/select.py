@@ -93,6 +93,8 @@ class _Selector(Accesses):
             self.append(Op.ALU, each, each.result, ANY, (left, ANY), (right, ANY))
 
     def shift(self, each: Instruction) -> None:
+        if self.context.is_alias(each):
+            return
         users = self.flow.users.get(each.result or "", [])
         if users and all(self.halved(user) is not None for user in users):
             return

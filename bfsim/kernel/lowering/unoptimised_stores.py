@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from bfsim.kernel.isa import ADD_IMMEDIATE, Op
 from bfsim.kernel.lowering.unoptimised_expressions import BITWISE, Expr, TreeStatement
+from bfsim.kernel.lowering.widths import PAIR
 
 if TYPE_CHECKING:
     from bfsim.kernel.lowering.unoptimised_values import ExpressionCode
@@ -25,7 +26,7 @@ def assign(code: ExpressionCode, each: TreeStatement) -> None:
         code.value(each.value)
     elif target.op == "local":
         code.value(each.value, outermost=True)
-        code.op(STORES[target.bits])
+        code.op(*((Op.STORE32, Op.STORE32) if target.bits == PAIR else (STORES[target.bits],)))
     elif each.value.op == "narrow":
         _store_low_bits(code, each.value.args[0], target)
     else:

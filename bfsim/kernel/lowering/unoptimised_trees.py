@@ -167,6 +167,9 @@ class Trees:
             return self._call(each, label)
         if self._is_corrected(each):
             return self.expr(each.operands[0], label)
+        if each.opcode == "trunc" and " i64 " in each.text:
+            is_lower = self.home[each.operands[0]][1].opcode == "load"
+            return Expr("word", name="lower" if is_lower else "upper")
         bound = each.opcode == "icmp" and base(label) == "for"
         args = tuple(self.expr(operand, None if bound else label) for operand in each.operands)
         if each.opcode == "icmp":
@@ -176,8 +179,7 @@ class Trees:
         if each.opcode == "trunc":
             return Expr("narrow", args, bits=int(each.text.rsplit(" i", 1)[1]))
         if each.opcode == "call":
-            found = next(INTRINSICS[name] for name in INTRINSICS if f"@llvm.{name}." in each.text)
-            return Expr(found, args[:1] if found == "abs" else args)
+            return _operation(each, args)
         return self._arithmetic(each, *args)
 
     def _call(self, each: Instruction, label: str) -> Expr:
@@ -201,3 +203,11 @@ class Trees:
         if each.opcode == "xor" and right == const(1) and " i1 " in each.text:
             return Expr("not", (left,))
         return simplified(ARITHMETIC[each.opcode], left, right, unsigned=each.opcode in UNSIGNED)
+
+
+def _operation(call: Instruction, args: tuple[Expr, ...]) -> Expr:
+    """A call by which LLVM, or the kernel language, writes an operation."""
+    if (intrinsic := call.intrinsic) is not None:
+        return Expr("intrinsic", args, name=intrinsic.name)
+    found = next(INTRINSICS[name] for name in INTRINSICS if f"@llvm.{name}." in call.text)
+    return Expr(found, args[:1] if found == "abs" else args)

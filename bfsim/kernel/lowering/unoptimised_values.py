@@ -11,6 +11,7 @@ from bfsim.kernel.lowering.unoptimised_addresses import offset_of
 from bfsim.kernel.lowering.unoptimised_calls import call, divide
 from bfsim.kernel.lowering.unoptimised_constants import product
 from bfsim.kernel.lowering.unoptimised_expressions import BITWISE, DIVISIONS, Expr, rotated
+from bfsim.kernel.lowering.unoptimised_intrinsics import intrinsic, word
 from bfsim.kernel.lowering.unoptimised_registers import HALF, MODIFIERS, Registers
 from bfsim.kernel.lowering.unoptimised_stores import low_bits_of
 from bfsim.kernel.lowering.widths import WORD
@@ -70,7 +71,7 @@ class ExpressionCode(Registers):
             handlers = {
                 "local": self._local, "decided": self._decided, "load": self.load, "call": self._call,
                 "widen": self._cast, "narrow": self._cast, "compare": self._truth, "not": self._truth,
-                "<<": self._shift, ">>": self._shift,
+                "<<": self._shift, ">>": self._shift, "intrinsic": self._intrinsic, "word": self._word,
                 "min": self._extreme, "max": self._extreme, "umin": self._extreme, "umax": self._extreme,
             }  # fmt: skip
             handlers[each.op](each)
@@ -80,6 +81,12 @@ class ExpressionCode(Registers):
 
     def _call(self, each: Expr) -> None:
         call(self, each)
+
+    def _intrinsic(self, each: Expr) -> None:
+        intrinsic(self, each)
+
+    def _word(self, each: Expr) -> None:
+        word(self, each)
 
     def _decided(self, _each: Expr) -> None:
         """What `and` and `or` decided, as a number."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from bfsim.kernel.loops import ControlFlow
 
-BYTE, WORD = 8, 32
-"""Bits."""
+BYTE, WORD, PAIR = 8, 32, 64
+"""Bits. A pair is what an intrinsic with two results gives; only its words are used."""
 DEEPEST = 6  # operations that are looked through; each may have several operands
 
 
