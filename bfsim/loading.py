@@ -14,8 +14,8 @@ from bfsim.errors import BfsimError, FirmwareError, cut, shown
 from bfsim.importing import ImportedFile, OwnModules, Root
 from bfsim.kernel import Kernel
 from bfsim.locating import located, parted
-from bfsim.machine.code import kernels_named
 from bfsim.machine.firmware_lines import line_of
+from bfsim.machine.named_kernels import kernels_named
 from bfsim.machine.program import Firmware
 
 NEAREST_NAMES = 5

@@ -15,8 +15,8 @@ from bfsim.identifying import DigestedFrames
 from bfsim.kernel import Kernel
 from bfsim.loading import LoadedFirmware, kernels_of
 from bfsim.machine.board import Board, Fidelity
-from bfsim.machine.code import kernels_named
 from bfsim.machine.core.core import Core
+from bfsim.machine.named_kernels import kernels_named
 from bfsim.machine.retiming.recording_core import RecordingCore
 from bfsim.machine.retiming.replayed_core import ReplayedCore, played_again
 from bfsim.report.save import growing_file

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from types import CodeType, FunctionType
-from typing import Any
+from collections.abc import Mapping, Sequence
 
 from bfsim.chip.memory_map import Region
-from bfsim.kernel import CompilerProfile, Kernel
+from bfsim.kernel import CompilerProfile
 from bfsim.linker import LinkMap, Placement, Symbol
 from bfsim.machine.memories import Memories
+from bfsim.machine.named_kernels import kernels_named
 from bfsim.machine.program import Main
 from bfsim.trace import CodeRecord
 
@@ -82,39 +81,3 @@ def code_outside_l1(
 def _in_l1(placed: Placement, regions: Sequence[Region]) -> bool:
     holding = (each for each in regions if each.holds(placed.address, placed.symbol.nbytes))
     return any(each.memory.startswith("L1_CODE") for each in holding)
-
-
-def kernels_named(main: object) -> tuple[Kernel, ...]:
-    """Return the kernels that a function names, or that a function named by it names, in the order of their names."""
-    found: dict[Kernel, None] = {}
-    seen: set[int] = set()
-    waiting: list[object] = [main]
-    while waiting:
-        each = waiting.pop()
-        if id(each) in seen:
-            continue
-        seen.add(id(each))
-        if isinstance(each, Kernel):
-            found[each] = None
-        elif isinstance(each, FunctionType):
-            waiting.extend(_named(each))
-    return tuple(sorted(found, key=lambda kernel: kernel.function.symbol))
-
-
-def _named(function: FunctionType) -> Iterator[Any]:
-    """What the names in the code of a function stand for, as far as they are global or bound in its closure."""
-    wrapped = getattr(function, "__wrapped__", None)
-    if wrapped is not None:
-        yield wrapped
-    for cell in function.__closure__ or ():
-        yield cell.cell_contents
-    for name in _names(function.__code__):
-        if name in function.__globals__:
-            yield function.__globals__[name]
-
-
-def _names(code: CodeType) -> Iterator[str]:
-    yield from code.co_names
-    for constant in code.co_consts:
-        if isinstance(constant, CodeType):
-            yield from _names(constant)
