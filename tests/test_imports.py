@@ -226,7 +226,8 @@ MACHINE = {
     "simulation": {"timeline"},
     "program": {"core", "spi"},  # the types of what a main loop gets, and of the device that firmware brings
     "memories": {"program"},
-    "code": {"memories", "program"},
+    "named_kernels": set(),
+    "code": {"memories", "named_kernels", "program"},
     "bus": {"memories", "simulation", "timeline"},
     "owner_costs": set(),
     "calls": {"bus", "memories", "owner_costs"},

@@ -19,10 +19,15 @@ FILE = ".github/workflows/frame-rate.yml"
 SLOWER = FIRMWARE.replace("        out[x] = 0\n", "        out[x] = x * 7919 // (line[x] + 1)\n")
 
 
+def written() -> str:
+    """The file as the page has it."""
+    [text] = [each.text for each in blocks_of(ROOT / "docs" / "how-to" / "check.md") if each.title == FILE]
+    return text
+
+
 def steps() -> Iterator[Mapping[str, Any]]:
     """The steps of the only job; each runs something or uses an action."""
-    [text] = [each.text for each in blocks_of(ROOT / "docs" / "how-to" / "check.md") if each.title == FILE]
-    [job] = yaml.safe_load(text)["jobs"].values()
+    [job] = yaml.safe_load(written())["jobs"].values()
     for step in job["steps"]:
         assert ("run" in step) != ("uses" in step)
         yield step
@@ -59,6 +64,25 @@ def played(folder: Path, environment: Mapping[str, str]) -> int:
             assert done.returncode in {0, 1}, done.stderr
             worst = worst or done.returncode
     return worst
+
+
+@pytest.mark.parametrize(
+    ("word", "instead", "said"),
+    [
+        ("", "", "ok -- validation done"),
+        ("runs-on", "runs-in", "'runs-on' is a required property"),
+        ("on: [push, pull_request]", "on: [push, pull_requests]", "'pull_requests' is not one of"),
+        ("- uses: actions/checkout@v4", "- use: actions/checkout@v4", "under any of the given schemas"),
+    ],
+)
+def test_the_workflow_is_one_to_github(tmp_path: Path, word: str, instead: str, said: str) -> None:
+    """By SchemaStore's schema of its workflows, which refuses a file with a key, an event or a step that there is not."""
+    file = tmp_path / "frame-rate.yml"
+    file.write_text(written().replace(word, instead) if word else written())
+    command = [sys.executable, "-m", "check_jsonschema", "--builtin-schema", "vendor.github-workflows", file]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert said in done.stdout + done.stderr
+    assert (done.returncode == 0) == (not word)
 
 
 def test_the_workflow_passes_and_fails_as_it_should(tmp_path: Path, runner: Mapping[str, str]) -> None:
