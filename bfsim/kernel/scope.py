@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import ast
 import builtins
+from dataclasses import replace
 
 from bfsim.kernel import tree
 from bfsim.kernel.expressions import Expressions
-from bfsim.kernel.intrinsics import INTRINSICS, Intrinsic
+from bfsim.kernel.intrinsics import INTRINSICS, TO_THE_RIGHT, Intrinsic
 from bfsim.kernel.intrinsics.fract import high_of_fr2x16, low_of_fr2x16
 from bfsim.kernel.operators import BUILT_IN, OF_TWO, instead_of
 from bfsim.kernel.types import PAIR, FloatType, IntType, Number, f32, i16, i32, promoted, sqrt
@@ -30,6 +31,9 @@ class KernelScope(Expressions):
             return self._length(node)
         if (intrinsic := INTRINSICS.get(target)) is not None:
             return self._intrinsic(node, intrinsic)
+        if (to_left := TO_THE_RIGHT.get(target)) is not None:
+            call = self._intrinsic(node, to_left)
+            return replace(call, arguments=(call.arguments[0], self._minus(node.args[1], call.arguments[1])))
         if target in (high_of_fr2x16, low_of_fr2x16) and len(node.args) == 1:
             return self._half(node, upper=target is high_of_fr2x16)
         known = OF_TWO.get(target) if callable(target) else None
@@ -95,6 +99,11 @@ class KernelScope(Expressions):
         arguments = tuple(self.integer(each, i32) for each in node.args)
         kind = PAIR if intrinsic.gives is PAIR else i32
         return tree.IntrinsicCall(intrinsic, arguments, kind, node.lineno)
+
+    def _minus(self, node: ast.expr, value: tree.Expr) -> tree.Expr:
+        if isinstance(value, tree.Const):
+            return self._literal(node, i32(-int(value.value)))
+        return tree.Unary("-", value, i32, node.lineno)
 
     def _half(self, node: ast.Call, *, upper: bool) -> tree.Expr:
         """One half of a pair, which needs no instruction of its own."""

@@ -153,7 +153,10 @@ def test_firmware_can_import_every_intrinsic() -> None:
     """`bfsim.api` has them all, and no two share a name."""
     names = [each.name for each in INTRINSICS.values()]
     assert len({*names}) == len(names)
-    assert {*names, "high_of_fr2x16", "low_of_fr2x16"} <= {*api.__all__}
+    page = (Path(__file__).parents[2] / "docs/how-to/intrinsics.md").read_text(encoding="utf-8")
+    for each in (*names, "high_of_fr2x16", "low_of_fr2x16", "shr_fr1x16", "shr_fr1x32", "shr_fr2x16"):
+        assert each in api.__all__
+        assert f"`{each}`" in page, "the page lists them all"
 
 
 def test_a_half_is_taken_without_a_call(tmp_path: Path) -> None:
@@ -171,6 +174,21 @@ def test_a_half_is_taken_without_a_call(tmp_path: Path) -> None:
     program = c_program([module.difference.function])
     assert "return (x >> 16) - (int16_t)x;" in program.files["parts.c"]
     assert INTRINSICS_HEADER not in program.files
+
+
+def test_a_shift_to_the_right_is_one_to_the_left(tmp_path: Path) -> None:
+    """`shr_...` shifts by the number with the other sign, which is found beforehand if it is a constant."""
+    text = """
+    from bfsim.api import shr_fr1x16, shr_fr1x32, shr_fr2x16
+
+    @kernel
+    def shifts(x: i32, n: i32) -> i32:
+        return shr_fr1x16(x, n) ^ shr_fr1x32(x, n) ^ shr_fr2x16(x, n) ^ shr_fr2x16(x, 3)
+    """
+    module = import_text(text, tmp_path, "shifts")
+    for x, n in product(CORNERS, CORNERS):
+        assert module.shifts(x, n) == module.shifts.python(x, n)
+    assert "shl_fr2x16(x, -3)" in c_program([module.shifts.function]).files["shifts.c"]
 
 
 REFUSED = {

@@ -10,9 +10,8 @@ from collections.abc import Iterator
 from itertools import product
 
 from bfsim.blackfin.form import Beside, Form
+from bfsim.blackfin.multipliers import ADDS, EXTRACTS, MOVES, MULTIPLIES, RESTS
 
-RESTS, ADDS, EXTRACTS, MOVES, MULTIPLIES = "rests", "adds", "extracts", "moves", "multiplies"
-"""What a multiplier does: nothing; change its accumulator; that, and write it to a register; only write it; write a product."""
 WRITING = {EXTRACTS, MOVES, MULTIPLIES}
 WITHOUT_FACTORS = {RESTS, MOVES}
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bfsim.blackfin.effects import Effects
-from bfsim.blackfin.forms.multiplications import ADDS, MOVES, MULTIPLIES, RESTS
+from bfsim.blackfin.multipliers import ADDS, MOVES, MULTIPLIES, RESTS
 from bfsim.blackfin.semantics.modes import Mode
 from bfsim.blackfin.semantics.results import any_of, half, set_overflow, set_zero_negative, write_half
 from bfsim.blackfin.semantics.saturation import saturated
@@ -20,7 +20,7 @@ SET, ADD, SUBTRACT = range(3)
 
 @dataclass(frozen=True, slots=True)
 class Multiplier:
-    """What one of the two does: its number, its mode, what `forms.multiplications` calls it, its operation and its factors."""
+    """What one of the two does: its number, its mode, what `multipliers` calls it, its operation and its factors."""
 
     number: int
     mode: Mode

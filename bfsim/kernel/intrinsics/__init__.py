@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from bfsim.kernel.intrinsics import fract
 from bfsim.kernel.intrinsics.intrinsic import PREFIX, Intrinsic
 from bfsim.kernel.intrinsics.rows import ROWS
 
 INTRINSICS: dict[object, Intrinsic] = {each.python: each for each in ROWS}
 """By the function of Python that each is."""
+TO_THE_RIGHT: dict[object, Intrinsic] = {
+    fract.shr_fr1x16: INTRINSICS[fract.shl_fr1x16],
+    fract.shr_fr1x32: INTRINSICS[fract.shl_fr1x32],
+    fract.shr_fr2x16: INTRINSICS[fract.shl_fr2x16],
+}
+"""Shifts that are those to the left by the number with the other sign."""
 BY_NAME = {each.name: each for each in ROWS}
 
-__all__ = ["BY_NAME", "INTRINSICS", "PREFIX", "Intrinsic"]
+__all__ = ["BY_NAME", "INTRINSICS", "PREFIX", "TO_THE_RIGHT", "Intrinsic"]

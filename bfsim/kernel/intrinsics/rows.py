@@ -8,7 +8,7 @@ first, it is that which the assembler writes first.
 
 from __future__ import annotations
 
-from bfsim.blackfin.forms.multiplications import ADDS, MULTIPLIES, RESTS
+from bfsim.blackfin.multipliers import ADDS, MULTIPLIES, RESTS
 from bfsim.blackfin.operands import Operand
 from bfsim.kernel.intrinsics import fract, video
 from bfsim.kernel.intrinsics.intrinsic import LOWER, RESULT, Intrinsic, Step
@@ -64,14 +64,6 @@ def _shifted(does: str, **operands: Operand) -> tuple[Step, ...]:
     return (Step(does, {"d": RESULT, "t": "R0", "s": "R1", **operands}, Op.DSP_ALU),)
 
 
-def _shifted_right(does: str, **operands: Operand) -> tuple[Step, ...]:
-    """Shift the other way: by the number with the other sign."""
-    return (
-        Step("negate", {"d": RESULT, "s": "R1"}, Op.ALU),
-        Step(does, {"d": RESULT, "t": "R0", "s": RESULT, **operands}, Op.DSP_ALU),
-    )
-
-
 def _aligned(index: str) -> Step:
     """Have the four bytes of a pair of registers be those of the lower one."""
     return Step("set_register", {"d": index, "i": 0}, Op.IMM)
@@ -107,10 +99,6 @@ ROWS = (
     Intrinsic(fract.min_fr1x16, HALVES, i16, _of_two("minimum_pair"), "x < y ? x : y"),
     Intrinsic(fract.max_fr1x16, HALVES, i16, _of_two("maximum_pair"), "x > y ? x : y"),
     Intrinsic(fract.shl_fr1x16, (i16, i32), i16, _shifted("ashift_half_s", h=0, l=0), "nearest_16(shifted(x, places))"),
-    Intrinsic(
-        fract.shr_fr1x16, (i16, i32), i16, _shifted_right("ashift_half_s", h=0, l=0),
-        "nearest_16(shifted(x, 0u - (uint32_t)places))",
-    ),
     Intrinsic(fract.norm_fr1x16, HALF, i16, _dsp("signbits_half", t="R0", l=0), "(int16_t)(sign_bits(x) - 16)"),
     # fract32
     Intrinsic(fract.add_fr1x32, TWO, i32, _of_two("sum_of_registers", q=1), "nearest_32((int64_t)x + y)"),
@@ -121,9 +109,6 @@ ROWS = (
     Intrinsic(fract.min_fr1x32, TWO, i32, _of_two("minimum"), "x < y ? x : y"),
     Intrinsic(fract.max_fr1x32, TWO, i32, _of_two("maximum"), "x > y ? x : y"),
     Intrinsic(fract.shl_fr1x32, TWO, i32, _shifted("ashift_register_s"), "nearest_32(shifted(x, places))"),
-    Intrinsic(
-        fract.shr_fr1x32, TWO, i32, _shifted_right("ashift_register_s"), "nearest_32(shifted(x, 0u - (uint32_t)places))"
-    ),
     Intrinsic(fract.norm_fr1x32, ALONE, i16, _dsp("signbits_register", t="R0"), "(int16_t)sign_bits(x)"),
     Intrinsic(fract.round_fr1x32, ALONE, i16, _dsp("round_half", h=0, s="R0"), "nearest_16(((int64_t)x + 0x8000) >> 16)"),
     Intrinsic(
@@ -155,10 +140,6 @@ ROWS = (
     Intrinsic(
         fract.shl_fr2x16, TWO, i32, _shifted("ashift_pair_s"),
         "halves(nearest_16(shifted(high(x), places)), nearest_16(shifted(low(x), places)))",
-    ),
-    Intrinsic(
-        fract.shr_fr2x16, TWO, i32, _shifted_right("ashift_pair_s"),
-        "halves(nearest_16(shifted(high(x), 0u - (uint32_t)places)), nearest_16(shifted(low(x), 0u - (uint32_t)places)))",
     ),
     Intrinsic(fract.sum_fr2x16, ALONE, i16, _of_halves("add_half", t="R0", l=1), "nearest_16(low(x) + high(x))"),
     Intrinsic(fract.diff_hl_fr2x16, ALONE, i16, _of_halves("subtract_half", t="R0", k=1), "nearest_16(high(x) - low(x))"),
