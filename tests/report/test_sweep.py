@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from io import StringIO
+from pathlib import Path
+
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from rich.console import Console
 
 from bfsim.report.sweep.front import front, sign_of
-from bfsim.report.sweep.screen import Shown, failures, lines_of
+from bfsim.report.sweep.screen import ONE_FRAME, Shown, failures, lines_of, sweep_report
 from bfsim.report.sweep.table import columns_of, csv_of
 
 PLACES = st.lists(st.tuples(st.integers(0, 8), st.integers(0, 8)), max_size=20)
@@ -67,6 +72,17 @@ def test_a_line_is_a_setting_over_its_recordings() -> None:
         slow.missed,
     )
     assert found == (8, 5, 14, 6, 1024, 3)
+
+
+@pytest.mark.parametrize(("frames", "is_said"), [((2, 1), True), ((2, 2), False)])
+def test_the_rate_of_one_frame_is_explained(frames: tuple[int, int], is_said: bool) -> None:
+    """Beneath the table that has it, as on the screen of a run."""
+    columns = ("frame_rate Hz", "frame.median ms", "frame.max ms", "latency.median ms", "on_chip B", "missed")
+    row = {**dict.fromkeys(columns, 1), "error": "", "warnings": ""}
+    points = [Shown(f"point {each}", "a", {**row, "frames": each}) for each in frames]
+    console = Console(width=110, file=StringIO(), record=True)
+    console.print(sweep_report(points, [Path("table.csv")], kept=0, top=5))
+    assert (ONE_FRAME in console.export_text()) == is_said
 
 
 def test_failures_are_told_once_each() -> None:

@@ -23,6 +23,9 @@ NAMES_SHOWN = 3
 ON_FRONT = "*"
 
 
+ONE_FRAME = "Hz of a run of one frame has the wait for its picture in it, frame has not: run two or more."
+
+
 @dataclass(frozen=True, slots=True)
 class Shown:
     """A point: what the setting is called that it is shown as a part of, what it is called, and its row of the table."""
@@ -58,7 +61,8 @@ def sweep_report(points: Sequence[Shown], files: Sequence[Path], kept: int, top:
     parts: list[RenderableType] = [Text(f"{', '.join(counts)}.")]
     parts += best_table(lines_of(done), top) if done else []
     parts += [Text(failures(errors))] if errors else []
-    told = [f"{warned:,} of the points come with warnings: see the column of that name."] if warned else []
+    told = [ONE_FRAME] if any(each.row["frames"] == 1 for each in done) else []
+    told += [f"{warned:,} of the points come with warnings: see the column of that name."] if warned else []
     told.append(f"All figures of all points: {', '.join(map(str, files))}")
     return stacked(*parts, Text("\n".join(told)))
 
