@@ -20,6 +20,8 @@ from bfsim.machine.firmware_lines import running_line
 from bfsim.spans import SpanKind
 from bfsim.trace import StallReason
 
+UNLOCK_CCLK = 1
+"""A store."""
 OTHER_CORE = "SUPPLEMENTAL_0"  # the supplemental interrupt that one core raises at the other
 
 
@@ -38,8 +40,8 @@ class SynchronisedCore(PlayingCore):
     """A core's part of semaphores, locks and the other core's interrupt.
 
     XXX: the counter of a semaphore is not read and written beside its TESTSET, which would be a load and a store of L2,
-    10 to 12 CCLK; and the first TESTSET of a wait decides at its end, those behind it when they have the port, which is
-    11 CCLK earlier.
+    10 to 12 CCLK; the first TESTSET of a wait decides at its end, those behind it when they have the port, which is
+    11 CCLK earlier; and a lock is free when its store is in the store buffer, though others may wait there before it.
     """
 
     _shared: SharedObjects
@@ -76,7 +78,8 @@ class SynchronisedCore(PlayingCore):
     @awaited
     def unlock(self, name: str) -> Generator[Any, Any, None]:
         """Give the spin lock `name` back."""
-        yield from self._access(log.STORE, 1, f"lock {name}")  # of zero
+        # of zero: the store buffer has it in its own cycle, and asks for the port at once
+        yield from self._access(log.STORE, UNLOCK_CCLK, 0, f"lock {name}")
         lock = self._lock(name)
         if lock.core != self.name:
             raise FirmwareError(
@@ -110,16 +113,18 @@ class SynchronisedCore(PlayingCore):
         return f"core {self.name} since cycle {self._cclk:,} ({running_line()})"
 
     def _test_and_set(self, owner: str) -> Generator[Any, Any, None]:
-        yield from self._access(log.TEST_AND_SET, self._board.chip.events.testset_cclk, owner)
+        testset_cclk = self._board.chip.events.testset_cclk  # its memory comes on top
+        yield from self._access(log.TEST_AND_SET, testset_cclk, testset_cclk, owner)
 
-    def _access(self, kind: int, issue_cclk: int, owner: str) -> Generator[Any, Any, None]:
+    def _access(self, kind: int, issue_cclk: int, asks_cclk: int, owner: str) -> Generator[Any, Any, None]:
         """Access a shared variable in L2, and let the simulated time come up to that. Without L2 it costs its issue only."""
         if not self._board.chip.l2:
             self.issue(issue_cclk, owner)
         else:
             self._check_claimed()
             self._unclaimed_kernel = None
-            self._unclaimed = DeferredWork(SharedAccess(self._bus, self._number, kind, issue_cclk), (), owner)
+            access = SharedAccess(self._bus, self._number, kind, issue_cclk, asks_cclk)
+            self._unclaimed = DeferredWork(access, (), owner)
             yield self._unclaimed
         yield from self._sync()
 
