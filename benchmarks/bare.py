@@ -13,9 +13,9 @@ from bfsim.api import CameraSettings, Firmware, Frame, FrameSize, Kernel, Row, W
 from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import VDSP_O2, PreparedCall
 from bfsim.linker import link, parse_ldf
-from bfsim.machine.board import PROCESSORS, symbols_of
 from bfsim.machine.core.layouts import Layouts
 from bfsim.machine.memories import Memories
+from bfsim.machine.symbols import PROCESSORS, symbols_of
 from bfsim.recording import StereoFrame
 from bfsim.run import DEFAULT_LDF
 

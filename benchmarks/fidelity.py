@@ -27,8 +27,9 @@ from bfsim.api import Firmware, FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.errors import BfsimError
 from bfsim.linker import LinkMap, link, parse_ldf
-from bfsim.machine.board import Board, Fidelity, symbols_of
+from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.outcome import Outcome
+from bfsim.machine.symbols import symbols_of
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING, DEFAULT_LDF
 from bfsim.trace import REST

@@ -9,7 +9,8 @@ from typing import Generic, TypeVar
 from bfsim.api import Firmware, FrameSize, Readout
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link, parse_ldf
-from bfsim.machine.board import Board, symbols_of
+from bfsim.machine.board import Board
+from bfsim.machine.symbols import symbols_of
 from bfsim.recording import StereoFrame
 from bfsim.run import DEFAULT_LDF
 from bfsim.trace import FrameRecord

@@ -21,8 +21,9 @@ from bfsim.api import FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import Kernel
 from bfsim.linker import link, parse_ldf
-from bfsim.machine.board import Board, symbols_of
+from bfsim.machine.board import Board
 from bfsim.machine.outcome import Outcome
+from bfsim.machine.symbols import symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.run import BUILT_IN_RECORDING, DEFAULT_LDF
 from tinyphoon import tinyphoon

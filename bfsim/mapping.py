@@ -11,8 +11,8 @@ from bfsim.given import given_firmware
 from bfsim.hardware import find_board, find_profile
 from bfsim.linker import LinkerScript, link
 from bfsim.loading import load_firmware
-from bfsim.machine.board import PROCESSORS, symbols_of
 from bfsim.machine.program import Buffer, Calibration, Firmware, FrameSize
+from bfsim.machine.symbols import PROCESSORS, symbols_of
 from bfsim.report.ldf.map import Kind, MemoryMap
 from bfsim.report.ldf.map_builder import BoardMemories, memory_map
 from bfsim.run_inputs import read_placement

@@ -10,8 +10,8 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, LinkError
 from bfsim.kernel import CompilerProfile
 from bfsim.linker import LinkerScript, LinkMap, link
-from bfsim.machine.board import symbols_of
 from bfsim.machine.program import Calibration, Firmware, FrameSize, SourcePixels
+from bfsim.machine.symbols import symbols_of
 
 _STEPS = 64
 """Sizes that are looked at: so many, of the shape of the pictures."""

@@ -22,13 +22,14 @@ from bfsim.identifying import DigestedFrames, identity_of, recording_digest, wri
 from bfsim.kernel import VDSP_O2
 from bfsim.linker import LinkerScript, LinkMap
 from bfsim.loading import LoadedFirmware, load_firmware
-from bfsim.machine.board import Board, Fidelity, require_cores
+from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.bus.ahead import compiled_ahead
 from bfsim.machine.calls.call_cache import BeforeCall, sanitized
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import Firmware, FrameSize
 from bfsim.machine.spi.device import SpiDevice
+from bfsim.machine.symbols import require_cores
 from bfsim.recording import RecordingReader
 from bfsim.result import Run
 from bfsim.retiming import retimed

@@ -255,6 +255,11 @@ MACHINE = {
         "spi",
         "timeline",
     },
+    "symbols": {"code", "firmware_lines", "program"},
+    "loader": {"bus", "cameras", "memories", "program", "symbols"},
+    "finished_frames": {"calls", "core"},
+    "listeners": {"bus", "finished_frames", "simulation", "timeline"},
+    "main_loops": {"core", "firmware_lines", "listeners", "program", "simulation"},
 }
 """Each block of the machine and what it may import of the others. The board wires them: it imports them all."""
 READ_VERSION = {"recording", "report", "identifying", "cli"}  # these also read `bfsim.__version__`

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from bfsim.machine.core.readout import Readout
 
 Main = Callable[["Core"], Generator[Any, Any, None]]
+View = Callable[["Readout"], Seen | None]
+"""What a core has in memory at the end of a frame → what it saw; None if there is nothing to show."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +160,7 @@ class Firmware:
     reference: Reference | None = None
     calibration: Callable[[Calibration], Buffers] | None = None
     spi: Callable[[Script], SpiDevice] | None = None
-    view: Callable[[Readout], Seen | None] | None = None
+    view: View | None = None
     colours: Callable[[NDArray[np.uint8], Script, int], PictureColours] | None = None
     losses: Mapping[str, str] = field(default_factory=dict)
     assumed_geometry: str = ""

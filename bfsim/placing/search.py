@@ -12,8 +12,8 @@ from typing import Any
 
 from bfsim.hardware import find_board, find_profile
 from bfsim.loading import load_firmware
-from bfsim.machine.board import require_cores, symbols_of
 from bfsim.machine.program import FrameSize
+from bfsim.machine.symbols import require_cores, symbols_of
 from bfsim.placing.ldf import LdfWriter
 from bfsim.placing.measured import Measured, busy_of, frame_cclk
 from bfsim.placing.model import Model

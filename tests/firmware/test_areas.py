@@ -13,10 +13,11 @@ from bfsim.api import Calibration, Firmware, FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.chip.sensors import LEFT_CAMERA, RIGHT_CAMERA
 from bfsim.linker import link
-from bfsim.machine.board import Board, symbols_of
+from bfsim.machine.board import Board
 from bfsim.machine.cameras.settling import settled
 from bfsim.machine.cameras.skipping import skipped
 from bfsim.machine.outcome import Outcome
+from bfsim.machine.symbols import symbols_of
 from bfsim.recording import StereoFrame
 from tests.firmware.lenses import rectified, sighted
 from tests.firmware.pictures import Bytes

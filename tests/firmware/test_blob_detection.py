@@ -12,7 +12,8 @@ import pytest
 from bfsim.api import BudgetRow, Buffer, Core, Firmware, FrameSize, u8, u32
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link
-from bfsim.machine.board import Board, symbols_of
+from bfsim.machine.board import Board
+from bfsim.machine.symbols import symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.run import BUILT_IN_RECORDING
 from tests.firmware import references

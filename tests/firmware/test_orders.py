@@ -10,8 +10,9 @@ import numpy as np
 from bfsim.api import FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link
-from bfsim.machine.board import Board, symbols_of
+from bfsim.machine.board import Board
 from bfsim.machine.outcome import Outcome
+from bfsim.machine.symbols import symbols_of
 from tests.firmware.whole_pictures import buffer, random_frames
 from tests.machine.rig import thesis_ldf
 from tinyphoon import tinyphoon

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from bfsim.api import Firmware
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link
-from bfsim.machine.board import Board, symbols_of
+from bfsim.machine.board import Board
 from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import FrameSize
+from bfsim.machine.symbols import symbols_of
 from bfsim.recording import StereoFrame
 from tests.firmware import (
     blob_references,

@@ -11,9 +11,10 @@ from bfsim.api import BudgetRow, Buffer, Core, Firmware, Frame, FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.chip.spec import BoardSpec
 from bfsim.linker import LinkerScript, link
-from bfsim.machine.board import Board, symbols_of
+from bfsim.machine.board import Board
 from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import Main
+from bfsim.machine.symbols import symbols_of
 from tests.machine.owners import assert_owned
 from tests.machine.rig import (
     SIZE,

@@ -21,7 +21,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import Kernel
 from bfsim.kernel import access_trace as log
 from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
-from bfsim.machine.board import Board, symbols_of
+from bfsim.machine.board import Board
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.transfer_plans import Transfer
@@ -33,6 +33,7 @@ from bfsim.machine.memories import Memories, Row
 from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import Main
 from bfsim.machine.simulation import END_OF_TIME, Simulation
+from bfsim.machine.symbols import symbols_of
 from bfsim.run import DEFAULT_LDF
 from bfsim.trace import CoreFrame, FrameRecord, StageCost, StallReason
 

@@ -15,11 +15,12 @@ from bfsim.api import Buffer, Core, Frame, i32, kernel, u8
 from bfsim.chip.boards import CM_BF561
 from bfsim.errors import FirmwareError, LinkError, MmrError
 from bfsim.linker import LinkerScript, link
-from bfsim.machine.board import Board, symbols_of
+from bfsim.machine.board import Board
 from bfsim.machine.calls.caches import caches_of
 from bfsim.machine.dma.config import DmaConfig
 from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import FrameSize
+from bfsim.machine.symbols import symbols_of
 from bfsim.trace import StallReason
 from tests.machine.kernels import copy, fill, first, spin, total
 from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, in_work, play
@@ -260,7 +261,7 @@ def seen_by_tinyphoon(ldf: str, size: FrameSize) -> tuple[dict[str, bytes], Outc
     )
     return {
         f"{name} {core}": b"".join(row.octets.tobytes() for row in rows[name])
-        for core, rows in board._buffers.items()
+        for core, rows in board._buffers.of.items()
         for name in names
         if name in rows
     }, outcome

@@ -12,8 +12,9 @@ from bfsim.chip.boards import CM_BF533
 from bfsim.chip.dma_registers import Flow, WdSize
 from bfsim.errors import FirmwareError, MmrError
 from bfsim.linker import link
-from bfsim.machine.board import Board, symbols_of
+from bfsim.machine.board import Board
 from bfsim.machine.dma.config import DmaConfig
+from bfsim.machine.symbols import symbols_of
 from tests.machine.kernels import spin
 from tests.machine.made_boards import play
 from tests.machine.placements import shipped

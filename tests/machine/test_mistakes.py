@@ -11,7 +11,7 @@ import pytest
 
 from bfsim.api import Buffer, Core, Frame, FrameSize, i8, u8
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, KernelError
-from bfsim.machine.board import symbols_of
+from bfsim.machine.symbols import symbols_of
 from bfsim.run import simulate
 from tests.machine.kernels import first, spin
 from tests.machine.rig import Play, board_of, every_frame, load, noise, run, see_all

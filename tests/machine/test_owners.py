@@ -13,8 +13,9 @@ from bfsim.api import Core, Frame, i32, kernel
 from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import GCC_O0, VDSP_O2, CompilerProfile, call_paths
 from bfsim.linker import link
-from bfsim.machine.board import Board, symbols_of
+from bfsim.machine.board import Board
 from bfsim.machine.outcome import Outcome
+from bfsim.machine.symbols import symbols_of
 from bfsim.trace import OwnerCost, StallReason
 from tests.machine.kernels import copy, spin
 from tests.machine.made_boards import in_work, play

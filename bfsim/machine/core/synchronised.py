@@ -28,12 +28,17 @@ OTHER_CORE = "SUPPLEMENTAL_0"  # the supplemental interrupt that one core raises
 class SharedObjects:
     """What both cores know by name: semaphores, locks, and each other's interrupts."""
 
-    def __init__(self) -> None:
+    def __init__(self, interrupts: Mapping[str, Interrupts]) -> None:
         self.semaphores: dict[str, Semaphore] = {}
         self.locks: dict[str, SpinLock] = {}
-        self.interrupts: dict[str, Interrupts] = {}
+        self.interrupts = interrupts
         self.turns: dict[str, simpy.Event] = {}
         """Of each core that no device can let go on: the event at which its turn at a semaphore or lock comes."""
+
+    def interrupt(self, source: str) -> None:
+        """Interrupt every core whose firmware asked for it: each has a SIC of its own."""
+        for each in self.interrupts.values():
+            each.request(source)
 
 
 class SynchronisedCore(PlayingCore):

@@ -41,7 +41,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from bfsim.errors import BfsimError, FirmwareError
+from bfsim.errors import BfsimError, FirmwareError, shown
 from bfsim.machine.firmware_lines import line_of
 
 WORD_BYTES = 2  # SPI_CTL with SIZE
@@ -110,3 +110,12 @@ def device_at_work() -> Iterator[None]:
     except (Exception, SystemExit) as error:
         what = f"{type(error).__name__}: {error}{line_of(error)}"
         raise FirmwareError(f"the device on the SPI failed with {what}") from error
+
+
+def notes_of(device: SpiDevice) -> tuple[str, ...]:
+    """Return what a device has the user warned of, now that the run is over."""
+    with device_at_work():
+        notes = device.finish()
+    if isinstance(notes, str) or not all(isinstance(each, str) for each in notes):
+        raise FirmwareError(f"finish of the device on the SPI must return a list of str, not {shown(notes)}")
+    return tuple(notes)

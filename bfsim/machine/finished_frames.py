@@ -1,0 +1,50 @@
+"""The frames of a run that every core has finished, each as one record."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from bfsim.machine.calls.call_cache import CallCache
+from bfsim.machine.core.core import Core
+from bfsim.seen import Seen
+from bfsim.signals import uninterrupted
+from bfsim.trace import FrameRecord
+
+
+class FinishedFrames:
+    """`records` of the frames that are done; `seen` in each, by its index, until that was told."""
+
+    def __init__(
+        self,
+        cores: Mapping[str, Core],
+        calls: Mapping[str, CallCache],
+        on_frame: Callable[[FrameRecord], None] | None,
+    ) -> None:
+        """`calls`: of each core; `on_frame`: told each record."""
+        self.records: list[FrameRecord] = []
+        self.seen: list[tuple[int, tuple[Seen, ...]]] = []
+        self._cores = cores
+        self._calls = calls
+        self._on_frame = on_frame
+
+    def collect(self) -> None:
+        """Make one record of a frame as soon as every core has finished it."""
+        if not all(core.finished for core in self._cores.values()):
+            return
+        parts = [core.finished.pop(0) for core in self._cores.values()]
+        for calls, part in zip(self._calls.values(), parts, strict=True):
+            calls.report(part.counted)
+        record = FrameRecord(
+            index=parts[0].index,
+            last_line_cclk=parts[0].full_at_cclk,
+            result_cclk=max(each.cycles.end_cclk for each in parts),
+            cores=tuple(each.cycles for each in parts),
+            results={name: value for each in parts for name, value in each.results.items()},
+            remarks=tuple(text for each in parts for text in each.remarks),
+        )
+        with uninterrupted():
+            self.records.append(record)
+            if seen := tuple(each.seen for each in parts if each.seen):
+                self.seen.append((record.index, seen))
+        if self._on_frame:
+            self._on_frame(record)

@@ -1,0 +1,61 @@
+"""What a firmware needs from the linker: a symbol for every buffer, and one for the code of every kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from bfsim.chip.spec import BoardSpec
+from bfsim.errors import BfsimError, FirmwareError
+from bfsim.kernel import VDSP_O2, CompilerProfile
+from bfsim.linker import Symbol
+from bfsim.machine.code import code_symbols, object_file
+from bfsim.machine.firmware_lines import line_of
+from bfsim.machine.program import Buffer, Buffers, Firmware, FrameSize
+
+PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
+
+
+def require_cores(firmware: Firmware, spec: BoardSpec) -> None:
+    """Raise FirmwareError unless the firmware is for the cores of the board's chip."""
+    if set(firmware.mains) != set(spec.chip.cores):
+        cores, known = ", ".join(spec.chip.cores), ", ".join(sorted(firmware.mains))
+        raise FirmwareError(f"firmware must have main loops for {cores}, not for {known} (board {spec.name})")
+
+
+def symbols_of(firmware: Firmware, size: FrameSize, profile: CompilerProfile = VDSP_O2) -> list[Symbol]:
+    """Return what the linker must place for pictures of `size`: buffers, and code as `profile` compiles it."""
+    found = [
+        symbol
+        for owner, main in firmware.mains.items()
+        for symbol in code_symbols(main, PROCESSORS[owner], profile)
+    ]
+    for owner, buffers in _called(firmware, size).items():
+        if owner not in PROCESSORS:
+            raise FirmwareError(f"buffers must belong to {', '.join(PROCESSORS)}, not {owner!r}")
+        for each in buffers:
+            if not isinstance(each, Buffer):
+                raise FirmwareError(f"buffers of {owner} must be of bfsim.api.Buffer, not {each!r}")
+            found.append(
+                Symbol(
+                    name=each.name,
+                    section=each.section,
+                    nbytes=each.nbytes,
+                    processor=PROCESSORS[owner],
+                    object_file=object_file(each.name),
+                )
+            )
+    return found
+
+
+def _called(firmware: Firmware, size: FrameSize) -> Buffers:
+    """Return the buffers of firmware whose code may have mistakes; a mistake is a FirmwareError with its line."""
+    try:
+        buffers = firmware.buffers(size)
+    except BfsimError:
+        raise
+    except Exception as error:
+        what = f"{type(error).__name__}: {error}{line_of(error)}"
+        raise FirmwareError(f"buffers for pictures of {size} failed with {what}") from error
+    if not isinstance(buffers, Mapping):
+        raise FirmwareError(f"buffers must come as a dict of those of each core, not as {buffers!r}")
+    return buffers
