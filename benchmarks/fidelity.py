@@ -28,11 +28,10 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.errors import BfsimError
 from bfsim.linker import LinkMap, link, parse_ldf
 from bfsim.machine.board import Board, Fidelity
-from bfsim.machine.outcome import Outcome
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING, DEFAULT_LDF
-from bfsim.trace import REST
+from bfsim.trace import REST, BoardRecord
 from tinyphoon import tinyphoon
 
 # the issue's aims
@@ -62,7 +61,7 @@ class Comparison:
     detailed_s: float
 
 
-def cycles_of(outcome: Outcome) -> dict[tuple[str, str], list[int]]:
+def cycles_of(outcome: BoardRecord) -> dict[tuple[str, str], list[int]]:
     """Return the cycles of each frame by stage and core. A frame is all but the idle cycles.
 
     What belongs to no stage counts in the frame only.
@@ -78,7 +77,7 @@ def cycles_of(outcome: Outcome) -> dict[tuple[str, str], list[int]]:
     return found
 
 
-def rows_of(fast: Outcome, detailed: Outcome, cclk_hz: float) -> Iterator[Row]:
+def rows_of(fast: BoardRecord, detailed: BoardRecord, cclk_hz: float) -> Iterator[Row]:
     """Compare two outcomes of the same frames."""
     theirs = cycles_of(detailed)
     for (stage, core), ours in cycles_of(fast).items():
@@ -93,7 +92,7 @@ def rows_of(fast: Outcome, detailed: Outcome, cclk_hz: float) -> Iterator[Row]:
         )
 
 
-def compare(case: str, run: Callable[[Fidelity], Outcome]) -> Comparison:
+def compare(case: str, run: Callable[[Fidelity], BoardRecord]) -> Comparison:
     """Run a case in both modes, once before to have every kernel compiled."""
     run(Fidelity.FAST)
     began = perf_counter()

@@ -22,10 +22,10 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import Kernel
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board
-from bfsim.machine.outcome import Outcome
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.run import BUILT_IN_RECORDING, DEFAULT_LDF
+from bfsim.trace import BoardRecord
 from tinyphoon import tinyphoon
 
 STEREO_FRAMES = 40
@@ -39,7 +39,7 @@ def frames() -> list[StereoFrame]:
         return list(islice(cycle(list(reader.frames())), STEREO_FRAMES))
 
 
-def run_simulated(frames: list[StereoFrame]) -> Outcome:
+def run_simulated(frames: list[StereoFrame]) -> BoardRecord:
     """Run the firmware on the simulated board, as `bfsim run` does."""
     size = FrameSize(320, 240)
     places = link(parse_ldf(DEFAULT_LDF), symbols_of(tinyphoon, size))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import partial, wraps
 from inspect import signature
 from pathlib import Path
@@ -26,7 +26,6 @@ from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.bus.ahead import compiled_ahead
 from bfsim.machine.calls.call_cache import BeforeCall, sanitized
 from bfsim.machine.cameras.capture import Feed
-from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import Firmware, FrameSize
 from bfsim.machine.spi.device import SpiDevice
 from bfsim.machine.symbols import require_cores
@@ -37,7 +36,7 @@ from bfsim.room import place
 from bfsim.run_inputs import calibration_of, read_placement
 from bfsim.seen import Seen, SeenFrame
 from bfsim.spans import Span
-from bfsim.trace import BudgetRow, Identity, MemoryRecord, RunWarning
+from bfsim.trace import BoardRecord, BudgetRow, Identity, MemoryRecord, RunWarning
 
 BUILT_IN_RECORDING = shipped.RECORDING
 PLACEMENTS = shipped.LDF_FOLDER
@@ -182,14 +181,14 @@ def simulate(
         with retimed(
             machine, identity, source, loaded, record_work=record_work, work=work, is_watched=watched
         ):
-            outcome = machine.run(iter(source), count, show if on_seen else None, on_time, on_spans)
+            left = machine.run(iter(source), count, show if on_seen else None, on_time, on_spans)
     identity = replace(
         identity, recording_digest=source.digest, firmware_digest=loaded.digest, firmware_files=loaded.files
     )
     assumptions = (*assumed_geometry(program, calibration), *assumed_clocks(spec))
     geometry = geometry_in_words(program, calibration)
     memories = tuple(_memories(link_map, spec))
-    return _record(outcome, identity, geometry, assumptions, loaded, placement, memories)
+    return _record(left, identity, geometry, assumptions, loaded, placement, memories)
 
 
 def _one_of(kind: type[Choice], option: str, name: Choice | str) -> Choice:
@@ -264,7 +263,7 @@ def _device(path: Path | None, loaded: LoadedFirmware) -> tuple[SpiDevice, str]:
 
 
 def _record(
-    outcome: Outcome,
+    left: BoardRecord,
     identity: Identity,
     geometry: str,
     assumptions: tuple[RunWarning, ...],
@@ -273,6 +272,7 @@ def _record(
     memories: tuple[MemoryRecord, ...],
 ) -> Run:
     return Run(
+        **{each.name: getattr(left, each.name) for each in fields(left)},
         identity=identity,
         firmware_place="built in" if loaded.is_built_in else written(loaded.path),
         ldf_place="shipped"
@@ -280,22 +280,9 @@ def _record(
         else written(placement.path.absolute()),
         rows=loaded.firmware.rows,
         reference=loaded.firmware.reference,
-        frames=outcome.frames,
-        missed=outcome.missed,
-        interrupted=outcome.interrupted,
-        kernels=outcome.kernels,
-        accesses=outcome.accesses,
-        paths=outcome.paths,
-        buffers=outcome.buffers,
-        traffic=outcome.traffic,
-        code=outcome.code,
-        messages=outcome.messages,
-        device_notes=outcome.device_notes,
         geometry=geometry,
         assumptions=assumptions,
         losses=loaded.firmware.losses,
-        interrupts=outcome.interrupts,
-        events=outcome.events,
         memories=memories,
     )
 

@@ -12,6 +12,8 @@ from bfsim.cli import main
 from tests.pages import PAGES, ROOT
 
 README = (ROOT / "README.md").read_text()
+CONTRIBUTING = ROOT / "CONTRIBUTING.md"
+IN_CODE = re.compile(r"`(?P<inline>[^`\n]+)`|^    (?P<block>.*)$", re.MULTILINE)
 OF_OTHERS = {"--recording", "--ablate", "--no", "--inline"}
 """Options of pytest, of scripts and of git."""
 
@@ -40,12 +42,16 @@ def test_the_options_of_a_page_exist(page: Path) -> None:
     assert not named - options_of(main) - OF_OTHERS
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize("page", (*PAGES, CONTRIBUTING), ids=lambda page: str(page.relative_to(ROOT)))
 def test_the_files_of_a_page_exist(page: Path) -> None:
-    """Every file and folder of the repository that a page names in code is there, and so is what it links to."""
+    """Every file and folder of the repository that a page names in code, in a line or a block, is there, and so is what it links to."""
     text = page.read_text()
-    in_code = " ".join(re.findall(r"`([^`\n]+)`", text)).split()
-    named = {word for word in in_code if re.match(r"(bfsim|firmware|benchmarks|tests|ldf|docs)/\w", word)}
+    in_code = [
+        word for found in IN_CODE.finditer(text) for word in (found["inline"] or found["block"]).split()
+    ]
+    named = {
+        word for word in in_code if re.match(r"(bfsim|firmware|benchmarks|tests|ldf|docs|\.ci)/\w", word)
+    }
     missing = [each for each in named if "*" not in each and not (ROOT / each).exists()]
     links = [
         each for each in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text) if not (page.parent / each).exists()

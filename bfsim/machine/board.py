@@ -36,13 +36,12 @@ from bfsim.machine.listeners import Announcer, OnFrame, OnSeen, OnSpans, OnTime
 from bfsim.machine.loader import LoadedBuffers
 from bfsim.machine.main_loops import MainLoops
 from bfsim.machine.memories import Memories
-from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import Firmware, FrameSize, View
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi.device import LARGEST_MESSAGE_BYTES, SpiDevice, notes_of
 from bfsim.machine.spi.spi import Spi
 from bfsim.machine.symbols import PROCESSORS
-from bfsim.trace import FrameRecord
+from bfsim.trace import BoardRecord, FrameRecord
 
 MDMA_MASTERS = ((w.MDMA1_0, w.MDMA1_1), (w.MDMA2_0, w.MDMA2_1))
 """Of each core: for its input and its output rings."""
@@ -125,7 +124,7 @@ class Board:
         on_seen: OnSeen | None = None,
         on_time: OnTime | None = None,
         on_spans: OnSpans | None = None,
-    ) -> Outcome:
+    ) -> BoardRecord:
         """Play `pictures` until they end or the user interrupts, telling whoever listens.
 
         Raises DeadlockError when the cores block each other.
@@ -152,7 +151,7 @@ class Board:
             interrupted = True
             announcer.tell_seen()
         announcer.tell_end()
-        return self._outcome(capture, frames.records, calls, interrupted=interrupted)
+        return self._record(capture, frames.records, calls, interrupted=interrupted)
 
     # ---- wiring
 
@@ -232,16 +231,16 @@ class Board:
 
     # ---- records
 
-    def _outcome(
+    def _record(
         self,
         capture: Capture,
         frames: Sequence[FrameRecord],
         calls: Mapping[str, CallCache],
         *,
         interrupted: bool,
-    ) -> Outcome:
+    ) -> BoardRecord:
         counted = [each.records() for each in calls.values()]
-        return Outcome(
+        return BoardRecord(
             frames=tuple(frames),
             missed=tuple(sorted(capture.missed)),
             interrupted=interrupted,

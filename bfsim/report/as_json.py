@@ -47,6 +47,7 @@ def as_json(run: RunRecord) -> dict[str, Any]:
         "schema": SCHEMA,
         "digests": digests,
         "warnings": warnings,
+        "identity": plain.pop("identity"),
         "budget": budget,
         **plain,
         "owners": to_jsonable_python(list(owner_frames(run))),

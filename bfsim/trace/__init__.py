@@ -17,7 +17,7 @@ from bfsim.trace.explanation import (
 from bfsim.trace.frames import REST, CoreFrame, FrameRecord, OwnerCost, StageCost, StallReason
 from bfsim.trace.hardware import BufferRecord, CodeRecord, MemoryRecord, MessageRecord, TrafficRecord
 from bfsim.trace.kernels import AccessRecord, KernelRecord, LineCost, PathRecord
-from bfsim.trace.run import BudgetRow, Identity, Reference, RunRecord, RunWarning, WarningKind
+from bfsim.trace.run import BoardRecord, BudgetRow, Identity, Reference, RunRecord, RunWarning, WarningKind
 
 __all__ = [
     "REST",
@@ -25,6 +25,7 @@ __all__ = [
     "Assembly",
     "AssemblyInstruction",
     "AssemblyLoop",
+    "BoardRecord",
     "BudgetRow",
     "BufferRecord",
     "CodeRecord",

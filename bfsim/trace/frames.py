@@ -48,25 +48,16 @@ class StageCost:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OwnerCost:
-    """What one owner cost one core in one stage of one frame: a kernel without its callees, or something that no kernel does.
+class OwnerCost(StageCost):
+    """The part of a stage's cost that one owner has: a kernel without its callees, or something that no kernel does.
 
     `symbol` is the kernel's in the machine code (`KernelRecord`); it is empty for a ring, a semaphore, an interrupt, the
-    cameras ..., which `owner` then names. A stall of no cycles is left out of `stall_cclk`.
+    cameras ..., which `owner` then names.
     """
 
-    stage: str
     owner: str
     symbol: str
     calls: int
-    issue_cclk: int
-    stall_cclk: Mapping[StallReason, int]
-    idle_cclk: int
-
-    @property
-    def elapsed_cclk(self) -> int:
-        """Cycles from first to last, whatever the core did in them."""
-        return self.issue_cclk + sum(self.stall_cclk.values()) + self.idle_cclk
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -90,23 +90,13 @@ class RunWarning:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RunRecord:
-    """One run. `messages` went over SPI; `interrupts` were taken, by core and source. `missed` are the recording's frames that came while the firmware was busy.
+class BoardRecord:
+    """What a board leaves behind when the recording is over, or the user stopped it. `missed` are the recording's frames that came while the firmware was busy.
 
-    `firmware_place` is the file that was named as firmware, or "built in"; `ldf_place` is the LDF's, or "shipped".
-    `device_notes` are what the device on the SPI had to say when the run was over.
-    `reference` says what the `reference_ms` of `rows` are, None where the firmware has no reference.
-    `geometry` says where the firmware takes the cameras to be, and whether the recording said so; it is empty for firmware
-    that does not ask. `assumptions` are warnings of what was not given and had to be assumed; `losses` say in words what those published
-    numbers count that the firmware lost.
+    `messages` went over SPI; `device_notes` are what the device there had to say at the end. `interrupts` were taken, by core and source.
     When `interrupted` by Ctrl-C, `traffic` also holds what was moved of the frame that was not finished.
     """
 
-    identity: Identity
-    firmware_place: str
-    ldf_place: str
-    rows: tuple[BudgetRow, ...]
-    reference: Reference | None
     frames: tuple[FrameRecord, ...]
     missed: tuple[int, ...]
     interrupted: bool
@@ -118,9 +108,26 @@ class RunRecord:
     code: tuple[CodeRecord, ...]
     messages: tuple[MessageRecord, ...]
     device_notes: tuple[str, ...]
+    interrupts: Mapping[str, int]
+    events: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunRecord(BoardRecord):
+    """One run: what its board left behind, and what ran there. `firmware_place` is the file that was named as firmware, or "built in"; `ldf_place` is the LDF's, or "shipped".
+
+    `reference` says what the `reference_ms` of `rows` are, None where the firmware has no reference.
+    `geometry` says where the firmware takes the cameras to be, and whether the recording said so; it is empty for firmware
+    that does not ask. `assumptions` are warnings of what was not given and had to be assumed; `losses` say in words what those published
+    numbers count that the firmware lost.
+    """
+
+    identity: Identity
+    firmware_place: str
+    ldf_place: str
+    rows: tuple[BudgetRow, ...]
+    reference: Reference | None
     geometry: str
     assumptions: tuple[RunWarning, ...]
     losses: Mapping[str, str]
-    interrupts: Mapping[str, int]
-    events: int
     memories: tuple[MemoryRecord, ...] = ()

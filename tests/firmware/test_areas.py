@@ -16,9 +16,9 @@ from bfsim.linker import link
 from bfsim.machine.board import Board
 from bfsim.machine.cameras.settling import settled
 from bfsim.machine.cameras.skipping import skipped
-from bfsim.machine.outcome import Outcome
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import StereoFrame
+from bfsim.trace import BoardRecord
 from tests.firmware.lenses import rectified, sighted
 from tests.firmware.pictures import Bytes
 from tests.firmware.test_rectification import tables
@@ -34,7 +34,7 @@ def run(
     *names: dict[str, Any],
     firmware: Firmware = tinyphoon,
     ldf: str = "thesis.ldf",
-) -> tuple[Board, Outcome]:
+) -> tuple[Board, BoardRecord]:
     """Play the frames; mode number n of `names` comes in frame n, to be in force in the next one; the first one is in force from the start."""
     height, double_width = frames[0].left.shape
     size = FrameSize(double_width // 2, height)
@@ -50,7 +50,7 @@ def part(uyvy: Bytes, area: tuple[int, int, int, int]) -> Bytes:
     return uyvy[y : y + height, 2 * x : 2 * (x + width)]
 
 
-def check(board: Board, outcome: Outcome, left: Bytes, right: Bytes, *clear: NDArray[np.bool_]) -> None:
+def check(board: Board, outcome: BoardRecord, left: Bytes, right: Bytes, *clear: NDArray[np.bool_]) -> None:
     """Compare what both cores made of the last frame with what the references make of these pictures alone."""
     assert outcome.frames[-1].remarks == ()
     results = dict(outcome.frames[-1].results)

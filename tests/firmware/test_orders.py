@@ -11,8 +11,8 @@ from bfsim.api import FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link
 from bfsim.machine.board import Board
-from bfsim.machine.outcome import Outcome
 from bfsim.machine.symbols import symbols_of
+from bfsim.trace import BoardRecord
 from tests.firmware.whole_pictures import buffer, random_frames
 from tests.machine.rig import thesis_ldf
 from tinyphoon import tinyphoon
@@ -25,7 +25,7 @@ from tinyphoon.strategy_unit.unit import StrategyUnit
 Entry = dict[str, Any]
 
 
-def run(script: Sequence[Entry], frames: int) -> tuple[StrategyUnit, Board, Outcome]:
+def run(script: Sequence[Entry], frames: int) -> tuple[StrategyUnit, Board, BoardRecord]:
     """Play noise of 64x48 to the firmware while the strategy unit sends the entries of a script."""
     size = FrameSize(64, 48)
     link_map = link(thesis_ldf(), symbols_of(tinyphoon, size), CM_BF561.chip.regions)

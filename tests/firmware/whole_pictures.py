@@ -12,10 +12,10 @@ from bfsim.api import Firmware
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link
 from bfsim.machine.board import Board
-from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import FrameSize
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import StereoFrame
+from bfsim.trace import BoardRecord
 from tests.firmware import (
     blob_references,
     edge_references,
@@ -59,7 +59,7 @@ def random_frames(width: int, height: int, count: int) -> list[StereoFrame]:
     return stereo(*zip(pictures[::2], pictures[1::2], strict=True))
 
 
-def run(frames: Sequence[StereoFrame], firmware: Firmware = tinyphoon) -> tuple[Board, Outcome]:
+def run(frames: Sequence[StereoFrame], firmware: Firmware = tinyphoon) -> tuple[Board, BoardRecord]:
     """Play the frames through the firmware; the board's memories hold what is left of the last one."""
     height, double_width = frames[0].left.shape
     board = board_for(double_width // 2, height, firmware)
@@ -158,7 +158,7 @@ def check_core(
     check_lines(board, core, uyvy, results)
 
 
-def check_last_frame(frames: Sequence[StereoFrame]) -> Outcome:
+def check_last_frame(frames: Sequence[StereoFrame]) -> BoardRecord:
     """Run the frames and compare what both cores made of the last one."""
     board, outcome = run(frames)
     assert [each.index for each in outcome.frames] == [each.index for each in frames]

@@ -12,9 +12,9 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.chip.spec import BoardSpec
 from bfsim.linker import LinkerScript, link
 from bfsim.machine.board import Board
-from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import Main
 from bfsim.machine.symbols import symbols_of
+from bfsim.trace import BoardRecord
 from tests.machine.owners import assert_owned
 from tests.machine.rig import (
     SIZE,
@@ -70,7 +70,7 @@ def made_board(
 
 def play(
     main_a: Main, main_b: Main = see_all, *, frames: int | Iterable[Picture] = 1, **made: Any
-) -> Outcome:
+) -> BoardRecord:
     """Run firmware with these main loops on a board made for it."""
     board = made_board(main_a, main_b, **made)
     return board.run(iter(noise(frames, board.size) if isinstance(frames, int) else frames))
@@ -81,7 +81,7 @@ def with_chip(**changes: Any) -> BoardSpec:
     return replace(CM_BF561, chip=replace(CHIP, **changes))
 
 
-def assert_accounted(outcome: Outcome) -> None:
+def assert_accounted(outcome: BoardRecord) -> None:
     """issue + stall + idle = elapsed for every core and frame, and each frame begins where the one before ended."""
     for frame in outcome.frames:
         for core in frame.cores:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 
-from bfsim.machine.outcome import Outcome
-from bfsim.trace import OwnerCost, StageCost, StallReason
+from bfsim.trace import BoardRecord, OwnerCost, StageCost, StallReason
 
 Sums = Counter[tuple[str, str, str, object]]
 """Cycles by core, stage, symbol, and what: "issue", or the reason of a stall."""
 
 
-def assert_owned(outcome: Outcome) -> None:
+def assert_owned(outcome: BoardRecord) -> None:
     """The owners of each stage fill it, and kernels, their lines, what they accessed and the paths to them add up to theirs."""
     for core in (core for frame in outcome.frames for core in frame.cores):
         for stage in core.stages:
@@ -54,7 +53,7 @@ def assert_filled(stage: StageCost, owners: Iterable[OwnerCost]) -> None:
     assert stalls == stage.stall_cclk, stage.stage
 
 
-def _owned(outcome: Outcome) -> tuple[Sums, Counter[tuple[str, str, str]]]:
+def _owned(outcome: BoardRecord) -> tuple[Sums, Counter[tuple[str, str, str]]]:
     """Return the cycles and the calls of kernels in all frames."""
     sums, calls = Sums(), Counter[tuple[str, str, str]]()
     for core in (core for frame in outcome.frames for core in frame.cores):
@@ -65,14 +64,14 @@ def _owned(outcome: Outcome) -> tuple[Sums, Counter[tuple[str, str, str]]]:
     return sums, +calls
 
 
-def _calls_of_paths(outcome: Outcome) -> Counter[tuple[str, str, str]]:
+def _calls_of_paths(outcome: BoardRecord) -> Counter[tuple[str, str, str]]:
     calls = Counter[tuple[str, str, str]]()
     for each in outcome.paths:
         calls[each.core, each.stage, each.path[-1]] += each.calls
     return +calls
 
 
-def _at_accesses(outcome: Outcome) -> dict[tuple[str, str, str, object], int]:
+def _at_accesses(outcome: BoardRecord) -> dict[tuple[str, str, str, object], int]:
     sums = Sums()
     for each in outcome.accesses:
         _add(sums, (each.core, each.stage, each.symbol), 0, each.stall_cclk)

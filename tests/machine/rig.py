@@ -30,12 +30,11 @@ from bfsim.machine.calls.ledger import BUS_STALLS
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
-from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import Main
 from bfsim.machine.simulation import END_OF_TIME, Simulation
 from bfsim.machine.symbols import symbols_of
 from bfsim.run import DEFAULT_LDF
-from bfsim.trace import CoreFrame, FrameRecord, StageCost, StallReason
+from bfsim.trace import BoardRecord, CoreFrame, FrameRecord, StageCost, StallReason
 
 SIZE = FrameSize(16, 8)
 STAGES = ("Work", "More work")
@@ -138,7 +137,9 @@ def load(main_a: Main, main_b: Main = see_all, size: FrameSize = SIZE, **how: An
     return board_of(firmware, size, **how)
 
 
-def run(main_a: Main, main_b: Main = see_all, *, frames: int | Iterable[Picture] = 1, **how: Any) -> Outcome:
+def run(
+    main_a: Main, main_b: Main = see_all, *, frames: int | Iterable[Picture] = 1, **how: Any
+) -> BoardRecord:
     """Run firmware with these main loops on `frames`, or on so many of them."""
     board = load(main_a, main_b, **how)
     pictures = noise(frames, board.size) if isinstance(frames, int) else frames

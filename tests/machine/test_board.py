@@ -16,8 +16,7 @@ from bfsim.errors import ConfigError, FirmwareError, LinkError
 from bfsim.linker import LinkMap
 from bfsim.machine.board import Board
 from bfsim.machine.cameras.capture import Feed
-from bfsim.machine.outcome import Outcome
-from bfsim.trace import FrameRecord
+from bfsim.trace import BoardRecord, FrameRecord
 from tests.machine.kernels import copy, spin
 from tests.machine.rig import (
     SIZE,
@@ -179,7 +178,7 @@ def test_a_run_to_the_end_is_not_interrupted() -> None:
 def test_two_boards_in_one_process_know_nothing_of_each_other() -> None:
     """The second run has the numbers of the first: no state stays behind."""
 
-    def outcome() -> Outcome:
+    def outcome() -> BoardRecord:
         return replace(run(every_frame(in_and_out), every_frame(in_and_out), frames=2), kernels=())
 
     assert outcome() == outcome()

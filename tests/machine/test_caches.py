@@ -18,10 +18,9 @@ from bfsim.linker import LinkerScript, link
 from bfsim.machine.board import Board
 from bfsim.machine.calls.caches import caches_of
 from bfsim.machine.dma.config import DmaConfig
-from bfsim.machine.outcome import Outcome
 from bfsim.machine.program import FrameSize
 from bfsim.machine.symbols import symbols_of
-from bfsim.trace import StallReason
+from bfsim.trace import BoardRecord, StallReason
 from tests.machine.kernels import copy, fill, first, spin, total
 from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, in_work, play
 from tests.machine.placements import changed, shipped
@@ -71,13 +70,15 @@ class PlainCache:
         lines.move_to_end(line)
 
 
-def moved(outcome: Outcome, *, stored: bool) -> int:
+def moved(outcome: BoardRecord, *, stored: bool) -> int:
     """Bytes that core A loaded from SDRAM, or stored there."""
     of = [each for each in outcome.traffic if (each.memory, each.master) == ("SDRAM", "core A")]
     return sum(each.written_bytes if stored else each.read_bytes for each in of)
 
 
-def visits(streams: Sequence[Sequence[int]], ldf: LinkerScript, **made: Any) -> tuple[Outcome, PlainCache]:
+def visits(
+    streams: Sequence[Sequence[int]], ldf: LinkerScript, **made: Any
+) -> tuple[BoardRecord, PlainCache]:
     """Visit words of SDRAM by kernels, a call for each stream; and let the plain cache do the same."""
     plain = PlainCache()
 
@@ -243,7 +244,7 @@ def test_cached_lines_are_as_strict_as_rings(way: str, message: str) -> None:
         play(every_frame(work), ldf=shipped("cache.ldf"))
 
 
-def seen_by_tinyphoon(ldf: str, size: FrameSize) -> tuple[dict[str, bytes], Outcome]:
+def seen_by_tinyphoon(ldf: str, size: FrameSize) -> tuple[dict[str, bytes], BoardRecord]:
     """Run the vision firmware; return what is in its buffers then, and the run."""
     spec = CM_BF561
     link_map = link(shipped(ldf), symbols_of(tinyphoon, size), spec.chip.regions)

@@ -6,8 +6,7 @@ import pytest
 
 from bfsim.api import Buffer, Core, Frame, i32
 from bfsim.machine.dma.config import DmaConfig
-from bfsim.machine.outcome import Outcome
-from bfsim.trace import REST, StallReason
+from bfsim.trace import REST, BoardRecord, StallReason
 from tests.machine.kernels import spin, total
 from tests.machine.made_boards import CHIP, assert_accounted, in_work, play
 from tests.machine.rig import Play, every_frame, stage_of
@@ -24,7 +23,7 @@ def sub_banks(address: int, nbytes: int) -> range:
     return range(address // SUBBANK, (address + nbytes - 1) // SUBBANK + 1)
 
 
-def loading(*, moved_words: int, calls: int, at_bank: int) -> tuple[Outcome, dict[str, int]]:
+def loading(*, moved_words: int, calls: int, at_bank: int) -> tuple[BoardRecord, dict[str, int]]:
     """Let DMA write a sub-bank of L1 while the core sums up a row of three; return the run and what is known of it."""
     known: dict[str, int] = {}
 
@@ -50,7 +49,7 @@ def loading(*, moved_words: int, calls: int, at_bank: int) -> tuple[Outcome, dic
     return outcome, known
 
 
-def conflicts(outcome: Outcome) -> tuple[int, int]:
+def conflicts(outcome: BoardRecord) -> tuple[int, int]:
     """Conflicts of the stage, and its cycles without them."""
     cost = stage_of(outcome.frames[0], "Work")
     stalled = cost.stall_cclk.get(StallReason.L1_CONFLICT, 0)

@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from bfsim.api import Core, Frame
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, KernelError
 from bfsim.machine.cameras.capture import Feed
-from bfsim.machine.outcome import Outcome
-from bfsim.trace import REST, StallReason
+from bfsim.trace import REST, BoardRecord, StallReason
 from tests.machine.kernels import copy, first, negate, spin, total
 from tests.machine.rig import (
     INTERRUPT_CCLK,
@@ -31,7 +30,7 @@ from tests.machine.rig import (
 )
 
 
-def assert_every_cycle_is_accounted_for(outcome: Outcome) -> None:
+def assert_every_cycle_is_accounted_for(outcome: BoardRecord) -> None:
     """issue + stall + idle = elapsed for every core and frame, and each frame begins where the one before ended."""
     for frame in outcome.frames:
         for core in frame.cores:

@@ -9,8 +9,8 @@ import pytest
 
 from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.cameras.capture import Feed
-from bfsim.machine.outcome import Outcome
 from bfsim.spans import Span
+from bfsim.trace import BoardRecord
 from tests.machine.made_boards import made_board
 from tests.machine.owners import assert_owned
 from tests.machine.rig import noise
@@ -21,7 +21,7 @@ from tests.report.test_profile_sums import run_from
 
 FRAMES = 3
 Configuration = tuple[str, Feed, Fidelity]
-Told = tuple[Configuration, Outcome, list[Span]]
+Told = tuple[Configuration, BoardRecord, list[Span]]
 
 
 def board_of(configuration: Configuration) -> Board:

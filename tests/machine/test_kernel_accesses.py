@@ -12,8 +12,7 @@ from bfsim.api import Core, Frame
 from bfsim.chip.boards import BOARDS, board_named
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
-from bfsim.machine.outcome import Outcome
-from bfsim.trace import StallReason
+from bfsim.trace import BoardRecord, StallReason
 from tests.machine.kernels import fill, spin, total
 from tests.machine.rig import WORDS, Play, every_frame, load, noise, run, stage_of
 
@@ -34,7 +33,7 @@ def reading(buffer: str, times: int = 1) -> Any:
     return every_frame(read)
 
 
-def stalls(outcome: Outcome, core: str = "A") -> Mapping[StallReason, int]:
+def stalls(outcome: BoardRecord, core: str = "A") -> Mapping[StallReason, int]:
     """Stalls of the stage in the last frame."""
     return stage_of(outcome.frames[-1], "Work", core).stall_cclk
 

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from bfsim.api import Core, Frame
 from bfsim.chip.dma_registers import WdSize
 from bfsim.machine.dma.config import DmaConfig
-from bfsim.machine.outcome import Outcome
-from bfsim.trace import StallReason
+from bfsim.trace import BoardRecord, StallReason
 from tests.machine.kernels import spin
 from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, cclk_now, in_work, play
 from tests.machine.rig import Play, every_frame, stage_of
@@ -40,7 +39,7 @@ def transfer(
     registers: Callable[[int, int], tuple[Registers, Registers]],
     configs: tuple[DmaConfig, DmaConfig],
     stream: str = "MDMA2_1",
-) -> tuple[NDArray[np.uint8], Outcome]:
+) -> tuple[NDArray[np.uint8], BoardRecord]:
     """Move noise from one memory to the other; return what is there then, and the run."""
     arrived = []
 

@@ -12,8 +12,8 @@ from bfsim.api import Core, Frame
 from bfsim.chip.dma_registers import ELEMENT_BYTES, Flow
 from bfsim.errors import DeadlockError
 from bfsim.machine.dma.config import DmaConfig
-from bfsim.machine.outcome import Outcome
 from bfsim.machine.simulation import Simulation
+from bfsim.trace import BoardRecord
 from tests.machine.kernels import spin
 from tests.machine.made_boards import assert_accounted, cclk_now, in_work, play
 from tests.machine.rig import Play, every_frame
@@ -34,7 +34,7 @@ from tests.machine.stream_rig import (
 
 def run_chain(
     flow: Flow, memory: str, units: int, words: int
-) -> tuple[list[NDArray[np.uint8]], int, int, Outcome]:
+) -> tuple[list[NDArray[np.uint8]], int, int, BoardRecord]:
     """Gather `units` pieces, last first, by descriptors in `memory`; return what arrived, and when it was posted and done."""
     arrived: list[NDArray[np.uint8]] = []
     times: list[int] = []
@@ -96,7 +96,7 @@ def test_a_chain_of_descriptors_gathers_pieces(flow: Flow, elements: int, memory
 
 def counting(
     config: DmaConfig, registers: Registers, source: str, target: str, until: int
-) -> tuple[int, Outcome]:
+) -> tuple[int, BoardRecord]:
     """Start a stream and idle until `until` of its interrupts were taken; return the words that had come at the first."""
     seen: list[int] = []
 

@@ -14,9 +14,8 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import GCC_O0, VDSP_O2, CompilerProfile, call_paths
 from bfsim.linker import link
 from bfsim.machine.board import Board
-from bfsim.machine.outcome import Outcome
 from bfsim.machine.symbols import symbols_of
-from bfsim.trace import OwnerCost, StallReason
+from bfsim.trace import BoardRecord, OwnerCost, StallReason
 from tests.machine.kernels import copy, spin
 from tests.machine.made_boards import in_work, play
 from tests.machine.owners import assert_owned
@@ -46,7 +45,7 @@ def test_owners_of_random_traffic_fill_every_stage(seed: int, ldf: str) -> None:
 # ---- whose they are
 
 
-def owner(outcome: Outcome, name: str, core: str = "A", stage: str = "Work") -> OwnerCost:
+def owner(outcome: BoardRecord, name: str, core: str = "A", stage: str = "Work") -> OwnerCost:
     """Return what an owner cost a core in a stage of the first frame."""
     (cycles,) = [each for each in outcome.frames[0].cores if each.core == core]
     (found,) = [each for each in cycles.owners if (each.owner, each.stage) == (name, stage)]

@@ -18,8 +18,7 @@ from bfsim.api import Buffer, Core, Frame, SpiDevice, SpiMessage, u16
 from bfsim.chip.boards import CM_BF561, CM_BF561_RATINGS
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
-from bfsim.machine.outcome import Outcome
-from bfsim.trace import MessageRecord, StallReason
+from bfsim.trace import BoardRecord, MessageRecord, StallReason
 from tests.machine.kernels import spin
 from tests.machine.made_boards import CHIP, assert_accounted, cclk_now, in_work, made_board
 from tests.machine.rig import Play, cycles_of, every_frame, noise, stage_of
@@ -78,7 +77,7 @@ def run(
     frames: int = 1,
     script: Sequence[tuple[int, SpiMessage]] = (),
     **made: Any,
-) -> tuple[Outcome, list[bytes]]:
+) -> tuple[BoardRecord, list[bytes]]:
     """Run firmware; return the outcome and what the device received. `script`: what it sends, after how many messages."""
     mains = (main_a,) if main_b is None else (main_a, main_b)
     device = Talker(*script)

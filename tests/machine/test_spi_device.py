@@ -14,8 +14,8 @@ from bfsim.api import Buffer, Core, Frame, SpiDevice, SpiMessage, u16
 from bfsim.chip.boards import CM_BF561
 from bfsim.device_script import read_script
 from bfsim.errors import BfsimError, ConfigError, FirmwareError
-from bfsim.machine.outcome import Outcome
 from bfsim.run import simulate
+from bfsim.trace import BoardRecord
 from tests.machine.kernels import spin
 from tests.machine.made_boards import made_board
 from tests.machine.rig import Play, every_frame, noise
@@ -43,7 +43,7 @@ class Echo(SpiDevice):
         return SpiMessage("answer", self._answers.popleft()[1])
 
 
-def run(work: Any, device: SpiDevice) -> Outcome:
+def run(work: Any, device: SpiDevice) -> BoardRecord:
     """Play one frame to firmware that talks to a device."""
     return made_board(every_frame(work), more=(MESSAGE,), device=device).run(noise(1))
 

@@ -7,13 +7,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
 from bfsim.machine.board import Board
-from bfsim.machine.outcome import Outcome
 from bfsim.spans import Span, SpanKind
-from bfsim.trace import CoreFrame, FrameRecord, StageCost
+from bfsim.trace import BoardRecord, CoreFrame, FrameRecord, StageCost
 from tests.machine.rig import noise
 
 
-def told(board: Board, frames: int = 2) -> tuple[Outcome, list[Span]]:
+def told(board: Board, frames: int = 2) -> tuple[BoardRecord, list[Span]]:
     """Run a board on pictures of noise; return its records and its timeline."""
     spans: list[Span] = []
     return board.run(iter(noise(frames, board.size)), on_spans=spans.extend), spans

@@ -9,9 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bfsim.machine.outcome import Outcome
 from bfsim.run import simulate
-from bfsim.trace import BudgetRow, RunRecord
+from bfsim.trace import BoardRecord, BudgetRow, RunRecord
 from tests.machine.made_boards import play
 from tests.machine.rig import STAGES
 from tests.machine.test_timeline import LDFS, STEPS, Step, main_of
@@ -21,7 +20,7 @@ from tests.report.records import IDENTITY, run_of
 SHIPPED = "thesis", "l2", "sdram", "cache"
 
 
-def run_from(outcome: Outcome) -> RunRecord:
+def run_from(outcome: BoardRecord) -> RunRecord:
     """The records of a board's run; the second stage is a part of the first."""
     return replace(
         run_of(outcome.frames),
