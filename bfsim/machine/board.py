@@ -11,8 +11,8 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import VDSP_O2, CompilerProfile
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.linker import LinkMap
-from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.masters import RING_STREAMS
 from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches, written_through
 from bfsim.machine.calls.call_cache import BeforeCall, CallCache
@@ -42,9 +42,6 @@ from bfsim.machine.spi.device import LARGEST_MESSAGE_BYTES, SpiDevice, notes_of
 from bfsim.machine.spi.spi import Spi
 from bfsim.machine.symbols import PROCESSORS
 from bfsim.trace import BoardRecord, FrameRecord
-
-MDMA_MASTERS = ((w.MDMA1_0, w.MDMA1_1), (w.MDMA2_0, w.MDMA2_1))
-"""Of each core: for its input and its output rings."""
 
 
 class Fidelity(StrEnum):
@@ -176,7 +173,7 @@ class Board:
         return AccessTrace(
             memories.arena,
             memories.l2_end,
-            self._bus.room_of(number),
+            self._bus.logs.room_of(number),
             caches.regions(memories, written_through(self.firmware.write_through, self.link_map, memories)),
             caches.data_size(self.spec.chip.cache),
         )
@@ -191,7 +188,7 @@ class Board:
             CodeOutside(self._code_outside_l1(name), code_cache),
             SubBanks(chip, self._memories, self._bus.words),
             self._bus.owners,
-            Ledger(partial(self._bus.stalls_at_sites, number)),
+            Ledger(partial(self._bus.logs.stalls_at_sites, number)),
             before_call=self.before_call,
         )
 
@@ -208,7 +205,7 @@ class Board:
         on_finished: Callable[[], None],
         view: View | None,
     ) -> Core:
-        inward, outward = (MdmaStream(self._bus, self.spec, each) for each in MDMA_MASTERS[number])
+        inward, outward = (MdmaStream(self._bus, self.spec, each) for each in RING_STREAMS[number])
         placed, declared = self._buffers.of[name], partial(self._buffers.declared, name)
         return self.core(
             self._env,

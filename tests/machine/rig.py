@@ -195,7 +195,7 @@ class Call:
 
     def _finish(self, _event: simpy.Event) -> None:
         self.end = self._bench.env.tick
-        stalls = zip(BUS_STALLS, self._bench.bus.stalls_of(self._core), strict=True)
+        stalls = zip(BUS_STALLS, self._bench.bus.cores.stalls_of(self._core), strict=True)
         self.stalls = {reason: cclk for reason, cclk in stalls if cclk}
 
 
@@ -262,12 +262,12 @@ class Bench:
 
         Each access: (cycle of the call, kind, address).
         """
-        entries, count = self.bus.room_of(core)[log.LOG :], 0
+        entries, count = self.bus.logs.room_of(core)[log.LOG :], 0
         for stamp, kind, address in accesses:
             entry = stamp << log.STAMP_BIT | kind << log.KIND_BIT
             entries[count] = entry | self.offset(address)
             count += 1
-        return Call(self, core, self.bus.access(core, begin, cclk, count))
+        return Call(self, core, self.bus.cores.access(core, begin, cclk, count))
 
     def traffic(self, master: int, owner: int = w.NO_BUFFER_IN_SDRAM) -> Traffic:
         """Return what a master moved so far to and from memory of an owner."""

@@ -71,7 +71,7 @@ class Scene:
     def _copy(self, chance: Random) -> TransferPlan:
         size, lines = chance.choice([4, 4, 4, 2, 1]), chance.randint(1, 3)
         x_count = chance.choice([chance.randint(1, 8), chance.randint(20, 120)])
-        return self.bench.bus.plan_copy(
+        return self.bench.bus.planner.copy(
             chance.choice(MDMA),
             self._walk(chance, size, x_count),
             self._walk(chance, size, x_count),
@@ -89,7 +89,7 @@ class Scene:
     def _receive(self, chance: Random, master: int, begin: int) -> TransferPlan:
         words, lines = chance.randint(1, 25), chance.randint(1, 5)
         outside = Walk(self.bench.memories.outside + master * OUTSIDE // 2, words, 4, 4)
-        return self.bench.bus.plan_receive(
+        return self.bench.bus.planner.receive(
             master,
             outside,
             self._walk(chance, 4, words),
@@ -101,7 +101,7 @@ class Scene:
     def _send(self, chance: Random, begin: int) -> TransferPlan:
         words = chance.randint(1, 40)
         outside = Walk(self.bench.memories.outside, words, 2, 2)
-        return self.bench.bus.plan_send(
+        return self.bench.bus.planner.send(
             w.SPI,
             self._walk(chance, 2, words),
             outside,

@@ -114,7 +114,7 @@ def receive(bench: Bench, nbytes: int = 400) -> Transfer:
     """Let a camera write a word every 20 cycles to the second bank."""
     words = nbytes // 4
     target = bench.row(OTHER_BANK, nbytes)
-    plan = bench.bus.plan_receive(
+    plan = bench.bus.planner.receive(
         w.PPI0,
         Walk(bench.memories.outside, words, 4, 4),
         Walk(target.offset, words, 4, 4),
@@ -208,7 +208,7 @@ def test_what_needs_no_bus_has_no_part_in_traffic_control() -> None:
 def send(bench: Bench, words: int = 40) -> tuple[Transfer, bytes]:
     """Let a link take 16 bits every 100 ticks from the second bank; return what it does and the bytes it should send."""
     source = bench.row(OTHER_BANK, 2 * words)
-    plan = bench.bus.plan_send(
+    plan = bench.bus.planner.send(
         w.SPI,
         Walk(source.offset, words, 2, 2),
         Walk(bench.memories.outside, words, 2, 2),

@@ -57,23 +57,25 @@ class Bench:
         """Copy words by a memory DMA."""
         walks = [Walk(first, count, WORD, WORD) for first in (source, target)]
         setup = setup_sclk * self.sclk
-        plan = self.bus.plan_copy(master, walks[0], walks[1], count, element_bytes=WORD, setup=setup)
+        plan = self.bus.planner.copy(master, walks[0], walks[1], count, element_bytes=WORD, setup=setup)
         return self.bus.post(plan)
 
     def camera(self, target: int, lines: int, words: int, word_sclk: Fraction) -> Transfer:
         """Receive a picture by PPI0, with a pause of two words behind each line."""
         pace = Pace(0, words, word_sclk * self.sclk, (words + 2) * word_sclk * self.sclk)
         walks = [Walk(first, words, WORD, WORD) for first in (self.outside, target)]
-        plan = self.bus.plan_receive(w.PPI0, walks[0], walks[1], lines * words, element_bytes=WORD, pace=pace)
+        plan = self.bus.planner.receive(
+            w.PPI0, walks[0], walks[1], lines * words, element_bytes=WORD, pace=pace
+        )
         return self.bus.post(plan)
 
     def call(self, core: int, accesses: Iterable[CoreAccess], cclk: int = 0) -> None:
         """Make the accesses of a call; its end and its stalls come to `calls`."""
         entries = [stamp << log.STAMP_BIT | kind << log.KIND_BIT | offset for stamp, kind, offset in accesses]
-        self.bus.room_of(core)[log.LOG : log.LOG + len(entries)] = entries
-        done = self.bus.access(core, 0, cclk, len(entries))
+        self.bus.logs.room_of(core)[log.LOG : log.LOG + len(entries)] = entries
+        done = self.bus.cores.access(core, 0, cclk, len(entries))
         done.callbacks.append(
-            lambda _event: self.calls.append((self.env.tick, list(self.bus.stalls_of(core))))
+            lambda _event: self.calls.append((self.env.tick, list(self.bus.cores.stalls_of(core))))
         )
 
     def play(self) -> None:
@@ -441,7 +443,7 @@ def test_a_core_that_spins_takes_time_at_the_port_of_l2(kind: int) -> None:
         bench.call(
             0, [(10 * each, kind, bench.l2 + 8192 + 4 * each) for each in range(accesses)], 10 * accesses
         )
-        bench.bus.spin(1, 0)
+        bench.bus.cores.spin(1, 0)
 
     benches = [Bench(mode) for mode in MODES]
     for bench in benches:
@@ -454,7 +456,7 @@ def test_a_core_that_spins_takes_time_at_the_port_of_l2(kind: int) -> None:
     assert our_stalls == pytest.approx(their_stalls, abs=12)
     if kind == log.LOAD:
         assert accesses // 2 < our_stalls[w.L2_PORT] < 11 * accesses
-    done = [bench.bus.stop_spinning(1) for bench in benches]
+    done = [bench.bus.cores.stop_spinning(1) for bench in benches]
     for bench, event in zip(benches, done, strict=True):
         bench.env.run(until=event)
     tries = [

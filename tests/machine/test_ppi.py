@@ -111,7 +111,7 @@ def receive(
     outside = bench.memories.outside + (master == w.PPI1) * OUTSIDE // 2
     bench.memories.bytes_from(outside, target.nbytes)[:] = target.array
     target.array[:] = 0
-    plan = bench.bus.plan_receive(
+    plan = bench.bus.planner.receive(
         master,
         Walk(outside, words, 4, 4),
         Walk(target.offset, words, 4, 4),

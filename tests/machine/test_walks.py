@@ -80,7 +80,7 @@ def test_every_element_arrives_and_nothing_else_changes(
     for one, other in zip(offsets(inward, count), offsets(outward, count), strict=True):
         at = other - around.offset
         expected[at : at + size] = bench.memories.bytes_from(one, size)
-    plan = bench.bus.plan_copy(master, inward, outward, count, element_bytes=size, setup=0)
+    plan = bench.bus.planner.copy(master, inward, outward, count, element_bytes=size, setup=0)
     (end,) = bench.ends(bench.bus.post(plan))
     assert np.array_equal(around.array, expected)
     assert end >= count * (bench.cclk(2) if master == w.IMDMA_0 else bench.sclk(1))
@@ -95,7 +95,7 @@ def test_a_picture_is_cut_out_turned_round_and_put_elsewhere() -> None:
     """8 of 16 columns, the last line first, as a mirror does with a part of a picture."""
     bench = Bench()
     picture, part = bench.row(PLACES["SDRAM"], 128), bench.row(PLACES["L1"], 64)
-    plan = bench.bus.plan_copy(
+    plan = bench.bus.planner.copy(
         w.MDMA1_0,
         Walk(picture.offset + 7 * 16 + 4, 8, 1, -16 - 7),
         Walk(part.offset, 8, 1, 1),
@@ -128,12 +128,12 @@ def test_the_end_of_each_line_can_wake_somebody() -> None:
     bench = Bench()
     source, target = bench.row(PLACES["L1"], 640), bench.row(PLACES["SDRAM"], 640)
     walk = Walk(source.offset, 40, 4, 4), Walk(target.offset, 40, 4, 4)
-    transfer = bench.bus.post(bench.bus.plan_copy(w.MDMA1_0, *walk, 160, element_bytes=4, setup=0))
+    transfer = bench.bus.post(bench.bus.planner.copy(w.MDMA1_0, *walk, 160, element_bytes=4, setup=0))
     bench.bus.words[w.TRANSFERS_AT + transfer.place * w.TRANSFER_WORDS + w.WAKE] = w.AT_ROWS
-    bench.bus._await(transfer.number)
+    bench.bus._ends.of_transfer(transfer.number)
     ends = []
     for _ in range(4):
-        bench.bus._await(transfer.number)
+        bench.bus._ends.of_transfer(transfer.number)
         assert bench.bus.play_until(w.NEVER)
         ends.append(bench.bus.words[w.DONE_AT] // bench.sclk(1))
     opening = bench.spec.sdram.nRCD
@@ -155,4 +155,4 @@ def test_a_part_of_a_line_is_refused() -> None:
     bench = Bench()
     source, target = (Walk(bench.offset(PLACES[each]), 9, 4, 4) for each in ("SDRAM", "L1"))
     with pytest.raises(FirmwareError):
-        bench.bus.plan_copy(w.MDMA1_0, source, target, 2, element_bytes=4, setup=0)
+        bench.bus.planner.copy(w.MDMA1_0, source, target, 2, element_bytes=4, setup=0)

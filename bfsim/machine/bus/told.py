@@ -13,22 +13,21 @@ import numpy as np
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.masters import CORE_ROWS, DMA_MASTERS, INTERNAL, NAMED
 from bfsim.machine.bus.memory_owners import MemoryOwners
-from bfsim.machine.bus.traffic import MASTERS, traffic_in
+from bfsim.machine.bus.traffic import traffic_in
 from bfsim.machine.timeline import Timeline
 from bfsim.spans import SpanKind
 
-NAMES = {master: name for name, masters in MASTERS.items() for master in masters}
+NAMES = {master: name for name, masters in NAMED.items() for master in masters}
 MOST_PENDING = 1024
 """Transfers that are noted before those that are over are told: far fewer than the ends that the bus remembers."""
 SAMPLE_CCLK = 60_000
 """Cycles, at least, that a number for the load of a bus is of: 100 µs at 600 MHz."""
 
-_BUSY = {
-    "DMA": [master for name, masters in MASTERS.items() for master in masters if not name.startswith("core")],
-    "cores": [master for name, masters in MASTERS.items() for master in masters if name.startswith("core")],
-}
-_AT_L2_PORT = (w.IMDMA_0, w.IMDMA_1, *_BUSY["cores"])
+_CORES = [row for rows in CORE_ROWS.values() for row in rows]
+_BUSY = {"DMA": [each.number for each in DMA_MASTERS], "cores": _CORES}
+_AT_L2_PORT = (*INTERNAL, *_CORES)
 """Who comes through the port of L2 that is modelled."""
 
 

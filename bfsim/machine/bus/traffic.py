@@ -9,23 +9,10 @@ from numpy.typing import NDArray
 
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.masters import NAMED
 from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.bus.state import State
 from bfsim.trace import TrafficRecord
-
-MASTERS = {
-    "PPI0": (w.PPI0,),
-    "PPI1": (w.PPI1,),
-    "SPI": (w.SPI,),
-    "MDMA1 stream 0": (w.MDMA1_0,),
-    "MDMA1 stream 1": (w.MDMA1_1,),
-    "MDMA2 stream 0": (w.MDMA2_0,),
-    "MDMA2 stream 1": (w.MDMA2_1,),
-    "IMDMA stream 0": (w.IMDMA_0,),
-    "IMDMA stream 1": (w.IMDMA_1,),
-    "core A": (w.CORE_A, w.STORES_A),
-    "core B": (w.CORE_B, w.STORES_B),
-}
 
 
 def traffic_in(words: Any) -> NDArray[np.int64]:
@@ -40,7 +27,7 @@ def traffic_records(words: Any, owners: MemoryOwners, cclk_ticks: int) -> tuple[
     counted = zip(owners, traffic_in(words), strict=False)
     records = []
     for owner, rows in sorted(counted, key=lambda each: each[0].memory):
-        for name, masters in MASTERS.items():
+        for name, masters in NAMED.items():
             read, written, hits, misses, conflicts, busy = rows[list(masters)].sum(axis=0).tolist()
             if read or written:
                 records.append(

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from math import lcm
 from typing import TYPE_CHECKING
 
+from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
 
 if TYPE_CHECKING:
@@ -33,15 +35,53 @@ class Pace:
     line_ticks: Fraction
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class TransferPlan:
-    """A transfer of one master, ready to be posted as often as needed. `words`: its own in `bus.state`, from SETUP on."""
+    """A transfer of one master, ready to be posted as often as needed: `count` elements, which take `setup` ticks to start.
+
+    `mode`: one of `bus.state`. `owners`: of the memory that it begins to read, and to write. `name`: what is moved, for people.
+    Raises FirmwareError where the lines of a side are not whole.
+    """
 
     master: int
-    words: tuple[int, ...]
-    nbytes: int
-    name: str = field(default="", kw_only=True)
-    """What is moved, for people."""
+    mode: int
+    source: Walk
+    destination: Walk
+    count: int
+    element_bytes: int
+    setup: int
+    pace: Pace
+    owners: tuple[int, int]
+    name: str
+    words: tuple[int, ...] = field(init=False)
+    """Its own in `bus.state`, from SETUP on."""
+
+    def __post_init__(self) -> None:
+        for side in (self.source, self.destination):
+            if self.count % side.x_count:
+                raise FirmwareError(
+                    f"a DMA transfer must have whole lines of {side.x_count} elements, not {self.count} in all"
+                )
+        object.__setattr__(self, "words", self._in_words())
+
+    @property
+    def nbytes(self) -> int:
+        """What is moved."""
+        return self.count * self.element_bytes
+
+    def _in_words(self) -> tuple[int, ...]:
+        source, destination, pace = self.source, self.destination, self.pace
+        parts = lcm(pace.element_ticks.denominator, pace.line_ticks.denominator)
+        element, line = (
+            ticks.numerator * (parts // ticks.denominator) for ticks in (pace.element_ticks, pace.line_ticks)
+        )
+        return (
+            self.setup, 0, self.mode, self.element_bytes.bit_length() - 1, self.count, 0, 0,
+            source.offset, source.x_count, source.x_modify, source.y_modify, source.x_count,
+            destination.offset, destination.x_count, destination.x_modify, destination.y_modify, destination.x_count,
+            pace.start, parts, element, line, pace.line_elements, 0, 0,
+            self.master, *self.owners,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

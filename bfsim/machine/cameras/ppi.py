@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -145,15 +144,16 @@ class Ppi:
         outside, other = self._outside
         self._outside = other, outside
         self._memories.bytes_from(outside, picture.nbytes)[:] = picture.reshape(-1)
-        plan = self._bus.plan_receive(
+        plan = self._bus.planner.receive(
             self._master,
             Walk(outside, words, self._word_bytes, self._word_bytes),
             Walk(rows[0].offset, words, self._word_bytes, self._word_bytes),
             words * len(rows),
             element_bytes=self._word_bytes,
             pace=Pace(start, words, self._word_ticks, self._line_ticks),
+            name=f"picture → {rows[0].buffer}",
         )
-        self.transfer = self._bus.post(replace(plan, name=f"picture → {rows[0].buffer}"))
+        self.transfer = self._bus.post(plan)
         self.through = self._bus.when_done(self.transfer)
         self._begin = start
         return self.through

@@ -207,8 +207,8 @@ class PlayingCore(CoreClock):
     def _outside_l1(self, work: Work) -> Generator[Any, Any, dict[StallReason, int]]:
         """Play the accesses of a call outside L1 from the core's clock on, and return the cycles that they stall."""
         begin, cclk = self.now_ticks, work.issue_cclk + work.stall_cclk
-        yield self._bus.access(self._number, begin, cclk, work.accesses)
-        stalls = zip(BUS_STALLS, self._bus.stalls_of(self._number), strict=True)
+        yield self._bus.cores.access(self._number, begin, cclk, work.accesses)
+        stalls = zip(BUS_STALLS, self._bus.cores.stalls_of(self._number), strict=True)
         return {reason: stalled for reason, stalled in stalls if stalled}
 
     @property
@@ -238,10 +238,10 @@ class PlayingCore(CoreClock):
                     self._pass_waiting(reason, passed_cclk)
                     owed_cclk += passed_cclk
                     if self._is_spinning:
-                        self._bus.pause_spinning(self._number)
+                        self._bus.cores.pause_spinning(self._number)
                     yield from self._take_interrupts()
                     if self._is_spinning:
-                        self._bus.spin(self._number, self.now_ticks)
+                        self._bus.cores.spin(self._number, self.now_ticks)
                     self.waiting_for = what
         self._in_handler = False
         self._owed_cclk = owed_cclk

@@ -24,5 +24,5 @@ class SharedAccess:
 
     def run(self, arguments: Sequence[Any]) -> Work:  # noqa: ARG002
         """Log the access, and say what it costs besides its memory."""
-        entries = self._bus.log_in_l2(self._number, self._asks_cclk, self._kind)
+        entries = self._bus.logs.log_in_l2(self._number, self._asks_cclk, self._kind)
         return Work(self._issue_cclk, 0, accesses=entries)

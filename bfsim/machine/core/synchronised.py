@@ -100,13 +100,13 @@ class SynchronisedCore(PlayingCore):
             self._shared.turns[self.name] = turn
         if self._board.chip.l2:
             self._is_spinning = True
-            self._bus.spin(self._number, self.now_ticks)
+            self._bus.cores.spin(self._number, self.now_ticks)
         yield from self._blocked(iter([turn]), what, StallReason.SEMAPHORE)
         self._shared.turns.pop(self.name, None)
         if self._is_spinning:
             self._is_spinning = False
             before, self._in_handler = self._in_handler, True  # the clock still stands where the wait began
-            yield self._bus.stop_spinning(self._number)
+            yield self._bus.cores.stop_spinning(self._number)
             self._in_handler = before
         self._wake(StallReason.SEMAPHORE, owner)
 

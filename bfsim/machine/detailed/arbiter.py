@@ -16,7 +16,7 @@ from simpy.events import EventPriority
 
 from bfsim.chip.spec import BoardSpec, L2Spec
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import INTERNAL, PARTNERS, RANKS
+from bfsim.machine.bus.masters import INTERNAL, PARTNERS, RANKS
 from bfsim.machine.detailed.sdram import Page, SdramBanks
 from bfsim.machine.simulation import Simulation
 
@@ -225,20 +225,19 @@ class MdmaTurns:
     def __init__(self, period: int) -> None:
         self._period = period
         self._left = dict.fromkeys(RANKS, period)
-        self._partner = dict(PARTNERS) | {other: one for one, other in PARTNERS}
 
     def rank(self, master: int) -> int:
         """Return the rank of a channel; a stream that had its turn comes behind its partner."""
-        had_its_turn = self._period and master in self._partner and not self._left[master]
-        return RANKS[self._partner[master]] + 1 if had_its_turn else RANKS[master]
+        had_its_turn = self._period and master in PARTNERS and not self._left[master]
+        return RANKS[PARTNERS[master]] + 1 if had_its_turn else RANKS[master]
 
     def count(self, master: int) -> None:
         """Count a word of a channel; after the last one of its turn the partner has its own."""
-        if not self._period or master not in self._partner:
+        if not self._period or master not in PARTNERS:
             return
         self._left[master] = max(0, self._left[master] - 1)
         if not self._left[master]:
-            self._left[self._partner[master]] = self._period
+            self._left[PARTNERS[master]] = self._period
 
 
 class L2Port(Arbiter):

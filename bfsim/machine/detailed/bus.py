@@ -5,19 +5,18 @@ It does what `Bus` does and keeps the same counters, but nothing of it is compil
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import simpy
 
 from bfsim.chip.spec import BoardSpec, L2Spec
-from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import RANKS, Bus
-from bfsim.machine.bus.transfer_plans import Pace, Transfer, TransferPlan, Walk
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.masters import RANKS
+from bfsim.machine.bus.transfer_plans import Transfer, TransferPlan
 from bfsim.machine.bus.weave import plain_weave
 from bfsim.machine.detailed.arbiter import L2Port, SdramArbiter
-from bfsim.machine.detailed.core import CorePort, Spin
-from bfsim.machine.detailed.dma import DetailedPlan, DetailedTransfer, DmaMaster
+from bfsim.machine.detailed.calls import DetailedCalls
+from bfsim.machine.detailed.core import CorePort
+from bfsim.machine.detailed.dma import DetailedTransfer, DmaMaster
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
 
@@ -35,9 +34,9 @@ class DetailedBus(Bus):
         self._channels = {
             master: DmaMaster(env, board, memories, sdram, l2, self.words, master) for master in RANKS
         }
-        self._ports = [CorePort(env, board, sdram, l2, self.words, number) for number in range(w.CORES)]
+        ports = [CorePort(env, board, sdram, l2, self.words, number) for number in range(w.CORES)]
+        self.cores = DetailedCalls(env, board, self.logs, ports)
         self._on_their_way: dict[int, DetailedTransfer] = {}
-        self._spins: dict[int, Spin] = {}
 
     # ---- time: nothing here is ever behind the simulation
 
@@ -57,28 +56,8 @@ class DetailedBus(Bus):
 
     # ---- transfers
 
-    def _plan(
-        self, master: int, mode: int, source: Walk, destination: Walk, count: int, element_bytes: int, setup: int, pace: Pace,
-        name: str = "",
-    ) -> TransferPlan:  # fmt: skip
-        return DetailedPlan(
-            master,
-            (),
-            count * element_bytes,
-            mode,
-            source,
-            destination,
-            count,
-            element_bytes,
-            setup,
-            pace,
-            (self.owners.of(source.offset), self.owners.of(destination.offset)),
-            name=name,
-        )
-
     def post(self, plan: TransferPlan, at: int = 0) -> Transfer:
         """Put a transfer behind those that its master has already; it begins at tick `at` or later."""
-        assert isinstance(plan, DetailedPlan), "a plan belongs to the bus that made it"
         number = self.words[w.ALL_POSTED]
         self.words[w.ALL_POSTED] = number + 1
         self.words[w.ENDS_AT + number % w.ENDS] = w.NONE
@@ -111,31 +90,3 @@ class DetailedBus(Bus):
     def lost_by(self, master: int) -> int:
         """Return how many elements of a device found the FIFO of its DMA full."""
         return self._channels[master].lost
-
-    # ---- cores
-
-    def access(self, core: int, begin: int, cclk: int, entries: int) -> simpy.Event:
-        """Play the first `entries` accesses of a core's log, of a call of `cclk` cycles from tick `begin`; return its end."""
-        done = self._env.event()
-        room = self.room_of(core)[log.LOG :]
-        made = zip(room[:entries].tolist(), room[w.LOG_ENTRIES :][:entries].tolist(), strict=True)
-        self._env.process(self._ports[core].call(begin, cclk, made, done))
-        return done
-
-    def spin(self, core: int, since: int) -> None:
-        """Let a core that found a lock taken at tick `since` try TESTSET again and again, until `stop_spinning`."""
-        turn = self._spin_ticks()
-        self._spins[core] = self._ports[core].spin(since + turn, turn)
-
-    def pause_spinning(self, core: int) -> None:
-        """Let a core that spins do something else."""
-        self._spins[core].is_paused = True
-
-    def stop_spinning(self, core: int) -> simpy.Event:
-        """Let the next TESTSET of a core that spins be the last one, from now on; return its end."""
-        self._spins[core].won_at = self._env.tick
-        return self._spins[core].done
-
-    def stalls_of(self, core: int) -> Sequence[int]:
-        """Return what the accesses of the core's last call stalled, in cycles, in the order of `bus.state`."""
-        return self._ports[core].stalls

@@ -25,27 +25,12 @@ from bfsim.machine.simulation import Simulation
 Play = Generator[simpy.Event, Any, None]
 
 
-@dataclass(frozen=True, slots=True)
-class DetailedPlan(TransferPlan):
-    """A transfer in plain words, not in those of `bus.state`."""
-
-    mode: int
-    source: Walk
-    destination: Walk
-    count: int
-    element_bytes: int
-    setup: int
-    pace: Pace
-    owners: tuple[int, int]
-    """Of the memory that it begins to read and to write."""
-
-
 @dataclass(slots=True)
 class DetailedTransfer:
     """A plan on its way, from tick `at` on. `done` happens at its end; `rows` at the end of the next row that it writes."""
 
     number: int
-    plan: DetailedPlan
+    plan: TransferPlan
     at: int
     done: simpy.Event
     rows: list[simpy.Event] = field(default_factory=list)
@@ -131,7 +116,7 @@ class DmaMaster:
         chip = self._board.chip
         return chip.dma.fifo_words + (chip.ppi_fifo_words if self._master in (w.PPI0, w.PPI1) else 0)
 
-    def _source(self, plan: DetailedPlan, fifo: Fifo) -> Play:
+    def _source(self, plan: TransferPlan, fifo: Fifo) -> Play:
         if plan.mode == w.PACED_IN:
             yield from self._receive(plan, fifo)
         elif plan.source.offset < self._memories.sdram_end:
@@ -154,7 +139,7 @@ class DmaMaster:
     # ---- sides in SDRAM
 
     def _word(
-        self, plan: DetailedPlan, fifo: Fifo, offset: int, *, write: bool
+        self, plan: TransferPlan, fifo: Fifo, offset: int, *, write: bool
     ) -> Generator[simpy.Event, Any, Grant]:
         """Wait for the bus and return how the access of an element went."""
 
@@ -169,7 +154,7 @@ class DmaMaster:
         )
         return grant
 
-    def _read_sdram(self, plan: DetailedPlan, fifo: Fifo) -> Play:
+    def _read_sdram(self, plan: TransferPlan, fifo: Fifo) -> Play:
         dma = self._board.chip.dma
         for offset in offsets(plan.source, plan.count):
             while not fifo.has_room:
@@ -210,7 +195,7 @@ class DmaMaster:
 
     # ---- sides on the chip
 
-    def _read_through_l2_port(self, plan: DetailedPlan, fifo: Fifo) -> Play:
+    def _read_through_l2_port(self, plan: TransferPlan, fifo: Fifo) -> Play:
         """Take a word in its time from the moment that the internal DMA has the port of L2."""
         memories, word = self._memories, int(plan.pace.element_ticks)
         times = sum(
@@ -221,7 +206,7 @@ class DmaMaster:
             yield from wait_until(self._env, grant.at + word)
             fifo.put(Element(self._load(plan, offset), self._env.tick))
 
-    def _read_on_chip(self, plan: DetailedPlan, fifo: Fifo) -> Play:
+    def _read_on_chip(self, plan: TransferPlan, fifo: Fifo) -> Play:
         start = self._env.tick
         for number, offset in enumerate(offsets(plan.source, plan.count)):
             if plan.mode == w.ON_CHIP:
@@ -243,7 +228,7 @@ class DmaMaster:
 
     # ---- sides that are devices
 
-    def _receive(self, plan: DetailedPlan, fifo: Fifo) -> Play:
+    def _receive(self, plan: TransferPlan, fifo: Fifo) -> Play:
         for number, offset in enumerate(offsets(plan.source, plan.count)):
             yield from wait_until(self._env, arrival(plan.pace, number))
             if fifo.has_room:
@@ -262,15 +247,15 @@ class DmaMaster:
 
     # ---- bytes
 
-    def _load(self, plan: DetailedPlan, offset: int) -> bytes:
+    def _load(self, plan: TransferPlan, offset: int) -> bytes:
         self._count(plan, offset, write=False)
         return bytes(self._bytes[offset : offset + plan.element_bytes])
 
-    def _store(self, plan: DetailedPlan, offset: int, value: bytes) -> None:
+    def _store(self, plan: TransferPlan, offset: int, value: bytes) -> None:
         self._count(plan, offset, write=True)
         self._bytes[offset : offset + len(value)] = value
 
-    def _count(self, plan: DetailedPlan, offset: int, *, write: bool) -> None:
+    def _count(self, plan: TransferPlan, offset: int, *, write: bool) -> None:
         """Count what goes to L2, to L1 and to its sub-banks; the arbiter counts what goes to SDRAM."""
         memories = self._memories
         if memories.sdram_end <= offset < memories.l2_end or offset >= memories.l1:

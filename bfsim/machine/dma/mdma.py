@@ -41,7 +41,7 @@ class MdmaStream:
         size = element_bytes(self._word_bytes, source.offset, destination.offset, source.nbytes)
         count = source.nbytes // size
         inward, outward = (Walk(each.offset, count, size, size) for each in (source, destination))
-        return self._bus.plan_copy(
+        return self._bus.planner.copy(
             self._master,
             inward,
             outward,

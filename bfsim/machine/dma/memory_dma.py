@@ -11,8 +11,8 @@ from bfsim.chip.dma_channels import BF561_CHANNELS
 from bfsim.chip.dma_registers import ELEMENT_BYTES
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
-from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.masters import STREAMS
 from bfsim.machine.bus.transfer_plans import Transfer, Walk
 from bfsim.machine.core.waits import Waits, awaited
 from bfsim.machine.dma.channel import ChannelStep, DmaChannel, check_pair
@@ -25,11 +25,6 @@ from bfsim.machine.simulation import Simulation
 
 if TYPE_CHECKING:
     from bfsim.machine.core.core import Core
-
-STREAMS = {
-    "MDMA1_0": w.MDMA1_0, "MDMA1_1": w.MDMA1_1, "MDMA2_0": w.MDMA2_0, "MDMA2_1": w.MDMA2_1,
-    "IMDMA_0": w.IMDMA_0, "IMDMA_1": w.IMDMA_1,
-}  # fmt: skip
 
 
 class Dma:
@@ -165,9 +160,9 @@ class MemoryDma:
                 elements = step.fetch.elements
                 offset = self._memories.offset_of(step.fetch.address, elements * ELEMENT_BYTES)
                 setup_sclk = elements * self._dma.descriptor_sclk
-                fetch = self._bus.plan_fetch(master, offset, elements, setup_sclk * self._sclk_ticks)
+                fetch = self._bus.planner.fetch(master, offset, elements, setup_sclk * self._sclk_ticks)
                 self._bus.post(fetch)
-        plan = self._bus.plan_copy(
+        plan = self._bus.planner.copy(
             master,
             self._walk(source.unit),
             self._walk(destination.unit),

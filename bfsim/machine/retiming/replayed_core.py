@@ -116,8 +116,8 @@ class ReplayedCore(Core):
         runs_at, kernels = stretch.calls
         if len(runs_at):
             stretch.operations[runs_at, 0] = np.array(self._kinds_of_calls)[kernels]
-        yield self._bus.play(self._number, self._cclk, stretch.operations, stretch.accesses)
-        played = self._bus.played(self._number)
+        yield self._bus.stretches.play(self._number, self._cclk, stretch.operations, stretch.accesses)
+        played = self._bus.stretches.played(self._number)
         self._cclk = played.clock_cclk
         kernels_account = self._account.kernels
         kernels_account.issue_cclk += played.issue_cclk
@@ -145,7 +145,7 @@ class ReplayedCore(Core):
         _, examples, kind_of = np.unique(kinds, axis=0, return_index=True, return_inverse=True)
         words = np.array([self._plan(*copies[each].tolist()) for each in examples])[kind_of.reshape(-1)]
         words[:, w.FROM - w.SETUP], words[:, w.TO - w.SETUP] = sources, destinations
-        return self._bus.keep_plans(words)
+        return self._bus.stretches.keep_plans(words)
 
     def _plan(
         self, stream: int, source: int, from_byte: int, destination: int, to_byte: int, nbytes: int

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
-from dataclasses import replace
 from fractions import Fraction
 from math import ceil
 from typing import Any
@@ -71,11 +70,11 @@ class Spi:
         if before is not None:
             yield before
         begin = self._env.tick
-        plan = self._bus.plan_send(
+        plan = self._bus.planner.send(
             w.SPI, self._walk(row.offset, nbytes), self._walk(self._outside, nbytes), nbytes // WORD_BYTES,
-            element_bytes=WORD_BYTES, pace=self._pace(nbytes),
+            element_bytes=WORD_BYTES, pace=self._pace(nbytes), name=f"{row.buffer} → out",
         )  # fmt: skip
-        yield self._bus.when_done(self._bus.post(replace(plan, name=f"{row.buffer} → out")))
+        yield self._bus.when_done(self._bus.post(plan))
         octets = self._memories.bytes_from(self._outside, nbytes).tobytes()
         with device_at_work():
             kind = self._device.receive(octets, self._now_ns)
@@ -98,11 +97,11 @@ class Spi:
         message = self._next_message()
         nbytes = min(len(message.octets), row.nbytes // WORD_BYTES * WORD_BYTES)
         self._memories.bytes_from(self._outside, nbytes)[:] = np.frombuffer(message.octets, np.uint8, nbytes)
-        plan = self._bus.plan_receive(
+        plan = self._bus.planner.receive(
             w.SPI, self._walk(self._outside, nbytes), self._walk(row.offset, nbytes), nbytes // WORD_BYTES,
-            element_bytes=WORD_BYTES, pace=self._pace(nbytes),
+            element_bytes=WORD_BYTES, pace=self._pace(nbytes), name=f"{message.type} → {row.buffer}",
         )  # fmt: skip
-        transfer = self._bus.post(replace(plan, name=f"{message.type} → {row.buffer}"))
+        transfer = self._bus.post(plan)
         begin, self.busy = self._env.tick, self._bus.when_done(transfer)
         assert self.busy.callbacks is not None
         kind = message.type if nbytes == len(message.octets) else f"{message.type} (cut short)"

@@ -1,0 +1,51 @@
+"""What the cores hand to the bus and read back from it: the log of each one's accesses, and what stalled at its sites."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.kernel import access_trace as log
+from bfsim.machine.bus import state as w
+
+
+class CoreLogs:
+    """The part of the bus's `state` that belongs to the cores' kernels."""
+
+    def __init__(self, state: NDArray[np.int64]) -> None:
+        self._state = state
+        self._words: Any = state.data
+
+    def room_of(self, core: int) -> NDArray[np.int64]:
+        """Return where a core's access trace keeps its state and its log."""
+        first = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS
+        room: NDArray[np.int64] = self._state[first : first + w.ACCESS_TRACE_WORDS]
+        return room
+
+    def log_in_l2(self, core: int, stamp_cclk: int, kind: int) -> int:
+        """Make the log of a core that of one access to a shared variable in L2; return the number of its entries."""
+        entry = stamp_cclk << log.STAMP_BIT | kind << log.KIND_BIT | self._words[w.L2_FIRST]
+        room = self.room_of(core)
+        room[log.LOG], room[log.LOG + w.LOG_ENTRIES] = entry, w.NO_SITE
+        return 1
+
+    def replace(self, core: int, accesses: NDArray[np.int64]) -> None:
+        """Make the log of a core that of `accesses`, a row of entries and one of sites."""
+        room, count = self.room_of(core)[log.LOG :], accesses.shape[1]
+        room[:count], room[w.LOG_ENTRIES : w.LOG_ENTRIES + count] = accesses
+
+    def entries(self, core: int, count: int) -> list[tuple[int, int]]:
+        """Return the first `count` entries of a core's log, each with its site."""
+        room = self.room_of(core)[log.LOG :]
+        return list(zip(room[:count].tolist(), room[w.LOG_ENTRIES :][:count].tolist(), strict=True))
+
+    def stalls_at_sites(self, core: int, count: int) -> NDArray[np.int64]:
+        """Return what the first `count` sites of a core have stalled so far: by site and, in the order of `bus.state`, reason.
+
+        The last column counts the lines that were filled.
+        """
+        first = w.SITES_AT + core * w.MAX_SITES * w.SITE_WORDS
+        found: NDArray[np.int64] = self._state[first : first + count * w.SITE_WORDS]
+        return found.reshape(count, w.SITE_WORDS)

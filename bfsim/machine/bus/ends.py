@@ -1,0 +1,43 @@
+"""The ends on the bus that somebody waits for: of transfers, of calls of the cores and of their stretches, by number."""
+
+from __future__ import annotations
+
+import simpy
+
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.stretches import end_of_stretch
+from bfsim.machine.simulation import Simulation
+
+
+class Ends:
+    """The events of whoever waits. A number is what the weave returns with when that is over."""
+
+    def __init__(self, env: Simulation) -> None:
+        self._env = env
+        self._awaited: dict[int, simpy.Event] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self._awaited)
+
+    def of_transfer(self, number: int) -> simpy.Event:
+        """Return the event at the end of a transfer, or of its next row where that is what wakes."""
+        event = self._awaited.get(number)
+        if event is None:
+            event = self._awaited[number] = self._env.event()
+        return event
+
+    def of_call(self, core: int) -> simpy.Event:
+        """Return the event at the end of a core's call."""
+        return self.of_transfer(w.NONE - 1 - core)
+
+    def of_stretch(self, core: int) -> simpy.Event:
+        """Return the event at the end of a core's stretch."""
+        return self.of_transfer(end_of_stretch(core))
+
+    def wake(self, number: int, tick: int) -> bool:
+        """Let the event of a number, if it has one, happen at a tick; return whether it has."""
+        event = self._awaited.pop(number, None)
+        if event is None:
+            return False
+        self._env.trigger_at(event, tick)
+        return True
