@@ -44,5 +44,6 @@ PROFILE_OPTION = click.option(
     metavar="NAME",
     default="vdsp-O2",
     show_default=True,
-    help="Compiler whose code is costed: vdsp-O2, gcc-O2, gcc-O0, or one of yours, FILE.py:NAME or PACKAGE:NAME.",
+    help="Compiler whose code is costed: vdsp-O2, gcc-O2 and gcc-O0 are estimates; gcc runs the code that GCC makes of the kernels, "
+    "where there is some; or one of yours, FILE.py:NAME or PACKAGE:NAME.",
 )

@@ -14,6 +14,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import WorkError
 from bfsim.hardware import Found
 from bfsim.kernel import CompilerProfile
+from bfsim.kernel.build import Build
 from bfsim.linker import LinkerScript
 from bfsim.loading import LoadedFirmware
 from bfsim.machine.board import Fidelity
@@ -90,6 +91,7 @@ def identity_of(
     size: FrameSize,
     recording: str,
     compiler: Found[CompilerProfile],
+    build: Build,
     script_digest: str,
 ) -> Identity:
     """Return what a run depends on; the digest of the recording is known only when its frames have been read."""
@@ -110,6 +112,8 @@ def identity_of(
         compiler_digest=compiler.digest,
         compiler_files=compiler.files,
         compiler_numbers=compiler.numbers,
+        code=build.code,
+        code_digest=build.digest,
         feed=feed.value,
         script_digest=script_digest,
         fidelity=fidelity.value,

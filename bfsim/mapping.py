@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
+from bfsim.building import build_for
 from bfsim.chip.spec import BoardSpec
 from bfsim.given import given_firmware
 from bfsim.hardware import find_board, find_profile
@@ -45,7 +46,7 @@ def map_memory(
     link_map, kinds = None, {}
     if fits:
         with loaded.own.named():
-            symbols, kinds = symbols_of(program, size, compiler), _kinds(program, size)
+            symbols, kinds = symbols_of(program, size, build_for(loaded, compiler)), _kinds(program, size)
         link_map = link(script, symbols, spec.chip.regions, chip=spec.chip.name)
     return memory_map(
         script,

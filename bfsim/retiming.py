@@ -28,6 +28,7 @@ SAME = {
     "firmware": "firmware",
     "compiler": "compiler",
     "compiler_digest": "compiler",
+    "code_digest": "code of the compiler",
     "script_digest": "script for the device",
     "llvm_version": "version of LLVM",
 }

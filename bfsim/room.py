@@ -8,7 +8,7 @@ import numpy as np
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, LinkError
-from bfsim.kernel import CompilerProfile
+from bfsim.kernel.build import Build
 from bfsim.linker import LinkerScript, LinkMap, link
 from bfsim.machine.program import Calibration, Firmware, FrameSize, SourcePixels
 from bfsim.machine.symbols import symbols_of
@@ -26,7 +26,7 @@ def place(
     size: FrameSize,
     placement: LinkerScript,
     spec: BoardSpec,
-    compiler: CompilerProfile,
+    build: Build,
 ) -> LinkMap:
     """Return where the linker puts the firmware for pictures of `size`.
 
@@ -34,7 +34,7 @@ def place(
     """
 
     def placed(size: FrameSize) -> LinkMap:
-        symbols = symbols_of(firmware.calibrated(_cut(calibration, size)), size, compiler)
+        symbols = symbols_of(firmware.calibrated(_cut(calibration, size)), size, build)
         return link(placement, symbols, spec.chip.regions, chip=spec.chip.name)
 
     def fits(step: int) -> bool:

@@ -13,6 +13,7 @@ from typing import Any, ParamSpec, TypeVar
 
 from bfsim import shipped
 from bfsim.assumptions import assumed_clocks, assumed_geometry, geometry_in_words
+from bfsim.building import build_for
 from bfsim.chip.spec import BoardSpec
 from bfsim.device_script import read_script
 from bfsim.errors import ConfigError, FirmwareError, RecordingError, shown
@@ -120,7 +121,7 @@ def simulate(
     feed, fidelity = _one_of(Feed, "feed", feed), _one_of(Fidelity, "fidelity", fidelity)
     script, record_work, work = map(_path_of, (script, record_work, work))
     found_board, found_compiler = find_board(board, settings), find_profile(profile)
-    spec, compiler = found_board.value, found_compiler.value
+    spec = found_board.value
     loaded = given_firmware(firmware) if isinstance(firmware, Firmware) else load_firmware(firmware)
     require_cores(loaded.firmware, spec)
     with loaded.own.named():
@@ -134,7 +135,8 @@ def simulate(
         size = FrameSize(reader.width, reader.height)
         calibration = calibration_of(reader)
         program = loaded.firmware.calibrated(calibration)
-        link_map = place(loaded.firmware, calibration, size, placement, spec, compiler)
+        build = build_for(loaded, found_compiler.value)
+        link_map = place(loaded.firmware, calibration, size, placement, spec, build)
         machine = Board(
             spec,
             program,
@@ -142,7 +144,7 @@ def simulate(
             link_map,
             feed=feed,
             before_call=(*((sanitized,) if sanitize else ()), *((on_call,) if on_call else ())),
-            profile=compiler,
+            build=build,
             device=device,
             fidelity=fidelity,
             weave=weave,
@@ -161,6 +163,7 @@ def simulate(
             size,
             source.name,
             found_compiler,
+            build,
             script_digest,
         )
         if before:

@@ -51,10 +51,21 @@ MAY_IMPORT = {
     "importing": set(),
     "locating": {"errors", "importing"},
     "loading": {"errors", "importing", "kernel", "locating", "machine", "shipped"},
+    "building": {"compiling", "kernel", "loading"},
     "given": {"importing", "kernel", "loading", "locating", "machine", "shipped"},
     "hardware": {"chip", "errors", "fields", "importing", "kernel", "loading"},
     "run_inputs": {"chip", "errors", "linker", "machine", "recording", "shipped"},
-    "mapping": {"chip", "given", "hardware", "linker", "loading", "machine", "run_inputs", "report"},
+    "mapping": {
+        "building",
+        "chip",
+        "given",
+        "hardware",
+        "linker",
+        "loading",
+        "machine",
+        "run_inputs",
+        "report",
+    },
     "watchers": {"seen", "spans", "trace"},
     "run_page": {
         "errors",
@@ -90,6 +101,7 @@ MAY_IMPORT = {
         "trace",
     },
     "run": {
+        "building",
         "assumptions",
         "device_script",
         "identifying",
@@ -130,6 +142,7 @@ MAY_IMPORT = {
         "trace",
     },
     "placing": {
+        "building",
         "chip",
         "errors",
         "hardware",

@@ -6,6 +6,7 @@ memory, or as far beyond as they reach: nothing of the timing depends on it, for
 
 from __future__ import annotations
 
+import hashlib
 import struct
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping
@@ -62,6 +63,11 @@ class Image:
     routines: tuple[Routine, ...]
     pointers: frozenset[int]
     octets: bytes
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of the file."""
+        return hashlib.sha256(self.octets).hexdigest()
 
     def octets_of(self, first: int, end: int) -> bytes:
         """Return the bytes of a range of addresses, as far as one segment has them."""

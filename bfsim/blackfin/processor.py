@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import llvmlite.binding as llvm
 import numpy as np
@@ -23,6 +24,10 @@ from bfsim.errors import BfsimError
 
 OUTSIDE = 0xFFFFFFFE
 """[ours] Where a subroutine that is called from outside returns to: no memory is there, and no code can be."""
+
+
+COUNT_BYTES = 4
+"""Of the number of counters before machine code that is kept."""
 
 
 class AccessError(BfsimError, LookupError):
@@ -55,15 +60,25 @@ class State:
             self.slots[SLOTS[register]] = value & 0xFFFFFFFFFFFFFFFF
 
 
-@dataclass(slots=True)
+@dataclass
 class Translated:
-    """Code in this process. `counts`: how often each of `counters` has counted since it was translated."""
+    """Code in this process. `counts`: how often each of `counters` has counted since it was translated. `explore`: finds the code."""
 
-    code: Code
-    counters: list[Counter]
     entry: int
     native: llvm.ExecutionEngine
     counts: NDArray[np.int64]
+    timing: Timing
+    explore: Callable[[], Code]
+
+    @cached_property
+    def code(self) -> Code:
+        """The code that it was made of."""
+        return self.explore()
+
+    @cached_property
+    def counters(self) -> list[Counter]:
+        """What is counted, in the order of the counts."""
+        return counters(self.code, self.timing)
 
 
 @dataclass(slots=True)
@@ -72,7 +87,8 @@ class Processor:
 
     `entries`: addresses at which it can be started or that its code computes; others are found when control comes there, and the
     code is translated anew with them. `fuel`: with it, at most so many blocks are run by a call of `run`. `compiled`: makes machine
-    code of an LLVM module.
+    code of an LLVM module. `name`: under which the first native code is kept, so that it need not be made of the instructions again.
+    `explored`: adds to the entries what is found by looking at the code, before it is translated for the first time.
     """
 
     space: AddressSpace
@@ -82,6 +98,8 @@ class Processor:
     compiled: Callable[[str], bytes] = field(default_factory=lambda: optimised)
     state: State = field(default_factory=State)
     translated: Translated | None = None
+    name: str = ""
+    explored: Callable[[set[int]], set[int]] | None = None
 
     def prepared(self) -> Translated:
         """Return the native code of all that can be reached from the entries."""
@@ -129,17 +147,28 @@ class Processor:
         return address not in self.translated.code.targets
 
     def _translate(self) -> Translated:
-        code = Code(self.space.fetch, frozenset(self.entries))
+        name = self.name if self.translated is None else ""
+        kept = store.load(name) if name else None
+        if kept is None:
+            kept = self._compiled()
+            if name:
+                store.save(name, kept)
+        count, machine = int.from_bytes(kept[:COUNT_BYTES], "little"), kept[COUNT_BYTES:]
+        native = machine_code.loaded(machine)
+        counts = np.zeros(count, np.int64)
+        return Translated(native.get_function_address(NAME), native, counts, self.timing, self._code)
+
+    def _compiled(self) -> bytes:
+        """Make the machine code; return how many counters it has, and it."""
+        code = self._code()
         text = translate(code, self.timing, fuel=self.fuel is not None)
-        native = machine_code.loaded(unoptimised(text) if is_large(code) else self.compiled(text))
-        counted = counters(code, self.timing)
-        return Translated(
-            code,
-            counted,
-            native.get_function_address(NAME),
-            native,
-            np.zeros(len(counted), np.int64),
-        )
+        machine = unoptimised(text) if is_large(code) else self.compiled(text)
+        return len(counters(code, self.timing)).to_bytes(COUNT_BYTES, "little") + machine
+
+    def _code(self) -> Code:
+        if self.explored:
+            self.entries, self.explored = self.explored(self.entries), None
+        return Code(self.space.fetch, frozenset(self.entries))
 
     def _refusal(self, address: int) -> str:
         assert self.translated

@@ -53,14 +53,15 @@ class LoadedImage:
         for each in self.image.segments:
             self.space.at(each.address, len(each.octets))[:] = np.frombuffer(each.octets, np.uint8)
 
-    def subroutine(self, symbol: str, timing: Timing = GNU) -> Subroutine:
-        """Return the function called `symbol`. Raises KernelError if there is none."""
+    def subroutine(self, symbol: str, timing: Timing = GNU, name: str = "") -> Subroutine:
+        """Return the function called `symbol`; its native code is kept under `name`. Raises KernelError if there is none."""
         address = self.image.address_of(symbol)
-        return Subroutine(symbol, address, Processor(self.space, timing, self._entries(address)))
+        processor = Processor(self.space, timing, {address}, name=name, explored=self._entries)
+        return Subroutine(symbol, address, processor)
 
-    def _entries(self, address: int) -> set[int]:
-        """Where code can be entered that starts at an address: there, and where the switches of its functions lead to."""
-        entries, found = set[int](), {address}
+    def _entries(self, first: set[int]) -> set[int]:
+        """Where code can be entered that starts at `first`: there, and where the switches of its functions lead to."""
+        entries, found = set[int](), first
         while not found <= entries:
             entries |= found
             reached = {

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from bfsim.blackfin.lines import lines_of
 from bfsim.blackfin.linking import Routine, link
 from bfsim.blackfin.objects import MOST_BYTES, read_object
 from bfsim.blackfin.subroutines import LoadedImage
@@ -56,11 +55,11 @@ def file_kernel(
     symbol = next((each for each in (f"_{name}", name) if each in image.symbols), f"_{name}")
     address = image.address_of(symbol)
     routine = image.routine_at(address) or Routine(symbol, address, address)
-    lines = lines_of(image)
-    source = source_of(image, lines, routine, path.parent)
+    kernels: dict[str, tree.Function] = {}
+    places = Places(image, kernels, folder=path.parent)
+    source = source_of(image, places.lines, routine, path.parent)
     own = re.sub(r"\W", "_", f"{path.name}_{name}", flags=re.ASCII)
-    function = object_function(name, own, source, parameters, result)
-    places = Places(image, lines, {routine.name: function}, folder=path.parent)
+    function = kernels[routine.name] = object_function(name, own, source, parameters, result)
     digests = {path.parent / each: hashlib.sha256(octets).hexdigest() for each, octets in files.items()}
     return Kernel(function, None, FileCode(digests, function, symbol, LoadedImage(image), places))
 

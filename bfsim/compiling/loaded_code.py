@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from bfsim.blackfin.lines import lines_of
 from bfsim.blackfin.linking import link
 from bfsim.blackfin.objects import read_object
 from bfsim.blackfin.subroutines import LoadedImage
@@ -27,7 +26,11 @@ class LoadedCode:
         image = link(read_object(self.code.octets, "kernels.o"))
         kernels = {self.code.symbol_of(each): each for each in self.code.names}
         of_file = {each.symbol: each for each in self.code.names}
-        self._loaded, self._places = LoadedImage(image), Places(image, lines_of(image), kernels, of_file)
+        self._loaded, self._places = LoadedImage(image), Places(image, kernels, of_file)
+
+    def has(self, function: tree.Function) -> bool:
+        """Whether a kernel is a function of the code: helpers may be inlined in all that call them."""
+        return self.code.symbol_of(function) in self._places.image.symbols
 
     def compiled(self, function: tree.Function) -> CompiledObject:
         """Return a kernel ready to run. Raises KernelError if the code has no function for it, as for helpers that are inlined."""

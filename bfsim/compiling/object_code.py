@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from bfsim.compiling.recipes import Recipe, code_of
+from bfsim import store
+from bfsim.compiling.recipes import Recipe, code_at_hand, code_of
 from bfsim.compiling.toolchain import Toolchain
 from bfsim.errors import ConfigError
-from bfsim.kernel import CompilerProfile, Kernel, tree
+from bfsim.kernel import CompilerProfile, Kernel, keys, tree
 from bfsim.kernel.c import CProgram, Place, c_program
 
-LEVELS = {"gcc-O2": "-O2", "gcc-O0": "-O0"}
+LEVELS = {"gcc-O2": "-O2", "gcc-O0": "-O0", "gcc": "-O2"}
 """What the compiler is told, for each profile that stands for it."""
 
 
@@ -54,8 +56,19 @@ def object_code(
     level, program = level_of(profile), _in_c(kernels, entries)
     if not program.names:
         raise ConfigError("the run must call a kernel for there to be real code, but calls none")
-    octets, version = code_of(_recipe(program, level), toolchain)
-    return ObjectCode(octets, version, program.names)
+    return ObjectCode(*code_of(_recipe(program, level), toolchain), program.names)
+
+
+def object_code_at_hand(
+    kernels: Iterable[Kernel],
+    entries: Iterable[Kernel],
+    profile: CompilerProfile,
+    toolchain: Toolchain | None,
+) -> ObjectCode | None:
+    """Return what `object_code` does, or None where there is neither kept code nor a compiler."""
+    program = _in_c(kernels, entries)
+    found = code_at_hand(_recipe(program, level_of(profile)), toolchain)
+    return found and ObjectCode(*found, program.names)
 
 
 def recipe_of(kernels: Iterable[Kernel], entries: Iterable[Kernel], profile: CompilerProfile) -> Recipe:
@@ -68,9 +81,26 @@ def _recipe(program: CProgram, level: str) -> Recipe:
 
 
 def _in_c(kernels: Iterable[Kernel], entries: Iterable[Kernel]) -> CProgram:
-    """Kernels as C whose lines are called by the kernel and counted from its first: wherever the Python lies, the C is the same."""
-    return c_program(
-        [each.function for each in kernels],
-        entries=[each.function for each in entries],
+    """Kernels as C whose lines are called by the kernel and counted from its first: wherever the Python lies, the C is the same.
+
+    It is kept in the user's cache, for to write all kernels of firmware takes longer than to run a frame.
+    """
+    called = {each.function.symbol: each.function for each in entries}
+    functions = {one.symbol: one for each in kernels for one in (*each.function.callees(), each.function)}
+    name = keys.program_key(functions.values(), called)
+    if (kept := store.load(name)) is not None:
+        files, names, static = json.loads(kept)
+        found = {functions[symbol]: name for symbol, name in names.items()}
+        return CProgram(files, found, frozenset(functions[each] for each in static))
+    program = c_program(
+        functions.values(),
+        entries=called.values(),
         place=lambda function: Place(function.symbol, 1),
     )
+    parts = (
+        program.files,
+        {function.symbol: each for function, each in program.names.items()},
+        sorted(each.symbol for each in program.static),
+    )
+    store.save(name, json.dumps(parts).encode())
+    return program

@@ -53,16 +53,24 @@ def code_of(recipe: Recipe, toolchain: Toolchain | None) -> tuple[bytes, str]:
 
     Raises ConfigError where there is neither kept code nor a compiler, and with what the compiler says if it refuses.
     """
+    found = code_at_hand(recipe, toolchain)
+    if found is None:
+        first, *others = recipe.sources
+        what = f"{first} and {len(others)} more files" if others else first
+        raise ConfigError(
+            f"{GCC} must be on the PATH, for of {what} no code of GCC {KEPT_COMPILER.version} is kept; {ADVICE}"
+        )
+    return found
+
+
+def code_at_hand(recipe: Recipe, toolchain: Toolchain | None) -> tuple[bytes, str] | None:
+    """Return what `code_of` does, or None where there is neither kept code nor a compiler."""
     compiler = toolchain.identity if toolchain else KEPT_COMPILER
     name = recipe.digest(compiler)
     octets = store.load(name) or shipped(name)
     if octets is None:
         if toolchain is None:
-            first, *others = recipe.sources
-            what = f"{first} and {len(others)} more files" if others else first
-            raise ConfigError(
-                f"{GCC} must be on the PATH, for of {what} no code of GCC {compiler.version} is kept; {ADVICE}"
-            )
+            return None
         octets = recipe.made(toolchain)
         store.save(name, octets)
     return octets, compiler.version

@@ -6,8 +6,6 @@ asks for the size of kernels that are never called, and every build of a kernel 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import replace
 from functools import cache
 
 import llvmlite.binding as llvm
@@ -22,7 +20,7 @@ from bfsim.kernel.ir_text import Entrance, Routine, SourceLine, inlined_through,
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering import optimised as optimising
 from bfsim.kernel.lowering import unoptimised
-from bfsim.kernel.lowering.charges import Access, Charge
+from bfsim.kernel.lowering.charges import Access, merged
 from bfsim.kernel.lowering.rewrites import rewritten
 from bfsim.kernel.lowering.unrolled import marked
 from bfsim.kernel.profile import CompilerProfile
@@ -87,7 +85,7 @@ def cost(routine: Routine, profile: CompilerProfile) -> tuple[Counter, ...]:
     for block in routine.blocks:
         found = blocks[block.label]
         place, depth = (routine.symbol, block.label), len(flow.loops_of(block.label))
-        charges = _merged(found.charges)
+        charges = merged(found.charges)
         accesses = (
             *(known[id(each)] for each in found.accesses if id(each) in known),
             *(known[id(each)]._replace(fills=True) for each in found.fills),
@@ -98,19 +96,10 @@ def cost(routine: Routine, profile: CompilerProfile) -> tuple[Counter, ...]:
             continue  # nothing to count: the block holds no code
         counters.append(Counter(*place, None, None, charges, accesses, found.nbytes, depth, enters))
         for test in found.tests:
-            charges = _merged(test.charges)
+            charges = merged(test.charges)
             if any(each.issue_cclk for each in charges):
                 counters.append(Counter(*place, test.value, test.equals, charges, (), 0, depth))
     return tuple(counters)
-
-
-def _merged(charges: Iterable[Charge]) -> tuple[Charge, ...]:
-    """Add up like charges; what cancels out is left out."""
-    counts: dict[Charge, int] = {}
-    for each in charges:
-        one = replace(each, count=1)
-        counts[one] = counts.get(one, 0) + each.count
-    return tuple(replace(one, count=count) for one, count in counts.items() if count)
 
 
 def _accesses(flow: ControlFlow) -> dict[int, Access]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cache
 from typing import Any
@@ -34,13 +34,21 @@ class Costs:
 @cache
 def costs_of(function: tree.Function, profile: CompilerProfile) -> Costs:
     """Cost `function` and its callees, or take the costs from the cache on disk; once per process."""
-    key = keys.key(function, profile, "costs")
+
+    def made() -> Costs:
+        from bfsim.kernel.costing import costed  # most starts find all costs
+
+        return costed(function, profile)
+
+    return kept_costs(keys.key(function, profile, "costs"), made)
+
+
+def kept_costs(key: str, made: Callable[[], Costs]) -> Costs:
+    """Return the costs that the cache on disk keeps under a key, or those that are made now, which it keeps."""
     kept = store.load(key)
     if kept is not None:
         return _costs(json.loads(kept))
-    from bfsim.kernel.costing import costed  # most starts find all costs
-
-    costs = costed(function, profile)
+    costs = made()
     store.save(key, json.dumps(asdict(costs), separators=(",", ":")).encode())
     return costs
 

@@ -7,6 +7,7 @@ never meets a stale one.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
@@ -18,6 +19,19 @@ from bfsim.kernel.profile import CompilerProfile, Inlines
 def key(function: tree.Function, profile: CompilerProfile, variant: str) -> str:
     """Digest of all that an entry about `function` depends on; `variant` says what it is."""
     return hashlib.sha256(f"{variant}\0{_source(function, profile)}".encode()).hexdigest()
+
+
+def program_key(functions: Iterable[tree.Function], entries: Iterable[str]) -> str:
+    """Digest of all that the C of kernels depends on; `entries`: symbols of those that something else than kernels calls."""
+    rows = sorted((each.file, each.first_line, each.source, each.text) for each in functions)
+    parts = ("C", compiler(), repr(rows), repr(sorted(entries)))
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
+def object_key(image_digest: str, symbol: str, timing: str, variant: str) -> str:
+    """Digest of all that an entry about the function `symbol` of object code depends on; `variant` says what it is."""
+    parts = ("object code", variant, image_digest, symbol, timing, tools())
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 
 @cache

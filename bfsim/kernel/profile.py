@@ -7,7 +7,7 @@ the README); [libgcc] measured: GCC 12.2's library for the Blackfin under the GN
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from bfsim.errors import ConfigError
@@ -168,11 +168,15 @@ GCC_O2 = CompilerProfile(
     name="gcc-O2", optimises=True, interlocks=False, parallel_issue=False, accumulates=False, push_multiple_cclk=14, pop_multiple_cclk=11,  # [SIM]
     library=LIBGCC, floats=LIBGCC_FLOATS, inlines=Inlines.FILE,
 )  # fmt: skip
+GCC = replace(GCC_O2, name="gcc")
+"""Kernels run as the code that GCC makes of them, instruction by instruction; those of which there is none are as GCC_O2."""
 VDSP_O2 = CompilerProfile(
     name="vdsp-O2", optimises=True, interlocks=True, parallel_issue=True, accumulates=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]
     library=ADI, floats=ADI_FLOATS, inlines=Inlines.FILE,  # [assumed] as GCC
 )  # fmt: skip
-PROFILES = {each.name: each for each in (GCC_O0, GCC_O2, VDSP_O2)}
+PROFILES = {each.name: each for each in (GCC_O0, GCC_O2, GCC, VDSP_O2)}
+RUN_AS_COMPILED = {GCC.name}
+"""Profiles whose kernels run as their compiler's own code where there is some."""
 
 
 def profile_named(name: str) -> CompilerProfile:

@@ -8,8 +8,8 @@ from enum import StrEnum
 from functools import partial
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.kernel import VDSP_O2, CompilerProfile
 from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.linker import LinkMap
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.masters import RING_STREAMS
@@ -60,7 +60,7 @@ class Board:
     size: FrameSize
     link_map: LinkMap
     feed: Feed = Feed.DEMAND
-    profile: CompilerProfile = VDSP_O2
+    build: Build = ESTIMATED
     before_call: tuple[BeforeCall, ...] = ()
     device: SpiDevice = field(default_factory=SpiDevice)
     fidelity: Fidelity = Fidelity.FAST
@@ -183,7 +183,7 @@ class Board:
         code_cache = CodeCache(chip.cache) if self._caches[name].code else None
         return CallCache(
             name,
-            self.profile,
+            self.build,
             access_trace,
             CodeOutside(self._code_outside_l1(name), code_cache),
             SubBanks(chip, self._memories, self._bus.words),

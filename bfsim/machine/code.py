@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from bfsim.chip.memory_map import Region
-from bfsim.kernel import CompilerProfile
+from bfsim.kernel.build import Build
 from bfsim.linker import LinkMap, Placement, Symbol
 from bfsim.machine.memories import Memories
 from bfsim.machine.named_kernels import kernels_named
@@ -17,14 +17,14 @@ SECTION = "program"  # input section of code, as VisualDSP++ names it
 ALIGN_BYTES = 4
 
 
-def code_symbols(main: Main, processor: str | None, profile: CompilerProfile) -> list[Symbol]:
+def code_symbols(main: Main, processor: str | None, build: Build) -> list[Symbol]:
     """Return a symbol for every kernel of a core's main loop, callees included, each once.
 
     Library routines (division, floats) and the main loop itself are not counted.
     """
     nbytes: dict[str, int] = {}
     for kernel in kernels_named(main):
-        nbytes.update(kernel.code_bytes(profile))
+        nbytes.update(build.code_bytes(kernel))
     return [
         Symbol(name, SECTION, size, ALIGN_BYTES, processor, object_file(name))
         for name, size in nbytes.items()

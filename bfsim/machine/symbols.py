@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, FirmwareError
-from bfsim.kernel import VDSP_O2, CompilerProfile
+from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.linker import Symbol
 from bfsim.machine.code import code_symbols, object_file
 from bfsim.machine.firmware_lines import line_of
@@ -22,12 +22,12 @@ def require_cores(firmware: Firmware, spec: BoardSpec) -> None:
         raise FirmwareError(f"firmware must have main loops for {cores}, not for {known} (board {spec.name})")
 
 
-def symbols_of(firmware: Firmware, size: FrameSize, profile: CompilerProfile = VDSP_O2) -> list[Symbol]:
-    """Return what the linker must place for pictures of `size`: buffers, and code as `profile` compiles it."""
+def symbols_of(firmware: Firmware, size: FrameSize, build: Build = ESTIMATED) -> list[Symbol]:
+    """Return what the linker must place for pictures of `size`: buffers, and code as it is built."""
     found = [
         symbol
         for owner, main in firmware.mains.items()
-        for symbol in code_symbols(main, PROCESSORS[owner], profile)
+        for symbol in code_symbols(main, PROCESSORS[owner], build)
     ]
     for owner, buffers in _called(firmware, size).items():
         if owner not in PROCESSORS:

@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any
 
+from bfsim.building import build_for
 from bfsim.hardware import find_board, find_profile
 from bfsim.loading import load_firmware
 from bfsim.machine.program import FrameSize
@@ -73,7 +74,9 @@ def place(
     script = read_placement(ldf, spec, defines, include_dirs)
     with RecordingReader(recording or BUILT_IN_RECORDING) as reader, loaded.own.named():
         size = FrameSize(reader.width, reader.height)
-        symbols = symbols_of(loaded.firmware.calibrated(calibration_of(reader)), size, compiler)
+        symbols = symbols_of(
+            loaded.firmware.calibrated(calibration_of(reader)), size, build_for(loaded, compiler)
+        )
     model, measured = Model(spec, script, symbols), Measured()
     writer = LdfWriter(script, model.stretches)
     what = {"firmware": firmware, "board": board, "settings": settings, "profile": profile, **how}

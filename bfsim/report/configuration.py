@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from bfsim.report.budget import milliseconds
+from bfsim.report.code import code_in_words
 from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.report.units import mhz
 from bfsim.trace import CodeRecord, RunRecord
@@ -20,6 +21,8 @@ def configuration_of(run: RunRecord) -> Iterator[tuple[str, str]]:
     yield "Board", f"{identity.board}, CCLK {mhz(identity.cclk_hz)}, SCLK {mhz(identity.sclk_hz)}"
     yield "LDF", f"{identity.ldf} ({run.ldf_place})"
     yield "Compiler", f"{identity.compiler}, LLVM {identity.llvm_version}"
+    if code := code_in_words(run):
+        yield "Code", code
     for each in run.code:
         yield f"Code of {each.core}", _code(each)
     yield "Feed", identity.feed

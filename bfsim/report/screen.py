@@ -21,6 +21,7 @@ from bfsim.report.budget import (
     latency_cclk,
     milliseconds,
 )
+from bfsim.report.code import code_in_words
 from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.report.start_up import of_one_frame, start_up_cclk, without_start_up
 from bfsim.report.tables import missed, named, new_table, percent, stacked
@@ -148,6 +149,8 @@ def _facts(run: RunRecord, budget: Budget, bound: Bound) -> Iterator[tuple[str, 
     if run.reference is not None:
         yield run.reference.name, run.reference.about
     yield from _remarks(run)
+    if code := code_in_words(run):
+        yield "Code", code
     yield "Run", _what_ran(run)
     yield (
         "Digests",

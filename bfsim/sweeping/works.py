@@ -121,6 +121,7 @@ def work_of(planned: Planned) -> str:
         identity.firmware_digest,
         identity.compiler,
         identity.compiler_digest,
+        identity.code_digest,
         identity.script_digest,
         identity.ldf_digest,  # what lies outside of L1 is another work
         identity.feed,

@@ -34,7 +34,8 @@ class KernelRecord:
 
     `symbol` tells kernels of one name apart. `file` and `LineCost.line` say where the source is; `text` holds its lines, the
     first one being `first_line`. The `lines` add up to `issue_cclk` and `stall_cclk`; where code lies outside L1, the kernel's
-    first line has the waits for it.
+    first line has the waits for it. `object_cclk` are those of its issue cycles that instructions of object code took; the others are
+    estimated.
     """
 
     core: str
@@ -48,6 +49,7 @@ class KernelRecord:
     issue_cclk: int
     stall_cclk: Mapping[StallReason, int]
     lines: tuple[LineCost, ...]
+    object_cclk: int = 0
 
     @property
     def elapsed_cclk(self) -> int:

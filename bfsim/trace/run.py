@@ -40,7 +40,8 @@ class Identity:
 
     `..._numbers` say of a board or compiler that is not shipped which shipped one it is like, and what it has otherwise.
     Paths are left out on purpose: `..._files` are relative to the folder that they were imported from; a shipped board or
-    compiler has none. `board` ends in --set PATH=VALUE for each number that was changed.
+    compiler has none. `board` ends in --set PATH=VALUE for each number that was changed. `code` says whose object code
+    kernels ran as, and which timing counted its cycles; it is empty where all are estimated.
     """
 
     recording: str
@@ -67,6 +68,8 @@ class Identity:
     compiler_files: tuple[str, ...] = ()
     board_numbers: tuple[str, ...] = ()
     compiler_numbers: tuple[str, ...] = ()
+    code: str = ""
+    code_digest: str = ""
 
 
 class WarningKind(StrEnum):

@@ -35,6 +35,15 @@ def instead(side: Iterable[Charge], other: Iterable[Charge]) -> tuple[Charge, ..
     return (*side, *(replace(each, count=-each.count) for each in other))
 
 
+def merged(charges: Iterable[Charge]) -> tuple[Charge, ...]:
+    """Add up like charges; what cancels out is left out."""
+    counts: dict[Charge, int] = {}
+    for each in charges:
+        one = replace(each, count=1)
+        counts[one] = counts.get(one, 0) + each.count
+    return tuple(replace(one, count=count) for one, count in counts.items() if count)
+
+
 @dataclass(frozen=True, slots=True)
 class Test:
     """Extra charges each time `value` is true, or equals `equals`: the other side of a branch."""

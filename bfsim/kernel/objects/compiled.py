@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from bfsim.blackfin.subroutines import LoadedImage, Subroutine
 from bfsim.blackfin.timing import GNU, Timing
-from bfsim.kernel import tree
+from bfsim.kernel import keys, tree
 from bfsim.kernel.call_paths import Program
-from bfsim.kernel.costs import Costs
+from bfsim.kernel.costs import Costs, kept_costs
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.objects.counted import calls, counters
 from bfsim.kernel.objects.places import Places
@@ -42,16 +42,22 @@ class CompiledObject:
 def compiled_object(
     function: tree.Function, symbol: str, loaded: LoadedImage, places: Places, timing: Timing = GNU
 ) -> CompiledObject:
-    """Translate the function that `symbol` names in an image. Raises KernelError where there is none."""
-    subroutine = loaded.subroutine(symbol, timing)
-    translated = subroutine.translated
-    found = counters(translated.counters, places, timing)
-    reached = calls(translated.code, places, subroutine.address)
-    costs = Costs(tuple(found), reached)
+    """Return the function that `symbol` names in an image, translated or from the cache on disk. Raises KernelError where there is none."""
+    about = loaded.image.digest, symbol, repr(timing)
+    subroutine = loaded.subroutine(symbol, timing, keys.object_key(*about, "native code"))
+
+    def made() -> Costs:
+        translated = subroutine.translated
+        found = counters(translated.counters, places, timing)
+        return Costs(tuple(found), calls(translated.code, places, subroutine.address))
+
+    key = keys.object_key(*about, f"costs of {function.symbol}")
+    costs = (
+        made() if places.folder else kept_costs(key, made)
+    )  # lines of files that may change are looked up anew
     program = Program(function.symbol, costs, function.array_names, together=True)
-    numbers = {id(each): number for number, each in enumerate(found)}
+    numbers = {id(each): number for number, each in enumerate(costs.counters)}
     order = np.array([numbers[id(each)] for each in program.counters], np.int64)
-    used = (places.functions[each] for each in reached)
-    lines = {line.routine for each in found for line, _, _ in each.line_cclk} - set(reached)
-    functions = (*used, *(places.functions[each] for each in sorted(lines)))
+    lines = {line.routine for each in costs.counters for line, _, _ in each.line_cclk} - set(costs.calls)
+    functions = tuple(places.function_called(each) for each in (*costs.calls, *sorted(lines)))
     return CompiledObject(function, subroutine, program, functions, places, order)

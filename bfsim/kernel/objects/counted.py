@@ -10,7 +10,7 @@ from bfsim.blackfin.timing import Timing
 from bfsim.kernel.call_paths import RoutineCall
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.ir_text import Entrance, SourceLine
-from bfsim.kernel.lowering.charges import Charge, instead
+from bfsim.kernel.lowering.charges import Charge, instead, merged
 from bfsim.kernel.objects.operations import TAKEN, operation_of
 from bfsim.kernel.objects.places import Places
 
@@ -32,7 +32,7 @@ def _counter(each: translate.Counter, places: Places, timing: Timing) -> Counter
         return Counter(routine, label, "taken", None, instead((taken,), (last,)), ())
     begins = places.entered_at(block.start)
     enters = (Entrance(begins, SourceLine(begins, 0)),) if begins else ()
-    return Counter(routine, label, None, None, tuple(charges), (), block.end - block.start, enters=enters)
+    return Counter(routine, label, None, None, merged(charges), (), block.end - block.start, enters=enters)
 
 
 def calls(code: Code, places: Places, entry: int) -> Mapping[str, tuple[RoutineCall, ...]]:

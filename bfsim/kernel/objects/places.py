@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
-from bfsim.blackfin.lines import LineTable
+from bfsim.blackfin.lines import LineTable, lines_of
 from bfsim.blackfin.linking import Image, Routine
 from bfsim.kernel import tree
 from bfsim.kernel.ir_text import SourceLine
-from bfsim.kernel.objects.sources import Source, source_of
+from bfsim.kernel.objects.sources import Source, disassembly, source_of
 from bfsim.kernel.types import Number
 
 
@@ -23,13 +24,17 @@ class Places:
     """
 
     image: Image
-    lines: LineTable
     kernels: Mapping[str, tree.Function]
     of_file: Mapping[str, tree.Function] = field(default_factory=dict)
     folder: Path | None = None
     functions: dict[str, tree.Function] = field(default_factory=dict)
     """All that instructions were found to be of, by their own symbols."""
     _sources: dict[str, tuple[tree.Function, Source]] = field(default_factory=dict)
+
+    @cached_property
+    def lines(self) -> LineTable:
+        """What the debugging information says of addresses."""
+        return lines_of(self.image)
 
     def line_of(self, address: int) -> SourceLine:
         """Return the line of the instruction at an address."""
@@ -45,6 +50,17 @@ class Places:
         """Return the kernel, or other function, that has the code at an address."""
         return self.functions[self.line_of(self._routine(address).address).routine]
 
+    def function_called(self, symbol: str) -> tree.Function:
+        """Return the kernel, or other function, that instructions of the image are of, by its own symbol."""
+        if symbol not in self.functions:
+            known = next((each for each in self.kernels.values() if each.symbol == symbol), None)
+            if found := known or self.of_file.get(symbol):
+                self.functions[symbol] = found
+            else:
+                routines = (each for each in self.image.routines if each.name == symbol)
+                self._source(next(routines, Routine(symbol, 0, 0)))
+        return self.functions[symbol]
+
     def entered_at(self, address: int) -> str | None:
         """Return the symbol of what begins at an address."""
         routine = self._routine(address)
@@ -55,7 +71,11 @@ class Places:
 
     def _source(self, routine: Routine) -> tuple[tree.Function, Source]:
         if routine.name not in self._sources:
-            source = source_of(self.image, self.lines, routine, self.folder)
+            source = (
+                source_of(self.image, self.lines, routine, self.folder)
+                if self.folder
+                else disassembly(self.image, routine)
+            )
             known = self.kernels.get(routine.name)
             function = known or object_function(routine.name.removeprefix("_"), routine.name, source)
             self.functions[function.symbol] = function

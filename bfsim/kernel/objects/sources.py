@@ -28,12 +28,12 @@ class Source:
     lines: Mapping[int, int]
 
 
-def source_of(image: Image, table: LineTable, routine: Routine, folder: Path | None) -> Source:
+def source_of(image: Image, table: LineTable, routine: Routine, folder: Path) -> Source:
     """Return the source of a function. Files are looked for in `folder`, by their names without folders."""
     first = table.at(routine.address)
-    rows = file_lines(folder / Path(first.file).name) if folder and first else None
-    if folder is None or first is None or not rows:
-        return _disassembly(image, routine)
+    rows = file_lines(folder / Path(first.file).name) if first else None
+    if first is None or not rows:
+        return disassembly(image, routine)
     lines, at = dict[int, int](), first.line
     for address in range(routine.address, routine.end, 2):
         line = table.at(address)
@@ -66,7 +66,8 @@ def _head(rows: list[str], begin: int, name: str) -> int:
     return next((each for each in above if re.search(rf"\b_?{re.escape(name)}\b", rows[each - 1])), begin)
 
 
-def _disassembly(image: Image, routine: Routine) -> Source:
+def disassembly(image: Image, routine: Routine) -> Source:
+    """Return the instructions of a function as its source, each a line."""
     rows, lines = [], {}
     try:
         for number, each in enumerate(

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError, KernelError
-from bfsim.kernel import CompilerProfile, Kernel, Work
+from bfsim.kernel import Kernel, Work
 from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.build import Build
 from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.calls.conflicts import StageGroups, SubBanks
 from bfsim.machine.calls.fetch import CodeOutside, FetchedCall
@@ -85,7 +86,7 @@ class CallCache:
     def __init__(
         self,
         core: str,
-        profile: CompilerProfile,
+        build: Build,
         access_trace: AccessTrace,
         code: CodeOutside,
         subbanks: SubBanks,
@@ -95,7 +96,7 @@ class CallCache:
         before_call: tuple[BeforeCall, ...],
     ) -> None:
         self._core = core
-        self._profile = profile
+        self._build = build
         self._access_trace = access_trace
         self._code = code
         self._subbanks = subbanks
@@ -195,7 +196,7 @@ class CallCache:
     def _group(self, kernel: Kernel, owners: tuple[int, ...], traced: bool) -> CallGroup:
         key = (self.stage, kernel, owners)
         if key not in self._groups:
-            code = kernel.compile(self._profile, traced=traced)
+            code = self._build.compiled(kernel, traced=traced)
             fetched = tuple(self._code.of(code.program.costs.counters))
             totals, first_event, first_site = self._ledger.room(
                 len(code.new_totals()), len(code.program.sites) + len(fetched)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from bfsim.kernel import tree
 from bfsim.kernel.call_paths import Offset
 from bfsim.kernel.ir_text import SourceLine
+from bfsim.kernel.jit import CompiledKernel
 from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.calls.ledger import FILLS, Snapshot, stalls_by_reason
@@ -49,6 +50,7 @@ class _Kernel:
 
     function: tree.Function
     calls: int = 0
+    object_cclk: int = 0
     executions: dict[int, int] = field(default_factory=lambda: defaultdict(int))
     lines: dict[int, _Cost] = field(default_factory=lambda: defaultdict(_Cost))
     operations: dict[int, dict[str, tuple[int, int]]] = field(default_factory=lambda: defaultdict(dict))
@@ -104,6 +106,7 @@ class CoreRecords:
                     )
                     for line, cost in sorted(each.lines.items())
                 ),
+                object_cclk=each.object_cclk,
             )
 
     def accesses(self, owners: MemoryOwners) -> Iterator[AccessRecord]:
@@ -142,6 +145,7 @@ class CoreRecords:
 
     def _add_events(self, group: CallGroup, totals: Sequence[int]) -> None:
         program, owner_of = group.code.program, group.by_array(group.owners)
+        is_object = not isinstance(group.code, CompiledKernel)
         executions: dict[tuple[Offset, SourceLine], int] = {}
         for number, path, counter in group.counted():
             events = totals[number]
@@ -150,7 +154,9 @@ class CoreRecords:
                 self._paths[group.stage, program.entered(path, each)].calls += events
             for place, issue_cclk, stall_cclk in counter.line_cclk:
                 through = self._paths[group.stage, program.through(path, place)]
-                for cost in (self._kernel(group, place.routine).lines[place.line], through.cost):
+                kernel = self._kernel(group, place.routine)
+                kernel.object_cclk += events * issue_cclk * is_object
+                for cost in (kernel.lines[place.line], through.cost):
                     cost.issue_cclk += events * issue_cclk
                     cost.interlocks_cclk += events * stall_cclk
                 if counter.value is None:

@@ -1,0 +1,39 @@
+"""How the kernels of firmware are built: by the code of the profile's compiler where there is some, or as the profile estimates them."""
+
+from __future__ import annotations
+
+import hashlib
+from functools import partial
+
+from bfsim.kernel import CompilerProfile
+from bfsim.kernel.build import Build
+from bfsim.kernel.profile import RUN_AS_COMPILED
+from bfsim.loading import LoadedFirmware, entries_of, kernels_of
+
+NOTHING_AT_HAND = "no code of GCC is kept, and it is not on the PATH"
+
+
+def build_for(loaded: LoadedFirmware, profile: CompilerProfile) -> Build:
+    """Return how the kernels of `loaded` are built.
+
+    The code of the compiler is kept, or compiled now by the one on the PATH; where there is neither, all is estimated. Raises
+    ConfigError with what the compiler says if it refuses.
+    """
+    entries = {each for each in entries_of(loaded.firmware) if each.object_code is None}
+    kernels = {each for each in kernels_of(loaded.own) if each.object_code is None} | entries
+    if profile.name not in RUN_AS_COMPILED or not kernels:
+        return Build(profile)
+    from bfsim.compiling.loaded_code import LoadedCode  # most runs need none of it
+    from bfsim.compiling.object_code import level_of, object_code_at_hand
+    from bfsim.compiling.toolchain import blackfin_compiler
+
+    code = object_code_at_hand(kernels, entries, profile, blackfin_compiler())
+    if code is None:
+        return Build(profile, code=NOTHING_AT_HAND)
+    there = LoadedCode(code)
+    return Build(
+        profile,
+        {each: partial(there.compiled, each) for each in code.names if there.has(each)},
+        f"GCC {code.compiler} {level_of(profile)}, timing {there.timing.name}",
+        hashlib.sha256(code.octets).hexdigest(),
+    )

@@ -1,0 +1,47 @@
+"""What kernels are built to: their object code where there is some, or else code as a compiler profile estimates it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from bfsim.kernel import tree
+from bfsim.kernel.decorator import Kernel
+from bfsim.kernel.jit import CompiledKernel
+from bfsim.kernel.profile import VDSP_O2, CompilerProfile
+
+if TYPE_CHECKING:
+    from bfsim.kernel.objects.compiled import CompiledObject
+
+
+@dataclass(frozen=True)
+class Build:
+    """How the kernels of a run are built.
+
+    `objects`: kernels whose object code there is, each with what returns it ready to run; others are as `profile` estimates them.
+    `code`: whose code it is, and which timing counts its cycles, in words; empty where all is estimated. `digest`: of that code.
+    """
+
+    profile: CompilerProfile
+    objects: Mapping[tree.Function, Callable[[], CompiledObject]] = field(default_factory=dict)
+    code: str = ""
+    digest: str = ""
+
+    def compiled(self, kernel: Kernel, *, traced: bool = False) -> CompiledKernel | CompiledObject:
+        """Return a kernel ready to run; `traced`: its accesses outside L1 are reported. Raises KernelError as `Kernel.compile`."""
+        if kernel.function in self.objects and not traced:
+            return self.objects[kernel.function]()
+        return kernel.compile(self.profile, traced=traced)
+
+    def code_bytes(self, kernel: Kernel) -> dict[str, int]:
+        """Return the size of a kernel's code, and of each kernel that it calls, by the names in the machine code."""
+        if kernel.function not in self.objects:
+            return kernel.code_bytes(self.profile)
+        nbytes: dict[str, int] = {}
+        for each in self.objects[kernel.function]().counters:
+            nbytes[each.routine] = nbytes.get(each.routine, 0) + each.nbytes
+        return nbytes
+
+
+ESTIMATED = Build(VDSP_O2)

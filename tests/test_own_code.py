@@ -1,0 +1,121 @@
+"""Runs of the compiler's own code: what they see and leave is as estimated; their cycles are those of its instructions."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from bfsim import building
+from bfsim.building import build_for
+from bfsim.compiling.object_code import object_code
+from bfsim.kernel import GCC_O2, Kernel
+from bfsim.kernel.profile import GCC
+from bfsim.loading import entries_of, kernels_of, load_firmware
+from bfsim.machine.memories import Row
+from bfsim.report.code import code_in_words, object_share
+from bfsim.result import Run
+from bfsim.run import simulate
+from bfsim.seen import SeenFrame
+from bfsim.shipped import FIRMWARE
+from bfsim.verifying import Sampler, verify
+from tests.machine.owners import assert_filled
+
+FEW_CALLED = ("suppress_row", "gauss3_row", "clear_segments")
+"""Kernels, each in several stages, of which every call is played once more."""
+
+
+@pytest.fixture(scope="module")
+def seen() -> dict[str, list[SeenFrame]]:
+    """What each profile saw."""
+    return {"gcc": [], "gcc-O2": []}
+
+
+@pytest.fixture(scope="module")
+def sampler() -> Sampler:
+    """Every call of some kernels."""
+    return Sampler(1 << 20)
+
+
+@pytest.fixture(scope="module")
+def runs(seen: dict[str, list[SeenFrame]], sampler: Sampler) -> dict[str, Run]:
+    """A frame of the built-in firmware by the compiler's own code, and as estimated."""
+
+    def see(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
+        if kernel.name in FEW_CALLED:
+            sampler.see(kernel, arguments)
+
+    return {
+        profile: simulate(
+            frames=1, profile=profile, on_seen=seen[profile].append, on_call=see if profile == "gcc" else None
+        )
+        for profile in ("gcc", "gcc-O2")
+    }
+
+
+def test_it_sees_and_publishes_what_the_estimated_run_does(
+    runs: dict[str, Run], seen: dict[str, list[SeenFrame]]
+) -> None:
+    """Bit for bit; only cycles differ."""
+    assert pickle.dumps(seen["gcc"]) == pickle.dumps(seen["gcc-O2"])
+    exact, estimated = ([each.results for each in runs[name].frames] for name in ("gcc", "gcc-O2"))
+    assert exact == estimated
+    calls = [
+        {(each.core, each.stage, each.path[0]) for each in done.paths if each.calls} for done in runs.values()
+    ]
+    assert calls[0] == calls[1]
+    assert runs["gcc"].frames[0].cores[0].end_cclk != runs["gcc-O2"].frames[0].cores[0].end_cclk
+
+
+def test_each_call_takes_the_cycles_that_verify_has(runs: dict[str, Run], sampler: Sampler) -> None:
+    """Of every call of some kernels, those that they make included."""
+    loaded = load_firmware(FIRMWARE[0])
+    entries = entries_of(loaded.firmware)
+    code = object_code(kernels_of(loaded.own) | entries, entries, GCC_O2, None)
+    found = verify(sampler, 1, GCC_O2, code, None)
+    assert {each.kernel for each in found.kernels} == set(FEW_CALLED)
+    assert found.different == 0
+    symbols = {each.name: each.function.symbol for each in sampler.of}
+    for each in found.kernels:
+        here = sum(path.issue_cclk for path in runs["gcc"].paths if path.path[0] == symbols[each.kernel])
+        assert here == each.measured_cclk > 0
+
+
+def test_every_cycle_has_an_owner(runs: dict[str, Run]) -> None:
+    """Issue, stall and idle cycles of the owners are those of each stage, and these are the elapsed ones."""
+    for core in runs["gcc"].frames[0].cores:
+        total = sum(each.issue_cclk + each.idle_cclk + sum(each.stall_cclk.values()) for each in core.stages)
+        assert total == core.end_cclk - core.begin_cclk
+        for stage in core.stages:
+            assert_filled(stage, [each for each in core.owners if each.stage == stage.stage])
+
+
+def test_the_run_says_whose_code_and_for_how_much(runs: dict[str, Run]) -> None:
+    """In its identity, by kernel, and in words; an estimated run says nothing."""
+    exact, estimated = runs["gcc"], runs["gcc-O2"]
+    assert (exact.identity.code, len(exact.identity.code_digest)) == ("GCC 12.2.0 -O2, timing gnu", 64)
+    assert (estimated.identity.code, estimated.identity.code_digest) == ("", "")
+    assert all(0 <= each.object_cclk <= each.issue_cclk for each in exact.kernels)
+    assert object_share(exact) > 0.95
+    assert object_share(estimated) == 0
+    assert f"{100 * object_share(exact):.2f} % of the issue cycles" in code_in_words(exact)
+    assert code_in_words(estimated) == ""
+    assert "Code" in exact.report()
+    assert "timing gnu" in exact.report()
+
+
+@pytest.fixture
+def _nothing_at_hand(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
+    monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr("bfsim.compiling.recipes.shipped", lambda _name: None)
+    yield
+
+
+@pytest.mark.usefixtures("_nothing_at_hand")
+def test_without_code_and_compiler_all_is_estimated() -> None:
+    """And is said to be."""
+    build = build_for(load_firmware(FIRMWARE[0]), GCC)
+    assert (build.objects, build.code) == ({}, building.NOTHING_AT_HAND)
