@@ -30,7 +30,7 @@ STDOUT = Path("-")
     type=click.IntRange(min=0),
     default=20,
     show_default=True,
-    help="Show the N lines, buffers or callers that cost most.",
+    help="Show the N kernels, lines, buffers or callers that cost most.",
 )
 @click.option(
     "--by",

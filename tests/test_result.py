@@ -53,7 +53,7 @@ def test_reports_are_text_of_80_columns() -> None:
     for which, words in (
         ("screen", "bound by core A"),
         ("full", "Configuration"),
-        ("profile", "Configuration"),
+        ("profile", "cycles by stage, kernel and line"),
     ):
         report = run.report(which)
         assert words in report

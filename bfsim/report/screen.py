@@ -21,13 +21,11 @@ from bfsim.report.budget import (
     latency_cclk,
     milliseconds,
 )
-from bfsim.report.code import code_in_words
-from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.report.start_up import of_one_frame, start_up_cclk, without_start_up
-from bfsim.report.tables import missed, named, new_table, percent, stacked
+from bfsim.report.tables import missed, named, new_table, notes_table, percent, stacked
 from bfsim.report.target import Target, target_words
-from bfsim.report.units import mhz
 from bfsim.report.warnings import warnings_of
+from bfsim.report.what_ran import what_ran
 from bfsim.trace import REST, FrameRecord, RunRecord
 
 BAR = 20
@@ -35,8 +33,6 @@ BAR = 20
 SLIVER = "▏"
 REASONS_TOLD = 3
 REMARKS_TOLD = 3
-DIGITS_TOLD = 12
-"""As much of a digest is enough to see that two runs are the same."""
 MUCH_STALL = 0.1
 """From this share of a frame on, a reader should look at the memories first."""
 
@@ -118,9 +114,7 @@ def bar(row: StageRow, core: CoreBudget) -> Text:
 
 def _notes(run: RunRecord, budget: Budget, bound: Bound, target: Target | None) -> Table:
     """Return the warnings, and what to know beside the numbers, in one grid."""
-    table = Table.grid(padding=(0, 2))
-    table.add_column(no_wrap=True)
-    table.add_column(overflow="fold")
+    table = notes_table()
     for each in warnings_of(run):
         table.add_row("Warning", f"{each.kind}: {each.text}", style="yellow")
     if target is not None:
@@ -149,13 +143,7 @@ def _facts(run: RunRecord, budget: Budget, bound: Bound) -> Iterator[tuple[str, 
     if run.reference is not None:
         yield run.reference.name, run.reference.about
     yield from _remarks(run)
-    if code := code_in_words(run):
-        yield "Code", code
-    yield "Run", _what_ran(run)
-    yield (
-        "Digests",
-        f"identity {identity_digest(run.identity)[:DIGITS_TOLD]}, cycles {cycle_digest(run.frames)[:DIGITS_TOLD]}",
-    )
+    yield from what_ran(run)
 
 
 def _remarks(run: RunRecord) -> Iterator[tuple[str, str]]:
@@ -212,16 +200,6 @@ def _wait_cclk(frame: FrameRecord) -> int:
     """Return how long a picture was there before the cores were done with the frame before."""
     free_cclk = min(core.begin_cclk for core in frame.cores)
     return min(max(0, free_cclk - frame.last_line_cclk), latency_cclk(frame))
-
-
-def _what_ran(run: RunRecord) -> str:
-    identity = run.identity
-    size = f"{identity.width_px}x{identity.height_px}"
-    board = f"{identity.board} ({mhz(identity.cclk_hz)}, SCLK {mhz(identity.sclk_hz)})"
-    extras = [identity.ldf, identity.compiler, f"feed {identity.feed}"]
-    if identity.fidelity != "fast":
-        extras.append(f"fidelity {identity.fidelity}")
-    return f"{identity.recording} {size}, {identity.firmware}, {board}, {', '.join(extras)}"
 
 
 def _next(bound: Bound) -> Iterator[tuple[str, str]]:

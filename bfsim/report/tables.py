@@ -279,11 +279,17 @@ def warning_table(run: RunRecord) -> Iterator[Table]:
         yield table
 
 
-def configuration(run: RunRecord) -> Table:
-    """Return what was run on what, and the digests of it and of its cycles."""
+def notes_table() -> Table:
+    """Return a table for names, and a sentence or two beside each."""
     table = Table.grid(padding=(0, 2))
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
+    return table
+
+
+def configuration(run: RunRecord) -> Table:
+    """Return what was run on what, and the digests of it and of its cycles."""
+    table = notes_table()
     table.title, table.title_style, table.title_justify = "Configuration", "bold not italic", "left"
     for name, text in configuration_of(run):
         table.add_row(name, text)

@@ -251,10 +251,11 @@ def test_a_reason_has_only_the_owners_that_have_some_of_it() -> None:
 
 
 def test_rows_show_runs_cost_and_share() -> None:
-    """Stage, kernel, and of its lines only the dearest; the last row is all of it."""
+    """Stage, of its kernels and their lines only the dearest, and a sum of the others; the last row is all of it."""
     lines = [*map(squeezed, printed(profile_report(owned_run(100), top=1), 120))]
     assert "Edge detection 0.13 7.7 81.2 ████████" in lines
-    assert "sobel (edges.py:10) 1 110.0 0.11 9.1 68.8 ██████▓" in lines
+    assert "sobel:10 edges.py 1 110.0 0.11 9.1 68.8 ██████▓" in lines
+    assert "(1 other) 0.02 0.0 12.5 █" in lines
     assert "10 for x in range(n): 1 95.0 0.10 0.0 59.4 ██████" in lines
     assert "All 0.16 6.2 100.0 ████████░░" in lines
 

@@ -14,19 +14,22 @@ from bfsim.report.tables import new_table
 
 EXACT = 10_000
 """Numbers below have every digit."""
-SMALL = 0.001
-"""Owners with a lesser share of the whole are added up in one row of their stage, unless a line of theirs is shown."""
 
 
 def kernel_tables(view: View) -> Iterator[Table]:
-    """Yield stages, in them owners, in those the source lines that are among the dearest of the run."""
+    """Yield stages, in them the dearest kernels and what is no kernel, in those the dearest source lines of the run; of the others a sum."""
     table = with_bar(
         new_table(view.title("stage, kernel and line"), "Stage / kernel / line", "Runs", "Each", *COST_HEADS)
     )
-    dearest = {id(line) for _, line in _dearest(view.profile, view.top)}
+    lines = {id(line) for _, line in _dearest(view.profile, view.top)}
+    owners = sorted(
+        (owner for stage in view.profile.stages for owner in stage.owners),
+        key=lambda each: -each.cost.elapsed_cclk,
+    )
+    shown = lines | {id(each) for each in owners[: view.top]}
     for stage in view.profile.stages:
         table.add_row(stage.stage, "", "", *view.cost_cells(stage.cost), style="bold")
-        _add_owners(table, view, stage, dearest)
+        _add_owners(table, view, stage, shown)
         table.add_section()
     table.add_row(view.all, "", "", *view.cost_cells(view.profile.cost), style="bold")
     yield table
@@ -52,20 +55,27 @@ def _dearest(profile: Profile, top: int | None = None) -> list[tuple[OwnerProfil
     return sorted(lines, key=lambda each: -each[1].cost.elapsed_cclk)[:top]
 
 
-def _add_owners(table: Table, view: View, stage: StageProfile, dearest: set[int]) -> None:
-    small = []
+def _add_owners(table: Table, view: View, stage: StageProfile, shown: set[int]) -> None:
+    """Add the owners of a stage that are `shown`, by their ids, or have a line that is."""
+    others = []
     for owner in stage.owners:
-        cost, shown = owner.cost, [line for line in owner.lines if id(line) in dearest]
-        if not shown and view.profile.share(cost.elapsed_cclk) < SMALL:
-            small.append(cost)
+        cost, lines = owner.cost, [line for line in owner.lines if id(line) in shown]
+        if not lines and id(owner) not in shown:
+            others.append(cost)
             continue
-        name = f"  {owner.owner}{f' ({owner.place})' if owner.place else ''}"
+        name = f"  {_name(owner)}"
         table.add_row(name, *_runs(owner.calls, cost), *view.cost_cells(cost))
-        for line in shown:
+        for line in lines:
             text = f"  {line.line:4} {line.text.strip()}"
             table.add_row(text, *_runs(line.executions, line.cost), *view.cost_cells(line.cost), style="dim")
-    if small:
-        table.add_row(f"  ({len(small)} smaller)", "", "", *view.cost_cells(sum_of(small)))
+    if others:
+        table.add_row(f"  {others_row(len(others))}", "", "", *view.cost_cells(sum_of(others)))
+
+
+def _name(owner: OwnerProfile) -> str:
+    """Return a name with its line, then the file: that is what gives way where room is short."""
+    file, _, line = owner.place.rpartition(":")
+    return f"{owner.owner}:{line}  {file}" if file else owner.owner
 
 
 def _runs(runs: int, cost: Cost) -> tuple[str, str]:

@@ -15,8 +15,9 @@ from bfsim.report.profile.kernel_tables import kernel_tables, line_tables
 from bfsim.report.profile.reason_tables import reason_tables
 from bfsim.report.profile.sentences import sentences_of
 from bfsim.report.profile.view import View
-from bfsim.report.tables import configuration, stacked, warning_table
+from bfsim.report.tables import notes_table, stacked, warning_table
 from bfsim.report.target import Target, target_words
+from bfsim.report.what_ran import what_ran
 from bfsim.trace import RunRecord
 
 VIEWS: Mapping[str, Callable[[View], Iterator[Table]]] = {
@@ -40,16 +41,23 @@ def profile_report(
 ) -> RenderableType:
     """Return the profile of a run of at least one frame by one of `VIEWS`, for one core or all, one stage or all.
 
-    `top`: how many lines, buffers or callers are shown. `target` is what frames are compared with.
+    `top`: how many kernels, lines, buffers or callers are shown. `target` is what frames are compared with.
     """
     view = View.of(run, core, stage, top)
     return stacked(
         Text("\n".join(sentences_of(run, core, stage)), style="bold"),
         *([] if target is None else [Text(f"Target {target_words(run, target)}")]),
         *VIEWS[by](view),
-        Text(
-            f"Also: --by {', '.join(each for each in VIEWS if each != by)}; --stage, --core, --top, --json."
-        ),
-        configuration(run),
+        _notes(run, by),
         *warning_table(run),
     )
+
+
+def _notes(run: RunRecord, by: str) -> Table:
+    """Return what ran, and what else can be asked."""
+    table = notes_table()
+    for name, text in what_ran(run):
+        table.add_row(name, text)
+    others = ", ".join(each for each in VIEWS if each != by)
+    table.add_row("Also", f"--by {others}; --stage, --core, --top, --json")
+    return table

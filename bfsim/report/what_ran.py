@@ -1,0 +1,28 @@
+"""What ran on what, in a few lines: for screens that end with it. `report.configuration` has all of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from bfsim.report.code import code_in_words
+from bfsim.report.digest import cycle_digest, identity_digest
+from bfsim.report.units import mhz
+from bfsim.trace import RunRecord
+
+DIGITS_TOLD = 12
+"""As much of a digest is enough to see that two runs are the same."""
+
+
+def what_ran(run: RunRecord) -> Iterator[tuple[str, str]]:
+    """Yield whose code it was, the names of what ran, and the digests of that and of its cycles."""
+    if code := code_in_words(run):
+        yield "Code", code
+    identity = run.identity
+    size = f"{identity.width_px}x{identity.height_px}"
+    board = f"{identity.board} ({mhz(identity.cclk_hz)}, SCLK {mhz(identity.sclk_hz)})"
+    extras = [identity.ldf, identity.compiler, f"feed {identity.feed}"]
+    if identity.fidelity != "fast":
+        extras.append(f"fidelity {identity.fidelity}")
+    yield "Run", f"{identity.recording} {size}, {identity.firmware}, {board}, {', '.join(extras)}"
+    digests = identity_digest(identity), cycle_digest(run.frames)
+    yield "Digests", "identity {}, cycles {}".format(*(each[:DIGITS_TOLD] for each in digests))
