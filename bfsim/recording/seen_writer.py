@@ -53,6 +53,7 @@ class SeenWriter:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._channels: dict[str, int] = {}
+        self._schemas: dict[str, int] = {}
         self._times_ns: dict[int, int] = {}
         self._numbers = NumberMessages()
         if not path.name or path.is_dir():
@@ -123,8 +124,10 @@ class SeenWriter:
     def _channel(self, topic: str, message: Any) -> int:
         """Return the channel of a topic, which its first message opens."""
         if topic not in self._channels:
-            schema = register_schema(self._mcap, type(message))
-            self._channels[topic] = self._mcap.register_channel(topic, "protobuf", schema)
+            kind = message.DESCRIPTOR.full_name
+            if kind not in self._schemas:
+                self._schemas[kind] = register_schema(self._mcap, type(message))
+            self._channels[topic] = self._mcap.register_channel(topic, "protobuf", self._schemas[kind])
         return self._channels[topic]
 
     def __exit__(

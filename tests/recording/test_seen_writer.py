@@ -69,6 +69,12 @@ def test_every_topic_has_a_standard_schema_and_a_message_per_frame(path: Path) -
     assert counts == dict.fromkeys(SCHEMAS, 3)
 
 
+def test_a_schema_is_told_once(path: Path) -> None:
+    """However many topics have it."""
+    names = [schema.name for schema in {each[0].id: each[0] for each in messages(path)}.values()]
+    assert sorted(names) == sorted(set(SCHEMAS.values()))
+
+
 def test_times_are_those_of_the_pictures_and_never_go_back(path: Path) -> None:
     """In the file as in the messages; the right camera's are its own."""
     last = 0
