@@ -6,13 +6,14 @@ pixels L1 bank A holds 46 w bytes and bank B 19 w + 6 h + 6 KB: 640x480 fits, be
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
-from bfsim.api import Buffer, Buffers, Calibration, FrameSize, i16, u8, u16, u32
+from bfsim.api import Buffer, Buffers, Calibration, FrameSize, u8, u16, u32
 from tinyphoon.exchange import exchange_buffers
 from tinyphoon.geometry import geometry_buffer, thesis_geometry_buffer
 from tinyphoon.stages.blob_detection import blob_buffers
 from tinyphoon.stages.circle_detection import circle_buffers
+from tinyphoon.stages.edge_detection import scan_buffers
 from tinyphoon.stages.edge_thinning import thinning_buffers
 from tinyphoon.stages.hysteresis import hysteresis_buffers
 from tinyphoon.stages.line_detection import line_buffers
@@ -31,14 +32,21 @@ from tinyphoon.strategy.orders import order_buffers, shared_order_buffers
 from tinyphoon.strategy.results import MESSAGE_WORDS
 from tinyphoon.tables import arctangent_table
 
+ScanBuffers = Callable[[FrameSize], Sequence[Buffer]]
+"""What a scan of a picture has between its kernels."""
+
 CAMERA_FRAMES = 3  # one that is worked on, one that waits, one that is filled
 
 
-def buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
-    """Return the buffers of each core for pictures of `size`."""
+def buffers(size: FrameSize, scan_buffers: ScanBuffers = scan_buffers) -> Mapping[str, Sequence[Buffer]]:
+    """Return the buffers of each core for pictures of `size`; `scan_buffers`: those of a scan."""
     return {
-        "A": (*_left_buffers(size), *stereo_line_buffers(), *stereo_edge_buffers("sdram_bank2")),
-        "B": _core_buffers(size, camera="sdram_bank1", images="sdram_bank3"),
+        "A": (
+            *_left_buffers(size, scan_buffers),
+            *stereo_line_buffers(),
+            *stereo_edge_buffers("sdram_bank2"),
+        ),
+        "B": _core_buffers(size, scan_buffers, camera="sdram_bank1", images="sdram_bank3"),
         "shared": (
             *exchange_buffers(size),
             *shared_object_buffers(),
@@ -49,7 +57,7 @@ def buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
 
 def one_core_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
     """Return the buffers for pictures of `size` of a board with one core."""
-    return {"A": (*_left_buffers(size), *shared_order_buffers(size, "data1"))}
+    return {"A": (*_left_buffers(size, scan_buffers), *shared_order_buffers(size, "data1"))}
 
 
 def calibration_buffers(calibration: Calibration) -> Buffers:
@@ -59,16 +67,18 @@ def calibration_buffers(calibration: Calibration) -> Buffers:
     return {core: (*tables.get(core, ()), *geometry) for core in ("A", "B")}
 
 
-def _left_buffers(size: FrameSize) -> Sequence[Buffer]:
+def _left_buffers(size: FrameSize, scan_buffers: ScanBuffers) -> Sequence[Buffer]:
     return (
-        *_core_buffers(size, camera="sdram_bank0", images="sdram_bank2"),
+        *_core_buffers(size, scan_buffers, camera="sdram_bank0", images="sdram_bank2"),
         *left_object_buffers(),
         Buffer("edge_data", u32, EDGE_CAPACITY, "bsz"),
         Buffer("results", u16, MESSAGE_WORDS, "data1"),
     )
 
 
-def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buffer]:
+def _core_buffers(
+    size: FrameSize, scan_buffers: ScanBuffers, *, camera: str, images: str
+) -> Sequence[Buffer]:
     width, height = size.width_px, size.height_px
     return (
         Buffer("camera", u8, 2 * width, camera, rows=CAMERA_FRAMES * height),
@@ -81,13 +91,8 @@ def _core_buffers(size: FrameSize, *, camera: str, images: str) -> Sequence[Buff
         Buffer("opened_ring", u32, width, "L1_data_a", rows=2),
         Buffer("edge_ring", u8, width, "L1_data_b", rows=2),
         # rings between kernels
-        Buffer("grey_ring", u8, width, "L1_data_a", rows=3),
-        Buffer("smooth_ring", u8, width, "L1_data_a", rows=3),
+        *scan_buffers(size),
         Buffer("eroded_ring", u32, width, "L1_data_a", rows=3),
-        Buffer("magnitude_ring", u8, width, "L1_data_b", rows=3),
-        Buffer("direction_ring", u8, width, "L1_data_b", rows=2),
-        Buffer("gx", i16, width, "L1_data_b"),
-        Buffer("gy", i16, width, "L1_data_b"),
         thesis_geometry_buffer(size),
         Buffer("atan", u8, 257, "L1_data_b", values=arctangent_table()),
         *thinning_buffers(size, images),

@@ -6,7 +6,7 @@ from collections.abc import Generator
 from typing import Any
 
 from bfsim.api import Core
-from tinyphoon.features import features
+from tinyphoon.features import PLAIN, PixelSteps, features
 from tinyphoon.stages.object_detection import left_sight, object_detection
 from tinyphoon.stages.object_history import follow_area
 from tinyphoon.stages.stereo_edges import stereo_edges
@@ -15,7 +15,7 @@ from tinyphoon.strategy.orders import Orders, halvings_of, read_mode, see_by
 from tinyphoon.strategy.report import report
 
 
-def core_a(core: Core) -> Generator[Any, Any, None]:
+def core_a(core: Core, steps: PixelSteps = PLAIN) -> Generator[Any, Any, None]:
     """See every picture of the left camera, and depth where core B's right one shows the same.
 
     Core B writes its results again only when core A is done with them: the cores take the same next pair.
@@ -26,7 +26,7 @@ def core_a(core: Core) -> Generator[Any, Any, None]:
     while (frame := (yield from core.next_frame())) is not None:
         mode = yield from read_mode(core)
         area = yield from see_by(core, frame, mode)
-        found = yield from features(core, frame, mode, area)
+        found = yield from features(core, frame, mode, area, steps)
         with core.stage("Object detection"):
             yield from left_sight(core, found.frame, found.outlines, mode.objects)
         yield from core.wait("core B is done")

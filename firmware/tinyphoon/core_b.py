@@ -7,12 +7,12 @@ from typing import Any
 
 from bfsim.api import Core
 from tinyphoon.exchange import share_edges, share_lines
-from tinyphoon.features import features
+from tinyphoon.features import PLAIN, PixelSteps, features
 from tinyphoon.stages.object_detection import right_sight
 from tinyphoon.strategy.orders import read_mode, see_by
 
 
-def core_b(core: Core) -> Generator[Any, Any, None]:
+def core_b(core: Core, steps: PixelSteps = PLAIN) -> Generator[Any, Any, None]:
     """See every picture of the right camera. The cores end a frame together, to take the same next pair.
 
     Core A is done with orders, too, before the first one.
@@ -21,7 +21,7 @@ def core_b(core: Core) -> Generator[Any, Any, None]:
     while (frame := (yield from core.next_frame())) is not None:
         mode = yield from read_mode(core)
         area = yield from see_by(core, frame, mode)
-        found = yield from features(core, frame, mode, area)
+        found = yield from features(core, frame, mode, area, steps)
         with core.stage("Object detection"):
             yield from right_sight(core, found.frame, found.outlines, mode.objects)
         yield from share_lines(core, found.lines)

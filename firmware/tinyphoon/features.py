@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,7 @@ from tinyphoon.areas import WHOLE_PICTURE, Area
 from tinyphoon.stages.blob_detection import blob_detection
 from tinyphoon.stages.blob_merging import blob_merging
 from tinyphoon.stages.circle_detection import circle_detection
-from tinyphoon.stages.edge_detection import edge_detection
+from tinyphoon.stages.edge_detection import Scan, edge_detection, scan
 from tinyphoon.stages.line_detection import line_detection
 from tinyphoon.stages.line_refinement import line_refinement
 from tinyphoon.stages.object_detection import Outlines
@@ -32,16 +32,27 @@ class Features:
     outlines: Outlines
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PixelSteps:
+    """The steps that touch every pixel of a picture, which are most of a frame: plain ones, or faster ones that leave the same."""
+
+    scan: Scan = scan
+    open_closing: Callable[[Core, Frame], Generator[Any, Any, None]] = open_closing
+
+
+PLAIN = PixelSteps()
+
+
 def features(
-    core: Core, frame: Frame, mode: Mode, area: Area = WHOLE_PICTURE
+    core: Core, frame: Frame, mode: Mode, area: Area = WHOLE_PICTURE, steps: PixelSteps = PLAIN
 ) -> Generator[Any, Any, Features]:
     """Leave edges, colours, blobs, lines and outlines of an area in the core's memories, in its coordinates."""
     with core.stage("Edge detection"):
         with core.stage("Rectification"):
             frame = yield from rectification(core, frame, area)
-        edges = yield from edge_detection(core, frame, mode.edges, area)
+        edges = yield from edge_detection(core, frame, mode.edges, area, steps.scan)
     with core.stage("Open & closing"):
-        yield from open_closing(core, frame)
+        yield from steps.open_closing(core, frame)
     with core.stage("Blob detection"):
         blobs = yield from blob_detection(core, frame, mode.blobs)
     with core.stage("Line detection"):

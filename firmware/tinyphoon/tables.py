@@ -24,3 +24,14 @@ def tangent_table() -> NDArray[np.uint16]:
     """
     angles = np.arange(33) * np.pi / 128
     return np.floor(np.tan(angles) * (1 << TANGENT_BITS) + 0.5).astype(np.uint16)
+
+
+def root_table() -> NDArray[np.uint8]:
+    """Return the roots of 0..255, then those of 16 k for k = 0..4095, rounded down."""
+    squares = np.concatenate((np.arange(256), 16 * np.arange(4096)))
+    return np.floor(np.sqrt(squares)).astype(np.uint8)
+
+
+def reciprocal_table() -> NDArray[np.uint32]:
+    """Return 1/n as a fraction of 1 << 28, rounded up, for n = 1..1020, the components of a Sobel gradient; and 0 for 0."""
+    return np.array([0, *(-(-(1 << 28) // n) for n in range(1, 1021))], np.uint32)

@@ -24,7 +24,7 @@ from tests.firmware.pictures import Bytes
 from tests.firmware.test_rectification import tables
 from tests.firmware.whole_pictures import buffer, check_core, random_frames
 from tests.machine.placements import shipped
-from tinyphoon import tinyphoon
+from tinyphoon import fast, tinyphoon
 from tinyphoon.areas import Area, area_in, principal_shift
 from tinyphoon.strategy_unit.unit import StrategyUnit
 
@@ -62,11 +62,15 @@ def check(board: Board, outcome: BoardRecord, left: Bytes, right: Bytes, *clear:
     "area",
     [(0, 0, 64, 48), (2, 1, 60, 46), (10, 20, 16, 16), (46, 30, 18, 18), (0, 5, 64, 20), (6, 0, 34, 48)],
 )
-@pytest.mark.parametrize("ldf", ["thesis.ldf", "cache.ldf"])
-def test_an_area_is_seen_like_the_cropped_picture(area: tuple[int, int, int, int], ldf: str) -> None:
+@pytest.mark.parametrize(
+    ("firmware", "ldf"), [(tinyphoon, "thesis.ldf"), (tinyphoon, "cache.ldf"), (fast, "cache.ldf")]
+)
+def test_an_area_is_seen_like_the_cropped_picture(
+    firmware: Firmware, area: tuple[int, int, int, int], ldf: str
+) -> None:
     """Borders too: nothing beyond the area is looked at. The frames before were whole."""
     frames = random_frames(64, 48, count=3)
-    board, outcome = run(frames, {"area": list(area)}, ldf=ldf)
+    board, outcome = run(frames, {"area": list(area)}, firmware=firmware, ldf=ldf)
     check(board, outcome, part(frames[-1].left, area), part(frames[-1].right, area))
 
 
@@ -82,12 +86,13 @@ def test_areas_follow_each_other(count: int) -> None:
 
 
 @pytest.mark.parametrize("area", [(10, 20, 40, 16), (0, 0, 16, 48), (2, 31, 62, 17), (48, 1, 16, 40)])
-def test_an_area_of_a_rectified_picture(area: tuple[int, int, int, int]) -> None:
+@pytest.mark.parametrize("firmware", [tinyphoon, fast], ids=["plain", "fast"])
+def test_an_area_of_a_rectified_picture(firmware: Firmware, area: tuple[int, int, int, int]) -> None:
     """The same as the area of the picture that is rectified whole."""
     frames = random_frames(64, 48, count=2)
     sources = tables(64, 48)
     board, outcome = run(
-        frames, {"area": list(area)}, firmware=tinyphoon.calibrated(Calibration(sources=sources))
+        frames, {"area": list(area)}, firmware=firmware.calibrated(Calibration(sources=sources))
     )
     left, right = (
         part(rectified(uyvy, sources[core]), area)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bfsim.api import Core
+from bfsim.api import Core, Firmware
 from bfsim.errors import LinkError
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
@@ -27,17 +27,21 @@ from tests.firmware.whole_pictures import (
     run,
     stereo,
 )
-from tinyphoon import tinyphoon
-from tinyphoon.stages.edge_detection import edge_detection
+from tinyphoon import fast, tinyphoon
+from tinyphoon.stages.edge_detection import Scan, edge_detection, scan
+from tinyphoon.stages.fast_scan import fast_scan
 from tinyphoon.stores.edges import EDGE_CAPACITY
 from tinyphoon.strategy.modes import INDOOR_FIELD
 
+BOTH = pytest.mark.parametrize("firmware", [tinyphoon, fast], ids=["plain", "fast"])
+"""The fast steps leave what the plain ones leave."""
 
-@pytest.mark.parametrize("count", [1, 2])
-def test_built_in_recording(count: int) -> None:
+
+@pytest.mark.parametrize(("firmware", "count"), [(tinyphoon, 1), (tinyphoon, 2), (fast, 2)])
+def test_built_in_recording(firmware: Firmware, count: int) -> None:
     """The first and the second frame of the soccer scene come out as in numpy, on both cores."""
     with RecordingReader(BUILT_IN_RECORDING) as reader:
-        check_last_frame(list(reader.frames(count)))
+        check_last_frame(list(reader.frames(count)), firmware)
 
 
 def test_given_recordings(given_recording: Path) -> None:
@@ -56,16 +60,20 @@ def test_given_recordings(given_recording: Path) -> None:
 @pytest.mark.parametrize(
     ("width", "height"), [(4, 3), (4, 1), (6, 2), (6, 4), (10, 5), (62, 7), (34, 50), (160, 121), (640, 16)]
 )
-def test_pictures_of_any_size(width: int, height: int) -> None:
+@BOTH
+def test_pictures_of_any_size(firmware: Firmware, width: int, height: int) -> None:
     """Narrow, low and wide pictures, three frames after each other in all three frame buffers."""
-    check_last_frame(random_frames(width, height, count=3))
+    check_last_frame(random_frames(width, height, count=3), firmware)
 
 
+@BOTH
 @pytest.mark.parametrize("name", EXTREMES)
-def test_extremes(name: str) -> None:
+def test_extremes(firmware: Firmware, name: str) -> None:
     """Pictures that no camera takes: as drawn on one core, upside down on the other, after another picture."""
     picture = EXTREMES[name](64, 45)
-    check_last_frame([*random_frames(64, 45, count=1), *stereo((picture, picture[::-1].copy()))[:1]])
+    check_last_frame(
+        [*random_frames(64, 45, count=1), *stereo((picture, picture[::-1].copy()))[:1]], firmware
+    )
 
 
 OVERFLOWS = {
@@ -117,18 +125,21 @@ def test_noise_leaves_room_for_what_comes_below() -> None:
     assert results["lines_A"] > 0
 
 
+@pytest.mark.parametrize(
+    ("firmware", "scanned"), [(tinyphoon, scan), (fast, fast_scan)], ids=["plain", "fast"]
+)
 @pytest.mark.parametrize(("width", "height"), [(6, 4), (34, 50), (160, 121)])
-def test_larger_gauss(width: int, height: int) -> None:
+def test_larger_gauss(firmware: Firmware, scanned: Scan, width: int, height: int) -> None:
     """The edges behind the 5x5 Gauss, which needs two lines more of the picture at a time."""
     thresholds = replace(INDOOR_FIELD.edges, gauss_px=5)
 
     def main(core: Core) -> Generator[Any, Any, None]:
         while (frame := (yield from core.next_frame())) is not None:
             with core.stage("Edge detection"):
-                yield from edge_detection(core, frame, thresholds)
+                yield from edge_detection(core, frame, thresholds, scanned=scanned)
 
     frames = random_frames(width, height, count=2)
-    board, outcome = run(frames, replace(tinyphoon, mains={"A": main, "B": main}))
+    board, outcome = run(frames, replace(firmware, mains={"A": main, "B": main}))
     check_edges(board, "A", frames[-1].left, dict(outcome.frames[-1].results), thresholds)
     check_edges(board, "B", frames[-1].right, dict(outcome.frames[-1].results), thresholds)
 
@@ -141,10 +152,11 @@ def test_frames_leave_nothing_behind() -> None:
     assert both.frames[1].results == alone.frames[0].results
 
 
+@BOTH
 @pytest.mark.parametrize(("width", "height"), [(160, 120), (320, 240), (640, 480)])
-def test_everything_fits_in_the_memories_of_the_thesis(width: int, height: int) -> None:
+def test_everything_fits_in_the_memories_of_the_thesis(firmware: Firmware, width: int, height: int) -> None:
     """Every buffer of all three picture sizes of the robot finds its place, and what asks for L1 is there."""
-    placements = board_for(width, height).link_map.placements
+    placements = board_for(width, height, firmware).link_map.placements
     for_l1 = [each for each in placements if each.symbol.section.startswith("L1_data")]
     assert for_l1
     assert all("L1_DATA" in each.segment for each in for_l1)

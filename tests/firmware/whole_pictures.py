@@ -158,9 +158,9 @@ def check_core(
     check_lines(board, core, uyvy, results)
 
 
-def check_last_frame(frames: Sequence[StereoFrame]) -> BoardRecord:
+def check_last_frame(frames: Sequence[StereoFrame], firmware: Firmware = tinyphoon) -> BoardRecord:
     """Run the frames and compare what both cores made of the last one."""
-    board, outcome = run(frames)
+    board, outcome = run(frames, firmware)
     assert [each.index for each in outcome.frames] == [each.index for each in frames]
     results = dict(outcome.frames[-1].results)
     check_core(board, "A", frames[-1].left, results)

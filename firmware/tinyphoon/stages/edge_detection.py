@@ -6,11 +6,11 @@ reads from. The fifth step is in `hysteresis.py`; `edge_thinning.py` says what b
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from bfsim.api import Core, Frame, i16, i32, kernel, u8, u16, u32
+from bfsim.api import Buffer, Core, Frame, FrameSize, i16, i32, kernel, u8, u16, u32
 from tinyphoon.areas import WHOLE_PICTURE, Area
 from tinyphoon.arithmetic import angle8, isqrt32
 from tinyphoon.fields import allowed
@@ -182,36 +182,6 @@ def clear_rim(edges: u8[:], first: u16[:], last: u16[:], y: i32, x: i32) -> None
         edges[column] = 0
 
 
-def edge_detection(
-    core: Core, frame: Frame, thresholds: EdgeThresholds, area: Area = WHOLE_PICTURE
-) -> Generator[Any, Any, int]:
-    """Detect the edges of a picture, an area of a larger one, and reduce its colours, in one pass of DMA lines (T Figure 5.3).
-
-    Leaves `edge_image` (gradients) and `colour_image` in SDRAM and the edge store; returns how many edges are stored and
-    publishes it as `edges`. Also publishes `edges_lost`, how many were left out because the store has no room for all, with the
-    rows of the camera's picture in which most were, and `edge_groups_shared`, how many groups had to share a label.
-    """
-    candidates = Candidates.of(core, frame.height)
-    yield from candidates.begin()
-    yield from scan(core, frame, thresholds, area, candidates)
-    rows, lost = yield from candidates.thin()
-    groups = EdgeGroups.of(core, frame.width)
-    found = given = 0
-    for y in range(frame.height):
-        core.at(y)
-        found = yield from candidates.take(rows, y, found)
-        core.at(y, edge_columns(core, y))
-        given = yield from groups.add(y, given)
-    kept = yield from hysteresis(groups, frame.height, thresholds.strong_threshold)
-    core.publish(edges=kept, edges_lost=lost, edge_groups_shared=max(0, given - LABELS + 1))
-    bands = thinned_bands(core.array("band_edges").array, frame.height)
-    if bands:
-        worst = max(bands, key=lambda each: each.share)
-        core.publish(edges_lost_top=area.y + worst.top, edges_lost_bottom=area.y + worst.bottom)
-        core.publish(edges_lost_percent=round(100 * worst.share))
-    return kept
-
-
 def scan(
     core: Core, frame: Frame, thresholds: EdgeThresholds, area: Area, candidates: Candidates
 ) -> Generator[Any, Any, None]:
@@ -257,3 +227,54 @@ def scan(
             yield from candidates.add(done, edges, direction[done])
     core.at()
     yield from colours.flush()
+
+
+def scan_buffers(size: FrameSize) -> Sequence[Buffer]:
+    """Return the rings between the kernels of `scan`."""
+    width = size.width_px
+    return (
+        Buffer("grey_ring", u8, width, "L1_data_a", rows=3),
+        Buffer("smooth_ring", u8, width, "L1_data_a", rows=3),
+        Buffer("magnitude_ring", u8, width, "L1_data_b", rows=3),
+        Buffer("direction_ring", u8, width, "L1_data_b", rows=2),
+        Buffer("gx", i16, width, "L1_data_b"),
+        Buffer("gy", i16, width, "L1_data_b"),
+    )
+
+
+Scan = Callable[[Core, Frame, EdgeThresholds, Area, Candidates], Generator[Any, Any, None]]
+"""How a picture is read, once: `scan`, or one that leaves the same."""
+
+
+def edge_detection(
+    core: Core,
+    frame: Frame,
+    thresholds: EdgeThresholds,
+    area: Area = WHOLE_PICTURE,
+    scanned: Scan = scan,
+) -> Generator[Any, Any, int]:
+    """Detect the edges of a picture, an area of a larger one, and reduce its colours, in one pass of DMA lines (T Figure 5.3).
+
+    Leaves `edge_image` (gradients) and `colour_image` in SDRAM and the edge store; returns how many edges are stored and
+    publishes it as `edges`. Also publishes `edges_lost`, how many were left out because the store has no room for all, with the
+    rows of the camera's picture in which most were, and `edge_groups_shared`, how many groups had to share a label.
+    """
+    candidates = Candidates.of(core, frame.height)
+    yield from candidates.begin()
+    yield from scanned(core, frame, thresholds, area, candidates)
+    rows, lost = yield from candidates.thin()
+    groups = EdgeGroups.of(core, frame.width)
+    found = given = 0
+    for y in range(frame.height):
+        core.at(y)
+        found = yield from candidates.take(rows, y, found)
+        core.at(y, edge_columns(core, y))
+        given = yield from groups.add(y, given)
+    kept = yield from hysteresis(groups, frame.height, thresholds.strong_threshold)
+    core.publish(edges=kept, edges_lost=lost, edge_groups_shared=max(0, given - LABELS + 1))
+    bands = thinned_bands(core.array("band_edges").array, frame.height)
+    if bands:
+        worst = max(bands, key=lambda each: each.share)
+        core.publish(edges_lost_top=area.y + worst.top, edges_lost_bottom=area.y + worst.bottom)
+        core.publish(edges_lost_percent=round(100 * worst.share))
+    return kept

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from typing import Any
 
-from bfsim.api import Core, Frame, kernel, u32
+from bfsim.api import Core, Frame, Kernel, kernel, u32
 from tinyphoon.scan_lines import line_ring, window
 
 # Erosion and dilation each need one line below theirs, so the finished line trails the one that comes in.
@@ -41,8 +41,10 @@ def dilate_row(above: u32[:], here: u32[:], below: u32[:], dilated: u32[:]) -> N
     dilated[last] = 0
 
 
-def open_closing(core: Core, frame: Frame) -> Generator[Any, Any, None]:
-    """Open the colour image in one pass of DMA lines; leaves `opened_image` in SDRAM."""
+def open_closing(
+    core: Core, frame: Frame, erode: Kernel = erode_row, dilate: Kernel = dilate_row
+) -> Generator[Any, Any, None]:
+    """Open the colour image in one pass of DMA lines; leaves `opened_image` in SDRAM. `erode` and `dilate` make a row."""
     colours = core.input_ring(core.rows("colour_image"), "colour_ring")
     opened = core.output_ring("opened_ring", core.rows("opened_image"))
     height = frame.height
@@ -53,11 +55,11 @@ def open_closing(core: Core, frame: Frame) -> Generator[Any, Any, None]:
             yield from colours.line()
         if 1 <= y <= height:
             core.at(y - 1)
-            yield core.run(erode_row, *window(colours, y - 1, height), eroded[y - 1])
+            yield core.run(erode, *window(colours, y - 1, height), eroded[y - 1])
         if y >= LAG_LINES:
             core.at(y - LAG_LINES)
             row = yield from opened.row()
-            yield core.run(dilate_row, *window(eroded, y - LAG_LINES, height), row)
+            yield core.run(dilate, *window(eroded, y - LAG_LINES, height), row)
             opened.send()
     core.at()
     yield from opened.flush()
