@@ -43,9 +43,12 @@ NO_STALLS: Mapping[StallReason, int] = MappingProxyType({})
 
 
 class Place(NamedTuple):
-    """A part of a picture: its rows and its columns, counted from 0: those of a range, single ones in order, or all."""
+    """A part of a picture: its rows and its columns, counted from 0: those of a range, single ones in order, or all.
 
-    rows: range
+    Single `rows` are those of single pixels: each goes with the column at the same place.
+    """
+
+    rows: range | tuple[int, ...]
     columns: range | tuple[int, ...] | None = None
 
 

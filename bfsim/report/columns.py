@@ -348,6 +348,6 @@ def _span(span: Span) -> SpanCells:
         span.flow,
         rows[0] if rows else None,
         rows[-1] if rows else None,
-        columns[0] if columns else None,
-        columns[-1] if columns else None,
+        min(columns) if columns else None,
+        max(columns) if columns else None,
     )

@@ -60,13 +60,26 @@ def heat_of(cycles: Cycles, stages: Sequence[str], width_px: int, height_px: int
     for (stage, place), cclk in cycles.items():
         if stage not in shares:
             continue
-        where = (_slice_of(place.rows), _columns_within(place.columns, width_px)) if place else None
+        where = _pixels_of(place, width_px, height_px) if place else None
         pixels = shares[stage][where].size if where else 0
         if pixels:
             shares[stage][where] += cclk * us_of_cclk / pixels
         else:
             elsewhere[stage] += cclk * us_of_cclk
     return SeenHeat(stages_us=shares, elsewhere_us=elsewhere)
+
+
+def _pixels_of(place: Place, width_px: int, height_px: int) -> tuple[slice | list[int], slice | list[int]]:
+    """Return rows and columns of a place as numpy takes them, without those beyond the picture."""
+    if isinstance(place.rows, range):
+        return _slice_of(place.rows), _columns_within(place.columns, width_px)
+    assert isinstance(place.columns, tuple)
+    within = [
+        (row, column)
+        for row, column in zip(place.rows, place.columns, strict=True)
+        if 0 <= row < height_px and 0 <= column < width_px
+    ]
+    return [row for row, _ in within], [column for _, column in within]
 
 
 def _slice_of(rows: range) -> slice:

@@ -10,7 +10,7 @@ from bfsim.spans import Place, Span, SpanKind
 
 
 def test_lines_and_edges_are_sought_where_edges_are() -> None:
-    """Row by row in the columns of its edges, as the picture shows them; circles in the boxes of their blobs."""
+    """Row by row in the columns of its edges, as the picture shows them; lines where these lie; circles in the boxes of their blobs."""
     seen: list[SeenFrame] = []
     spans: list[Span] = []
     simulate(frames=1, on_seen=seen.append, on_spans=spans.extend)
@@ -29,6 +29,16 @@ def test_lines_and_edges_are_sought_where_edges_are() -> None:
     ]  # a row between two lines is looked at in none
     assert looked_at
     assert all(len(each) < left.width_px / 2 for each in looked_at)
+    edges = {*zip(left.edges.y_px.tolist(), left.edges.x_px.tolist(), strict=True)}
+    for kernel in ("connect_near", "fit_lines", "connect_far", "refine_lines", "mutual_lines"):
+        (place,) = places[kernel]
+        assert isinstance(place.rows, tuple)
+        assert isinstance(place.columns, tuple)
+        under = [
+            any((row + down, column + across) in edges for down in (-1, 0, 1) for across in (-1, 0, 1))
+            for row, column in zip(*place, strict=True)
+        ]
+        assert sum(under) > 0.75 * len(under)  # a line may have gaps
     blobs = {
         (range(each.top_px, each.bottom_px + 1), range(each.left_px, each.right_px + 1))
         for each in left.blobs

@@ -95,13 +95,17 @@ def test_firmware_says_where_it_is() -> None:
             yield core.run(spin, 1)
             core.at(5, list)
             yield core.run(spin, 1)
+            core.at(lambda: [(6, 2), (5, 7), (6, 2)])
+            yield core.run(spin, 1)
+            core.at(list)
+            yield core.run(spin, 1)
         yield core.run(spin, 1)
         core.at()
         yield core.run(spin, 1)
 
     box, point = Place(range(1, 3), range(4, 8)), Place(range(5, 6), range(6, 7))
-    single = Place(range(5, 6), (2, 7))
-    assert places_of(work) == [box, None, point, single, row(5), box, None]
+    single, pixels = Place(range(5, 6), (2, 7)), Place((5, 6), (7, 2))
+    assert places_of(work) == [box, None, point, single, row(5), pixels, None, box, None]
 
 
 def test_columns_are_asked_for_only_if_someone_looks() -> None:
@@ -109,6 +113,8 @@ def test_columns_are_asked_for_only_if_someone_looks() -> None:
 
     def work(core: Core, _frame: Frame) -> Play:
         core.at(1, lambda: pytest.fail("nobody looks"))
+        yield core.run(spin, 1)
+        core.at(lambda: pytest.fail("nobody looks"))
         yield core.run(spin, 1)
 
     run(every_frame(work))

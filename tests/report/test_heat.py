@@ -17,21 +17,23 @@ ROWS = (BudgetRow(stage="Edges"), BudgetRow(stage="Straight", within="Edges"), B
 
 
 def test_the_time_of_a_place_goes_evenly_to_its_pixels() -> None:
-    """A row, a box, a box half beyond the picture, single columns, one of them beyond it, all beyond it, and no place."""
+    """A row, a box, a box half beyond the picture, single columns and single pixels, one of them beyond it, all beyond it, and no place."""
     cycles = {
         ("Edges", Place(range(1, 2))): 40,
         ("Edges", Place(range(2, 4), range(3))): 60,
         ("Blobs", Place(range(-1, 1), range(2, 9))): 20,
         ("Blobs", Place(range(3, 4), (1, 3, 9))): 8,
+        ("Blobs", Place((2, 3, 4), (2, 0, 0))): 4,
+        ("Blobs", Place((-1, 2), (1, 4))): 3,
         ("Blobs", Place(range(4, 5))): 7,
         ("Blobs", None): 5,
         (REST, None): 1000,
     }
     heat = heat_of(cycles, ("Edges", "Blobs"), 4, 4, MHZ)
     assert heat.stages_us["Edges"].tolist() == [[0] * 4, [10] * 4, [10, 10, 10, 0], [10, 10, 10, 0]]
-    assert heat.stages_us["Blobs"].tolist() == [[0, 0, 10, 10], [0] * 4, [0] * 4, [0, 4, 0, 4]]
-    assert heat.elsewhere_us == {"Edges": 0, "Blobs": 12}
-    assert heat.total_us().sum() + 12 == 40 + 60 + 20 + 8 + 7 + 5
+    assert heat.stages_us["Blobs"].tolist() == [[0, 0, 10, 10], [0] * 4, [0, 0, 2, 0], [2, 4, 0, 4]]
+    assert heat.elsewhere_us == {"Edges": 0, "Blobs": 15}
+    assert heat.total_us().sum() + 15 == 40 + 60 + 20 + 8 + 4 + 3 + 7 + 5
 
 
 def test_a_row_of_the_budget_has_its_parts() -> None:

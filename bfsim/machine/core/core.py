@@ -39,6 +39,9 @@ CAMERAS, SPI = "cameras", "SPI"
 """Owners of cycles."""
 
 
+Pixels = Callable[[], Iterable[tuple[int, int]]]
+"""What returns the row and the column of single pixels, and is called only if someone looks."""
+
 Columns = int | range | Callable[[], Iterable[int]]
 """Columns of a picture: one, those of a range, or what returns single ones and is called only if someone looks."""
 
@@ -47,7 +50,10 @@ def _range(places: int | range) -> range:
     return places if isinstance(places, range) else range(index(places), index(places) + 1)
 
 
-def _place(rows: int | range, columns: Columns | None) -> Place:
+def _place(rows: int | range | Pixels, columns: Columns | None) -> Place | None:
+    if callable(rows):
+        pixels = sorted(set(rows()))
+        return Place(*zip(*pixels, strict=True)) if pixels else None
     if columns is None:
         return Place(_range(rows))
     if callable(columns):
@@ -197,10 +203,11 @@ class Core(SynchronisedCore):
             self.at()
             self._enter(before)
 
-    def at(self, rows: int | range | None = None, columns: Columns | None = None) -> None:
+    def at(self, rows: int | range | Pixels | None = None, columns: Columns | None = None) -> None:
         """Say what the work from here on is about, for the heat map: rows and columns of the picture that is looked at.
 
-        `columns` may also be a function that returns single ones, such as those of edges: it is called only if someone looks.
+        `columns` may also be a function that returns single ones, such as those of edges, and in the place of both may be one that
+        returns (row, column) of single pixels, such as those under lines: it is called only if someone looks.
         Without columns it is the whole rows, without anything no place. That holds until the next `at` or the end of the
         stage; rows without columns, or no place, also until the next line of a ring over a picture as high as the camera's,
         which is the place then. It takes no cycle.

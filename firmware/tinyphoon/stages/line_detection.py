@@ -13,6 +13,7 @@ from bfsim.api import Buffer, Core, Frame, FrameSize, i16, i32, kernel, u8
 from tinyphoon.fields import allowed
 from tinyphoon.stages.line_connectors import connect_far, connect_near
 from tinyphoon.stages.line_fit import fit_line
+from tinyphoon.stages.line_pixels import line_pixels, segment_pixels
 from tinyphoon.stages.line_scan import segments_row
 from tinyphoon.stages.line_segments import (
     SCAN_WORDS,
@@ -82,14 +83,17 @@ def line_detection(core: Core, frame: Frame, thresholds: LineThresholds) -> Gene
         core.at(y, edge_columns(core, y))
         near = labels[y + 1 & 1], labels[y & 1]
         yield core.run(segments_row, *store, y, *near, segments, scan, *limits)
-    core.at()
+    core.at(segment_pixels(segments, SEGMENT_CAPACITY))
     count = yield core.run(keep_segments, segments, thresholds.min_length, thresholds.mean_edges)
+    core.at(segment_pixels(segments, count))
     count = yield core.run(connect_near, segments, count, thresholds.near_gap, thresholds.near_angle)
     size = frame.width, frame.height
     yield core.run(fit_lines, segments, count, lines, atan, *size)
+    core.at(line_pixels(lines, count))
     count = yield core.run(
         connect_far, segments, lines, count, atan, *size, thresholds.far_gap, thresholds.muff_range
     )
+    core.at()
     lost = yield core.run(unplaced_edges, scan)
     core.publish(lines=count, line_edges_lost=lost)
     return count

@@ -17,6 +17,7 @@ from typing import Any
 from bfsim.api import Core, Frame, Row, i16, i32, kernel, u8
 from tinyphoon.fields import allowed
 from tinyphoon.stages.line_fit import SLOPE_BITS, slope, spread, store_ends
+from tinyphoon.stages.line_pixels import line_pixels
 from tinyphoon.stages.line_segments import SEGMENT_WORDS
 from tinyphoon.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
 
@@ -189,6 +190,7 @@ def line_refinement(
     if thresholds.reach == 0:
         return
     lines, sums = core.array("lines"), core.array("segments")
+    core.at(line_pixels(lines, count))
     yield core.run(begin_sums, lines, count, sums)
     first = yield core.run(first_row, sums, count, frame.height)
     last = yield core.run(last_row, sums, count)
@@ -200,6 +202,7 @@ def line_refinement(
             line = yield from camera.line()
             limits = thresholds.reach, thresholds.min_step
             yield core.run(look_at_row, line, y, lines, count, sums, *limits)
-    core.at()
+    core.at(line_pixels(lines, count))
     refined = yield core.run(refine_lines, lines, count, sums, core.array("atan"), frame.width, frame.height)
+    core.at()
     core.publish(lines_refined=refined)

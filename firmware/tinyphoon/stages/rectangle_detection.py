@@ -21,6 +21,7 @@ from typing import Any
 
 from bfsim.api import Buffer, Core, i16, i32, kernel, u8, u32
 from tinyphoon.fields import allowed
+from tinyphoon.stages.line_pixels import line_pixels
 from tinyphoon.stores.blobs import ACROSS, BLOB_WORDS, COLOURS, DOWN
 from tinyphoon.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
 from tinyphoon.stores.rectangles import (
@@ -235,12 +236,14 @@ def rectangle_detection(
     are stored, and `rectangles_lost`, how many had no room. Returns how many are stored.
     """
     limits = SUBPIXELS * thresholds.border_px, thresholds.overlap, SUBPIXELS * thresholds.dark_px
+    core.at(line_pixels(core.array("lines"), lines))
     found = yield core.run(
         find_rectangles,
         *(core.array("blob_data"), core.array("label_parents"), blobs, colours, goals),
         *(core.array("lines"), lines, core.array("rectangles")),
         *limits,
     )
+    core.at()
     stored: int = min(found, RECTANGLE_CAPACITY)
     core.publish(rectangles=stored, rectangles_lost=found - stored)
     return stored

@@ -17,6 +17,7 @@ from tinyphoon.exchange import as_words, copy_words, shared_count
 from tinyphoon.fields import allowed
 from tinyphoon.geometry import FARTHEST_MM, disparity_at, store_point
 from tinyphoon.stages.line_correspondence import LEVEL, best_line, column_at, line_slopes, nearest_line
+from tinyphoon.stages.line_pixels import line_pixels
 from tinyphoon.stages.line_segments import NONE, SEGMENT_CAPACITY
 from tinyphoon.stages.line_votes import LineVote
 from tinyphoon.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1
@@ -195,6 +196,7 @@ def stereo_lines(
     right_count = yield from shared_count(core, "right_line_count")
     words = (right_count * LINE_WORDS + 1) // 2
     yield core.run(copy_words, as_words(core, "right_lines"), work.right_words, words)
+    core.at(line_pixels(lines, left_count))
     yield core.run(line_slopes, lines, left_count, work.left_slopes, thresholds.min_rise)
     yield core.run(line_slopes, work.right_lines, right_count, work.right_slopes, thresholds.min_rise)
     pictures = lines, work.left_slopes, left_count, work.right_lines, work.right_slopes, right_count
@@ -206,6 +208,7 @@ def stereo_lines(
         find, limits = mutual_lines, (*limits, least, most, thresholds.min_common)
     found: int = yield core.run(find, geometry, *pictures, *limits, *rest)
     left, right = (lines, work.left_slopes), (work.right_lines, work.right_slopes)
+    core.at()
     vote = LineVote(core, found, left, right, work.votes, thresholds.edge_range)
     yield from vote.open()
     return vote
