@@ -23,6 +23,7 @@ import sys
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from contextlib import contextmanager
 from itertools import cycle, islice
 from pathlib import Path
@@ -32,9 +33,10 @@ from rich.console import Console
 from rich.table import Table
 
 from bfsim.recording import RecordingReader, RecordingWriter
+from bfsim.report.check.baseline import Configuration
 from bfsim.shipped import RECORDING
 from bfsim.sweeping.cluster import Cluster
-from bfsim.sweeping.running import Outcome, code_digest
+from bfsim.sweeping.running import Outcome, Work, code_digest
 from bfsim.sweeping.store import Store
 from bfsim.sweeping.sweep import Planned, Sweep, Workers
 from bfsim.sweeping.workers import Pool
@@ -59,9 +61,17 @@ def record(path: Path, frames: int) -> None:
 
 
 class PlainPool(Pool):
-    """Processes that are not offered recorded work."""
+    """Processes that never record, and never play."""
 
-    is_here = False
+    def run_point(
+        self,
+        configuration: Configuration,
+        folder: Path,
+        code: str,
+        work: Work | None,
+    ) -> Future[Outcome]:
+        """Run it."""
+        return super().run_point(configuration, folder, code, None)
 
 
 @contextmanager

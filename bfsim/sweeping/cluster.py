@@ -4,15 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
+from pathlib import Path
 from typing import Any
 
 from bfsim.errors import ConfigError, cut
-from bfsim.sweeping.running import code_digest
+from bfsim.report.check.baseline import Configuration
+from bfsim.report.save import write_bytes
+from bfsim.sweeping.running import Outcome, Work, code_digest, run_point_there
 
 CONNECT_S = 10
 QUEUED = 2
 """Calls on their way for each thread of the workers: one that runs, and one that waits so that it need not."""
+
+
+def _arrive(there: Future[tuple[Outcome, bytes]], here: Future[Outcome], work: Work | None) -> None:
+    """Hand on what became of a point, behind what it recorded; where that finds no room, others run."""
+    if there.cancelled():
+        here.cancel()
+        here.set_running_or_notify_cancel()  # those who wait for it hear of it
+    elif error := there.exception():
+        here.set_exception(error)
+    else:
+        outcome, recorded = there.result()
+        if work and recorded:
+            with suppress(ConfigError):
+                write_bytes(work.path, [recorded])
+        here.set_result(outcome)
 
 
 class Cluster(AbstractContextManager["Cluster"]):
@@ -31,7 +49,6 @@ class Cluster(AbstractContextManager["Cluster"]):
                 "--scheduler must have Dask installed: pip install 'bfsim[sweep]'; without it, this machine alone runs them"
             ) from None
         self.deaths: tuple[type[Exception], ...] = (KilledWorker,)
-        self.is_here = False
         self.tries = 1
         """The scheduler has tried often enough."""
         try:
@@ -42,6 +59,7 @@ class Cluster(AbstractContextManager["Cluster"]):
                 f"{cut(address)} ({cut(str(error))})"
             ) from None
         self._executor = self._client.get_executor(pure=False)
+        self._works: dict[Path, Any] = {}
         try:
             self._require_code(code)
         except BaseException:
@@ -57,6 +75,23 @@ class Cluster(AbstractContextManager["Cluster"]):
         """Call a function somewhere."""
         future: Future[Any] = self._executor.submit(fn, *args)
         return future
+
+    def run_point(
+        self, configuration: Configuration, folder: Path, code: str, work: Work | None
+    ) -> Future[Outcome]:
+        """Call `running.run_point` somewhere; a recorded run travels between there and here."""
+        played = self._sent(work.path) if work and work.seen is not None else None
+        there = self.submit(run_point_there, configuration, folder, code, work, played)
+        here: Future[Outcome] = Future()
+        there.add_done_callback(lambda done: _arrive(done, here, work))
+        return here
+
+    def _sent(self, path: Path) -> Any:
+        """Send a recorded run to all workers there are, once; return what stands for its content."""
+        if path not in self._works:
+            self._works = {known: content for known, content in self._works.items() if known.exists()}
+            self._works[path] = self._client.scatter(path.read_bytes(), broadcast=True, hash=False)
+        return self._works[path]
 
     def __exit__(self, *_: object) -> None:
         """Let go of the workers; a point that one of them is at is finished there, for nobody."""

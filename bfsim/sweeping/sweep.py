@@ -17,7 +17,7 @@ from bfsim.report.check.baseline import Configuration
 from bfsim.shipped import RECORDING
 from bfsim.signals import uninterrupted
 from bfsim.sweeping.file import Point, read_sweep
-from bfsim.sweeping.running import Outcome, code_digest, digest_recording, plan_point, run_point
+from bfsim.sweeping.running import Outcome, Work, code_digest, digest_recording, plan_point, run_point
 from bfsim.sweeping.store import Store, key_of
 from bfsim.sweeping.works import Works
 from bfsim.trace import Identity
@@ -39,17 +39,21 @@ Task = TypeVar("Task")
 
 
 class Workers(Protocol):
-    """Who runs points. `deaths` are what a future raises whose process died; so many `tries` has a point. `is_here`: they see the store."""
+    """Who runs points. `deaths` are what a future raises whose process died; so many `tries` has a point."""
 
     deaths: tuple[type[Exception], ...]
     tries: int
-    is_here: bool
 
     def room(self) -> int:
         """Return how many calls may be on their way at a time."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any) -> Future[Any]:
         """Call a function elsewhere."""
+
+    def run_point(
+        self, configuration: Configuration, folder: Path, code: str, work: Work | None
+    ) -> Future[Outcome]:
+        """Call `running.run_point` elsewhere. What it records is at the path of `work`, here, when it is done."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,14 +129,14 @@ class Sweep:
         """
         waiting, tries = deque(self.todo), Counter[str]()
         running: dict[Future[Any], Planned] = {}
-        with Works(self.store, waiting if workers.is_here else ()) as works:
+        with Works(self.store, waiting) as works:
             while waiting or running:
                 for each in self._claimed(waiting, workers.room() - len(running)):
                     if known := self.store.outcome(each.key):
                         self._done(each, known, works, tell)
                     else:
                         call = (*self._call(each.point), code_digest(), works.order(each.key))
-                        running[workers.submit(run_point, *call)] = each
+                        running[workers.run_point(*call)] = each
                 if waiting and not running:
                     time.sleep(POLL_S)
                 for future in wait(running, POLL_S, FIRST_COMPLETED).done if running else ():

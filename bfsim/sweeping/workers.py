@@ -11,8 +11,12 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
+from pathlib import Path
 from threading import Thread
 from typing import Any
+
+from bfsim.report.check.baseline import Configuration
+from bfsim.sweeping.running import Outcome, Work, run_point
 
 
 class Pool(Executor):
@@ -23,7 +27,6 @@ class Pool(Executor):
 
     deaths: tuple[type[Exception], ...] = (BrokenProcessPool,)
     """What a future raises whose process died."""
-    is_here = True
     tries = 2
     """A process may have been killed for reasons of its own, such as want of memory: so often is a point tried."""
 
@@ -46,6 +49,12 @@ class Pool(Executor):
                 future = process.submit(fn, *args, **kwargs)
                 future.add_done_callback(partial(self._done, process))
                 return future
+
+    def run_point(
+        self, configuration: Configuration, folder: Path, code: str, work: Work | None
+    ) -> Future[Outcome]:
+        """Call `running.run_point` in such a process."""
+        return self.submit(run_point, configuration, folder, code, work)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:  # noqa: FBT002 - as Executor has it
         """End all processes, whatever they are at."""

@@ -7,9 +7,9 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
-from bfsim.sweeping.running import Outcome
+from bfsim.sweeping.running import Outcome, run_point
 from bfsim.sweeping.store import Store
-from bfsim.sweeping.sweep import Sweep
+from bfsim.sweeping.sweep import Sweep, Workers
 from tests.test_run import FIRMWARE, record
 
 EYES = 'firmware = "fw_eyes.py:eyes"\n'
@@ -32,7 +32,6 @@ class Here:
 
     deaths: tuple[type[Exception], ...] = ()
     tries = 1
-    is_here = True
 
     def room(self) -> int:
         """One at a time."""
@@ -44,6 +43,18 @@ class Here:
         future.set_result(fn(*args))
         return future
 
+    def run_point(self, *what: Any) -> Future[Outcome]:
+        """Run it now."""
+        return self.submit(run_point, *what)
+
+
+class Forgetful(Here):
+    """Never records, and never plays."""
+
+    def run_point(self, configuration: Any, folder: Path, code: str, work: object) -> Future[Outcome]:
+        """Run it now."""
+        return self.submit(run_point, configuration, folder, code)
+
 
 def home_in(folder: Path, text: str = FILE) -> Path:
     """Write firmware, a recording of two frames, and a sweep into a folder; return the sweep."""
@@ -54,11 +65,11 @@ def home_in(folder: Path, text: str = FILE) -> Path:
     return folder / "what-if.toml"
 
 
-def swept(file: Path) -> tuple[dict[str, Outcome], list[str]]:
-    """Sweep, and return what became of each point by its name, and which ran now."""
+def swept(file: Path, workers: Workers | None = None) -> tuple[dict[str, Outcome], list[str]]:
+    """Sweep, in this process if by no others, and return what became of each point by its name, and which ran now."""
     sweep = planned(file)
     ran: list[str] = []
-    sweep.run(Here(), lambda each, _outcome: ran.append(each.point.name))
+    sweep.run(workers or Here(), lambda each, _outcome: ran.append(each.point.name))
     outcomes = {
         each.point.name: sweep.outcomes[each.key] if each.key else Outcome(error=each.error)
         for each in sweep.planned

@@ -12,7 +12,7 @@ import pytest
 from bfsim.errors import ConfigError
 from bfsim.sweeping import running
 from bfsim.sweeping.cluster import Cluster
-from tests.sweeping.rig import BASE, home_in, planned, swept
+from tests.sweeping.rig import BASE, Forgetful, home_in, planned, swept
 from tests.test_run import FIRMWARE
 
 distributed = pytest.importorskip("distributed")
@@ -26,6 +26,17 @@ def main(core):
     if not Path(__file__).with_name("killed").exists():
         Path(__file__).with_name("killed").touch()
         os.kill(os.getpid(), signal.SIGKILL)
+""",
+)
+
+NOTES_RUNS = FIRMWARE.replace(
+    "def main(core):\n",
+    """\
+def main(core):
+    from pathlib import Path
+    if core.name == "A":
+        with Path(__file__).with_name("runs").open("a") as runs:
+            runs.write("A")
 """,
 )
 
@@ -55,6 +66,24 @@ def test_a_worker_that_is_killed_takes_nothing_along(address: str, tmp_path: Pat
     assert ran == []
     alone, _ = swept(home_in(tmp_path / "alone", file.read_text()))
     assert [each.figures for each in again.values()] == [each.figures for each in alone.values()]
+
+
+def test_one_worker_records_and_the_others_play(
+    address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was recorded there is sent to all, its figures are those of runs, and nothing of it stays behind."""
+    axes = "[axes]\nset.sdram.nRP = [2, 3, 4, 5, 6, 7]\n"
+    file = home_in(tmp_path / "cluster", BASE + axes)
+    file.with_name("fw_eyes.py").write_text(NOTES_RUNS)
+    with Cluster(address, running.code_digest()) as cluster:
+        monkeypatch.setattr(cluster, "room", lambda: 1)  # else all run at once
+        played, _ = swept(file, cluster)
+    assert file.with_name("runs").read_text() == "A" * 2  # the first one, and the one that was recorded
+    assert not list((file.with_suffix(".sweep") / "works").iterdir())
+    alone, _ = swept(home_in(tmp_path / "alone", BASE + axes), Forgetful())
+    assert {name: each.figures for name, each in played.items()} == {
+        name: each.figures for name, each in alone.items()
+    }
 
 
 def test_a_worker_with_another_bfsim_is_refused(address: str) -> None:

@@ -22,7 +22,7 @@ from bfsim.sweeping.rows import rows_of
 from bfsim.sweeping.running import Outcome, run_point
 from bfsim.sweeping.sweep import NOT_KEPT
 from bfsim.sweeping.workers import Pool
-from tests.sweeping.rig import BASE, FILE, Here, home_in, planned, swept
+from tests.sweeping.rig import BASE, FILE, Forgetful, Here, home_in, planned, swept
 from tests.test_run import FIRMWARE, record
 
 NAMES = ["nRP=2 frames=1", "nRP=2 frames=2", "nRP=4 frames=1", "nRP=4 frames=2"]
@@ -203,8 +203,7 @@ def test_points_that_differ_in_the_board_are_played(file: Path, monkeypatch: pyt
     assert sorted(runs) == ["played"] * 4 + ["recorded"] * 2 + ["run"] * 2
     assert not list((file.with_suffix(".sweep") / "works").iterdir())
     elsewhere = home_in(file.parent / "else", file.read_text())
-    monkeypatch.setattr(Here, "is_here", False)
-    alone, _ = swept(elsewhere)
+    alone, _ = swept(elsewhere, Forgetful())
     assert runs[8:] == ["run"] * 8
     assert _figures(played) == _figures(alone)
     assert {name: each.identity for name, each in played.items()} == {
