@@ -25,8 +25,9 @@ from bfsim.blackfin.subroutines import REGISTERS, STACK, STACK_BYTES, WORD_BYTES
     CODE, MEMORY, STATE, COUNTS, COUNTED,  # the native code, its memory, registers and counts, and how many these are
     TOTALS, ORDER, TOTALLED,  # where counts are added, in which order, and how many
     ADDRESS, TOP, WORDS, PARTS,  # of the subroutine, of its stack; numbers of arguments and of copied parts
-) = range(12)  # fmt: skip
-HEAD = 12
+    TRACE,  # where accesses are reported to (`tracing`)
+) = range(13)  # fmt: skip
+HEAD = 13
 PART_WORDS = 4
 """Of memory that is copied: its address here, that of its copy, how many bytes, and how many of them are copied back."""
 RUN = "bfsim_run_object"
@@ -85,6 +86,7 @@ FIELDS = "".join(
         ("code", CODE, "ptr"), ("memory", MEMORY, "ptr"), ("state", STATE, "ptr"), ("counts", COUNTS, "ptr"),
         ("counted", COUNTED, "i64"), ("totals", TOTALS, "ptr"), ("order", ORDER, "ptr"), ("totalled", TOTALLED, "i64"),
         ("address", ADDRESS, "i64"), ("top", TOP, "i64"), ("words", WORDS, "i64"), ("parts", PARTS, "i64"),
+        ("trace", TRACE, "i64"),
     )
 )  # fmt: skip
 HAND_OVER = """\
@@ -110,6 +112,7 @@ START = "".join(
         ("SP", "%top"),
         ("FP", "0"),
         ("CLOCK", "0"),
+        ("TRACE", "%trace"),
         ("RETS", str(OUTSIDE)),
         ("PC", "%address"),
     )
@@ -167,9 +170,12 @@ class Counts:
 class BoundCall:
     """A subroutine bound to its memory. `arguments`: its words, of which the lower 32 bits count, to be set before it is called."""
 
-    def __init__(self, subroutine: Subroutine, words: int, parts: Sequence[Placed], counts: Counts) -> None:
+    def __init__(
+        self, subroutine: Subroutine, words: int, parts: Sequence[Placed], counts: Counts, trace: Any = None
+    ) -> None:
+        """`trace`: the block that accesses are reported through, where the subroutine reports any."""
         self._subroutine = subroutine
-        self._kept = parts, counts  # the block has their addresses only
+        self._kept = parts, counts, trace  # the block has their addresses only
         translated, state = subroutine.translated, subroutine.processor.state
         room = max(len(REGISTERS), words)
         head = {
@@ -185,6 +191,7 @@ class BoundCall:
             TOP: STACK + STACK_BYTES - WORD_BYTES * room,
             WORDS: room,
             PARTS: len(parts),
+            TRACE: ctypes.addressof(trace) if trace else 0,
         }
         copies = [
             word

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import Protocol
 
 from llvmlite import ir
 
@@ -53,6 +54,13 @@ class Flow:
     event: Event | None = None
 
 
+class Report(Protocol):
+    """Is told of each access to memory."""
+
+    def __call__(self, address: Value, nbytes: int, *, writes: bool) -> None:
+        """Tell an access of so many bytes."""
+
+
 @dataclass(slots=True)
 class Effects:
     """The effects of the instruction at `address`.
@@ -69,6 +77,7 @@ class Effects:
     following: Callable[[], Value]
     pending: dict[str, Value] = field(default_factory=dict)
     flow: Flow | None = None
+    report: Report | None = None
     aligns: bool = False
     """Whether words that are loaded through index registers in this bundle are those at the next lower multiple of 4 (its DSP
     instruction says so: DISALGNEXCPT, and the video instructions)."""
@@ -141,11 +150,15 @@ class Effects:
 
     def load(self, address: Value, nbytes: int) -> Value:
         """Return the little-endian number of 1, 2 or 4 bytes in memory."""
+        if self.report:
+            self.report(address, nbytes, writes=False)
         kind = ir.IntType(8 * nbytes)
         return Value(self.builder, self.builder.load(self._place(address), typ=kind, align=1))
 
     def store(self, address: Value, value: Value) -> None:
         """Store a value of 8, 16 or 32 bits, little-endian."""
+        if self.report:
+            self.report(address, value.bits // 8, writes=True)
         self.builder.store(value.ir, self._place(address), align=1)
 
     def jump(self, target: int) -> None:

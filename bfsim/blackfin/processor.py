@@ -19,6 +19,7 @@ from bfsim.blackfin.effects import Event
 from bfsim.blackfin.guard import runner
 from bfsim.blackfin.registers import ACCUMULATOR_PARTS, ACCUMULATORS, ASTAT_UNUSED, FLAGS, SLOTS
 from bfsim.blackfin.timing import GNU, Timing
+from bfsim.blackfin.tracing import Tracing
 from bfsim.blackfin.translate import NAME, Counter, counters, is_large, translate
 from bfsim.errors import BfsimError
 
@@ -88,7 +89,7 @@ class Processor:
     `entries`: addresses at which it can be started or that its code computes; others are found when control comes there, and the
     code is translated anew with them. `fuel`: with it, at most so many blocks are run by a call of `run`. `compiled`: makes machine
     code of an LLVM module. `name`: under which the first native code is kept, so that it need not be made of the instructions again.
-    `explored`: adds to the entries what is found by looking at the code, before it is translated for the first time.
+    `tracing`: how accesses to memory are reported. `explored`: adds to the entries what is found by looking at the code, before it is translated for the first time.
     """
 
     space: AddressSpace
@@ -99,6 +100,7 @@ class Processor:
     state: State = field(default_factory=State)
     translated: Translated | None = None
     name: str = ""
+    tracing: Tracing | None = None
     explored: Callable[[set[int]], set[int]] | None = None
 
     def prepared(self) -> Translated:
@@ -156,16 +158,17 @@ class Processor:
         count, machine = int.from_bytes(kept[:COUNT_BYTES], "little"), kept[COUNT_BYTES:]
         native = machine_code.loaded(machine)
         counts = np.zeros(count, np.int64)
-        return Translated(native.get_function_address(NAME), native, counts, self.timing, self._code)
+        return Translated(native.get_function_address(NAME), native, counts, self.timing, self.code)
 
     def _compiled(self) -> bytes:
         """Make the machine code; return how many counters it has, and it."""
-        code = self._code()
-        text = translate(code, self.timing, fuel=self.fuel is not None)
+        code = self.code()
+        text = translate(code, self.timing, fuel=self.fuel is not None, tracing=self.tracing)
         machine = unoptimised(text) if is_large(code) else self.compiled(text)
         return len(counters(code, self.timing)).to_bytes(COUNT_BYTES, "little") + machine
 
-    def _code(self) -> Code:
+    def code(self) -> Code:
+        """Return all that can be reached from the entries."""
         if self.explored:
             self.entries, self.explored = self.explored(self.entries), None
         return Code(self.space.fetch, frozenset(self.entries))

@@ -11,6 +11,7 @@ by the registers LC, LT and LB, so that code may also leave, save and restore th
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 from llvmlite import ir
 
@@ -20,9 +21,11 @@ from bfsim.blackfin.effects import I8, I32, I64, Effects, Event, Flow
 from bfsim.blackfin.registers import SLOTS, width
 from bfsim.blackfin.semantics import SEMANTICS
 from bfsim.blackfin.timing import Timing
+from bfsim.blackfin.tracing import Tracing
 from bfsim.blackfin.value import Value
 
 POINTER = ir.PointerType()
+REPORT = ir.FunctionType(ir.VoidType(), (POINTER, I64, I64, I64, I64))
 NAME = "blackfin"
 LARGE_PROGRAM_BLOCKS = 500
 """[ours] LLVM's time to optimise one function of more blocks grows with their square: minutes for a program with newlib's printf."""
@@ -52,16 +55,20 @@ def counters(code: Code, timing: Timing) -> list[Counter]:
     return found
 
 
-def translate(code: Code, timing: Timing, *, fuel: bool = False) -> str:
-    """Return the LLVM module of code; its function is called `NAME`. With `fuel`, the FUEL of the state is how many blocks it may run."""
-    return str(_Translation(code, counters(code, timing), fuel=fuel).module())
+def translate(code: Code, timing: Timing, *, fuel: bool = False, tracing: Tracing | None = None) -> str:
+    """Return the LLVM module of code; its function is called `NAME`. With `fuel`, the FUEL of the state is how many blocks it may run.
+
+    With `tracing`, accesses to memory are reported, each with the cycle of this call of the function at which its instruction is issued.
+    """
+    return str(_Translation(code, timing, fuel=fuel, tracing=tracing).module())
 
 
 class _Translation:
     """The function while it is made."""
 
-    def __init__(self, code: Code, counted: list[Counter], *, fuel: bool) -> None:
-        self.code, self.counted, self.fuel = code, counted, fuel
+    def __init__(self, code: Code, timing: Timing, *, fuel: bool, tracing: Tracing | None) -> None:
+        self.code, self.timing, self.fuel, self.tracing = code, timing, fuel, tracing
+        counted = self.counted = counters(code, timing)
         self.made = ir.Module(NAME)
         self.function = ir.Function(self.made, ir.FunctionType(I32, (POINTER, POINTER, POINTER)), NAME)
         self.memory, self.state, self.counts = self.function.args
@@ -77,7 +84,8 @@ class _Translation:
 
     def module(self) -> ir.Module:
         entry = ir.IRBuilder(self.entry)
-        self.event, self.base = entry.alloca(I32), entry.alloca(I64)
+        self.event, self.base, self.stamp = entry.alloca(I32), entry.alloca(I64), entry.alloca(I64)
+        entry.store(I64(0), self.stamp)
         for block in self.code.blocks.values():
             self._block(block)
         self._dispatch()
@@ -107,12 +115,17 @@ class _Translation:
         if self.fuel:
             self._burn(builder, block.start)
         flow: Flow | None = None
+        cclk = 0
         for instruction in block.instructions:
-            flow = self._instruction(builder, instruction)
+            flow = self._instruction(builder, instruction, cclk)
+            cclk += self.timing.of(instruction)
         self._count(builder, block.start)
+        self._pass(builder, I64(cclk))
         if flow and flow.condition and block.branches:
             taken = flow.condition.zero_extended(64)
-            self._add(builder, self.numbers[block.start, True], taken.ir)
+            number = self.numbers[block.start, True]
+            self._add(builder, number, taken.ir)
+            self._pass(builder, builder.mul(taken.ir, I64(self.counted[number].cclk)))
         last = block.instructions[-1].address if block.instructions else block.start
         if flow:
             self._flow(builder, flow, last, block.end)
@@ -122,7 +135,8 @@ class _Translation:
             self._loops(builder, last)
             builder.branch(self.at[block.end])
 
-    def _instruction(self, builder: ir.IRBuilder, instruction: Instruction) -> Flow | None:
+    def _instruction(self, builder: ir.IRBuilder, instruction: Instruction, cclk: int) -> Flow | None:
+        """Add an instruction that is issued `cclk` cycles after its block has begun."""
         effects = Effects(
             builder,
             self.slot,
@@ -130,11 +144,36 @@ class _Translation:
             lambda: self._clock(builder),
             instruction.address,
             lambda: self._following(builder, instruction),
+            report=partial(self._report, builder, instruction, cclk) if self.tracing else None,
         )
         for each in instruction.operations:
             SEMANTICS[each.form.does](effects, **each.operands, **each.form.given)
         effects.commit()
         return effects.flow
+
+    def _report(
+        self,
+        builder: ir.IRBuilder,
+        instruction: Instruction,
+        cclk: int,
+        address: Value,
+        nbytes: int,
+        *,
+        writes: bool,
+    ) -> None:
+        """Report an access."""
+        assert self.tracing
+        block = builder.inttoptr(self._read(builder, "TRACE"), POINTER)
+        tracer = builder.load(block, typ=REPORT.as_pointer())
+        stamp = builder.add(builder.load(self.stamp), I64(cclk))
+        access = I64(nbytes + self.tracing.write * writes)
+        site = I64(self.tracing.site_of(instruction.address))
+        builder.call(tracer, [block, address.zero_extended(64).ir, access, stamp, site])
+
+    def _pass(self, builder: ir.IRBuilder, cclk: ir.Value) -> None:
+        """Let cycles pass for what is reported."""
+        if self.tracing:
+            builder.store(builder.add(builder.load(self.stamp), cclk), self.stamp)
 
     def _flow(self, builder: ir.IRBuilder, flow: Flow, last: int, end: int) -> None:
         """Go where an instruction says, through the end of a loop if there is one."""

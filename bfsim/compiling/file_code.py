@@ -37,13 +37,17 @@ class FileCode:
     loaded: LoadedImage
     places: Places
 
-    def compiled(self) -> CompiledObject:
-        """Return it ready to run; it is translated once."""
-        return self._compiled
+    def compiled(self, *, traced: bool = False) -> CompiledObject:
+        """Return it ready to run; it is translated once. `traced`: its accesses to memory are reported."""
+        return self._traced if traced else self._untraced
 
     @cached_property
-    def _compiled(self) -> CompiledObject:
+    def _untraced(self) -> CompiledObject:
         return compiled_object(self.function, self.symbol, self.loaded, self.places)
+
+    @cached_property
+    def _traced(self) -> CompiledObject:
+        return compiled_object(self.function, self.symbol, self.loaded, self.places, traced=True)
 
 
 def file_kernel(

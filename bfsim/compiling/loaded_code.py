@@ -20,7 +20,7 @@ class LoadedCode:
 
     code: ObjectCode
     timing: Timing = GNU
-    _compiled: dict[tree.Function, CompiledObject] = field(default_factory=dict)
+    _compiled: dict[tuple[tree.Function, bool], CompiledObject] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         image = link(read_object(self.code.octets, "kernels.o"))
@@ -32,11 +32,14 @@ class LoadedCode:
         """Whether a kernel is a function of the code: helpers may be inlined in all that call them."""
         return self.code.symbol_of(function) in self._places.image.symbols
 
-    def compiled(self, function: tree.Function) -> CompiledObject:
-        """Return a kernel ready to run. Raises KernelError if the code has no function for it, as for helpers that are inlined."""
-        if function not in self._compiled:
+    def compiled(self, function: tree.Function, *, traced: bool = False) -> CompiledObject:
+        """Return a kernel ready to run; `traced`: its accesses to memory are reported.
+
+        Raises KernelError if the code has no function for it, as for helpers that are inlined.
+        """
+        if (function, traced) not in self._compiled:
             symbol = self.code.symbol_of(function)
-            self._compiled[function] = compiled_object(
-                function, symbol, self._loaded, self._places, self.timing
+            self._compiled[function, traced] = compiled_object(
+                function, symbol, self._loaded, self._places, self.timing, traced=traced
             )
-        return self._compiled[function]
+        return self._compiled[function, traced]

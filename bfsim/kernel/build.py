@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from bfsim.kernel import tree
 from bfsim.kernel.decorator import Kernel
@@ -15,23 +15,29 @@ if TYPE_CHECKING:
     from bfsim.kernel.objects.compiled import CompiledObject
 
 
+class Ready(Protocol):
+    """Returns the object code of a kernel ready to run; `traced`: its accesses to memory are reported."""
+
+    def __call__(self, *, traced: bool = False) -> CompiledObject: ...
+
+
 @dataclass(frozen=True)
 class Build:
     """How the kernels of a run are built.
 
-    `objects`: kernels whose object code there is, each with what returns it ready to run; others are as `profile` estimates them.
+    `objects`: kernels whose object code there is, others are as `profile` estimates them.
     `code`: whose code it is, and which timing counts its cycles, in words; empty where all is estimated. `digest`: of that code.
     """
 
     profile: CompilerProfile
-    objects: Mapping[tree.Function, Callable[[], CompiledObject]] = field(default_factory=dict)
+    objects: Mapping[tree.Function, Ready] = field(default_factory=dict)
     code: str = ""
     digest: str = ""
 
     def compiled(self, kernel: Kernel, *, traced: bool = False) -> CompiledKernel | CompiledObject:
         """Return a kernel ready to run; `traced`: its accesses outside L1 are reported. Raises KernelError as `Kernel.compile`."""
-        if kernel.function in self.objects and not traced:
-            return self.objects[kernel.function]()
+        if kernel.function in self.objects:
+            return self.objects[kernel.function](traced=traced)
         return kernel.compile(self.profile, traced=traced)
 
     def code_bytes(self, kernel: Kernel) -> dict[str, int]:

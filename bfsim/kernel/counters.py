@@ -40,7 +40,7 @@ class Counter:
     def array_accesses(self) -> tuple[tuple[str, int, int], ...]:
         """(array, reads, writes) per event, without those that routines of the library make."""
         reads, writes = (
-            Tally(each.array for each in self.accesses if each.writes is written and not each.fills)
+            Tally(each.array for each in self.accesses if each.writes is written and each.is_counted)
             for written in (False, True)
         )
         return tuple((name, reads[name], writes[name]) for name in sorted(reads | writes))

@@ -38,8 +38,8 @@ class ObjectCode(Protocol):
     @property
     def files(self) -> Mapping[Path, str]: ...
 
-    def compiled(self) -> CompiledObject:
-        """Return it ready to run."""
+    def compiled(self, *, traced: bool = False) -> CompiledObject:
+        """Return it ready to run; `traced`: its accesses to memory are reported."""
 
 
 class RunnableCall(Protocol):
@@ -95,15 +95,10 @@ class Kernel:
     ) -> CompiledKernel | CompiledObject:
         """Compile for `profile`, or take it from the cache on disk. See `jit.compile_kernel`.
 
-        Raises KernelError where the kernel has floats and the profile has no library for them, and for `traced` object code.
+        Raises KernelError where the kernel has floats and the profile has no library for them.
         """
         if self.object_code:
-            if traced:
-                raise KernelError(
-                    f"{self.name} must get rows in the L1 of its core, for it is object code, whose accesses to other memories "
-                    f"are not followed; copy them there ({self.place})"
-                )
-            return self.object_code.compiled()
+            return self.object_code.compiled(traced=traced)
         self._refuse_floats(profile)
         return compile_kernel(self.function, profile, traced=traced, counted=counted, checked=checked)
 
@@ -138,7 +133,7 @@ class Kernel:
         if not isinstance(code, CompiledKernel):
             from bfsim.kernel.objects.calls import ObjectCall  # most firmware is Python
 
-            return ObjectCall(code, arrays, self.check, totals)
+            return ObjectCall(code, arrays, self.check, totals, access_trace, first_site)
         self._check_overlaps(arrays)
         slots = self._slots()
         bound = [(slots[position], each) for position, each in zip(self.array_positions, arrays, strict=True)]

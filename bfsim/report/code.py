@@ -18,6 +18,7 @@ def code_in_words(run: RunRecord) -> str:
     share = object_share(run)
     if not share and not run.identity.code:
         return ""
-    return (
-        f"{run.identity.code or OF_FILES}: {100 * share:.2f} % of the issue cycles; all others are estimated"
-    )
+    whose = run.identity.code or OF_FILES
+    if share == 1:
+        return f"{whose}: all issue cycles"
+    return f"{whose}: {100 * share:.2f} % of the issue cycles; all others are estimated"

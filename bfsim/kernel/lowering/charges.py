@@ -63,6 +63,13 @@ class Access(NamedTuple):
     line: SourceLine
     fills: bool = False
     """Whether a routine of the library makes it, which stores words."""
+    may_be: bool = False
+    """Whether the array is one of those that the instruction may access: its address decides."""
+
+    @property
+    def is_counted(self) -> bool:
+        """Whether each event makes this access."""
+        return not (self.fills or self.may_be)
 
 
 @dataclass(slots=True)

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from bfsim.blackfin.calling import BoundCall, Counts
 from bfsim.blackfin.subroutines import placed
+from bfsim.blackfin.tracing import Followed, block_of
 from bfsim.kernel import tree
+from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.objects.compiled import CompiledObject
 from bfsim.kernel.types import ArrayType, FloatType, Number
 from bfsim.kernel.work import BITS, FLOAT, Work
@@ -19,27 +21,36 @@ from bfsim.kernel.work import BITS, FLOAT, Work
 class ObjectCall:
     """A kernel's object code bound to its arrays, which are copied to the Blackfin's memory for each call, and back."""
 
-    stays_in_l1 = True
-
     def __init__(
         self,
         code: CompiledObject,
         arrays: Sequence[NDArray[Any]],
         check: Callable[[Sequence[object]], None],
         totals: NDArray[np.int64],
+        access_trace: AccessTrace | None = None,
+        first_site: int = 0,
     ) -> None:
-        """`arrays`: in the order of the array parameters. `check` raises the error when the arguments of a call are wrong."""
+        """`arrays`: in the order of the array parameters. `check` raises the error when the arguments of a call are wrong.
+
+        `access_trace` is told of accesses to arrays, by traced code; it calls the code's first site `first_site`.
+        """
         function = code.function
-        self._check, self._result = check, function.result
+        self._check, self._result, self._access_trace = check, function.result, access_trace
         self._kept = arrays  # their places have their addresses only
         parts, addresses = placed(arrays, code.subroutine.processor.space)
         measured = tree.measured_arrays(function)
         named = list(zip(function.array_names, arrays, strict=True))
         lengths = [len(array) for name, array in named if name in measured]
         count = len(function.parameters)
-        self._call = BoundCall(
-            code.subroutine, count + len(lengths), parts, Counts(totals[: len(code.order)], code.order)
+        counts = Counts(totals[: len(code.order)], code.order)
+        trace = access_trace and block_of(
+            access_trace.address(),
+            [
+                Followed(address, array.nbytes, array.ctypes.data, first_site + number)
+                for number, (address, array) in enumerate(zip(addresses, arrays, strict=True))
+            ],
         )
+        self._call = BoundCall(code.subroutine, count + len(lengths), parts, counts, trace)
         self._words = self._call.arguments
         self._words[count : count + len(lengths)] = lengths
         places = iter(addresses)
@@ -50,6 +61,11 @@ class ObjectCall:
             else:
                 self._numbers.append((position, isinstance(each.type, FloatType)))
 
+    @property
+    def stays_in_l1(self) -> bool:
+        """Whether no access of it can leave L1."""
+        return self._access_trace is None
+
     def run(self, arguments: Sequence[Any]) -> Work:
         """Run the code now and say what it cost. Of `arguments`, only the numbers are read."""
         self._check(arguments)
@@ -57,7 +73,8 @@ class ObjectCall:
             value = arguments[position]
             self._words[position] = BITS.unpack(FLOAT.pack(value))[0] if is_float else int(value)
         cclk = self._call.run()
-        return Work(cclk, 0, None if self._result is None else _value(self._call.result, self._result))
+        value = None if self._result is None else _value(self._call.result, self._result)
+        return Work(cclk, 0, value, self._access_trace.take_count() if self._access_trace else 0)
 
 
 def _value(word: int, kind: Number) -> float:

@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bfsim.blackfin import translate
 from bfsim.blackfin.subroutines import LoadedImage, Subroutine
 from bfsim.blackfin.timing import GNU, Timing
+from bfsim.blackfin.tracing import Tracing
 from bfsim.kernel import keys, tree
+from bfsim.kernel.access_trace import WRITE
 from bfsim.kernel.call_paths import Program
 from bfsim.kernel.costs import Costs, kept_costs
 from bfsim.kernel.counters import Counter
+from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.objects.counted import calls, counters
 from bfsim.kernel.objects.places import Places
+
+NO_ARRAY = ""
+"""In place of an array's name: memory that belongs to none, such as the stack."""
 
 
 @dataclass(frozen=True)
@@ -40,24 +48,50 @@ class CompiledObject:
 
 
 def compiled_object(
-    function: tree.Function, symbol: str, loaded: LoadedImage, places: Places, timing: Timing = GNU
+    function: tree.Function,
+    symbol: str,
+    loaded: LoadedImage,
+    places: Places,
+    timing: Timing = GNU,
+    *,
+    traced: bool = False,
 ) -> CompiledObject:
-    """Return the function that `symbol` names in an image, translated or from the cache on disk. Raises KernelError where there is none."""
-    about = loaded.image.digest, symbol, repr(timing)
+    """Return the function that `symbol` names in an image, translated or from the cache on disk. Raises KernelError where there is none.
+
+    With `traced` its accesses to memory are reported.
+    """
+    about = loaded.image.digest, symbol, f"{timing!r} {traced}"
     subroutine = loaded.subroutine(symbol, timing, keys.object_key(*about, "native code"))
+    arrays = (*function.array_names, NO_ARRAY) if traced else ()
 
     def made() -> Costs:
-        translated = subroutine.translated
-        found = counters(translated.counters, places, timing)
-        return Costs(tuple(found), calls(translated.code, places, subroutine.address))
+        code = subroutine.processor.code()
+        found = counters(translate.counters(code, timing), places, timing, arrays)
+        return Costs(tuple(found), calls(code, places, subroutine.address, function.array_names))
 
     key = keys.object_key(*about, f"costs of {function.symbol}")
     costs = (
         made() if places.folder else kept_costs(key, made)
     )  # lines of files that may change are looked up anew
     program = Program(function.symbol, costs, function.array_names, together=True)
+    if traced:
+        subroutine.processor.tracing = Tracing(_site_of(program, places), WRITE)
     numbers = {id(each): number for number, each in enumerate(costs.counters)}
     order = np.array([numbers[id(each)] for each in program.counters], np.int64)
     lines = {line.routine for each in costs.counters for line, _, _ in each.line_cclk} - set(costs.calls)
     functions = tuple(places.function_called(each) for each in (*costs.calls, *sorted(lines)))
     return CompiledObject(function, subroutine, program, functions, places, order)
+
+
+def _site_of(program: Program, places: Places) -> Callable[[int], int]:
+    """Return what finds the first site of an instruction: that of its line and the first array. Those of the other arrays are behind it."""
+    first: dict[tuple[str, SourceLine], int] = {}
+    for path in program.paths:
+        routine = path.routines[-1]
+        for number, site in enumerate(program.own_sites[routine], path.first.site):
+            first.setdefault((routine, site.line), number)
+
+    def site_of(address: int) -> int:
+        return first[places.function_at(address).symbol, places.line_of(address)]
+
+    return site_of

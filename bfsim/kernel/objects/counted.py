@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from bfsim.blackfin import translate
 from bfsim.blackfin.blocks import CALLS, DIRECT, Code, does
@@ -10,17 +10,19 @@ from bfsim.blackfin.timing import Timing
 from bfsim.kernel.call_paths import RoutineCall
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.ir_text import Entrance, SourceLine
-from bfsim.kernel.lowering.charges import Charge, instead, merged
-from bfsim.kernel.objects.operations import TAKEN, operation_of
+from bfsim.kernel.lowering.charges import Access, Charge, instead, merged
+from bfsim.kernel.objects.operations import TAKEN, accesses_memory, operation_of
 from bfsim.kernel.objects.places import Places
 
 
-def counters(counted: Iterable[translate.Counter], places: Places, timing: Timing) -> list[Counter]:
-    """Return a counter of a kernel for each of the translated code, in the same order."""
-    return [_counter(each, places, timing) for each in counted]
+def counters(
+    counted: Iterable[translate.Counter], places: Places, timing: Timing, arrays: Sequence[str]
+) -> list[Counter]:
+    """Return a counter of a kernel for each of the translated code, in the same order; `arrays`: what its accesses may reach."""
+    return [_counter(each, places, timing, arrays) for each in counted]
 
 
-def _counter(each: translate.Counter, places: Places, timing: Timing) -> Counter:
+def _counter(each: translate.Counter, places: Places, timing: Timing, arrays: Sequence[str]) -> Counter:
     block = each.block
     charges = [
         Charge(operation_of(one), places.line_of(one.address), timing.of(one)) for one in block.instructions
@@ -30,13 +32,26 @@ def _counter(each: translate.Counter, places: Places, timing: Timing) -> Counter
         last = charges[-1]
         taken = Charge(TAKEN[last.op], last.line, timing.taken(block.instructions[-1]))
         return Counter(routine, label, "taken", None, instead((taken,), (last,)), ())
+    lines = dict.fromkeys(places.line_of(one.address) for one in block.instructions if accesses_memory(one))
+    accesses = tuple(
+        Access(array, False, label, number, line, may_be=True)  # noqa: FBT003
+        for number, line in enumerate(lines)
+        for array in arrays
+    )
     begins = places.entered_at(block.start)
     enters = (Entrance(begins, SourceLine(begins, 0)),) if begins else ()
-    return Counter(routine, label, None, None, merged(charges), (), block.end - block.start, enters=enters)
+    return Counter(
+        routine, label, None, None, merged(charges), accesses, block.end - block.start, enters=enters
+    )
 
 
-def calls(code: Code, places: Places, entry: int) -> Mapping[str, tuple[RoutineCall, ...]]:
-    """Return which function calls, or goes on in, which others; those that only computed jumps lead to are called by the first."""
+def calls(
+    code: Code, places: Places, entry: int, arrays: Sequence[str]
+) -> Mapping[str, tuple[RoutineCall, ...]]:
+    """Return which function calls, or goes on in, which others; those that only computed jumps lead to are called by the first.
+
+    In all of them the arrays of the first one are called as there: they are told apart by addresses.
+    """
     first = places.function_at(entry).symbol
     found: dict[str, dict[str, None]] = {first: {}}
     for block in code.blocks.values():
@@ -49,4 +64,5 @@ def calls(code: Code, places: Places, entry: int) -> Mapping[str, tuple[RoutineC
                 found[caller][callee] = None
     called = {callee for callees in found.values() for callee in callees}
     found[first] |= {each: None for each in found if each not in called and each != first}
-    return {caller: tuple(RoutineCall(each, ()) for each in callees) for caller, callees in found.items()}
+    same = tuple((each, each) for each in arrays)
+    return {caller: tuple(RoutineCall(each, same) for each in callees) for caller, callees in found.items()}

@@ -119,7 +119,7 @@ def _spread(group: CallGroup) -> NDArray[np.int64]:
         for access in counter.accesses:
             hit = banks.get(path.arrays.get(access.array, ""), set())
             site = group.first_site + group.site_number(path, Site(access.line, access.array))
-            for bank in hit if not access.fills else ():
+            for bank in hit if access.is_counted else ():
                 key = (group.first_event + number, bank, len(hit), site)
                 found[key] = found.get(key, 0) + 1
     rows = [(number, bank, each, parts, site) for (number, bank, parts, site), each in found.items()]

@@ -168,7 +168,7 @@ class CoreRecords:
                 operations[name] = had_times + events * times, had_cclk + events * cclk
             for access in counter.accesses:
                 owner = owner_of.get(path.arrays.get(access.array, ""))
-                if owner is not None and not access.fills:
+                if owner is not None and access.is_counted:
                     sums = self._kernel(group, access.line.routine).accesses[access.line.line, owner]
                     sums.reads += 0 if access.writes else events
                     sums.writes += events if access.writes else 0

@@ -1,0 +1,83 @@
+"""Object code that reaches into L2 and SDRAM itself: each access is charged, to its line and its array, as those of other kernels are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from bfsim.api import Core, Frame, i32, kernel_from
+from bfsim.chip.boards import board_named
+from bfsim.trace import AccessRecord, BoardRecord, StallReason
+from tests.machine.kernels import spin
+from tests.machine.rig import Play, every_frame, run, stage_of
+from tests.machine.test_kernel_accesses import read_cclk
+
+SUMS = Path(__file__).parent.parent / "blackfin" / "data" / "sums.o"
+sums = kernel_from(SUMS, "sums", row=i32[:], out=i32[:], n=i32, first=i32, result=i32)
+"""Reads four bytes of `row` for each of n - 3 words that it stores in `out`, by a function of its own, in its line 9."""
+N = 16
+READS, WRITES = 4 * (N - 3), N - 3
+
+
+def calling(row: str, out: str) -> Any:
+    """Make a main loop that calls it once on two buffers."""
+
+    def call(core: Core, _frame: Frame) -> Play:
+        yield core.run(spin, 1000)  # until the last lines of both cameras are off the bus
+        with core.stage("Work"):
+            yield core.run(sums, core.array(row), core.array(out), N, 0)
+
+    return every_frame(call)
+
+
+def in_work(outcome: BoardRecord) -> list[AccessRecord]:
+    """What accesses of the stage waited, by line and buffer."""
+    return [each for each in outcome.accesses if each.stage == "Work" and each.stall_cclk]
+
+
+def test_reads_of_l2_stall_for_the_latency() -> None:
+    """Each costs 9 CCLK, one of which is its issue; the stack and what is in L1 cost nothing."""
+    outcome = run(calling("in_l2", "words"))
+    cost = stage_of(outcome.frames[0], "Work")
+    assert cost.stall_cclk == {StallReason.L2_LATENCY: READS * 8}
+    assert cost.issue_cclk == stage_of(run(calling("words", "words")).frames[0], "Work").issue_cclk
+    (found,) = in_work(outcome)
+    assert (found.symbol, found.line, found.buffer) == ("_weighted", 9, "in_l2")
+    (traffic,) = [each for each in outcome.traffic if (each.memory, each.master) == ("L2", "core A")]
+    assert (traffic.read_bytes, traffic.written_bytes) == (4 * READS, 0)
+
+
+def test_stores_to_l2_are_posted() -> None:
+    """They go their way while the core goes on."""
+    outcome = run(calling("words", "in_l2"))
+    assert stage_of(outcome.frames[0], "Work").stall_cclk == {}
+    (traffic,) = [each for each in outcome.traffic if (each.memory, each.master) == ("L2", "core A")]
+    assert (traffic.read_bytes, traffic.written_bytes) == (0, 4 * WRITES)
+
+
+def test_reads_of_sdram_stall_by_page() -> None:
+    """The first opens the page, all others hit it, unless a refresh comes between."""
+    board = board_named("cm-bf561")
+    outcome = run(calling("in_sdram", "words"))
+    found = dict(stage_of(outcome.frames[0], "Work").stall_cclk)
+    (traffic,) = [each for each in outcome.traffic if (each.memory, each.master) == ("SDRAM", "core A")]
+    opened = traffic.page_misses + traffic.page_conflicts
+    assert (traffic.page_hits + opened, opened <= 2) == (READS, True)
+    assert found.pop(StallReason.SDRAM_PAGE_HIT) == traffic.page_hits * read_cclk(board)
+    miss = read_cclk(board, board.sdram.miss_sclk)
+    assert found.pop(StallReason.SDRAM_PAGE_MISS, 0) in range(
+        traffic.page_misses * miss, traffic.page_misses * (miss + 1) + 1
+    )
+    assert {each.buffer for each in in_work(outcome)} == {"in_sdram (A)"}
+
+
+def test_one_call_may_reach_several_memories() -> None:
+    """Each access is charged to the array that it hits."""
+    outcome = run(calling("in_l2", "in_sdram"))
+    assert {(each.symbol, each.buffer) for each in in_work(outcome)} >= {("_weighted", "in_l2")}
+    traffic = {
+        (each.memory, each.read_bytes, each.written_bytes)
+        for each in outcome.traffic
+        if each.master == "core A"
+    }
+    assert traffic == {("L2", 4 * READS, 0), ("SDRAM", 0, 4 * WRITES)}
