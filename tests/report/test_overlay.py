@@ -60,6 +60,20 @@ def test_the_cameras_stand_side_by_side() -> None:
         assert (legend == colour).all(axis=2).any()
 
 
+@pytest.mark.parametrize("wanted_px", [400, 640, 960])
+def test_words_above_a_picture_never_overprint(wanted_px: int) -> None:
+    """Of a cluttered picture that is drawn small some numbers are left out: when it was taken stands free."""
+    every = np.indices((60, 80)).reshape(2, -1).astype(np.int32)
+    full = SeenEdges(x_px=every[1], y_px=every[0], gradients=every[0], directions=every[0], lost=123_456)
+    seen = made.left(edges=full, blobs=made.left().blobs * 100, lines=made.left().lines * 1000)
+    frame = made.frame(0, seen, replace(seen, camera="right"))
+    head = np.asarray(overlay_of(frame, LAYERS, wanted_px))[: style.HEAD]
+    font, when = style.font(style.FONT), f"frame 0   {frame.times_ns['left'] / 1e9:.3f} s"
+    end = round(2 * style.MARGIN + font.getlength("left camera") + font.getlength(when))
+    assert (head[:, end - 12 : end] != style.PAPER).any()
+    assert (head[:, end + 2 : end + style.MARGIN - 2] == style.PAPER).all()
+
+
 def test_the_legend_is_of_what_is_drawn() -> None:
     """A layer that is left out is not explained; the sheet is as large."""
     whole, lines = overlay_of(made.frame()), overlay_of(made.frame(), ("lines", "above"))

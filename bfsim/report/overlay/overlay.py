@@ -17,6 +17,9 @@ from bfsim.seen import Seen, SeenFrame
 from bfsim.seen.colours import DepthScale, depths_of
 from bfsim.seen.heat import hottest_row_us
 
+BETWEEN = "   "
+"""What stands between two numbers."""
+
 
 def overlay_of(
     frame: SeenFrame, layers: Collection[str] = LAYERS, panel_width: int = style.PANEL_WIDTH
@@ -75,20 +78,30 @@ def _panel(
 
 
 def _write_head(pen: ImageDraw.ImageDraw, frame: SeenFrame, seen: Seen, left: int, width: int) -> None:
+    """Write whose picture it is, when, and how much was seen, the last numbers only where there is room."""
     font, middle = style.font(style.FONT), style.HEAD // 2
     title = f"{seen.camera} camera"
     pen.text((left, middle), title, style.WORDS, font, anchor="lm")
     when = f"frame {frame.index}   {frame.times_ns[seen.camera] / 1e9:.3f} s"
-    pen.text((left + font.getlength(title) + style.MARGIN, middle), when, style.FAINT, font, anchor="lm")
-    lost = [f"{seen.edges.lost} edges without room"] if seen.edges.lost else []
-    counts = (
-        (len(seen.edges), "edge"),
+    begin = left + font.getlength(title) + style.MARGIN
+    pen.text((begin, middle), when, style.FAINT, font, anchor="lm")
+    counts = _counts(seen)
+    room = left + width - begin - font.getlength(when) - style.MARGIN
+    while counts and font.getlength(BETWEEN.join(counts)) > room:
+        counts.pop()
+    pen.text((left + width, middle), BETWEEN.join(counts), style.FAINT, font, anchor="rm")
+
+
+def _counts(seen: Seen) -> list[str]:
+    """Return how many of each kind were seen, edges first."""
+    lost = f", {seen.edges.lost} without room" if seen.edges.lost else ""
+    others = (
         (len(seen.blobs), "blob"),
         (len(seen.lines), "line"),
         (sum(each.passed for each in seen.circles), "circle"),
     )
-    text = "   ".join([_counted(*each) for each in counts if each[0]] + lost)
-    pen.text((left + width, middle), text, style.FAINT, font, anchor="rm")
+    edges = [_counted(len(seen.edges), "edge") + lost] if len(seen.edges) or lost else []
+    return edges + [_counted(*each) for each in others if each[0]]
 
 
 def _counted(count: int, name: str) -> str:
