@@ -14,10 +14,11 @@ import tempfile
 from pathlib import Path
 
 from pictures import bfsim, keep_small
+from selenium.webdriver.common.by import By
 from windows import settle, window
 
 SPEEDSCOPE = "speedscope@1.25.0"
-SIZE = 1200, 330
+SIZE = 1200, 245
 
 
 def page_of(package: str, folder: Path) -> Path:
@@ -38,7 +39,7 @@ def photograph(flame: Path, page: Path, picture: Path) -> None:
     script.write_text(f"speedscope.loadFileFromBase64({json.dumps(flame.name)}, {content})")
     with window(*SIZE) as (driver, wait):
         driver.get(f"{page.as_uri()}#localProfilePath={str(script)[1:]}&view=left-heavy")
-        wait.until(lambda each: "core A" in each.title)
+        wait.until(lambda each: "core A" in each.find_element(By.TAG_NAME, "body").text)
         settle(driver)
         driver.save_screenshot(str(picture))
 

@@ -50,7 +50,7 @@ def photograph(trace: bytes, picture: Path) -> None:
     server = ThreadingHTTPServer(("127.0.0.1", PORT), partial(_Page, directory=str(folder), trace=trace))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     try:
-        with window(1600, 1500) as (driver, wait):
+        with window(1600, 1356) as (driver, wait):
             driver.get(f"http://127.0.0.1:{PORT}/")
             wait.until(lambda each: "board" in each.find_element(By.TAG_NAME, "body").text)
             driver.find_element(By.CSS_SELECTOR, EXPAND_ALL).click()

@@ -17,10 +17,12 @@ FLAGS = ("--headless=new", "--no-sandbox", "--hide-scrollbars", "--enable-unsafe
 def window(width: int, height: int) -> Iterator[tuple[webdriver.Chrome, WebDriverWait[webdriver.Chrome]]]:
     """Open a window, and return it with one that waits for it to have drawn something."""
     options = webdriver.ChromeOptions()
-    for flag in (*FLAGS, f"--window-size={width},{height}"):
+    for flag in FLAGS:
         options.add_argument(flag)
     driver = webdriver.Chrome(options)
     try:
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)  # a window has borders, too
         yield driver, WebDriverWait(driver, PATIENCE_S)
     finally:
         driver.quit()

@@ -99,5 +99,10 @@ def _draw_scale(strip: Image.Image, pen: ImageDraw.ImageDraw, hottest_us: float,
     x += font.getlength(title) + GAP
     strip.paste(bar, (round(x), middle - SCALE_HEIGHT // 2))
     x += SCALE_WIDTH + GAP
-    ends = f"{hottest_us / 1000:.3g} ms a row or more      bars: what each row cost, full length {longest_us / 1000:.3g} ms"
+    ends = f"{_time(hottest_us)} a row or more      bars: what each row cost, full length {_time(longest_us)}"
     pen.text((x, middle), ends, style.FAINT, font, anchor="lm")
+
+
+def _time(us: float) -> str:
+    """Return a time in the unit that it is read in."""
+    return f"{us / 1000:.3g} ms" if us >= 100 else f"{us:.3g} µs"
