@@ -53,6 +53,7 @@ def photograph(trace: bytes, picture: Path) -> None:
         with window(1600, 1356) as (driver, wait):
             driver.get(f"http://127.0.0.1:{PORT}/")
             wait.until(lambda each: "board" in each.find_element(By.TAG_NAME, "body").text)
+            settle(driver)  # a click that comes too early does nothing
             driver.find_element(By.CSS_SELECTOR, EXPAND_ALL).click()
             wait.until(lambda each: "core B" in each.find_element(By.TAG_NAME, "body").text)
             settle(driver)
