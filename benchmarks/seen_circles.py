@@ -13,7 +13,7 @@ from benchmarks.playing import play
 from bfsim.api import Buffer, Core, Firmware, FrameSize, Readout
 from bfsim.chip.boards import CM_BF561
 from bfsim.recording import StereoFrame
-from tinyphoon import ROWS, THESIS
+from tinyphoon import ROWS, TABLE_6_4
 from tinyphoon.buffers import buffers
 from tinyphoon.features import features
 from tinyphoon.stores.circles import CIRCLE_WORDS
@@ -44,7 +44,11 @@ def see(frames: Iterable[StereoFrame], mode: Mode) -> list[Seen]:
 
     shots = list(frames)
     firmware = Firmware(
-        mains=dict.fromkeys(SIDES, main), buffers=_own_buffers, camera="camera", rows=ROWS, reference=THESIS
+        mains=dict.fromkeys(SIDES, main),
+        buffers=_own_buffers,
+        camera="camera",
+        rows=ROWS,
+        reference=TABLE_6_4,
     )
     return [
         Seen(shot, SIDES[core], words, frame.results(core), _in_ms(frame.stages_cclk(core)))

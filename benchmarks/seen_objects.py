@@ -14,7 +14,7 @@ from benchmarks.playing import play
 from bfsim.api import Core, Firmware, Readout
 from bfsim.recording import RecordingReader
 from bfsim.run_inputs import calibration_of
-from tinyphoon import ROWS, THESIS
+from tinyphoon import ROWS, TABLE_6_4
 from tinyphoon.buffers import buffers, calibration_buffers
 from tinyphoon.features import features
 from tinyphoon.stages.object_detection import left_sight, object_detection, right_sight
@@ -72,7 +72,7 @@ def see(path: Path, mode: Mode = INDOOR_FIELD, frames: int | None = None) -> lis
         buffers=buffers,
         camera="camera",
         rows=ROWS,
-        reference=THESIS,
+        reference=TABLE_6_4,
         calibration=calibration_buffers,
     )
     with RecordingReader(path) as reader:

@@ -8,15 +8,15 @@ from bfsim.api import BudgetRow, Firmware, Reference
 from tinyphoon.buffers import buffers, calibration_buffers, one_core_buffers
 from tinyphoon.core_a import core_a
 from tinyphoon.core_b import core_b
-from tinyphoon.fast_cores import fast_buffers, fast_core_a, fast_core_b
 from tinyphoon.geometry import THESIS_GEOMETRY
 from tinyphoon.losses import LOSSES
 from tinyphoon.one_core import one_core
 from tinyphoon.strategy_unit.unit import StrategyUnit
+from tinyphoon.variants import FAST, THESIS, fast_buffers, mains, thesis_buffers
 from tinyphoon.view.picture_colours import picture_colours
 from tinyphoon.view.view import view
 
-THESIS = Reference(
+TABLE_6_4 = Reference(
     name="thesis",
     about="average ms of a frame of 320x240 on the robot (Table 6.4 of the thesis).",
 )
@@ -36,7 +36,7 @@ tinyphoon = Firmware(
     buffers=buffers,
     camera="camera",
     rows=ROWS,
-    reference=THESIS,
+    reference=TABLE_6_4,
     calibration=calibration_buffers,
     spi=StrategyUnit,
     view=view,
@@ -45,15 +45,18 @@ tinyphoon = Firmware(
     assumed_geometry=THESIS_GEOMETRY,
 )
 
-fast = replace(tinyphoon, mains={"A": fast_core_a, "B": fast_core_b}, buffers=fast_buffers)
-"""The same features of the same pictures, in a third of the time: see `fast_cores.py`."""
+fast = replace(tinyphoon, mains=mains(FAST), buffers=fast_buffers)
+"""The same features of the same pictures, in a third of the time."""
+
+thesis = replace(tinyphoon, mains=mains(THESIS), buffers=thesis_buffers)
+"""The same features by the steps that the thesis describes: what the robot ran, as far as it says so."""
 
 one_eye = Firmware(
     mains={"A": one_core},
     buffers=one_core_buffers,
     camera="camera",
     rows=ROWS,
-    reference=THESIS,
+    reference=TABLE_6_4,
     calibration=calibration_buffers,
     spi=StrategyUnit,
     view=view,

@@ -6,7 +6,7 @@ from collections.abc import Generator
 from typing import Any
 
 from bfsim.api import Core
-from tinyphoon.features import PLAIN, PixelSteps, features
+from tinyphoon.features import PLAIN, Steps, features
 from tinyphoon.stages.object_detection import left_sight, object_detection
 from tinyphoon.stages.object_history import follow_area
 from tinyphoon.stages.stereo_edges import stereo_edges
@@ -15,7 +15,7 @@ from tinyphoon.strategy.orders import Orders, halvings_of, read_mode, see_by
 from tinyphoon.strategy.report import report
 
 
-def core_a(core: Core, steps: PixelSteps = PLAIN) -> Generator[Any, Any, None]:
+def core_a(core: Core, steps: Steps = PLAIN) -> Generator[Any, Any, None]:
     """See every picture of the left camera, and depth where core B's right one shows the same.
 
     Core B writes its results again only when core A is done with them: the cores take the same next pair.

@@ -7,12 +7,12 @@ from typing import Any
 
 from bfsim.api import Core
 from tinyphoon.exchange import share_edges, share_lines
-from tinyphoon.features import PLAIN, PixelSteps, features
+from tinyphoon.features import PLAIN, Steps, features
 from tinyphoon.stages.object_detection import right_sight
 from tinyphoon.strategy.orders import read_mode, see_by
 
 
-def core_b(core: Core, steps: PixelSteps = PLAIN) -> Generator[Any, Any, None]:
+def core_b(core: Core, steps: Steps = PLAIN) -> Generator[Any, Any, None]:
     """See every picture of the right camera. The cores end a frame together, to take the same next pair.
 
     Core A is done with orders, too, before the first one.

@@ -8,11 +8,11 @@ from typing import Any
 
 from bfsim.api import Core, Frame
 from tinyphoon.areas import WHOLE_PICTURE, Area
-from tinyphoon.stages.blob_detection import blob_detection
+from tinyphoon.stages.blob_detection import BlobThresholds, blob_detection
 from tinyphoon.stages.blob_merging import blob_merging
 from tinyphoon.stages.circle_detection import circle_detection
-from tinyphoon.stages.edge_detection import Scan, edge_detection, scan
-from tinyphoon.stages.line_detection import line_detection
+from tinyphoon.stages.edge_detection import EdgeThresholds, edge_detection
+from tinyphoon.stages.line_detection import LineScan, line_detection, scan_by_labels
 from tinyphoon.stages.line_refinement import line_refinement
 from tinyphoon.stages.object_detection import Outlines
 from tinyphoon.stages.open_closing import open_closing
@@ -33,30 +33,32 @@ class Features:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PixelSteps:
-    """The steps that touch every pixel of a picture, which are most of a frame: plain ones, or faster ones that leave the same."""
+class Steps:
+    """The steps that take most of a frame: plain ones, or others with the same results, or nearly so."""
 
-    scan: Scan = scan
+    edge_detection: Callable[[Core, Frame, EdgeThresholds, Area], Generator[Any, Any, int]] = edge_detection
     open_closing: Callable[[Core, Frame], Generator[Any, Any, None]] = open_closing
+    blob_detection: Callable[[Core, Frame, BlobThresholds], Generator[Any, Any, int]] = blob_detection
+    line_scan: LineScan = scan_by_labels
 
 
-PLAIN = PixelSteps()
+PLAIN = Steps()
 
 
 def features(
-    core: Core, frame: Frame, mode: Mode, area: Area = WHOLE_PICTURE, steps: PixelSteps = PLAIN
+    core: Core, frame: Frame, mode: Mode, area: Area = WHOLE_PICTURE, steps: Steps = PLAIN
 ) -> Generator[Any, Any, Features]:
     """Leave edges, colours, blobs, lines and outlines of an area in the core's memories, in its coordinates."""
     with core.stage("Edge detection"):
         with core.stage("Rectification"):
             frame = yield from rectification(core, frame, area)
-        edges = yield from edge_detection(core, frame, mode.edges, area, steps.scan)
+        edges = yield from steps.edge_detection(core, frame, mode.edges, area)
     with core.stage("Open & closing"):
         yield from steps.open_closing(core, frame)
     with core.stage("Blob detection"):
-        blobs = yield from blob_detection(core, frame, mode.blobs)
+        blobs = yield from steps.blob_detection(core, frame, mode.blobs)
     with core.stage("Line detection"):
-        lines = yield from line_detection(core, frame, mode.lines)
+        lines = yield from line_detection(core, frame, mode.lines, steps.line_scan)
         yield from line_refinement(core, frame, lines, mode.refinement)
     with core.stage("Shape detection"):
         circles = yield from circle_detection(core, frame, blobs, mode.ball_colours, mode.circles)

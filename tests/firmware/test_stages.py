@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -27,9 +27,11 @@ from tests.firmware.whole_pictures import (
     run,
     stereo,
 )
-from tinyphoon import fast, tinyphoon
-from tinyphoon.stages.edge_detection import Scan, edge_detection, scan
-from tinyphoon.stages.fast_scan import fast_scan
+from tinyphoon import fast, thesis, tinyphoon
+from tinyphoon.areas import WHOLE_PICTURE
+from tinyphoon.stages.edge_detection import edge_detection
+from tinyphoon.stages.fast_scan import fast_edge_detection
+from tinyphoon.stages.rosenfeld_hysteresis import rosenfeld_edges
 from tinyphoon.stores.edges import EDGE_CAPACITY
 from tinyphoon.strategy.modes import INDOOR_FIELD
 
@@ -126,17 +128,21 @@ def test_noise_leaves_room_for_what_comes_below() -> None:
 
 
 @pytest.mark.parametrize(
-    ("firmware", "scanned"), [(tinyphoon, scan), (fast, fast_scan)], ids=["plain", "fast"]
+    ("firmware", "detected"),
+    [(tinyphoon, edge_detection), (fast, fast_edge_detection), (thesis, rosenfeld_edges)],
+    ids=["plain", "fast", "thesis"],
 )
 @pytest.mark.parametrize(("width", "height"), [(6, 4), (34, 50), (160, 121)])
-def test_larger_gauss(firmware: Firmware, scanned: Scan, width: int, height: int) -> None:
+def test_larger_gauss(
+    firmware: Firmware, detected: Callable[..., Generator[Any, Any, int]], width: int, height: int
+) -> None:
     """The edges behind the 5x5 Gauss, which needs two lines more of the picture at a time."""
     thresholds = replace(INDOOR_FIELD.edges, gauss_px=5)
 
     def main(core: Core) -> Generator[Any, Any, None]:
         while (frame := (yield from core.next_frame())) is not None:
             with core.stage("Edge detection"):
-                yield from edge_detection(core, frame, thresholds, scanned=scanned)
+                yield from detected(core, frame, thresholds, WHOLE_PICTURE)
 
     frames = random_frames(width, height, count=2)
     board, outcome = run(frames, replace(firmware, mains={"A": main, "B": main}))

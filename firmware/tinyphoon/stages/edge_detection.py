@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
-from bfsim.api import Buffer, Core, Frame, FrameSize, i16, i32, kernel, u8, u16, u32
+from bfsim.api import Buffer, Core, Frame, FrameSize, Row, i16, i32, kernel, u8, u16, u32
 from tinyphoon.areas import WHOLE_PICTURE, Area
 from tinyphoon.arithmetic import angle8, isqrt32
 from tinyphoon.fields import allowed
@@ -182,10 +182,20 @@ def clear_rim(edges: u8[:], first: u16[:], last: u16[:], y: i32, x: i32) -> None
         edges[column] = 0
 
 
+class FoundEdges(Protocol):
+    """What takes the edges of a scan, row by row."""
+
+    def row(self) -> Generator[Any, Any, Row]:
+        """Return a row for the gradients of the next line."""
+
+    def add(self, y: int, gradients: Row, directions: Row) -> Generator[Any, Any, None]:
+        """Keep the edges of row `y`, its pixels with a gradient."""
+
+
 def scan(
-    core: Core, frame: Frame, thresholds: EdgeThresholds, area: Area, candidates: Candidates
+    core: Core, frame: Frame, thresholds: EdgeThresholds, area: Area, found: FoundEdges
 ) -> Generator[Any, Any, None]:
-    """Read the picture once: its colours go to `colour_image`, its edges, one pixel wide, to the candidates."""
+    """Read the picture once: its colours go to `colour_image`, its edges, one pixel wide, are `found`."""
     camera = core.input_ring(frame.rows, "camera_ring")
     colours = core.output_ring("colour_ring", core.rows("colour_image"))
     height, reach = frame.height, thresholds.gauss_px // 2
@@ -194,7 +204,6 @@ def scan(
     smooth, magnitude, direction = (
         line_ring(core.rows(name), height) for name in ("smooth_ring", "magnitude_ring", "direction_ring")
     )
-    edges = core.rows("edge_ring")[0]
     gx, gy, atan = core.array("gx"), core.array("gy"), core.array("atan")
     rim = [core.array(f"sighted_{end}") for end in ("first", "last") if core.has_buffer(f"sighted_{end}")]
     for y in range(height + reach + 2):
@@ -221,10 +230,11 @@ def scan(
         if done >= 0:
             core.at(done)
             near = window(magnitude, done, height)
+            edges = yield from found.row()
             yield core.run(suppress_row, *near, direction[done], edges, thresholds.edge_threshold)
             if rim:
                 yield core.run(clear_rim, edges, *rim, area.y + done, area.x)
-            yield from candidates.add(done, edges, direction[done])
+            yield from found.add(done, edges, direction[done])
     core.at()
     yield from colours.flush()
 

@@ -142,6 +142,11 @@ class Candidates:
         yield self.core.run(clear_levels, self.levels)
         yield self.core.run(clear_levels, self.core.array("band_edges"))
 
+    def row(self) -> Generator[Any, Any, Row]:
+        """Return the row for gradients: the same one for each line, since they go no further."""
+        yield from ()
+        return self.core.rows("edge_ring")[0]
+
     def add(self, y: int, gradients: Row, directions: Row) -> Generator[Any, Any, None]:
         """Keep the edges of row `y` as candidates: its pixels with a gradient."""
         row = yield from self.outward.row()

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, FrameSize, Row, i16, i32, u8, u32
-from tinyphoon.areas import Area
+from tinyphoon.areas import WHOLE_PICTURE, Area
 from tinyphoon.scan_lines import Lines, line_ring, window
 from tinyphoon.stages.colour_reduction import balance_row
-from tinyphoon.stages.edge_detection import EdgeThresholds, gauss5_row
+from tinyphoon.stages.edge_detection import EdgeThresholds, edge_detection, gauss5_row
 from tinyphoon.stages.edge_thinning import Candidates
 from tinyphoon.stages.fast_edges import (
     after_sighted,
@@ -184,3 +184,10 @@ def fast_scan(
             yield from scan.peaks(done)
     core.at()
     yield from colours.flush()
+
+
+def fast_edge_detection(
+    core: Core, frame: Frame, thresholds: EdgeThresholds, area: Area = WHOLE_PICTURE
+) -> Generator[Any, Any, int]:
+    """Leave and publish what `edge_detection` does, by the fast scan."""
+    return (yield from edge_detection(core, frame, thresholds, area, fast_scan))

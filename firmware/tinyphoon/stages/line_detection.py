@@ -5,7 +5,7 @@ It reads edges, never the image. 3-D lines are not here.
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -69,20 +69,32 @@ def unplaced_edges(scan: i32[:]) -> i32:
     return scan[UNPLACED]
 
 
-def line_detection(core: Core, frame: Frame, thresholds: LineThresholds) -> Generator[Any, Any, int]:
-    """Find the lines in the edge store. Leaves them in `lines` and returns how many there are.
-
-    Publishes `lines`, that number, and `line_edges_lost`, the edges that found the table of segments full.
-    """
+def scan_by_labels(core: Core, frame: Frame, thresholds: LineThresholds) -> Generator[Any, Any, None]:
+    """Scan the edge store, row by row; leaves segments in their table."""
     store = edge_store(core)
-    segments, lines, scan = core.array("segments"), core.array("lines"), core.array("line_scan")
-    labels, atan = core.rows("line_labels"), core.array("atan")
+    segments, scan, labels = core.array("segments"), core.array("line_scan"), core.rows("line_labels")
     yield core.run(clear_segments, segments, scan, *labels)
     limits = thresholds.angle_range, thresholds.mean_edges, thresholds.min_length
     for y in range(frame.height):
         core.at(y, edge_columns(core, y))
         near = labels[y + 1 & 1], labels[y & 1]
         yield core.run(segments_row, *store, y, *near, segments, scan, *limits)
+
+
+LineScan = Callable[[Core, Frame, LineThresholds], Generator[Any, Any, None]]
+"""How edges become segments: `scan_by_labels`, or another way."""
+
+
+def line_detection(
+    core: Core, frame: Frame, thresholds: LineThresholds, scanned: LineScan = scan_by_labels
+) -> Generator[Any, Any, int]:
+    """Find the lines in the edge store. Leaves them in `lines` and returns how many there are.
+
+    Publishes `lines`, that number, and `line_edges_lost`, the edges that found the table of segments full.
+    """
+    yield from scanned(core, frame, thresholds)
+    segments, lines, scan = core.array("segments"), core.array("lines"), core.array("line_scan")
+    atan = core.array("atan")
     core.at(segment_pixels(segments, SEGMENT_CAPACITY))
     count = yield core.run(keep_segments, segments, thresholds.min_length, thresholds.mean_edges)
     core.at(segment_pixels(segments, count))
