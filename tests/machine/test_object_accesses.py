@@ -47,6 +47,17 @@ def test_reads_of_l2_stall_for_the_latency() -> None:
     assert (traffic.read_bytes, traffic.written_bytes) == (4 * READS, 0)
 
 
+def test_accesses_are_counted_by_line_and_array() -> None:
+    """Wherever the arrays are: those of the code itself, to its stack and tables, are none of them."""
+    for row, out in (("words", "in_l2"), ("in_l2", "words")):
+        found = {
+            (each.symbol, each.buffer.split()[0]): (each.reads, each.writes)
+            for each in run(calling(row, out)).accesses
+            if each.stage == "Work"
+        }
+        assert found == {("_weighted", row): (READS, 0), ("sums_o_sums", out): (0, WRITES)}
+
+
 def test_stores_to_l2_are_posted() -> None:
     """They go their way while the core goes on."""
     outcome = run(calling("words", "in_l2"))

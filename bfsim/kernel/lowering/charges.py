@@ -66,6 +66,14 @@ class Access(NamedTuple):
     may_be: bool = False
     """Whether the array is one of those that the instruction may access: its address decides."""
 
+    turn: int = 0
+    among: int = 1
+    """It may be to so many arrays, of which this is number `turn`: [assumed] each gets an equal part of the events."""
+
+    def times(self, events: int) -> int:
+        """Return how many of the events are to its array."""
+        return (events + self.turn) // self.among
+
     @property
     def is_counted(self) -> bool:
         """Whether each event makes this access."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.blackfin import translate
+from bfsim.blackfin.pointers import arrays_accessed
 from bfsim.blackfin.subroutines import LoadedImage, Subroutine
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.blackfin.tracing import Tracing
@@ -20,6 +21,7 @@ from bfsim.kernel.counters import Counter
 from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.objects.counted import calls, counters
 from bfsim.kernel.objects.places import Places
+from bfsim.kernel.types import ArrayType
 
 NO_ARRAY = ""
 """In place of an array's name: memory that belongs to none, such as the stack."""
@@ -62,11 +64,13 @@ def compiled_object(
     """
     about = loaded.image.digest, symbol, f"{timing!r} {traced}"
     subroutine = loaded.subroutine(symbol, timing, keys.object_key(*about, "native code"))
+    words = [each.name if isinstance(each.type, ArrayType) else "" for each in function.parameters]
     arrays = (*function.array_names, NO_ARRAY) if traced else ()
 
     def made() -> Costs:
         code = subroutine.processor.code()
-        found = counters(translate.counters(code, timing), places, timing, arrays)
+        accessed = arrays_accessed(code, subroutine.address, words)
+        found = counters(translate.counters(code, timing), places, timing, accessed, arrays)
         return Costs(tuple(found), calls(code, places, subroutine.address, function.array_names))
 
     key = keys.object_key(*about, f"costs of {function.symbol}")

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from bfsim.blackfin import translate
 from bfsim.blackfin.blocks import CALLS, DIRECT, Code, does
+from bfsim.blackfin.pointers import Accesses
 from bfsim.blackfin.timing import Timing
 from bfsim.kernel.call_paths import RoutineCall
 from bfsim.kernel.counters import Counter
@@ -16,13 +17,26 @@ from bfsim.kernel.objects.places import Places
 
 
 def counters(
-    counted: Iterable[translate.Counter], places: Places, timing: Timing, arrays: Sequence[str]
+    counted: Iterable[translate.Counter],
+    places: Places,
+    timing: Timing,
+    accessed: Mapping[int, Accesses],
+    traced: Sequence[str],
 ) -> list[Counter]:
-    """Return a counter of a kernel for each of the translated code, in the same order; `arrays`: what its accesses may reach."""
-    return [_counter(each, places, timing, arrays) for each in counted]
+    """Return a counter of a kernel for each of the translated code, in the same order.
+
+    `accessed`: the accesses of instructions, by their addresses. `traced`: what the address of an access may be in, if that is looked at.
+    """
+    return [_counter(each, places, timing, accessed, traced) for each in counted]
 
 
-def _counter(each: translate.Counter, places: Places, timing: Timing, arrays: Sequence[str]) -> Counter:
+def _counter(
+    each: translate.Counter,
+    places: Places,
+    timing: Timing,
+    accessed: Mapping[int, Accesses],
+    traced: Sequence[str],
+) -> Counter:
     block = each.block
     charges = [
         Charge(operation_of(one), places.line_of(one.address), timing.of(one)) for one in block.instructions
@@ -33,10 +47,14 @@ def _counter(each: translate.Counter, places: Places, timing: Timing, arrays: Se
         taken = Charge(TAKEN[last.op], last.line, timing.taken(block.instructions[-1]))
         return Counter(routine, label, "taken", None, instead((taken,), (last,)), ())
     lines = dict.fromkeys(places.line_of(one.address) for one in block.instructions if accesses_memory(one))
-    accesses = tuple(
-        Access(array, False, label, number, line, may_be=True)  # noqa: FBT003
-        for number, line in enumerate(lines)
-        for array in arrays
+    accesses = (
+        *(Access(array, False, label, 0, line, may_be=True) for line in lines for array in traced),  # noqa: FBT003
+        *(
+            Access(array, writes, label, number, places.line_of(one.address), turn=turn, among=len(arrays))
+            for number, one in enumerate(block.instructions)
+            for writes, arrays in accessed.get(one.address, ())
+            for turn, array in enumerate(sorted(arrays))
+        ),
     )
     begins = places.entered_at(block.start)
     enters = (Entrance(begins, SourceLine(begins, 0)),) if begins else ()

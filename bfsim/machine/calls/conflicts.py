@@ -120,7 +120,7 @@ def _spread(group: CallGroup) -> NDArray[np.int64]:
             hit = banks.get(path.arrays.get(access.array, ""), set())
             site = group.first_site + group.site_number(path, Site(access.line, access.array))
             for bank in hit if access.is_counted else ():
-                key = (group.first_event + number, bank, len(hit), site)
+                key = (group.first_event + number, bank, len(hit) * access.among, site)
                 found[key] = found.get(key, 0) + 1
     rows = [(number, bank, each, parts, site) for (number, bank, parts, site), each in found.items()]
     return np.array(rows, np.int64).reshape(-1, 5).T

@@ -170,8 +170,8 @@ class CoreRecords:
                 owner = owner_of.get(path.arrays.get(access.array, ""))
                 if owner is not None and access.is_counted:
                     sums = self._kernel(group, access.line.routine).accesses[access.line.line, owner]
-                    sums.reads += 0 if access.writes else events
-                    sums.writes += events if access.writes else 0
+                    sums.reads += 0 if access.writes else access.times(events)
+                    sums.writes += access.times(events) if access.writes else 0
         for (_, place), events in executions.items():
             self._kernel(group, place.routine).executions[place.line] += events
 

@@ -1,0 +1,154 @@
+"""Which array an access is to: pointers are followed from the arguments of a function through registers and the stack.
+
+A value is known by the arrays that it may point into, and by its place in the stack frame if it is one. At a join it may be either;
+a function that is called is looked at once, with what all of its calls hand over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import groupby
+
+from bfsim.blackfin.blocks import CALLS, Code, does
+from bfsim.blackfin.decode import Instruction
+from bfsim.blackfin.flow import Way, edges
+from bfsim.blackfin.origins import Origin, made_by
+from bfsim.blackfin.subroutines import REGISTERS, WORD_BYTES
+
+KEPT = frozenset({"R4", "R5", "R6", "R7", "P3", "P4", "P5", "SP", "FP"})
+"""[GCC] Registers that a function leaves as they were."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pointer:
+    """What is known of a value: `arrays` that it may point into, `less` those that a pointer into which was subtracted from it.
+
+    `frame`: how far it is from the SP of the function's entry, if known.
+    """
+
+    arrays: frozenset[str] = frozenset()
+    less: frozenset[str] = frozenset()
+    frame: int | None = None
+
+    def joined(self, other: Pointer) -> Pointer:
+        """Return what is known of a value that is one or the other."""
+        frame = self.frame if self.frame == other.frame else None
+        return Pointer(self.arrays | other.arrays, self.less | other.less, frame)
+
+
+NUMBER = Pointer()
+Accesses = tuple[tuple[bool, frozenset[str]], ...]
+"""Of an instruction: of each access whether it writes, and the arrays that it may be to."""
+
+
+@dataclass(slots=True)
+class _State:
+    """What is known of registers, and of words of the stack by their places."""
+
+    registers: dict[str, Pointer] = field(default_factory=dict)
+    words: dict[int, Pointer] = field(default_factory=dict)
+
+    def joined(self, other: _State) -> _State:
+        names = self.registers.keys() | other.registers.keys()
+        one, two = self.registers, other.registers
+        return _State(
+            {each: one.get(each, NUMBER).joined(two.get(each, NUMBER)) for each in names},
+            {
+                each: self.words[each].joined(other.words[each])
+                for each in self.words.keys() & other.words.keys()
+            },
+        )
+
+    def behind_call(self) -> _State:
+        """What is known where a call comes back to."""
+        return _State({name: each for name, each in self.registers.items() if name in KEPT}, self.words)
+
+    def in_call(self) -> _State:
+        """What a function that is called knows: places in the stack are counted from its own SP."""
+        top = self.registers.get("SP", NUMBER).frame
+        if top is None:
+            registers = {name: replace(each, frame=None) for name, each in self.registers.items()}
+            return _State({**registers, "SP": Pointer(frame=0)})
+
+        def moved(each: Pointer) -> Pointer:
+            return each if each.frame is None else replace(each, frame=each.frame - top)
+
+        return _State(
+            {name: moved(each) for name, each in self.registers.items()},
+            {place - top: moved(each) for place, each in self.words.items() if place >= top},
+        )
+
+    def execute(self, instruction: Instruction) -> Accesses:
+        """Change as an instruction does; return its accesses."""
+        made, known = made_by(instruction), dict(self.registers)
+        found: list[tuple[bool, frozenset[str]]] = []
+        stores: list[tuple[Pointer, int, Pointer]] = []
+        for each in made.accesses:
+            address = _of(each.address, known)
+            found.append((each.stored is not None, address.arrays))
+            if each.stored is None:
+                loads = sum(name.startswith("load ") for name in known)
+                word = self.words.get(address.frame, NUMBER) if address.frame is not None else NUMBER
+                known[f"load {loads}"] = word if each.nbytes == WORD_BYTES else NUMBER
+            else:
+                stores.append((address, each.nbytes, _of(each.stored, known)))
+        for address, nbytes, value in stores:
+            self._store(address, nbytes, value)
+        self.registers.update({name: _of(each, known) for name, each in made.writes.items()})
+        return tuple(found)
+
+    def _store(self, address: Pointer, nbytes: int, value: Pointer) -> None:
+        if address.frame is None:
+            return
+        for place in range(address.frame - WORD_BYTES + 1, address.frame + nbytes):
+            self.words.pop(place, None)
+        if nbytes == WORD_BYTES:
+            self.words[address.frame] = value
+
+
+def _of(origin: Origin, known: Mapping[str, Pointer]) -> Pointer:
+    added, subtracted = ([known.get(each, NUMBER) for each in part] for part in (origin.of, origin.less))
+    plus = _union((each.arrays for each in added), (each.less for each in subtracted))
+    minus = _union((each.less for each in added), (each.arrays for each in subtracted))
+    base = known.get(origin.base, NUMBER).frame if origin.base else None
+    return Pointer(plus - minus, minus - plus, None if base is None else base + origin.offset)
+
+
+def _union(*parts: Iterable[frozenset[str]]) -> frozenset[str]:
+    return frozenset(name for part in parts for each in part for name in each)
+
+
+def arrays_accessed(code: Code, entry: int, arguments: Sequence[str]) -> dict[int, Accesses]:
+    """Return the accesses of each instruction that has some, by its address.
+
+    `arguments`: names of the arrays that the function at `entry` is called with, in the order of its words; "" for numbers.
+    """
+    places = [Pointer(frozenset({name} - {""})) for name in arguments]
+    registers = dict(zip(REGISTERS, places, strict=False))
+    words = {WORD_BYTES * number: each for number, each in enumerate(places) if number >= len(REGISTERS)}
+    begins = {entry: _State({**registers, "SP": Pointer(frame=0)}, words)}
+    ways = {source: list(each) for source, each in groupby(edges(code), lambda edge: edge.source)}
+    waiting = [entry]
+    found: dict[int, Accesses] = {}
+    while waiting:
+        start = waiting.pop()
+        state = _State(dict(begins[start].registers), dict(begins[start].words))
+        block = code.blocks[start]
+        for each in block.instructions:
+            if reached := state.execute(each):
+                found[each.address] = reached
+        behind = [
+            (each.target, state if each.way is not Way.RETURNS else state.behind_call())
+            for each in ways.get(start, ())
+        ]
+        last = block.instructions[-1] if block.instructions else None
+        if last and does(last) in CALLS and "t" in last.operations[0].operands:
+            behind.append((int(last.operations[0].operands["t"]), state.in_call()))
+        for target, new in behind:
+            before = begins.get(target)
+            joined = new if before is None else before.joined(new)
+            if before is None or joined != before:
+                begins[target] = joined
+                waiting.append(target)
+    return found

@@ -1,0 +1,86 @@
+"""Which arrays the accesses of object code are to: as followed through the code, and as the addresses of calls say."""
+
+from __future__ import annotations
+
+from collections import Counter
+from functools import cache
+
+import numpy as np
+import pytest
+
+from bfsim.blackfin.decode import decode
+from bfsim.blackfin.origins import Origin, made_by
+from bfsim.building import build_for
+from bfsim.kernel import Kernel
+from bfsim.kernel.access_trace import KIND_BIT, KIND_MASK, LOG, STORE, AccessTrace
+from bfsim.kernel.build import Build
+from bfsim.kernel.profile import GCC
+from bfsim.loading import entries_of, load_firmware
+from bfsim.run import simulate
+from bfsim.shipped import FIRMWARE
+from bfsim.verifying import Sampler
+
+KERNELS = ("suppress_row", "gauss3_row", "connect_near", "segment_row")
+"""Rows of arguments on the stack, spilled pointers, differences of pointers as indices."""
+
+
+@cache
+def built() -> Build:
+    """The built-in firmware by GCC's code."""
+    return build_for(load_firmware(FIRMWARE[0]), GCC)
+
+
+@pytest.fixture(scope="module")
+def sampler() -> Sampler:
+    """A few calls of each kernel in a frame."""
+    found = Sampler(4)
+    simulate(frames=1, profile="gcc", on_call=found.see)
+    return found
+
+
+@pytest.mark.parametrize("name", KERNELS)
+def test_accesses_are_to_the_arrays_that_they_hit(name: str, sampler: Sampler) -> None:
+    """Each array is read and written as often as the addresses of the calls say."""
+    kernel = next(each for each in entries_of(load_firmware(FIRMWARE[0]).firmware) if each.name == name)
+    for arguments in sampler.of[kernel].kept:
+        assert _expected(kernel, arguments) == _hit(kernel, arguments) != {}
+
+
+def _expected(kernel: Kernel, arguments: tuple) -> Counter:
+    code = built().compiled(kernel)
+    totals = code.new_totals()
+    arrays = [np.array(arguments[each]) for each in kernel.array_positions]
+    kernel.prepare(code, arrays, totals).run(arguments)
+    found: Counter = Counter()
+    for events, counter in zip(totals.tolist(), code.counters, strict=True):
+        for each in counter.accesses:
+            found[each.array, each.writes] += each.times(events)
+    return +found
+
+
+def _hit(kernel: Kernel, arguments: tuple) -> Counter:
+    """Run it with all arrays in memory that is followed; a site stands for a line and an array."""
+    code = built().compiled(kernel, traced=True)
+    arena = np.zeros(1 << 20, np.uint8)
+    arrays, at = [], 0
+    for each in (np.array(arguments[each]) for each in kernel.array_positions):
+        place = arena[at : at + each.nbytes].view(each.dtype)
+        place[:] = each
+        arrays.append(place)
+        at += -(-each.nbytes // 64) * 64
+    trace = AccessTrace(arena, len(arena), np.zeros(LOG + (1 << 20), np.int64))
+    work = kernel.prepare(code, arrays, code.new_totals(), trace).run(arguments)
+    sites = code.program.sites
+    entries = zip(trace.entries(work.accesses).tolist(), trace.sites(work.accesses).tolist(), strict=True)
+    return Counter((sites[site].array, entry >> KIND_BIT & KIND_MASK == STORE) for entry, site in entries)
+
+
+def test_an_instruction_knows_the_origins_of_what_it_makes() -> None:
+    """P1 = P2 + P3; R0 = R1 - R2; R3 = [FP + -8]: of sums both, of differences one less the other, of loads the word."""
+    added = made_by(decode(bytes.fromhex("5a5a"), 0)).writes["P1"]
+    assert (added.of, added.less, added.base) == ({"P2", "P3"}, set(), "")
+    less = made_by(decode(bytes.fromhex("1152"), 0)).writes["R0"]
+    assert (less.of, less.less) == ({"R1"}, {"R2"})
+    loaded = made_by(decode(bytes.fromhex("e3b9"), 0))
+    assert loaded.writes["R3"] == Origin(frozenset({"load 0"}), frozenset(), "load 0")
+    assert (loaded.accesses[0].address.base, loaded.accesses[0].address.offset) == ("FP", -8)
