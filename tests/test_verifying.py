@@ -137,7 +137,7 @@ def test_errors_are_signed_and_by_share() -> None:
 
 def test_a_profile_without_a_compiler_is_refused() -> None:
     """Nobody here has VisualDSP++."""
-    with pytest.raises(ConfigError, match="gcc-O2 or gcc-O0"):
+    with pytest.raises(ConfigError, match="one of gcc-O2, gcc-O0, gcc for"):
         object_code([], [], VDSP_O2, None)
 
 

@@ -37,7 +37,7 @@ def level_of(profile: CompilerProfile) -> str:
     """Return what the compiler is told for a profile. Raises ConfigError for one that stands for no compiler that can be asked."""
     if profile.name not in LEVELS:
         raise ConfigError(
-            f"the profile must be {' or '.join(LEVELS)} for there to be real code, not {profile.name}: of other "
+            f"the profile must be one of {', '.join(LEVELS)} for there to be real code, not {profile.name}: of other "
             "compilers there is none"
         )
     return LEVELS[profile.name]
