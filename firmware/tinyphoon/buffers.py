@@ -13,6 +13,7 @@ from tinyphoon.exchange import exchange_buffers
 from tinyphoon.geometry import geometry_buffer, thesis_geometry_buffer
 from tinyphoon.stages.blob_detection import blob_buffers
 from tinyphoon.stages.circle_detection import circle_buffers
+from tinyphoon.stages.colour_reduction import colour_buffers
 from tinyphoon.stages.edge_detection import scan_buffers
 from tinyphoon.stages.edge_thinning import thinning_buffers
 from tinyphoon.stages.hysteresis import hysteresis_buffers
@@ -95,6 +96,7 @@ def _core_buffers(
         Buffer("eroded_ring", u32, width, "L1_data_a", rows=3),
         thesis_geometry_buffer(size),
         Buffer("atan", u8, 257, "L1_data_b", values=arctangent_table()),
+        *colour_buffers(),
         *thinning_buffers(size, images),
         Buffer("edge_index", u32, height, "L1_data_b"),
         Buffer("edge_counts", u16, height, "L1_data_b"),

@@ -11,13 +11,13 @@ from tinyphoon.areas import WHOLE_PICTURE, Area
 from tinyphoon.stages.blob_detection import BlobThresholds, blob_detection
 from tinyphoon.stages.blob_merging import blob_merging
 from tinyphoon.stages.circle_detection import circle_detection
+from tinyphoon.stages.colour_reduction import join_groups
 from tinyphoon.stages.edge_detection import EdgeThresholds, edge_detection
 from tinyphoon.stages.line_detection import LineScan, line_detection, scan_by_labels
 from tinyphoon.stages.line_refinement import line_refinement
 from tinyphoon.stages.object_detection import Outlines
 from tinyphoon.stages.open_closing import open_closing
 from tinyphoon.stages.rectangle_detection import rectangle_detection
-from tinyphoon.stages.rectangle_ends import hidden_ends
 from tinyphoon.stages.rectification import rectification
 from tinyphoon.strategy.modes import Mode
 
@@ -52,6 +52,7 @@ def features(
     with core.stage("Edge detection"):
         with core.stage("Rectification"):
             frame = yield from rectification(core, frame, area)
+        yield from join_groups(core, mode.blobs.colour_groups)
         edges = yield from steps.edge_detection(core, frame, mode.edges, area)
     with core.stage("Open & closing"):
         yield from steps.open_closing(core, frame)
@@ -64,8 +65,7 @@ def features(
         circles = yield from circle_detection(core, frame, blobs, mode.ball_colours, mode.circles)
         blobs = yield from blob_merging(core, blobs, circles, mode.blobs.merged)
         rectangles = yield from rectangle_detection(
-            core, blobs, lines, mode.rectangle_colours, mode.goal_colours, mode.rectangles
+            core, frame, blobs, lines, mode.rectangle_colours, mode.goal_colours, mode.rectangles
         )
-        yield from hidden_ends(core, frame, rectangles, mode.goal_colours)
     outlines = Outlines(blobs=blobs, circles=circles, rectangles=rectangles)
     return Features(frame=frame, edges=edges, lines=lines, outlines=outlines)

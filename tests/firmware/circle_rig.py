@@ -171,7 +171,7 @@ def seen(
     kept = hysteresis(edges, thresholds.strong_threshold, edges.size, edges.size).edges
     data, index, counts = hysteresis_store(kept, direction)
     limits = thresholds.colour_limits
-    colours = references.colours(uyvy, *limits)
+    colours = references.colours(uyvy, *limits, groups)
     opened = references.dilate(references.erode(colours)).astype(np.uint32)
     return Seen(
         np.array(data or [0], np.uint32),

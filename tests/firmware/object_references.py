@@ -26,13 +26,18 @@ def rounded(value: Fraction) -> int:
 
 
 def border_cost(
-    line: Sequence[int], side: str, box: Record, border: int, reach: int, overlap: int, dark: int
+    line: Sequence[int],
+    side: str,
+    span: tuple[int, int],
+    border: int,
+    reach: int,
+    overlap: int,
+    dark: int,
 ) -> int | None:
-    """How far a line is from a border on a side of a box, in 1/16 px; None if it cannot be."""
+    """How far a line is from a border on a side of a box, which has the rows or the columns of `span` there, in 1/16 px; None if it cannot be."""
     x0, y0, x1, y1 = line
     upright = side in ("left", "right")
     ends = [(y0, x0), (y1, x1)] if upright else [(x0, y0), (x1, y1)]  # along, across
-    span = (box["top"], box["bottom"]) if upright else (box["left"], box["right"])
     first, last = 16 * span[0] - 8, 16 * span[1] + 8
     (a0, c0), (a1, c1) = ends
     if abs(a1 - a0) <= abs(c1 - c0):
@@ -54,31 +59,40 @@ def border_cost(
     return cost if inside else cost + dark
 
 
-def post_end(line: Sequence[int] | None, top: int, bottom: int) -> int:
-    """Where a post ends: at the end of its line, from the bottom of its blob down to half as far again, or with the blob."""
-    end = max(line[1], line[3]) if line else bottom
-    return end if bottom < end <= bottom + (bottom - top) // 2 else bottom
-
-
 def rectangle(
-    lines: Sequence[Sequence[int]], box: Record, goals: int, reach: int, overlap: int, dark: int
-) -> list[int]:
-    """The border lines left, right, top and bottom of a box, -1 for none; `goals` are the colours of goals."""
+    lines: Sequence[Sequence[int]],
+    box: Record,
+    ends: dict[str, tuple[int, int]],
+    goals: int,
+    limits: tuple[int, int, int],
+) -> tuple[list[int], list[int]]:
+    """The border lines left, right, top and bottom of a box, -1 for none, and where its posts end to the left and to the right.
+
+    `ends`: the rows that it has there. `goals` are the colours of goals; `limits`: reach, overlap, dark.
+    """
+    reach, overlap, dark = limits
+    spans = dict.fromkeys(("top", "bottom"), (box["left"], box["right"])) | ends
+
+    def near(side: str, border: int, within: int) -> list[tuple[int, int]]:
+        costs = [border_cost(line, side, spans[side], border, within, overlap, dark) for line in lines]
+        return [(cost, number) for number, cost in enumerate(costs) if cost is not None]
 
     def nearest(side: str, border: int, within: int) -> int:
-        costs = [border_cost(line, side, box, border, within, overlap, dark) for line in lines]
-        near = [(cost, number) for number, cost in enumerate(costs) if cost is not None]
-        return min(near)[1] if near else -1
+        return min(near(side, border, within), default=(0, -1))[1]
 
     borders = {side: 16 * box[side] - 8 for side in ("left", "top")}
     borders |= {side: 16 * box[side] + 8 for side in ("right", "bottom")}
     found = {side: nearest(side, border, reach) for side, border in borders.items()}
-    posts = [lines[found[side]] if found[side] >= 0 else None for side in ("left", "right")]
-    feet = max(post_end(post, borders["top"], borders["bottom"]) for post in posts)
-    if box["colours"] & goals and feet > borders["bottom"]:
-        mouth = nearest("bottom", feet + reach // 2, reach // 2)
+    feet = []
+    for side, (top, bottom) in ends.items():
+        end = 16 * bottom + 8
+        posts = [max(lines[number][1], lines[number][3]) for _, number in near(side, borders[side], reach)]
+        farthest = end + (16 * (bottom - top + 1)) // 2
+        feet.append(max([end, *(each for each in posts if each <= farthest)]))
+    if box["colours"] & goals and max(feet) > borders["bottom"]:
+        mouth = nearest("bottom", max(feet) + reach // 2, reach // 2)
         found["bottom"] = mouth if mouth >= 0 else found["bottom"]
-    return [found[side] for side in ("left", "right", "top", "bottom")]
+    return [found[side] for side in ("left", "right", "top", "bottom")], feet
 
 
 # Tests
@@ -281,16 +295,13 @@ def row_below(line: Sequence[int] | None, bottom: int, column: int) -> int:
     return y0 + floor(Fraction((y1 - y0) * (column - x0) + (x1 - x0) // 2, x1 - x0))
 
 
-def foot_row(
-    line: Sequence[int] | None, post: Sequence[int] | None, rows: tuple[int, int], column: int, is_cut: bool
-) -> int:
+def foot_row(line: Sequence[int] | None, foot: int | None, bottom: int, column: int, is_cut: bool) -> int:
     """The row of a foot: the bottom line, or the end of the blob if that is more than one pixel above it, but not more than four.
 
-    Not where the line of the post goes on below that end by more than a pixel. Nor is it a line more than a pixel above that end.
+    Not where the post goes on below that end by more than a pixel. Nor is it a line more than a pixel above that end.
     """
-    top, bottom = rows
     end, row = row_below(None, bottom, column), row_below(line, bottom, column)
-    goes_on = post_end(post, 16 * top - 8, end) > end + 16
+    goes_on = foot is None or foot > end + 16
     return end if row < end - 16 or (16 < row - end <= 64 and not is_cut and not goes_on) else row
 
 
@@ -298,15 +309,13 @@ def rectangle_at(
     found: Record,
     model: Any,
     box: Record,
-    parts: Sequence[Record],
-    borders: dict[str, Sequence[int] | None],
-    hidden: int,
+    outline: Record | None,
+    bottom: Sequence[int] | None,
     geometry: Sequence[int],
     refined: bool,
     size: tuple[int, int],
 ) -> Record:
-    """A rectangle by the floor below it; `borders` are its lines, `parts` those of a merged blob, `hidden`: 1 left, 2 right."""
-    bottom = borders["bottom"]
+    """A rectangle by the floor below it; `outline` is its record, and `bottom` its bottom line."""
     width, height = size
     middle_x, middle_y = 8 * (width - 1), 8 * (height - 1)
     cut = box["top"] <= 1 or box["bottom"] >= height - 2
@@ -319,11 +328,13 @@ def rectangle_at(
         corners = []
         for side, column in (("left", 16 * box["left"] - 8), ("right", 16 * box["right"] + 8)):
             is_cut = box["left"] <= 1 if side == "left" else box["right"] >= width - 2
-            rows = rows_at(box, parts, side)
-            below = foot_row(bottom, borders[side], rows, column, is_cut) - middle_y
+            _, last = outline[f"{side}_rows"] if outline else (box["top"], box["bottom"])
+            foot = outline[f"{side}_foot"] if outline else None
+            below = foot_row(bottom, foot, last, column, is_cut) - middle_y
             corners.append((column - middle_x, below, floor_depth(geometry, below, 0)))
         cuts = box["left"] <= 1, box["right"] >= width - 2
         if all(each[2] for each in corners):
+            hidden = outline["hidden"] if outline else 0
             x, y, z = between_feet(corners, cuts, hidden, model.width_mm, geometry)
     up, back = (((model.height_mm * geometry[each] >> 14) + 1) // 2 for each in (COSINE, SINE))
     extent = abs(horizon_distance(geometry, row))
@@ -333,21 +344,6 @@ def rectangle_at(
 def on_floor(geometry: Sequence[int], column: int, row: int, depth: int) -> tuple[int, int, int]:
     """What is seen there, from the principal point, at a depth."""
     return aside(geometry, depth, column), aside(geometry, depth, row), depth
-
-
-def rows_at(box: Record, parts: Sequence[Record], side: str) -> tuple[int, int]:
-    """The rows of the part that reaches farthest to a side, the last of such, and of those above or below it."""
-    ends = [each for each in parts if each[side] == box[side]]
-    if not ends:
-        return box["top"], box["bottom"]
-    end = ends[-1]
-
-    def shares_columns(one: Record) -> bool:
-        common = min(one["right"], end["right"]) + 1 - max(one["left"], end["left"])
-        return 2 * common >= min(sides(one)[0], sides(end)[0])
-
-    column = [each for each in parts if shares_columns(each)]
-    return min(each["top"] for each in column), max(each["bottom"] for each in column)
 
 
 def between_feet(
@@ -417,15 +413,8 @@ def sight(
         if model.shape == BALL:
             found = ball_at(found, model, outline, geometry, thresholds.refined, size)
         else:
-            borders = {
-                side: lines[outline[side]] if outline and outline[side] >= 0 else None
-                for side in ("left", "right", "bottom")
-            }
-            parts = [each for at, each in enumerate(boxes[:number]) if parents[at] == number]
-            hidden = outline["hidden"] if outline else 0
-            found = rectangle_at(
-                found, model, box, parts, borders, hidden, geometry, thresholds.refined, size
-            )
+            bottom = lines[outline["bottom"]] if outline and outline["bottom"] >= 0 else None
+            found = rectangle_at(found, model, box, outline, bottom, geometry, thresholds.refined, size)
         count += 1
         if len(seen) < room:
             seen.append(found)

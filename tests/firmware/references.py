@@ -6,6 +6,7 @@ rightmost column of a 3x3 operation have fixed values, so what lies beyond them 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -89,15 +90,23 @@ def suppress(gradient: Picture, direction: Picture, threshold: int) -> Picture:
     return with_border(kept, 0)
 
 
-def colours(uyvy: Picture, eps_black: int, eps_white: int, least_chroma: int) -> NDArray[np.uint32]:
-    """Reduce to one bit of 32 per pixel, or none (T Eq. 5.1-5.4, and the least chroma), each pixel by itself."""
+def colours(
+    uyvy: Picture, eps_black: int, eps_white: int, least_chroma: int, groups: Sequence[int] = ()
+) -> NDArray[np.uint32]:
+    """Reduce to one bit of 32 per pixel, or none (T Eq. 5.1-5.4, and the least chroma), each pixel by itself.
+
+    A pixel with a bit of a group has all bits of that group.
+    """
     u = np.repeat(uyvy[:, 0::4], 2, axis=1).astype(np.int64) - 128
     v = np.repeat(uyvy[:, 2::4], 2, axis=1).astype(np.int64) - 128
     chroma = np.floor(np.sqrt(v**2 + u**2)).astype(np.int64)
     brightness = luma(uyvy) - chroma
     black = (brightness < eps_black) & ((chroma < least_chroma) | (least_chroma == 0))
     hue = np.where(chroma < least_chroma, 0, 1 << 3 + 28 * angle(v, u) // 256)
-    return np.select([black, brightness > eps_white], [1 << 1, 1 << 2], hue).astype(np.uint32)
+    words = np.select([black, brightness > eps_white], [1 << 1, 1 << 2], hue).astype(np.uint32)
+    for group in groups:
+        words[words & group != 0] = group
+    return words
 
 
 def erode(picture: Picture) -> Picture:

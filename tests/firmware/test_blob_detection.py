@@ -117,7 +117,7 @@ def shipped() -> list[tuple[Words, Words]]:
 def opened(uyvy: np.ndarray) -> Words:
     """Return the opened colour image of a picture."""
     rule = INDOOR_FIELD.edges
-    colours = references.colours(uyvy, *rule.colour_limits)
+    colours = references.colours(uyvy, *rule.colour_limits, INDOOR_FIELD.blobs.colour_groups)
     return references.dilate(references.erode(colours)).astype(np.uint32)
 
 

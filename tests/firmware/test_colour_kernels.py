@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -12,7 +14,17 @@ from PIL import Image
 from bfsim.recording.planes import YuvPlanes
 from tests.firmware import references
 from tests.firmware.pictures import WIDTHS, Bytes, random_uyvy
-from tinyphoon.stages.colour_reduction import AS_IT_IS, BLACK, WHITE, balance_row, colour_row
+from tinyphoon.stages.colour_reduction import (
+    AS_IT_IS,
+    BLACK,
+    COLOURS,
+    SINGLE_COLOURS,
+    WHITE,
+    balance_row,
+    colour_row,
+    join_colours,
+    separate_colours,
+)
 from tinyphoon.stages.open_closing import dilate_row, erode_row
 from tinyphoon.strategy.modes import INDOOR_FIELD
 from tinyphoon.tables import arctangent_table
@@ -35,10 +47,16 @@ ANY_WORDS = st.integers(2, 30).flatmap(
 )
 
 
-def reduced(uyvy: Bytes, eps_black: int, eps_white: int, least_chroma: int = 0) -> np.ndarray:
-    """Return the words of one row."""
+def reduced(
+    uyvy: Bytes, eps_black: int, eps_white: int, least_chroma: int = 0, groups: Sequence[int] = ()
+) -> np.ndarray:
+    """Return the words of one row, where the colours of groups are joined."""
+    joined = np.full(COLOURS, 2**32 - 1, np.uint32)
+    separate_colours(joined)
+    for group in groups:
+        join_colours(joined, group)
     words = np.full(len(uyvy) // 2, 2**32 - 1, np.uint32)
-    colour_row(uyvy, arctangent_table(), words, eps_black, eps_white, least_chroma)
+    colour_row(uyvy, arctangent_table(), joined, words, eps_black, eps_white, least_chroma)
     return words
 
 
@@ -55,6 +73,39 @@ def test_every_chroma_is_reduced_as_in_the_equations(thresholds: tuple[int, int,
     row = row_of_every_chroma(seed=thresholds[1])
     expected = references.colours(row[np.newaxis], *thresholds)[0]
     np.testing.assert_array_equal(reduced(row, *thresholds), expected)
+
+
+@pytest.mark.parametrize("groups", [(0b111 << 20,), (WHITE | 1 << 22, BLACK | 1 << 4 | 1 << 30)])
+def test_the_colours_of_a_group_have_one_word(groups: tuple[int, ...]) -> None:
+    """Of every chroma: hues, black and white of a group have the bits of all of it, the others their own."""
+    row = row_of_every_chroma(seed=3)
+    words = reduced(row, 28, 125, 28, groups)
+    np.testing.assert_array_equal(words, references.colours(row[np.newaxis], 28, 125, 28, groups)[0])
+    assert set(groups) < set(words.tolist())
+    np.testing.assert_array_equal(
+        reduced(row, 28, 125, 28), references.colours(row[np.newaxis], 28, 125, 28)[0]
+    )
+
+
+def test_colours_that_were_joined_can_be_parted_again() -> None:
+    """Until they are joined anew all of them have the words that the firmware starts with."""
+    words = SINGLE_COLOURS.copy()
+    join_colours(words, 0b111 << 20)
+    separate_colours(words)
+    assert words.tolist() == [1 << colour for colour in range(31)] == SINGLE_COLOURS.tolist()
+
+
+@pytest.mark.parametrize(("groups", "least", "most"), [((), 0, 0.1), ((0b11 << 22,), 1, 1)])
+def test_erosion_keeps_a_thing_between_two_hues(groups: tuple[int, ...], least: float, most: float) -> None:
+    """Noise moves pair after pair of a yellow from one hue to the next: it stays whole if both are of one group."""
+    turns = np.radians(np.random.default_rng(2).choice([19.5, 20.5], (20, 15)) * 360 / 28)
+    rows = np.full((20, 60), 150, np.uint8)
+    rows[:, 0::4], rows[:, 2::4] = 128 + 60 * np.sin(turns), 128 + 60 * np.cos(turns)
+    words = np.array([reduced(row, 28, 125, 28, groups) for row in rows])
+    eroded = np.zeros_like(words)
+    for y in range(1, 19):
+        erode_row(*words[y - 1 : y + 2], eroded[y])
+    assert least <= np.count_nonzero(eroded[1:-1, 1:-1]) / eroded[1:-1, 1:-1].size <= most
 
 
 def test_all_28_hues_occur_and_each_pixel_has_one_colour() -> None:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tests.firmware.pictures import Bytes, three_rows
 from tinyphoon.arithmetic import angle8
-from tinyphoon.stages.colour_reduction import colour_row
+from tinyphoon.stages.colour_reduction import BLACK, SINGLE_COLOURS, colour_row, join_colours
 from tinyphoon.stages.edge_detection import gauss3_row, grey_row, magnitude_row, sobel_row
 from tinyphoon.stages.fast_edges import (
     colour_words,
@@ -94,8 +94,10 @@ def test_colours_are_those_of_single_pairs(limits: tuple[int, int, int], spread:
     uyvy[::2] = rng.integers(128 - spread, 128 + spread, 2048)
     uyvy[1::2] = rng.integers(0, 256, 2048)
     plain, fast = np.zeros((2, 2048), np.uint32)
-    colour_row(uyvy, ATAN, plain, *limits)
-    colour_words(uyvy.view(np.int32), ROOTS, ATAN, RECIPROCALS, fast, *limits)
+    joined = SINGLE_COLOURS.copy()
+    join_colours(joined, BLACK | 0b111 << 20)
+    colour_row(uyvy, ATAN, joined, plain, *limits)
+    colour_words(uyvy.view(np.int32), ROOTS, ATAN, RECIPROCALS, joined, fast, *limits)
     assert fast.tolist() == plain.tolist()
 
 

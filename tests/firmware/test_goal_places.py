@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -61,17 +62,32 @@ def goal(
     return blobs, [len(inside)] * len(blobs), place, line
 
 
+def rows_at(blobs: Sequence[dict[str, int]], side: str) -> tuple[int, int]:
+    """The rows of the part that reaches farthest to a side of a merged blob, which comes last, and of those above or below it."""
+    *parts, box = blobs
+    ends = [each for each in parts if each[side] == box[side]]
+    if not ends:
+        return box["top"], box["bottom"]
+    end = ends[-1]
+
+    def shares_columns(one: dict[str, int]) -> bool:
+        common = min(one["right"], end["right"]) + 1 - max(one["left"], end["left"])
+        return 2 * common >= min(each["right"] - each["left"] + 1 for each in (one, end))
+
+    column = [each for each in parts if shares_columns(each)]
+    return min(each["top"] for each in column), max(each["bottom"] for each in column)
+
+
 def placed(
     blobs: Any, parents: Any, line: Any = None, post: Any = None, *, hidden: int = 0, refined: bool = True
 ) -> np.ndarray:
-    """Where the only goal is seen, with its bottom line and the line to its left."""
+    """Where the only goal is seen, with its bottom line and where its left post ends."""
     thresholds = replace(INDOOR_FIELD.objects, refined=refined)
-    left = 1 if post else -1
-    bottom = 0 if line else -1
-    borders = [
-        {"left": left, "right": -1, "top": -1, "bottom": bottom, "blob": len(blobs) - 1, "hidden": hidden}
-    ]
-    lines = [[round(each) for each in ends] for ends in (line, post) if ends]
+    left, right = (rows_at(blobs, side) for side in ("left", "right"))
+    rectangle = {"left": -1, "right": -1, "top": -1, "bottom": 0 if line else -1, "blob": len(blobs) - 1}
+    rectangle |= {"hidden": hidden, "left_rows": left, "right_rows": right}
+    rectangle |= {"left_foot": round(post or 16 * left[1] + 8), "right_foot": 16 * right[1] + 8}
+    borders, lines = [rectangle], [[round(each) for each in line]] if line else []
     (found,) = see(
         blobs, rectangles=borders, parents=parents, lines=lines, models=(GOAL,), thresholds=thresholds
     )
@@ -107,9 +123,8 @@ def test_a_post_that_goes_on_below_its_blob(post_px: float, is_foot: bool) -> No
     blobs, parents, _, line = goal((0, 900), 0)
     end = 16 * (blobs[0]["bottom"] + 0.5)
     line[1] = line[3] = end + 32  # as painted on the floor
-    post = 16 * blobs[0]["left"], 16 * blobs[0]["top"], 16 * blobs[0]["left"], end + 16 * post_px
     as_before, of_line = placed(blobs, parents, line), placed(blobs, parents, line, refined=False)
-    found = placed(blobs, parents, line, post)
+    found = placed(blobs, parents, line, end + 16 * post_px)
     assert (found[2] == as_before[2]) == is_foot
     assert is_foot or found[2] == pytest.approx((as_before[2] + of_line[2]) / 2, abs=2)
 

@@ -54,6 +54,22 @@ BORDERS = {"left": 1, "right": 2, "top": -1, "bottom": 0, "blob": 0}
 LINES = [(952, 1720, 4168, 1720), (952, 952, 952, 1700), (4168, 1700, 4168, 952)]
 
 
+def plain_ends(boxes: Sequence[dict[str, int]], rectangle: dict[str, Any]) -> dict[str, Any]:
+    """What a rectangle has where both ends are as its blob is, and nothing hides them."""
+    box = boxes[rectangle["blob"]] if rectangle["blob"] < len(boxes) else MOUTH
+    rows, foot = (box["top"], box["bottom"]), 16 * box["bottom"] + 8
+    return {"hidden": 0, "left_rows": rows, "right_rows": rows, "left_foot": foot, "right_foot": foot}
+
+
+def record_of(rectangle: dict[str, Any]) -> list[int]:
+    """The words of a t_Rectangle."""
+    lines = [rectangle[name] for name in ("left", "right", "top", "bottom", "blob", "hidden")]
+    return [
+        *(*lines, *rectangle["left_rows"], *rectangle["right_rows"]),
+        *(rectangle["left_foot"], rectangle["right_foot"]),
+    ]
+
+
 def see(
     boxes: list[dict[str, int]],
     circles: list[dict[str, int]] = [],  # noqa: B006
@@ -72,11 +88,16 @@ def see(
     table = np.full(room * OBJECT_WORDS, 77, np.int16)
     parents = range(len(boxes)) if parents is None else parents
     rounds = [(c["x"], c["y"], c["radius"], c["blob"], 0, 0, 0, c["tests"], c["arc"]) for c in circles]
-    rectangles = [{"hidden": 0, **each} for each in rectangles]
-    borders = [[r[name] for name in ("left", "right", "top", "bottom", "blob", "hidden")] for r in rectangles]
+    rectangles = [plain_ends(boxes, each) | each for each in rectangles]
     found = see_objects(
         *(blob_words(*boxes), np.array(parents, np.uint8), len(boxes), models_of(*models)),
-        *(circle_words(*rounds), len(rounds), rectangle_words(*borders), len(borders), line_words(lines)),
+        *(
+            circle_words(*rounds),
+            len(rounds),
+            rectangle_words(*map(record_of, rectangles)),
+            len(rectangles),
+            line_words(lines),
+        ),
         *(words, np.array(thresholds.limits, np.int32), table, SEEN_LEFT, *size),
     )
     scene = (
@@ -339,7 +360,9 @@ circles = st.fixed_dictionaries(
 )
 borders = st.fixed_dictionaries(
     {"left": st.sampled_from([-1, 1]), "right": st.sampled_from([-1, 1]), "top": st.just(-1)}
-    | {"bottom": st.integers(-1, 0), "blob": st.integers(0, 4)}
+    | {"bottom": st.integers(-1, 0), "blob": st.integers(0, 4), "hidden": st.integers(0, 3)}
+    | {f"{side}_rows": st.tuples(st.integers(0, 120), st.integers(0, 239)) for side in ("left", "right")}
+    | {f"{side}_foot": st.integers(0, 16 * HEIGHT) for side in ("left", "right")}
 )
 level_lines = st.tuples(
     st.integers(0, 2000), st.integers(0, 3800), st.integers(2500, 5000), st.integers(0, 3800)

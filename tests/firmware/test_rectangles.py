@@ -10,15 +10,30 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.firmware import object_references as references
-from tests.firmware.line_rig import BareCore
 from tests.firmware.object_rig import blob_words
-from tinyphoon.stages.rectangle_detection import find_rectangles, rectangle_buffers, rectangle_detection
+from tinyphoon.stages.rectangle_detection import (
+    find_all_borders,
+    find_borders,
+    open_rectangles,
+    rectangle_buffers,
+)
 from tinyphoon.stores.lines import LINE_WORDS
-from tinyphoon.stores.rectangles import NO_LINE, RECTANGLE_CAPACITY, RECTANGLE_HIDDEN, RECTANGLE_WORDS
+from tinyphoon.stores.rectangles import (
+    NO_LINE,
+    RECTANGLE_CAPACITY,
+    RECTANGLE_HIDDEN,
+    RECTANGLE_LEFT_FOOT,
+    RECTANGLE_LEFT_ROWS,
+    RECTANGLE_RIGHT_FOOT,
+    RECTANGLE_RIGHT_ROWS,
+    RECTANGLE_WORDS,
+    store_rows,
+)
 from tinyphoon.strategy.models import BLUE, YELLOW
 from tinyphoon.strategy.modes import INDOOR_FIELD
 
 LIMITS = INDOOR_FIELD.rectangles
+WITHIN = 16 * LIMITS.border_px, LIMITS.overlap, 16 * LIMITS.dark_px
 BOX = {"colours": BLUE, "pixels": 2400, "left": 100, "right": 180, "top": 60, "bottom": 100}
 
 # Round the box, the bright side inside: down its left, to the right below it, up its right, to the left above it.
@@ -38,14 +53,15 @@ def find(
     lines: Sequence[Sequence[int]], *boxes: dict[str, int], colours: int = BLUE, goals: int = 0
 ) -> list[list[int]]:
     """What the stage leaves: left, right, top, bottom, blob of each rectangle."""
-    core = BareCore({"rectangles": [np.full(RECTANGLE_CAPACITY * RECTANGLE_WORDS, 77, np.int16)]})
-    core.arrays |= {"blob_data": [blob_words(*boxes)], "lines": [line_words(lines)]}
-    core.arrays |= {"label_parents": [np.arange(len(boxes), dtype=np.uint8)]}
-    count = core.play(rectangle_detection(core, len(boxes), len(lines), colours, goals, LIMITS))
-    assert core.published["rectangles"] == count
-    lost = core.published["rectangles_lost"]
-    assert lost == sum(each["colours"] & colours != 0 for each in boxes) - count
-    records = core.array("rectangles").reshape(-1, RECTANGLE_WORDS)[:count]
+    table = np.full((RECTANGLE_CAPACITY + 1, RECTANGLE_WORDS), 77, np.int16)
+    blobs, parents = blob_words(*boxes), np.arange(len(boxes), dtype=np.uint8)
+    rectangles = table[:-1].ravel()
+    count = open_rectangles(blobs, parents, len(boxes), colours, rectangles)
+    assert count == sum(each["colours"] & colours != 0 for each in boxes)
+    stored = min(count, RECTANGLE_CAPACITY)
+    find_all_borders(blobs, goals, line_words(lines), len(lines), rectangles, stored, *WITHIN)
+    assert (table[-1] == 77).all()
+    records = table[:stored]
     assert not records[:, RECTANGLE_HIDDEN].any()
     return records[:, :RECTANGLE_HIDDEN].tolist()
 
@@ -121,11 +137,11 @@ def test_parts_of_a_merged_blob() -> None:
     """The merged blob has a record, its parts have none."""
     table = np.zeros(2 * RECTANGLE_WORDS, np.int16)
     parents = np.array([2, 2, 2], np.uint8)
-    boxes = BOX | {"right": 120}, BOX | {"left": 160}, BOX
-    limits = 64, LIMITS.overlap, 32
-    lines = line_words([BOTTOM])
-    assert find_rectangles(blob_words(*boxes), parents, 3, BLUE, 0, lines, 1, table, *limits) == 1
-    assert table[:RECTANGLE_WORDS].tolist() == [NO_LINE, NO_LINE, NO_LINE, 0, 2, 0]
+    blobs = blob_words(BOX | {"right": 120}, BOX | {"left": 160}, BOX)
+    assert open_rectangles(blobs, parents, 3, BLUE, table) == 1
+    find_all_borders(blobs, 0, line_words([BOTTOM]), 1, table, 1, *WITHIN)
+    foot = 16 * BOX["bottom"] + 8
+    assert table[:RECTANGLE_WORDS].tolist() == [-1, -1, -1, 0, 2, 0, *[60, 100] * 2, foot, foot]
 
 
 def test_more_than_there_is_room() -> None:
@@ -146,12 +162,22 @@ def near_lines(draw: st.DrawFn) -> tuple[int, int, int, int]:
     return ends if draw(st.booleans()) else (*ends[2:], *ends[:2])
 
 
-@given(st.lists(lines | near_lines(), max_size=8), st.sampled_from([BLUE, YELLOW]))
-def test_as_the_reference(some: list[tuple[int, int, int, int]], goals: int) -> None:
-    """Bit for bit, with any lines."""
-    limits = 16 * LIMITS.border_px, LIMITS.overlap, 16 * LIMITS.dark_px
-    wanted = references.rectangle(some, BOX, goals, *limits)
-    assert find(some, BOX, goals=goals) == [[*wanted, 0]]
+rows = st.tuples(st.integers(60, 80), st.integers(80, 100))
+
+
+@given(st.lists(lines | near_lines(), max_size=8), st.sampled_from([BLUE, YELLOW]), st.tuples(rows, rows))
+def test_as_the_reference(
+    some: list[tuple[int, int, int, int]], goals: int, ends: tuple[tuple[int, int], tuple[int, int]]
+) -> None:
+    """Bit for bit, with any lines, and any rows at the ends."""
+    table = np.zeros(RECTANGLE_WORDS, np.int16)
+    for end, rows in zip((RECTANGLE_LEFT_ROWS, RECTANGLE_RIGHT_ROWS), ends, strict=True):
+        store_rows(table, 0, end, *rows)
+    find_borders(blob_words(BOX), goals, line_words(some), len(some), table, 0, *WITHIN)
+    sides = dict(zip(("left", "right"), ends, strict=True))
+    borders, feet = references.rectangle(some, BOX, sides, goals, WITHIN)
+    assert table[:4].tolist() == borders
+    assert table[RECTANGLE_LEFT_FOOT : RECTANGLE_RIGHT_FOOT + 1].tolist() == feet
 
 
 @pytest.mark.parametrize("ends", [(32767, -32768, -32768, 32767), (-32768, -32768, 32767, -32768)])
@@ -159,14 +185,13 @@ def test_lines_as_long_as_a_word_can_say(ends: tuple[int, ...]) -> None:
     """Nothing overflows in pictures up to 640 x 480."""
     within = tuple(max(-8, min(each, 10240)) for each in ends)
     box = BOX | {"right": 639, "bottom": 479}
-    wanted = references.rectangle([within], box, BLUE, 64, 128, 32)
+    ends = dict.fromkeys(("left", "right"), (box["top"], box["bottom"]))
+    borders, feet = references.rectangle([within], box, ends, BLUE, (64, 128, 32))
     table = np.zeros(RECTANGLE_WORDS, np.int16)
-    parents = np.zeros(1, np.uint8)
-    assert (
-        find_rectangles(blob_words(box), parents, 1, BLUE, BLUE, line_words([within]), 1, table, 64, 128, 32)
-        == 1
-    )
-    assert table.tolist() == [*wanted, 0, 0]
+    blobs = blob_words(box)
+    assert open_rectangles(blobs, np.zeros(1, np.uint8), 1, BLUE, table) == 1
+    find_borders(blobs, BLUE, line_words([within]), 1, table, 0, 64, 128, 32)
+    assert table.tolist() == [*borders, 0, 0, *[60, 479] * 2, *feet]
 
 
 def test_buffers_hold_what_the_store_says() -> None:

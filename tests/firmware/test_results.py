@@ -94,7 +94,8 @@ def test_lines_of_goals_leave_too() -> None:
     """Posts and bottom line; none of what is no goal, has no rectangle, or has no such line."""
     goal = A_GOAL | {"outline": 1}
     seen = [A_BALL, goal, A_GOAL | {"outline": NO_OUTLINE}, A_GOAL | {"model": 4}, A_GOAL | {"outline": 2}]
-    rectangles = [(0, 0, 0, 0, 0, 0), (1, 2, 0, 0, 1, 0), (NO_LINE, NO_LINE, 0, 0, 2, 0)]
+    ends = (0,) * 7  # nothing hidden, and of no account here
+    rectangles = [(0, 0, 0, 0, 0, *ends), (1, 2, 0, 0, 1, *ends), (NO_LINE, NO_LINE, 0, 0, 2, *ends)]
     found = read(packed([], seen, rectangles)).lines
     assert found == (
         GoalLine(model=2, side=Side.LEFT, ends_px=(59.5, 59.5, 59.5625, 106.25)),

@@ -150,7 +150,7 @@ def check_core(
     """Compare all that core `core` left in memory and published for the picture `uyvy`."""
     check_edges(board, core, uyvy, results, INDOOR_FIELD.edges, sighted)
     limits = INDOOR_FIELD.edges.colour_limits
-    colours = references.colours(uyvy, *limits)
+    colours = references.colours(uyvy, *limits, INDOOR_FIELD.blobs.colour_groups)
     opened = references.dilate(references.erode(colours))
     np.testing.assert_array_equal(buffer(board, core, "colour_image"), colours)
     np.testing.assert_array_equal(buffer(board, core, "opened_image"), opened)

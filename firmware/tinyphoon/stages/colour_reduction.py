@@ -9,23 +9,44 @@ is never black, however dark. A least chroma of 0 is the thesis's rule.
 Light of another colour than the camera's white balance takes it for is balanced before, by the gains of red and blue that
 cameras have. What lies in the shade has less chroma by as much as it has less luma: a red half as bright has half the chroma. So the
 chroma of dark pixels may get a gain, too, as far as the noise leaves a hue [ours].
+
+The colours of one kind of objects count as one, and that from here on [ours]: a pixel of any of them gets the bits of all.
+Noise and shade move a thing's colour to and fro between two hues, and the opening, which keeps what all nine pixels
+around have in common, would leave nothing of it.
 """
 
 from __future__ import annotations
 
-from bfsim.api import i32, kernel, u8, u32
+from collections.abc import Generator, Sequence
+from typing import Any
+
+import numpy as np
+
+from bfsim.api import Buffer, Core, i32, kernel, u8, u32
 from tinyphoon.arithmetic import angle8, isqrt32
 
-BLACK = 1 << 1  # T Eq. 5.2 and 5.3: class 1
-WHITE = 1 << 2
+# Numbers of the colours, and with them of their bits. 0 is no colour.
+BLACK_NUMBER = 1  # T Eq. 5.2 and 5.3: class 1
+WHITE_NUMBER = 2
 FIRST_HUE = 3
 HUES = 28
+COLOURS = FIRST_HUE + HUES
+BLACK = 1 << BLACK_NUMBER
+WHITE = 1 << WHITE_NUMBER
 MOST_CHROMA = 181  # of U and V of -128
 DARKEST = -MOST_CHROMA  # no luma less its chroma is below
 
-
 AS_IT_IS = 64
 """The gain that leaves a colour as it is: gains count in 64ths."""
+
+
+SINGLE_COLOURS = np.uint32(1) << np.arange(COLOURS, dtype=np.uint32)
+"""The word of each colour: its own bit."""
+
+
+def colour_buffers() -> Sequence[Buffer]:
+    """Return the buffers of the stage for a core. While nobody joins colours, each has a word of its own."""
+    return (Buffer("joined_colours", u32, COLOURS, "L1_data_b", values=SINGLE_COLOURS),)
 
 
 @kernel
@@ -50,20 +71,41 @@ def balance_row(uyvy: u8[:], red_gain: i32, blue_gain: i32, shade_gain: i32) -> 
 
 
 @kernel
-def colour_word(brightness: i32, hue: u32, eps_black: i32, eps_white: i32) -> u32:
+def separate_colours(joined_colours: u32[:]) -> None:
+    """Give each colour the word that has its own bit alone."""
+    for colour in range(len(joined_colours)):
+        joined_colours[colour] = u32(1) << colour
+
+
+@kernel
+def join_colours(joined_colours: u32[:], group: u32) -> None:
+    """Give each colour of a group the word with the bits of all."""
+    for colour in range(len(joined_colours)):
+        if group >> colour & 1 != 0:
+            joined_colours[colour] = group
+
+
+@kernel
+def colour_word(brightness: i32, hue: u32, eps_black: i32, eps_white: i32, joined_colours: u32[:]) -> u32:
     """Return the word of a pixel by its luma less its chroma (T Eq. 5.2)."""
     if brightness < eps_black:
-        return BLACK
+        return joined_colours[BLACK_NUMBER]
     if brightness > eps_white:
-        return WHITE
+        return joined_colours[WHITE_NUMBER]
     return hue
 
 
 @kernel
 def colour_row(
-    uyvy: u8[:], atan: u8[:], colours: u32[:], eps_black: i32, eps_white: i32, least_chroma: i32
+    uyvy: u8[:],
+    atan: u8[:],
+    joined_colours: u32[:],
+    colours: u32[:],
+    eps_black: i32,
+    eps_white: i32,
+    least_chroma: i32,
 ) -> None:
-    """Reduce the colours of one row: `2 * width` bytes to `width` words.
+    """Reduce the colours of one row: `2 * width` bytes to `width` words. `joined_colours` has the word of each colour.
 
     The two pixels of a pair share U and V, and with them root and hue. The hue is looked up only if one of
     the two may have a colour. It is the 8-bit angle of (V, U) cut into 28 equal parts: dividing it by 10, as
@@ -79,6 +121,14 @@ def colour_row(
         darkest = eps_black if chroma < never_black else DARKEST
         hue: u32 = 0
         if chroma >= least_chroma and max(left, right) >= darkest and min(left, right) <= eps_white:
-            hue = u32(1) << (FIRST_HUE + (angle8(v, u, atan) * HUES >> 8))
-        colours[2 * pair] = colour_word(left, hue, darkest, eps_white)
-        colours[2 * pair + 1] = colour_word(right, hue, darkest, eps_white)
+            hue = joined_colours[FIRST_HUE + (angle8(v, u, atan) * HUES >> 8)]
+        colours[2 * pair] = colour_word(left, hue, darkest, eps_white, joined_colours)
+        colours[2 * pair + 1] = colour_word(right, hue, darkest, eps_white, joined_colours)
+
+
+def join_groups(core: Core, groups: Sequence[int]) -> Generator[Any, Any, None]:
+    """Have the colours of each group, as bits, count as one from now on, and all other ones alone."""
+    words = core.array("joined_colours")
+    yield core.run(separate_colours, words)
+    for group in groups:
+        yield core.run(join_colours, words, group)

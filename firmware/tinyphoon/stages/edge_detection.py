@@ -205,6 +205,7 @@ def scan(
         line_ring(core.rows(name), height) for name in ("smooth_ring", "magnitude_ring", "direction_ring")
     )
     gx, gy, atan = core.array("gx"), core.array("gy"), core.array("atan")
+    joined = core.array("joined_colours")
     rim = [core.array(f"sighted_{end}") for end in ("first", "last") if core.has_buffer(f"sighted_{end}")]
     for y in range(height + reach + 2):
         if y < height:
@@ -214,7 +215,7 @@ def scan(
             if not thresholds.is_balanced:
                 yield core.run(balance_row, line, *thresholds.gains)
             row = yield from colours.row()
-            yield core.run(colour_row, line, atan, row, *thresholds.colour_limits)
+            yield core.run(colour_row, line, atan, joined, row, *thresholds.colour_limits)
             colours.send()
         # Gauss, Sobel and suppression each need lines below theirs
         smoothed, sloped, done = y - reach, y - reach - 1, y - reach - 2

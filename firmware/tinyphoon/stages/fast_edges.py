@@ -32,7 +32,14 @@ from bfsim.api import (
     u16,
     u32,
 )
-from tinyphoon.stages.colour_reduction import BLACK, DARKEST, FIRST_HUE, HUES, WHITE, colour_word
+from tinyphoon.stages.colour_reduction import (
+    BLACK_NUMBER,
+    DARKEST,
+    FIRST_HUE,
+    HUES,
+    WHITE_NUMBER,
+    colour_word,
+)
 from tinyphoon.tables import arctangent_table
 
 EVEN_BYTES = 0x00FF00FF
@@ -110,6 +117,7 @@ def hue_of(
     chroma: i32,
     atan: u8[:],
     reciprocals: u32[:],
+    joined_colours: u32[:],
     darkest: i32,
     eps_white: i32,
     least_chroma: i32,
@@ -120,7 +128,7 @@ def hue_of(
     if chroma < least_chroma or brightest < darkest or darker > eps_white:
         return 0
     angle = fast_angle8(high_of_fr2x16(vu), low_of_fr2x16(vu), atan, reciprocals)
-    return u32(1) << (FIRST_HUE + (angle * HUES >> 8))
+    return joined_colours[FIRST_HUE + (angle * HUES >> 8)]
 
 
 @kernel
@@ -129,6 +137,7 @@ def colour_words(
     roots: u8[:],
     atan: u8[:],
     reciprocals: u32[:],
+    joined_colours: u32[:],
     colours: u32[:],
     eps_black: i32,
     eps_white: i32,
@@ -147,23 +156,33 @@ def colour_words(
             chroma = i32(roots[square])
             brightness = sub_i2x16(luma, compose_fr2x16(chroma, chroma))
             if max_fr2x16(brightness, black) == black:
-                colours[2 * pair] = BLACK
-                colours[2 * pair + 1] = BLACK
+                colours[2 * pair] = joined_colours[BLACK_NUMBER]
+                colours[2 * pair + 1] = joined_colours[BLACK_NUMBER]
             elif min_fr2x16(brightness, white) == white:
-                colours[2 * pair] = WHITE
-                colours[2 * pair + 1] = WHITE
+                colours[2 * pair] = joined_colours[WHITE_NUMBER]
+                colours[2 * pair + 1] = joined_colours[WHITE_NUMBER]
             else:
-                colours[2 * pair] = colour_word(low_of_fr2x16(brightness), 0, eps_black, eps_white)
-                colours[2 * pair + 1] = colour_word(high_of_fr2x16(brightness), 0, eps_black, eps_white)
+                colours[2 * pair] = colour_word(
+                    low_of_fr2x16(brightness), 0, eps_black, eps_white, joined_colours
+                )
+                colours[2 * pair + 1] = colour_word(
+                    high_of_fr2x16(brightness), 0, eps_black, eps_white, joined_colours
+                )
         else:
             chroma = root8(square, roots)
             darkest = eps_black
             if least_chroma != 0 and chroma >= least_chroma:
                 darkest = DARKEST
             brightness = sub_i2x16(luma, compose_fr2x16(chroma, chroma))
-            hue = hue_of(vu, brightness, chroma, atan, reciprocals, darkest, eps_white, least_chroma)
-            colours[2 * pair] = colour_word(low_of_fr2x16(brightness), hue, darkest, eps_white)
-            colours[2 * pair + 1] = colour_word(high_of_fr2x16(brightness), hue, darkest, eps_white)
+            hue = hue_of(
+                vu, brightness, chroma, atan, reciprocals, joined_colours, darkest, eps_white, least_chroma
+            )
+            colours[2 * pair] = colour_word(
+                low_of_fr2x16(brightness), hue, darkest, eps_white, joined_colours
+            )
+            colours[2 * pair + 1] = colour_word(
+                high_of_fr2x16(brightness), hue, darkest, eps_white, joined_colours
+            )
 
 
 @kernel

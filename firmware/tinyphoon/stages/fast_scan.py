@@ -97,7 +97,7 @@ class FastScan:
         yield core.run(grey_words, line, self.grey.words[y])
         if not thresholds.is_balanced:
             yield core.run(balance_row, core.rows("camera_ring")[y % 2], *thresholds.gains)
-        tables = (core.array(name) for name in ("roots", "atan", "reciprocals"))
+        tables = (core.array(name) for name in ("roots", "atan", "reciprocals", "joined_colours"))
         yield core.run(colour_words, line, *tables, row, *thresholds.colour_limits)
 
     def smoothed(self, y: int) -> Generator[Any, Any, None]:

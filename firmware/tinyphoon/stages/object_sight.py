@@ -233,7 +233,6 @@ def see_objects(
                     seen[at + OBJECT_OUTLINE] = rectangle
                     see_rectangle(
                         blob_data,
-                        parents,
                         blob,
                         models,
                         model,

@@ -19,9 +19,10 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from bfsim.api import Buffer, Core, i16, i32, kernel, u8, u32
+from bfsim.api import Buffer, Core, Frame, i16, i32, kernel, u8, u32
 from tinyphoon.fields import allowed
 from tinyphoon.stages.line_pixels import line_pixels
+from tinyphoon.stages.rectangle_ends import hidden_ends, rows_of_ends
 from tinyphoon.stores.blobs import ACROSS, BLOB_WORDS, COLOURS, DOWN
 from tinyphoon.stores.lines import LINE_WORDS, LINE_X0, LINE_X1, LINE_Y0, LINE_Y1, SUBPIXELS
 from tinyphoon.stores.rectangles import (
@@ -31,9 +32,15 @@ from tinyphoon.stores.rectangles import (
     RECTANGLE_CAPACITY,
     RECTANGLE_HIDDEN,
     RECTANGLE_LEFT,
+    RECTANGLE_LEFT_FOOT,
+    RECTANGLE_LEFT_ROWS,
     RECTANGLE_RIGHT,
+    RECTANGLE_RIGHT_FOOT,
+    RECTANGLE_RIGHT_ROWS,
     RECTANGLE_TOP,
     RECTANGLE_WORDS,
+    rows_at,
+    store_rows,
 )
 
 HALF_PIXEL = SUBPIXELS // 2
@@ -141,109 +148,147 @@ def border_line(
 
 
 @kernel
-def post_end(lines: i16[:], line: i32, top: i32, bottom: i32) -> i32:
-    """Return where a goal's post ends: with the blob that has these rows, or farther down with its border line, if that is seen.
+def open_rectangles(blob_data: u32[:], parents: u8[:], blobs: i32, colours: u32, rectangles: i16[:]) -> i32:
+    """Begin a record of each blob that has some of `colours` and is no part of another; returns how many there are, also beyond the room.
 
-    A line that goes on by more than half of the blob is also something else's. All in 1/16 px.
-    """
-    if line == NO_LINE:
-        return bottom
-    at = line * LINE_WORDS
-    end = max(lines[at + LINE_Y0], lines[at + LINE_Y1])
-    return max(bottom, end) if end <= bottom + (bottom - top >> 1) else bottom
-
-
-@kernel
-def find_rectangle(
-    blob_data: u32[:],
-    blob: i32,
-    goals: u32,
-    lines: i16[:],
-    count: i32,
-    rectangles: i16[:],
-    place: i32,
-    reach: i32,
-    overlap: i32,
-    dark: i32,
-) -> None:
-    """Make record `place` of a blob: its border lines among the first `count` lines. Distances in 1/16 px.
-
-    `goals` are the colours of goals.
-    """
-    across = blob_data[blob * BLOB_WORDS + ACROSS]
-    down = blob_data[blob * BLOB_WORDS + DOWN]
-    left = SUBPIXELS * i32(across & 0xFFFF) - HALF_PIXEL
-    right = SUBPIXELS * i32(across >> 16) + HALF_PIXEL
-    top = SUBPIXELS * i32(down & 0xFFFF) - HALF_PIXEL
-    bottom = SUBPIXELS * i32(down >> 16) + HALF_PIXEL
-    at = place * RECTANGLE_WORDS
-    left_line = border_line(lines, count, UPRIGHT, TOWARDS_0, top, bottom, left, reach, overlap, dark)
-    right_line = border_line(lines, count, UPRIGHT, AWAY, top, bottom, right, reach, overlap, dark)
-    bottom_line: i32 = NO_LINE
-    if blob_data[blob * BLOB_WORDS + COLOURS] & goals != 0:
-        feet = max(post_end(lines, left_line, top, bottom), post_end(lines, right_line, top, bottom))
-        if feet > bottom:
-            below = reach >> 1
-            bottom_line = border_line(
-                lines, count, LEVEL, AWAY, left, right, feet + below, below, overlap, dark
-            )
-    if bottom_line == NO_LINE:
-        bottom_line = border_line(lines, count, LEVEL, AWAY, left, right, bottom, reach, overlap, dark)
-    rectangles[at + RECTANGLE_LEFT] = left_line
-    rectangles[at + RECTANGLE_RIGHT] = right_line
-    rectangles[at + RECTANGLE_TOP] = border_line(
-        lines, count, LEVEL, TOWARDS_0, left, right, top, reach, overlap, dark
-    )
-    rectangles[at + RECTANGLE_BOTTOM] = bottom_line
-    rectangles[at + RECTANGLE_BLOB] = blob
-    rectangles[at + RECTANGLE_HIDDEN] = 0
-
-
-@kernel
-def find_rectangles(
-    blob_data: u32[:],
-    parents: u8[:],
-    blobs: i32,
-    colours: u32,
-    goals: u32,
-    lines: i16[:],
-    count: i32,
-    rectangles: i16[:],
-    reach: i32,
-    overlap: i32,
-    dark: i32,
-) -> i32:
-    """Make a record of each blob that has some of `colours` and is no part of another; returns how many there are, also beyond the room.
-
-    `goals` are those of goals.
+    Both of its ends have the rows of the blob.
     """
     found: i32 = 0
     room = len(rectangles) // RECTANGLE_WORDS
     for blob in range(blobs):
         if parents[blob] == blob and blob_data[blob * BLOB_WORDS + COLOURS] & colours != 0:
             if found < room:
-                find_rectangle(blob_data, blob, goals, lines, count, rectangles, found, reach, overlap, dark)
+                down = blob_data[blob * BLOB_WORDS + DOWN]
+                rectangles[found * RECTANGLE_WORDS + RECTANGLE_BLOB] = blob
+                rectangles[found * RECTANGLE_WORDS + RECTANGLE_HIDDEN] = 0
+                store_rows(rectangles, found, RECTANGLE_LEFT_ROWS, i32(down & 0xFFFF), i32(down >> 16))
+                store_rows(rectangles, found, RECTANGLE_RIGHT_ROWS, i32(down & 0xFFFF), i32(down >> 16))
             found = found + 1
     return found
 
 
+@kernel
+def upper(rows: u32) -> i32:
+    """Return where the first of a pair of rows begins, in 1/16 px."""
+    return SUBPIXELS * i32(rows & 0xFFFF) - HALF_PIXEL
+
+
+@kernel
+def lower(rows: u32) -> i32:
+    """Return where the second of a pair of rows ends, in 1/16 px."""
+    return SUBPIXELS * i32(rows >> 16) + HALF_PIXEL
+
+
+@kernel
+def post_foot(
+    lines: i16[:], count: i32, outward: i32, rows: u32, border: i32, reach: i32, overlap: i32
+) -> i32:
+    """Return where a goal's post ends: with the rows that its blob has at that end, or farther down with a border line there.
+
+    What crosses a post breaks its lines: of all of them the one that goes farthest counts. A line that goes on by more than
+    half of the rows is also something else's. All but the rows in 1/16 px.
+    """
+    top = upper(rows)
+    bottom = lower(rows)
+    foot = bottom
+    for line in range(count):
+        end = max(lines[line * LINE_WORDS + LINE_Y0], lines[line * LINE_WORDS + LINE_Y1])
+        if foot < end <= bottom + (bottom - top >> 1):
+            distance = border_distance(lines, line, UPRIGHT, outward, top, bottom, border, reach, overlap, 0)
+            if distance < FAR:
+                foot = end
+    return foot
+
+
+@kernel
+def find_borders(
+    blob_data: u32[:],
+    goals: u32,
+    lines: i16[:],
+    count: i32,
+    rectangles: i16[:],
+    rectangle: i32,
+    reach: i32,
+    overlap: i32,
+    dark: i32,
+) -> None:
+    """Store the border lines of a rectangle among the first `count` lines. Distances in 1/16 px.
+
+    `goals` are the colours of goals.
+    """
+    at = rectangle * RECTANGLE_WORDS
+    blob = i32(rectangles[at + RECTANGLE_BLOB])
+    across = blob_data[blob * BLOB_WORDS + ACROSS]
+    down = blob_data[blob * BLOB_WORDS + DOWN]
+    left = SUBPIXELS * i32(across & 0xFFFF) - HALF_PIXEL
+    right = SUBPIXELS * i32(across >> 16) + HALF_PIXEL
+    bottom = lower(down)
+    rows = rows_at(rectangles, rectangle, RECTANGLE_LEFT_ROWS)
+    left_line = border_line(
+        lines, count, UPRIGHT, TOWARDS_0, upper(rows), lower(rows), left, reach, overlap, dark
+    )
+    left_foot = post_foot(lines, count, TOWARDS_0, rows, left, reach, overlap)
+    rows = rows_at(rectangles, rectangle, RECTANGLE_RIGHT_ROWS)
+    right_line = border_line(
+        lines, count, UPRIGHT, AWAY, upper(rows), lower(rows), right, reach, overlap, dark
+    )
+    right_foot = post_foot(lines, count, AWAY, rows, right, reach, overlap)
+    feet = max(left_foot, right_foot)
+    bottom_line: i32 = NO_LINE
+    if blob_data[blob * BLOB_WORDS + COLOURS] & goals != 0 and feet > bottom:
+        below = reach >> 1
+        bottom_line = border_line(lines, count, LEVEL, AWAY, left, right, feet + below, below, overlap, dark)
+    if bottom_line == NO_LINE:
+        bottom_line = border_line(lines, count, LEVEL, AWAY, left, right, bottom, reach, overlap, dark)
+    rectangles[at + RECTANGLE_LEFT] = left_line
+    rectangles[at + RECTANGLE_RIGHT] = right_line
+    rectangles[at + RECTANGLE_TOP] = border_line(
+        lines, count, LEVEL, TOWARDS_0, left, right, upper(down), reach, overlap, dark
+    )
+    rectangles[at + RECTANGLE_BOTTOM] = bottom_line
+    rectangles[at + RECTANGLE_LEFT_FOOT] = left_foot
+    rectangles[at + RECTANGLE_RIGHT_FOOT] = right_foot
+
+
+@kernel
+def find_all_borders(
+    blob_data: u32[:],
+    goals: u32,
+    lines: i16[:],
+    count: i32,
+    rectangles: i16[:],
+    rectangle_count: i32,
+    reach: i32,
+    overlap: i32,
+    dark: i32,
+) -> None:
+    """Store the border lines of the first `rectangle_count` rectangles."""
+    for rectangle in range(rectangle_count):
+        find_borders(blob_data, goals, lines, count, rectangles, rectangle, reach, overlap, dark)
+
+
 def rectangle_detection(
-    core: Core, blobs: int, lines: int, colours: int, goals: int, thresholds: RectangleThresholds
+    core: Core,
+    frame: Frame,
+    blobs: int,
+    lines: int,
+    colours: int,
+    goals: int,
+    thresholds: RectangleThresholds,
 ) -> Generator[Any, Any, int]:
     """Look for the border lines of the blobs of rectangular models, merged ones too, and leave them in `rectangles`.
 
-    `blobs` and `lines` are how many are in their stores, `colours` those of the models, `goals` those of goals. Publishes `rectangles`, how many
-    are stored, and `rectangles_lost`, how many had no room. Returns how many are stored.
+    `blobs` and `lines` are how many are in their stores, `colours` those of the models, `goals` those of goals, whose ends are looked
+    at, too. Publishes `rectangles`, how many are stored, and `rectangles_lost`, how many had no room. Returns how many are stored.
     """
     limits = SUBPIXELS * thresholds.border_px, thresholds.overlap, SUBPIXELS * thresholds.dark_px
-    core.at(line_pixels(core.array("lines"), lines))
-    found = yield core.run(
-        find_rectangles,
-        *(core.array("blob_data"), core.array("label_parents"), blobs, colours, goals),
-        *(core.array("lines"), lines, core.array("rectangles")),
-        *limits,
-    )
-    core.at()
+    blob_data, table = core.array("blob_data"), core.array("rectangles")
+    found = yield core.run(open_rectangles, blob_data, core.array("label_parents"), blobs, colours, table)
     stored: int = min(found, RECTANGLE_CAPACITY)
+    yield from rows_of_ends(core, frame, stored, goals)
+    core.at(line_pixels(core.array("lines"), lines))
+    yield core.run(find_all_borders, blob_data, goals, core.array("lines"), lines, table, stored, *limits)
+    core.at()
+    yield from hidden_ends(core, frame, stored, goals)
     core.publish(rectangles=stored, rectangles_lost=found - stored)
     return stored

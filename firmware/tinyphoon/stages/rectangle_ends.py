@@ -1,8 +1,10 @@
 """Both ends of a goal's blob: which rows they have, and whether something before the goal hides what stands there [ours].
 
-A goal stands on its posts, at both ends of its blob. Where another thing stands before an end, the blob ends at that thing's
-border, and with the goal's back, which is farther away. But the border goes on down below the blob, where beneath a post
-there is only floor: so edges tell.
+A goal stands on its posts, at both ends of its blob. Seen at an angle its blob is no rectangle: the farther post ends above
+the nearer one. So the opened image tells which rows an end has, unless the picture's border cuts it off: there is no post
+there, and it has those of the blob. Where another thing stands before an end, the blob ends at
+that thing's border, and with the goal's back, which is farther away. But the border goes on down below the blob, where
+beneath a post there is only floor: so edges tell.
 """
 
 from __future__ import annotations
@@ -10,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from typing import Any
 
-from bfsim.api import Core, Frame, i16, i32, kernel, u8, u16, u32
+from bfsim.api import Core, Frame, i16, i32, kernel, u16, u32
 from tinyphoon.stages.line_segments import is_flat
 from tinyphoon.stores.blobs import (
     ACROSS,
@@ -20,12 +22,23 @@ from tinyphoon.stores.blobs import (
     extent_of,
     is_cut_before,
     is_cut_behind,
-    wider,
 )
 from tinyphoon.stores.edges import edge_store
-from tinyphoon.stores.rectangles import RECTANGLE_BLOB, RECTANGLE_HIDDEN, RECTANGLE_WORDS
+from tinyphoon.stores.rectangles import (
+    RECTANGLE_BLOB,
+    RECTANGLE_HIDDEN,
+    RECTANGLE_LEFT_ROWS,
+    RECTANGLE_RIGHT_ROWS,
+    RECTANGLE_WORDS,
+    rows_at,
+    store_rows,
+)
 
-NO_PART = -1
+NONE = -1
+
+# A post leans by five columns at most where the camera looks down by 10 degrees, and pairs of pixels share their colour.
+END_PX = 8
+LEAN_PX = 2  # from row to row; what goes in faster is the goal's bottom, seen at an angle
 
 LEFT_HIDDEN = 1
 RIGHT_HIDDEN = 2
@@ -35,33 +48,53 @@ BESIDE_PX = 2  # the opening rounds a blob's border, and an edge lies where the 
 
 
 @kernel
-def is_above(across: u32, other: u32) -> i32:
-    """Return 1 if two blobs have half the columns of the narrower one in common: one stands above the other; else 0."""
-    common = min(i32(across >> 16), i32(other >> 16)) + 1 - max(i32(across & 0xFFFF), i32(other & 0xFFFF))
-    return 1 if 2 * common >= min(extent_of(across), extent_of(other)) else 0
+def next_goal(rectangles: i16[:], rectangle: i32, count: i32, blob_data: u32[:], goals: u32) -> i32:
+    """Return the first rectangle from number `rectangle` on that has a colour of `goals`, or `count`."""
+    while rectangle < count:
+        blob = i32(rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_BLOB])
+        if blob_data[blob * BLOB_WORDS + COLOURS] & goals != 0:
+            return rectangle
+        rectangle = rectangle + 1
+    return count
 
 
 @kernel
-def rows_at_end(blob_data: u32[:], parents: u8[:], blob: i32, is_right: i32) -> u32:
-    """Return the rows of the part of a blob that reaches farthest to the left or to the right, with those that it stands on.
-
-    A blob without parts has its own rows. Parts come before the blob.
-    """
+def open_end(rectangles: i16[:], rectangle: i32, end: i32, blob_data: u32[:], width: i32) -> i32:
+    """Begin an end of a rectangle without rows, and return its first column; NONE if a picture `width` pixels wide cuts it off."""
+    blob = i32(rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_BLOB])
     across = blob_data[blob * BLOB_WORDS + ACROSS]
-    rows = blob_data[blob * BLOB_WORDS + DOWN]
-    end: i32 = NO_PART
-    for part in range(blob):
-        apart = blob_data[part * BLOB_WORDS + ACROSS] ^ across
-        if parents[part] == blob and (apart >> 16 if is_right != 0 else apart & 0xFFFF) == 0:
-            end = part
-            rows = blob_data[part * BLOB_WORDS + DOWN]
-    if end != NO_PART:
-        across = blob_data[end * BLOB_WORDS + ACROSS]
-        for part in range(blob):
-            down = blob_data[part * BLOB_WORDS + DOWN]
-            if parents[part] == blob and is_above(across, blob_data[part * BLOB_WORDS + ACROSS]) != 0:
-                rows = wider(rows, i32(down & 0xFFFF), i32(down >> 16))
-    return rows
+    down = blob_data[blob * BLOB_WORDS + DOWN]
+    if (is_cut_before(across) if end == RECTANGLE_LEFT_ROWS else is_cut_behind(across, width)) != 0:
+        return NONE
+    store_rows(rectangles, rectangle, end, i32(down >> 16), i32(down & 0xFFFF))
+    if end == RECTANGLE_LEFT_ROWS:
+        return min(i32(across & 0xFFFF), width - END_PX)
+    return max(i32(across >> 16) - END_PX + 1, 0)
+
+
+@kernel
+def rows_of_blob(rectangles: i16[:], rectangle: i32, blob_data: u32[:]) -> u32:
+    """Return the rows of a rectangle's blob, as a pair of shorts."""
+    return blob_data[rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_BLOB] * BLOB_WORDS + DOWN]
+
+
+@kernel
+def see_end_row(
+    opened: u32[:], y: i32, rectangles: i16[:], rectangle: i32, end: i32, blob_data: u32[:], inside: i32
+) -> i32:
+    """Add row `y` to the rows of an end if its border is there: the outermost pixel of the blob's colours in the end's columns.
+
+    In the row above the border was `inside` columns from the outermost one; returns how many it is in this row.
+    """
+    colours = blob_data[rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_BLOB] * BLOB_WORDS + COLOURS]
+    farthest = min(inside + LEAN_PX, END_PX - 1)
+    for step in range(farthest + 1):
+        x = step if end == RECTANGLE_LEFT_ROWS else END_PX - 1 - step
+        if opened[x] & colours != 0:
+            rows = rows_at(rectangles, rectangle, end)
+            store_rows(rectangles, rectangle, end, min(i32(rows & 0xFFFF), y), y)
+            return step
+    return farthest
 
 
 @kernel
@@ -94,7 +127,6 @@ def mark_hidden_ends(
     rectangles: i16[:],
     count: i32,
     blob_data: u32[:],
-    parents: u8[:],
     goals: u32,
     edge_data: u32[:],
     edge_index: u32[:],
@@ -105,25 +137,48 @@ def mark_hidden_ends(
 
     What the border of a picture `width` pixels wide cuts off is not hidden.
     """
-    for at in range(0, count * RECTANGLE_WORDS, RECTANGLE_WORDS):
+    for number in range(count):
+        at = number * RECTANGLE_WORDS
         blob = i32(rectangles[at + RECTANGLE_BLOB])
         hidden: i32 = 0
         if blob_data[blob * BLOB_WORDS + COLOURS] & goals != 0:
             across = blob_data[blob * BLOB_WORDS + ACROSS]
             if is_cut_before(across) == 0:
-                rows = rows_at_end(blob_data, parents, blob, 0)
+                rows = rows_at(rectangles, number, RECTANGLE_LEFT_ROWS)
                 if goes_on_below(edge_data, edge_index, edge_counts, i32(across & 0xFFFF), rows) != 0:
                     hidden = LEFT_HIDDEN
             if is_cut_behind(across, width) == 0:
-                rows = rows_at_end(blob_data, parents, blob, 1)
+                rows = rows_at(rectangles, number, RECTANGLE_RIGHT_ROWS)
                 if goes_on_below(edge_data, edge_index, edge_counts, i32(across >> 16), rows) != 0:
                     hidden = hidden | RIGHT_HIDDEN
         rectangles[at + RECTANGLE_HIDDEN] = hidden
 
 
+def rows_of_ends(core: Core, frame: Frame, rectangles: int, goals: int) -> Generator[Any, Any, None]:
+    """Store which rows both ends of the first `rectangles` rectangles have, of those that are `goals` by their colours."""
+    table, blobs = core.array("rectangles"), core.array("blob_data")
+    goal = yield core.run(next_goal, table, 0, rectangles, blobs, goals)
+    while goal < rectangles:
+        rows = yield core.run(rows_of_blob, table, goal, blobs)
+        top, bottom = rows & 0xFFFF, rows >> 16
+        for end in (RECTANGLE_LEFT_ROWS, RECTANGLE_RIGHT_ROWS):
+            column = yield core.run(open_end, table, goal, end, blobs, frame.width)
+            if column == NONE:
+                continue
+            image = core.part(core.rows("opened_image")[top : bottom + 1], column, END_PX)
+            opened = core.input_ring(image, core.part(core.rows("opened_ring"), 0, END_PX))
+            inside = END_PX
+            for y in range(top, bottom + 1):
+                core.at(y, range(column, column + END_PX))
+                line = yield from opened.line()
+                inside = yield core.run(see_end_row, line, y, table, goal, end, blobs, inside)
+        core.at()
+        goal = yield core.run(next_goal, table, goal + 1, rectangles, blobs, goals)
+
+
 def hidden_ends(core: Core, frame: Frame, rectangles: int, goals: int) -> Generator[Any, Any, None]:
     """Say of the first `rectangles` rectangles which of their ends something hides, if they are `goals` by their colours."""
-    blobs = core.array("blob_data"), core.array("label_parents")
+    limits = core.array("blob_data"), goals
     yield core.run(
-        mark_hidden_ends, core.array("rectangles"), rectangles, *blobs, goals, *edge_store(core), frame.width
+        mark_hidden_ends, core.array("rectangles"), rectangles, *limits, *edge_store(core), frame.width
     )

@@ -7,7 +7,7 @@ and the middle of the mouth is between them [ours].
 
 from __future__ import annotations
 
-from bfsim.api import i16, i32, kernel, u8, u32
+from bfsim.api import i16, i32, kernel, u32
 from tinyphoon.arithmetic import isqrt32
 from tinyphoon.geometry import (
     GEOMETRY_COSINE,
@@ -19,8 +19,8 @@ from tinyphoon.geometry import (
 )
 from tinyphoon.stages.object_places import HALF_PIXEL, depth_by_floor, floor_extent, place_object, principal
 from tinyphoon.stages.object_tests import GOAL
-from tinyphoon.stages.rectangle_detection import crossing, post_end
-from tinyphoon.stages.rectangle_ends import LEFT_HIDDEN, RIGHT_HIDDEN, rows_at_end
+from tinyphoon.stages.rectangle_detection import crossing, lower
+from tinyphoon.stages.rectangle_ends import LEFT_HIDDEN, RIGHT_HIDDEN
 from tinyphoon.stores.blobs import (
     ACROSS,
     BLOB_WORDS,
@@ -47,9 +47,12 @@ from tinyphoon.stores.rectangles import (
     NO_LINE,
     RECTANGLE_BOTTOM,
     RECTANGLE_HIDDEN,
-    RECTANGLE_LEFT,
-    RECTANGLE_RIGHT,
+    RECTANGLE_LEFT_FOOT,
+    RECTANGLE_LEFT_ROWS,
+    RECTANGLE_RIGHT_FOOT,
+    RECTANGLE_RIGHT_ROWS,
     RECTANGLE_WORDS,
+    rows_at,
 )
 from tinyphoon.strategy.models import LARGEST_MM, MODEL_FLOOR, MODEL_HEIGHT, MODEL_SHAPE, MODEL_WIDTH
 
@@ -71,19 +74,19 @@ def bottom_row(down: u32, rectangles: i16[:], rectangle: i32, lines: i16[:], col
             x = i32(lines[at + LINE_X0])
             y = i32(lines[at + LINE_Y0])
             return crossing(x, y, i32(lines[at + LINE_X1]), i32(lines[at + LINE_Y1]), column)
-    return SUBPIXELS * i32(down >> 16) + HALF_PIXEL
+    return lower(down)
 
 
 @kernel
 def foot_row(
-    down: u32, rectangles: i16[:], rectangle: i32, border: i32, lines: i16[:], column: i32, cut: i32
+    down: u32, rectangles: i16[:], rectangle: i32, foot: i32, lines: i16[:], column: i32, cut: i32
 ) -> i32:
     """Return where a goal stands on the floor at an end of its blob, in 1/16 px; `down` are the rows of the part that is there.
 
     That is the goal's bottom line, with two exceptions. If the part ends a little above that line, the part's end is the
     foot of a post, and the line is one that is painted on the floor: its front edge is nearer to the camera, and the blur
-    moves it further down the thinner it looks. Where the picture has `cut` the part off, or where the goal's `border` at
-    that end goes on below it, its end is no foot. And if the part ends below that line, the line is that of the goal's back,
+    moves it further down the thinner it looks. Where the picture has `cut` the part off, or where the goal's border lines at
+    that end go on below it, down to its `foot`, its end is no foot. And if the part ends below that line, the line is that of the goal's back,
     farther away, and what stands before it is the post.
     """
     end = bottom_row(down, rectangles, NO_OUTLINE, lines, column)
@@ -92,8 +95,7 @@ def foot_row(
         return end
     if rectangle == NO_OUTLINE or cut != 0:
         return line
-    post = i32(rectangles[rectangle * RECTANGLE_WORDS + border])
-    if post_end(lines, post, SUBPIXELS * i32(down & 0xFFFF) - HALF_PIXEL, end) > end + OPENING_LOSS:
+    if rectangles[rectangle * RECTANGLE_WORDS + foot] > end + OPENING_LOSS:
         return line
     return end if end + OPENING_LOSS < line <= end + FLOOR_LINE else line
 
@@ -190,7 +192,6 @@ def stand_between_feet(
 @kernel
 def see_rectangle(
     blob_data: u32[:],
-    parents: u8[:],
     blob: i32,
     models: i32[:],
     model: i32,
@@ -225,22 +226,25 @@ def see_rectangle(
     if refined != 0 and models[model + MODEL_SHAPE] == GOAL:
         left = SUBPIXELS * i32(across & 0xFFFF) - HALF_PIXEL
         right = SUBPIXELS * i32(across >> 16) + HALF_PIXEL
-        left_down = rows_at_end(blob_data, parents, blob, 0)
-        right_down = rows_at_end(blob_data, parents, blob, 1)
+        left_down = down
+        right_down = down
+        hidden: i32 = 0
+        if rectangle != NO_OUTLINE:
+            left_down = rows_at(rectangles, rectangle, RECTANGLE_LEFT_ROWS)
+            right_down = rows_at(rectangles, rectangle, RECTANGLE_RIGHT_ROWS)
+            hidden = rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_HIDDEN]
         cut_left = is_cut_before(across)
         cut_right = is_cut_behind(across, width)
         left_row = (
-            foot_row(left_down, rectangles, rectangle, RECTANGLE_LEFT, lines, left, cut_left) - middle_y
+            foot_row(left_down, rectangles, rectangle, RECTANGLE_LEFT_FOOT, lines, left, cut_left) - middle_y
         )
         right_row = (
-            foot_row(right_down, rectangles, rectangle, RECTANGLE_RIGHT, lines, right, cut_right) - middle_y
+            foot_row(right_down, rectangles, rectangle, RECTANGLE_RIGHT_FOOT, lines, right, cut_right)
+            - middle_y
         )
         wide = models[model + MODEL_WIDTH]
         left = left - middle_x
         right = right - middle_x
-        hidden: i32 = 0
-        if rectangle != NO_OUTLINE:
-            hidden = rectangles[rectangle * RECTANGLE_WORDS + RECTANGLE_HIDDEN]
         stand_between_feet(
             geometry, wide, left, left_row, right, right_row, cut_left, cut_right, hidden, seen, place
         )

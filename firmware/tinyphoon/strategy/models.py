@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from bfsim.api import Buffer, FirmwareError, i32
 from tinyphoon.fields import allowed
 from tinyphoon.stages.blob_detection import COLOUR_GROUPS, hues
-from tinyphoon.stages.colour_reduction import FIRST_HUE, HUES
+from tinyphoon.stages.colour_reduction import COLOURS
 
 MODEL_NUMBER = 0
 MODEL_SHAPE = 1
@@ -44,7 +44,7 @@ LARGEST_NUMBER = 255
 LARGEST_MM = 4000  # fields are not longer, and products with it fit in 32 bits
 ASPECT_UNITS = 16  # an aspect is width by height in sixteenths
 LARGEST_ASPECT = 32 * ASPECT_UNITS
-ALL_COLOURS = (1 << FIRST_HUE + HUES) - 2  # bit 0 is no colour
+ALL_COLOURS = (1 << COLOURS) - 2  # bit 0 is no colour
 
 
 class Shape(IntEnum):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from bfsim.api import Colour, FirmwareError, NamedColour, PictureColours, Script
 from tinyphoon.fields import from_words, words_of
 from tinyphoon.stages.blob_detection import hues
-from tinyphoon.stages.colour_reduction import AS_IT_IS, HUES, balance_row, colour_row
+from tinyphoon.stages.colour_reduction import AS_IT_IS, HUES, SINGLE_COLOURS, balance_row, colour_row
 from tinyphoon.stages.edge_detection import EdgeThresholds
 from tinyphoon.strategy.colour_names import COLOUR_NAMES, HUE_DEG, WITHOUT_HUE, colours_named
 from tinyphoon.strategy.modes import INDOOR_FIELD, Mode
@@ -37,7 +37,7 @@ def picture_colours(picture: NDArray[np.uint8], script: Script, frame: int) -> P
     for line, found in zip(picture.copy(), words, strict=True):
         if not thresholds.is_balanced:
             balance_row(line, *thresholds.gains)
-        colour_row(line, atan, found, *thresholds.colour_limits)
+        colour_row(line, atan, SINGLE_COLOURS, found, *thresholds.colour_limits)
     known = dict(_colours())
     numbers = np.zeros(words.shape, np.uint8)
     for number, word in enumerate(known):
