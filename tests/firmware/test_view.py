@@ -206,8 +206,8 @@ def test_circles_are_those_of_the_store() -> None:
 
 
 def test_rectangles_name_the_sides_that_have_a_line() -> None:
-    """Left, right, top, bottom, blob, hidden ends; of a merged blob those that it is of, and none beyond the last."""
-    words = np.array([3, -1, 0, 2, 5, 1, -1, -1, -1, -1, 3, 0], np.int16)
+    """Left, right, top, bottom, blob and what is of no account here; of a merged blob those that it is of, and none beyond the last."""
+    words = np.array([3, -1, 0, 2, 5, *[7] * 7, -1, -1, -1, -1, 3, *[7] * 7], np.int16)
     parents = np.array([5, 1, 5, 3, 5, 5, 5], np.uint8)
     counts = {"rectangles": 2, "blobs": 5}
     blobs = np.ones(5 * 8, np.uint32)
