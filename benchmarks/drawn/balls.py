@@ -15,6 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
+from scipy.sparse import csr_array
 
 from bfsim.recording import StereoFrame
 from bfsim.recording.planes import YuvPlanes
@@ -91,21 +92,31 @@ def picture_of(balls: Sequence[Ball], condition: Condition, seed: int) -> Image.
     """Draw balls on a floor."""
     chance = np.random.default_rng(seed)
     width, height = SIZE
-    y, x = (
-        (each + 0.5) / SAMPLES - 0.5 for each in np.indices((height * SAMPLES, width * SAMPLES)).astype(float)
-    )
-    canvas = np.empty((*x.shape, 3))
+    x, y = ((np.arange(pixels * SAMPLES) + 0.5) / SAMPLES - 0.5 for pixels in SIZE)
+    canvas = np.empty((len(y), len(x), 3))
     canvas[:] = condition.floor
     if condition.texture:
         canvas += condition.texture * _grain(seed % 4)[..., None]
     for ball in balls:
-        near = _around(ball)
-        _paint(ball, canvas[near], x[near], y[near], condition)
-    if condition.blur:
-        canvas = blurred(canvas, condition.blur)
-    pixels = canvas.reshape(height, SAMPLES, width, SAMPLES, 3).mean(axis=(1, 3))
+        rows, columns = _around(ball)
+        _paint(ball, canvas[rows, columns], x[columns], y[rows, None], condition)
+    # one axis after the other: a row of the picture is a sum of rows of the canvas, and so is a column
+    rows_done = _lens(height, condition.blur) @ canvas.reshape(len(y), -1)
+    columns_first = rows_done.reshape(height, len(x), 3).swapaxes(0, 1).reshape(len(x), -1)
+    pixels = (_lens(width, condition.blur) @ columns_first).reshape(width, height, 3).swapaxes(0, 1)
     pixels = pixels + chance.normal(0, condition.noise, pixels.shape)
     return Image.fromarray(np.rint(np.clip(pixels, 0, 255)).astype(np.uint8))
+
+
+@cache
+def _lens(pixels: int, blur: float) -> csr_array:
+    """Return what makes `pixels` rows of a picture of the rows of the canvas: each is the mean of `SAMPLES` blurred rows."""
+    mean = np.repeat(np.eye(pixels), SAMPLES, axis=1) / SAMPLES
+    if not blur:
+        return csr_array(mean)
+    reach = round(4 * blur * SAMPLES)  # as `blurred` has it
+    rows = np.eye(pixels * SAMPLES)
+    return csr_array(mean @ cv2.GaussianBlur(rows, (1, 2 * reach + 1), blur * SAMPLES))
 
 
 def _around(ball: Ball) -> tuple[slice, slice]:
