@@ -72,6 +72,9 @@ class Counting:
         return found
 
     def _caller(self, kernel: Kernel) -> _Caller | None:
+        """Return None for a kernel that never comes to the one that is counted: most are not even translated."""
+        if self.code.kernel.function not in (kernel.function, *kernel.function.callees()):
+            return None
         compiled = self.code.compiled_of(kernel)
         if compiled is None or self.code.routine.address not in compiled.subroutine.translated.code.blocks:
             return None

@@ -318,6 +318,7 @@ def measured_arrays(function: Function) -> frozenset[str]:
     return frozenset(found)
 
 
+@cache
 def written_arrays(function: Function) -> frozenset[str]:
     """Array parameters that `function` or a kernel called by it stores into."""
     nodes = list(parts(function.body))
