@@ -169,6 +169,18 @@ def test_options_that_cannot_be_are_told(options: tuple[str, ...], what: str) ->
     assert (done.exit_code, what in done.stderr) == (2, True)
 
 
+def test_kernels_that_never_come_to_it_are_not_translated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A firmware has a hundred, and each would take as long as the one that is counted."""
+    counting, looked_up = Counting(of("isqrt32")), []
+    monkeypatch.setattr(KernelCode, "compiled_of", lambda _, kernel: looked_up.append(kernel))
+    called, caller, other = (
+        load_kernel(name, "tinyphoon") for name in ("isqrt32", "fit_circle", "sobel_row")
+    )
+    for each in (called, caller, other):
+        counting.see(each, [])
+    assert looked_up == [called, caller]
+
+
 def test_counts_of_a_run_stand_beside_the_instructions() -> None:
     """One frame, as JSON: 240 rows of each of two cameras."""
     plain = json.loads(bfsim("explain", "sobel_row", "--asm", "--json", "--run", "--frames", "1").stdout)
