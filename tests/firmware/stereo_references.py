@@ -166,8 +166,9 @@ class EdgeLimits:
             pairs = [
                 self.unlike(edge, other)
                 for edge in (left[row] if 0 <= row < len(left) else ())
+                if abs(edge[0] - x) <= abs(row - y)
                 for other in right[row]
-                if abs(edge[0] - x) <= abs(row - y) and edge[0] - other[0] == disparity
+                if edge[0] - other[0] == disparity
             ]
             total += min([self.lack, *(each for each in pairs if each is not None)])
         return total
