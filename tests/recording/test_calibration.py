@@ -5,7 +5,9 @@ from __future__ import annotations
 import io
 import shutil
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +21,7 @@ from bfsim.recording import (
     RecordingWriter,
     RectificationTables,
     StereoGeometry,
+    boards,
 )
 from bfsim.recording.boards import BoardView
 from bfsim.recording.calibration import (
@@ -29,6 +32,7 @@ from bfsim.recording.calibration import (
 )
 from bfsim.recording.calibration_report import CalibrationReport, ViewError
 from bfsim.recording.camera_models import Fisheye
+from bfsim.recording.planes import Plane
 from bfsim.recording.residual_plot import draw_residuals
 from bfsim.recording.scenes.chessboard import write_chessboards
 from bfsim.recording.scenes.drive import Pose
@@ -39,6 +43,22 @@ from tests.recording.test_camera_models import BOARD, corners_of
 GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
 MISFIT = Misfit(Lens(-0.25, 0.08, 0.001, -0.0008), (0.8, -1.2, 0.6), (0.3, 0.5, -0.4))
 SIZE, CORNERS, SQUARE_MM = (320, 240), (9, 6), 20.0
+
+
+@pytest.fixture(scope="module", autouse=True)
+def searched_once() -> Iterator[None]:
+    """Let each picture be searched for corners once: OpenCV takes its time, and the same pictures are in many sets."""
+    search, known = boards._corners_in, dict[tuple[bytes, tuple[int, int]], boards.Corners]()
+
+    def found_before(cv2: Any, grey: Plane, corners: tuple[int, int]) -> boards.Corners:
+        key = grey.tobytes(), corners
+        if key not in known:
+            known[key] = search(cv2, grey, corners)
+        return known[key].copy()
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(boards, "_corners_in", found_before)
+        yield
 
 
 @pytest.fixture(scope="module")
