@@ -106,7 +106,7 @@ def geometry_of(width: int, height: int) -> tuple[float, float, float, float]:
 
 
 def take_field(paths: Sequence[Path], folder: Path, size: tuple[int, int]) -> list[list[Box]]:
-    """Put the area of interest of each picture into `folder`, scaled to `size`; returns the boxes of the balls there."""
+    """Put the area of interest of each picture into `folder`, scaled to `size`; returns the boxes of the balls whose middle is there."""
     boxes = []
     for path in paths:
         with Image.open(path) as picture:
@@ -118,6 +118,7 @@ def take_field(paths: Sequence[Path], folder: Path, size: tuple[int, int]) -> li
             [
                 (x * scale_x, (y - FIELD_FROM) * scale_y, w * scale_x, h * scale_y)
                 for x, y, w, h in balls_of(path)
+                if y >= FIELD_FROM
             ]
         )
     return boxes
