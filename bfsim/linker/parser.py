@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 
 from bfsim.errors import LinkError, cut
 from bfsim.linker.predefined import ARCHITECTURE, chip_named
 from bfsim.linker.preprocessor import preprocess
 from bfsim.linker.script import LinkerScript
+from bfsim.linker.source import Source
 
 
 def parse_ldf(
@@ -22,13 +24,18 @@ def parse_ldf(
     `defines` are macros beside those that VisualDSP++ predefines, which they can replace; `include_dirs` are
     searched for what is not beside the file that includes it; `chip` counts where the LDF has no ARCHITECTURE.
     """
+    return _script(preprocess(path, defines or {}, include_dirs, chip))
+
+
+@lru_cache(maxsize=8)
+def _script(source: Source) -> LinkerScript:
+    """Read a preprocessed LDF; many runs of a process have the same one."""
     from lark.exceptions import VisitError  # lark costs 50 ms, which --help and the like need not pay
 
     from bfsim.linker.builder import ScriptBuilder
     from bfsim.linker.expressions import ExpressionError
     from bfsim.linker.grammar import parse_tree
 
-    source = preprocess(path, defines or {}, include_dirs, chip)
     for architecture in ARCHITECTURE.finditer(source.expanded):
         if not chip_named(architecture[1]):  # the languages of other families differ, and so would the error
             problem = f"ARCHITECTURE must be a Blackfin such as ADSP-BF561, not {cut(architecture[1])}"

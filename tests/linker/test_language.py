@@ -314,3 +314,17 @@ def test_a_file_of_anything_is_an_error_and_no_crash(tmp_path: Path) -> None:
     with pytest.raises(LinkError, match=r"binary\.ldf:1:") as error:
         parse_ldf(path)
     assert len(str(error.value)) < 1000
+
+
+def test_an_edited_file_is_read_anew_and_another_of_the_same_text_is_not(tmp_path: Path) -> None:
+    """Also an edited file that it includes; macros are a part of the text."""
+    path, included = tmp_path / "it.ldf", tmp_path / "size.h"
+    path.write_text(
+        '#include "size.h"\nMEMORY { M { TYPE(RAM) START(0xFF800000) LENGTH(SIZE) WIDTH(8) } }\nPROCESSOR p0 { SECTIONS { } }'
+    )
+    included.write_text("#define SIZE 256\n")
+    first = parse_ldf(path)
+    assert parse_ldf(path) is first
+    included.write_text("#define SIZE 512\n")
+    lengths = [parse_ldf(path, defines).segments[0].nbytes for defines in ({}, {"SIZE": "64"})]
+    assert (first.segments[0].nbytes, *lengths) == (256, 512, 512)
