@@ -2,13 +2,14 @@
 
 Processes with re-timing play what they can from a recorded run, as `bfsim sweep` does; without, and on the cluster, all runs.
 
-    python benchmarks/sweeps.py                  1000 frames: half an hour on two cores
-    python benchmarks/sweeps.py --frames 40
+    python benchmarks/sweeps.py                  10 and 30 frames, and from these 1000: seven minutes of processor time
+    python benchmarks/sweeps.py --frames 1000    all of them: some hours
     python benchmarks/sweeps.py --json
 
 The frames are those of the built-in recording over and over; the configurations two placements times two clocks times two
 SDRAM timings. Each way runs in a process of its own, with as many workers. CPU seconds are those of all processes
-together: they say what it costs on a machine that is busy with other things, too.
+together: they say what it costs on a machine that is busy with other things, too. What 1000 frames take is on the straight
+line through two shorter recordings: a point costs its start, and each of its frames the same as the others.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ import subprocess
 import sys
 import tempfile
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
 from itertools import cycle, islice
@@ -42,6 +43,8 @@ from bfsim.sweeping.sweep import Planned, Sweep, Workers
 from bfsim.sweeping.workers import Pool
 
 PERIOD_NS = 40_000_000
+WHOLE = 1000
+Figures = dict[str, float]
 FILE = """\
 base.recording = "long.mcap"
 [axes]
@@ -124,7 +127,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--frames", type=int, default=1000)
+    parser.add_argument("--frames", type=int, nargs="+", default=[10, 30], metavar="N")
     parser.add_argument("--workers", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--in", dest="folder", type=Path, help=argparse.SUPPRESS)
@@ -133,18 +136,38 @@ def main() -> None:
     if given.way:
         sys.stdout.write(json.dumps(sweep_in(given.folder, given.way, given.workers)))
         return
-    with tempfile.TemporaryDirectory() as folder:
-        record(Path(folder) / "long.mcap", given.frames)
-        found = {way: measured(way, folder, given.workers) for way in WAYS}
+    found = {frames: measured_all(frames, given.workers) for frames in given.frames}
+    if len(found) == 2:
+        found[WHOLE] = {way: on_line(found, way) for way in WAYS}
     if given.json:
-        print(json.dumps({"frames": given.frames, "workers": given.workers, "ways": found}, indent=2))
+        print(json.dumps({"workers": given.workers, "frames": found}, indent=2))
         return
-    table = Table(
-        title=f"{given.frames} frames x 8 configurations, {given.workers} workers", title_justify="left"
-    )
+    for frames, ways in found.items():
+        how = "" if frames in given.frames else " (on the line through the others)"
+        print_table(f"{frames} frames x 8 configurations, {given.workers} workers{how}", ways)
+
+
+def on_line(found: Mapping[int, Mapping[str, Figures]], way: str) -> Figures:
+    """Return the figures of a way for WHOLE frames, on the straight line through two shorter recordings."""
+    (few, at_few), (many, at_many) = ((frames, ways[way]) for frames, ways in found.items())
+    return {
+        name: value + (at_many[name] - value) * (WHOLE - few) / (many - few) for name, value in at_few.items()
+    }
+
+
+def measured_all(frames: int, workers: int) -> dict[str, Figures]:
+    """Sweep a recording of so many frames in each way."""
+    with tempfile.TemporaryDirectory() as folder:
+        record(Path(folder) / "long.mcap", frames)
+        return {way: measured(way, folder, workers) for way in WAYS}
+
+
+def print_table(title: str, ways: Mapping[str, Figures]) -> None:
+    """Print the ways beside each other."""
+    table = Table(title=title, title_justify="left")
     for head in ("way", "s", "of it checks, s", "all runs, s", "CPU s", "MB a worker"):
         table.add_column(head, justify="left" if head == "way" else "right")
-    for way, each in found.items():
+    for way, each in ways.items():
         numbers = (
             each["whole_s"],
             each["checked_s"],
