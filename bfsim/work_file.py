@@ -35,13 +35,15 @@ from bfsim.machine.retiming.work import (
 )
 from bfsim.report.save import writing
 
-FORMAT = 2
+FORMAT = 3
 WIDTHS = tuple(np.dtype(each) for each in ("<i1", "<i2", "<i4", "<i8"))
 TABLES = {
     "operations": OPERATION_COLUMNS, "accesses": ACCESS_COLUMNS, "events": EVENT_COLUMNS, "copies": COPY_COLUMNS,
 }  # fmt: skip
 IN_STEPS = {"accesses": (STAMP, BYTE), "events": (1,), "copies": (SOURCE_BYTE, DESTINATION_BYTE)}
 """Columns that are written as differences from row to row: stamps, bytes and counters, which go up in steps."""
+SIGNED = dict.fromkeys(TABLES, np.int64) | {"accesses": np.int32}
+"""How the numbers of a table are written: steps go round where they would not fit."""
 LARGEST_FRAME_BYTES = 1 << 30
 """What a frame decompresses to, at most: some hundred times as much as one of the built-in firmware has in SDRAM."""
 
@@ -169,7 +171,10 @@ def _written(work: FrameWork) -> bytes:
     columns: list[tuple[int, NDArray[Any]]] = []
     for table in TABLES:
         for number, column in enumerate(getattr(work, table).T):
-            steps = np.diff(column, prepend=0) if number in IN_STEPS.get(table, ()) else column
+            steps = (
+                np.diff(column, prepend=column.dtype.type(0)) if number in IN_STEPS.get(table, ()) else column
+            )
+            steps = steps.view(SIGNED[table])
             width = next(
                 each
                 for each in WIDTHS
@@ -186,15 +191,18 @@ def _written(work: FrameWork) -> bytes:
 def _read(core: str, content: bytes) -> FrameWork:
     line = content.index(b"\n") + 1
     head = json.loads(content[:line])
-    tables, at, widths = {}, line, iter(head["widths"])
+    tables: dict[str, Any] = {}
+    at, widths = line, iter(head["widths"])
     for name, columns in TABLES.items():
         rows = int(head["rows"][name])
-        table = tables[name] = np.empty((columns, rows), np.int64).T  # each column in one piece
+        signed = SIGNED[name]
+        table = np.empty((columns, rows), signed).T  # each column in one piece
+        tables[name] = table.view(np.uint32) if name == "accesses" else table
         for number in range(columns):
             width = WIDTHS[next(widths)]
             written = np.frombuffer(content, width, rows, at)
             if number in IN_STEPS.get(name, ()):
-                np.cumsum(written, out=table[:, number])
+                np.cumsum(written, dtype=signed, out=table[:, number])
             else:
                 table[:, number] = written
             at += rows * width.itemsize

@@ -17,6 +17,7 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.retiming.work import CALL, FrameWork, check
 from bfsim.result import Run
 from bfsim.run import Feed, Fidelity, simulate
+from bfsim.work_file import FORMAT
 from tests.test_run import FIRMWARE, record
 
 FRAMES = 2
@@ -179,7 +180,7 @@ def test_another_version_is_refused(work: Path, folder: Path) -> None:
     other = folder / "other.work"
     with zipfile.ZipFile(work) as old, zipfile.ZipFile(other, "w") as new:
         for name in old.namelist():
-            new.writestr(name, old.read(name).replace(b'"format": 2', b'"format": 1'))
+            new.writestr(name, old.read(name).replace(b'"format": %d' % FORMAT, b'"format": 0'))
     with pytest.raises(WorkError, match="must be recorded by this bfsim"):
         simulate(frames=FRAMES, work=other)
 
@@ -205,7 +206,7 @@ def test_a_frame_takes_less_than_200_kb(work: Path) -> None:
 NOTHING = FrameWork(
     core="A",
     operations=np.zeros((0, 5), np.int64),
-    accesses=np.zeros((0, 5), np.int64),
+    accesses=np.zeros((0, 5), np.uint32),
     events=np.zeros((0, 3), np.int64),
     copies=np.zeros((0, 6), np.int64),
     calls=(),

@@ -32,7 +32,7 @@ MOST_WAITS = 0.02
 """Of the time, for memory outside of L1: what kernels access there is written, read and played word by word.
 
 Measured at 0.6 % (the default LDF, 100 frames) recording takes 1.7 times as long as a run and playing 0.17 times; at 45 % (l2.ldf,
-4 frames) 2.9 and 0.8 times. On a straight line between them [assumed] two points that are left gain up to 3 %, seven up to 39 %:
+3 frames) 3.7 and 1.1 times. On a straight line between them [assumed] two points that are left gain up to 3 %, seven up to 26 %:
 where it is wrong a sweep takes longer. Its figures are the same.
 """
 

@@ -317,8 +317,8 @@ class RecordingCore(Core):
         )
         offsets = entries & log.OFFSET_MASK
         owners = self._bus.owners.of_all(offsets)
-        accesses = np.empty((count, ACCESS_COLUMNS), np.int64)
-        accesses.T[:] = (
+        columns = np.empty((ACCESS_COLUMNS, count), np.uint32)
+        columns[:] = (
             entries >> log.STAMP_BIT, entries >> log.KIND_BIT & log.KIND_MASK, owners,
             offsets - np.array(self._bus.owners.first)[owners], sites,
         )  # fmt: skip
@@ -330,7 +330,7 @@ class RecordingCore(Core):
             FrameWork(
                 core=self.name,
                 operations=np.array(self._operations, np.int64).reshape(-1, w.OPERATION_WORDS),
-                accesses=accesses,
+                accesses=columns.T,
                 events=np.concatenate(events or [np.zeros((0, 3), np.int64)]),
                 copies=np.array(self._new_copies, np.int64).reshape(-1, COPY_COLUMNS),
                 calls=tuple(self._noted),

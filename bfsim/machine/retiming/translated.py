@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import EventSpec
 from bfsim.kernel import access_trace as log
+from bfsim.kernel.native import native_entry, words_at
 from bfsim.machine.bus import state as w
-from bfsim.machine.retiming.work import BYTE, CALL, KIND, OWNER, SITE, STAMP, FrameWork, Table
+from bfsim.machine.retiming.work import (
+    BYTE,
+    CALL,
+    KIND,
+    OWNER,
+    SITE,
+    STAMP,
+    Accesses,
+    FrameWork,
+    Table,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +71,38 @@ class Translated:
         )
 
 
+IN_L1 = -1
+"""Where an owner begins whose memory is in L1: what accesses it is not in the log."""
+
+WRITE = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 3, ctypes.c_int64)
+
+
+@native_entry("int64", "uint32*", "int64*", "int64*", "int64")
+def write_log(accesses_at: Any, firsts_at: Any, log_at: Any, count: int) -> int:
+    """Write the log of `count` accesses, a row of entries and one of sites as long; return how many are in it.
+
+    The arrays: columns of accesses one after the other, where the memory of each owner begins or IN_L1, and the log.
+    """
+    accesses, firsts, written = words_at(accesses_at), words_at(firsts_at), words_at(log_at)
+    kept = 0
+    for number in range(count):
+        first = firsts[accesses[OWNER * count + number]]
+        if first != IN_L1:
+            stamp, kind = accesses[STAMP * count + number], accesses[KIND * count + number]
+            place = first + accesses[BYTE * count + number]
+            written[kept] = stamp << log.STAMP_BIT | kind << log.KIND_BIT | place
+            written[count + kept] = accesses[SITE * count + number]
+            kept += 1
+    return kept
+
+
+def _logged(accesses: Accesses, firsts: NDArray[np.int64]) -> Table:
+    """Return the log of accesses for a board: a row of entries and one of sites."""
+    columns, written = np.ascontiguousarray(accesses.T), np.empty((2, len(accesses)), np.int64)
+    arrays = (ctypes.c_void_p(each.ctypes.data) for each in (columns, firsts, written))
+    return written[:, : WRITE(write_log.address())(*arrays, len(accesses))]
+
+
 def translated(
     work: FrameWork,
     firsts: NDArray[np.int64],
@@ -71,29 +116,22 @@ def translated(
     in the order of their first use. `events`: what the board's cores take for registers.
     """
     operations, kinds = np.ascontiguousarray(work.operations), work.operations[:, 0]
-    accesses = work.accesses.T
-    behind = np.arange(accesses.shape[1] + 1)
-    kept = outside[accesses[OWNER]]
-    if not kept.all():
-        behind = np.concatenate([[0], np.cumsum(kept)])
-        accesses = accesses[:, kept]
+    log_of_frame = _logged(work.accesses, np.where(outside, firsts, IN_L1))
     runs = np.flatnonzero(kinds == w.ACCESS)
     counts = np.zeros(len(kinds), np.int64)
     counts[runs] = work.operations[runs, 3]
     ends = np.cumsum(counts)
-    log_ends = behind[ends]
-    operations[runs, 3], operations[runs, 4] = behind[ends[runs] - counts[runs]], log_ends[runs]
+    log_ends, begins = ends, ends[runs] - counts[runs]
+    if log_of_frame.shape[1] < len(work.accesses):
+        kept = np.concatenate([[0], np.cumsum(outside[work.accesses[:, OWNER]])])
+        log_ends, begins = kept[ends], kept[begins]
+    operations[runs, 3], operations[runs, 4] = begins, log_ends[runs]
     setups = np.flatnonzero(kinds == w.SET_UP)
     _, writes, reads, accounts, _ = work.operations[setups].T
     operations[setups, 1] = writes * events.mmr_write_cclk + reads * events.mmr_read_cclk
     operations[setups, 2] = accounts
     copies = np.flatnonzero(kinds == w.COPY)
     operations[copies, 1] = plans[work.operations[copies, 1]]
-    log_of_frame = np.stack([firsts[accesses[OWNER]], accesses[SITE]])
-    entries = log_of_frame[0]
-    entries += accesses[BYTE]
-    for column, bit in ((STAMP, log.STAMP_BIT), (KIND, log.KIND_BIT)):
-        entries |= accesses[column] << bit
     return Translated(
         operations,
         np.flatnonzero(kinds == CALL).tolist(),

@@ -26,6 +26,7 @@ STREAM, SOURCE, SOURCE_BYTE, DESTINATION, DESTINATION_BYTE, NBYTES = range(6)
 OPERATION_COLUMNS, ACCESS_COLUMNS, EVENT_COLUMNS, COPY_COLUMNS = w.OPERATION_WORDS, 5, 3, 6
 
 Table = NDArray[np.int64]
+Accesses = NDArray[np.uint32]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,14 +44,14 @@ class FrameWork:
 
     `operations`: rows of a kind and four numbers as in `bus.state`, with differences: of ACCESS the last two are how many accesses it
     has, and the number of its call among those prepared; SET_UP has register writes and reads before its account.
-    `accesses`: rows as above, of all calls one after the other. `events`: rows of a call's number here, a counter of the
+    `accesses`: rows as above, of all calls one after the other; each column in one piece. `events`: rows of a call's number here, a counter of the
     core and what that has counted since it was written down last, up to that call. `copies`: rows as above, and `accounts`,
     of those used for the first time. `calls`: name and arguments.
     """
 
     core: str
     operations: Table
-    accesses: Table
+    accesses: Accesses
     events: Table
     copies: Table
     calls: tuple[tuple[str, tuple[Any, ...]], ...]
@@ -70,7 +71,6 @@ def check(work: FrameWork, owners: int) -> None:
         (awaits[:, 1], 1, w.ENDS - 1),
         (awaits[:, 2], w.SETTING_UP, w.RING_FULL),
         (awaits[:, 3], 0, w.MAX_ACCOUNTS - 1),
-        (accesses[:, STAMP], 0, (1 << 32) - 1),
         (accesses[:, KIND], 0, log.FETCH_LINE),
         (accesses[:, OWNER], 0, owners - 1),
         (accesses[:, BYTE], 0, log.OFFSET_MASK),
