@@ -24,9 +24,9 @@ from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
 from bfsim.machine.board import Board
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.bus.weave import Weave, compiled_weave
-from bfsim.machine.calls.ledger import BUS_STALLS
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row

@@ -13,16 +13,11 @@ from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.owner_costs import CALLS, COLUMN_OF, COLUMNS, ISSUE, Owner
 from bfsim.trace import StallReason
 
-BUS_STALLS = (
-    StallReason.L2_LATENCY, StallReason.L2_PORT, StallReason.SDRAM_PAGE_HIT, StallReason.SDRAM_PAGE_MISS,
-    StallReason.SDRAM_PAGE_CONFLICT, StallReason.SDRAM_REFRESH, StallReason.EBIU_ARBITRATION, StallReason.STORE_BUFFER,
-    StallReason.CACHE_FILL, StallReason.CODE_FETCH,
-)  # fmt: skip
-"""What the bus stalls a core for, in the order of its counters (`bus.state`)."""
 SITE_STALLS = (*BUS_STALLS, StallReason.L1_CONFLICT)
 """What is counted of a site, in the order of a snapshot; the lines that its accesses filled are behind them."""
 FILLS = len(SITE_STALLS)

@@ -12,8 +12,8 @@ from bfsim.errors import BfsimError, FirmwareError, KernelError, shown
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel.work import UNYIELDED
 from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.calls.call_cache import CallCache, DeferredWork
-from bfsim.machine.calls.ledger import BUS_STALLS
 from bfsim.machine.core.accounts import KERNELS, Account
 from bfsim.machine.core.clock import CoreClock
 from bfsim.machine.core.interrupts import Handler, Interrupts

@@ -14,6 +14,7 @@ from bfsim.kernel import Kernel, Work
 from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.stalls import COUNTER_OF
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.cameras.settling import CameraSettings
@@ -27,7 +28,6 @@ from bfsim.machine.program import FrameSize
 from bfsim.machine.retiming.work import ACCESS_COLUMNS, CALL, COPY_COLUMNS, FrameWork, Place
 from bfsim.trace import StallReason
 
-STALLED = {StallReason.RING_EMPTY: w.RING_EMPTY, StallReason.RING_FULL: w.RING_FULL}
 LATEST = 1 << 14
 """Copies of a core that can be waited for: the latest so many, of which the bus remembers the ends."""
 
@@ -152,7 +152,7 @@ class RecordingCore(Core):
                 )
             else:
                 back = self._copies - number
-                self._operations.append((w.AWAIT, back, STALLED[reason], self._account_of(owner), 0))
+                self._operations.append((w.AWAIT, back, COUNTER_OF[reason], self._account_of(owner), 0))
         with self._as_a_whole():
             yield from super().wait_transfer(transfer, reason, owner)
 

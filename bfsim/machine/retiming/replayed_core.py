@@ -12,7 +12,7 @@ from bfsim.kernel import Kernel
 from bfsim.kernel.types import ArrayType, IntType, Number, u8
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
-from bfsim.machine.calls.ledger import BUS_STALLS
+from bfsim.machine.bus.stalls import BUS_STALLS, REASON_OF_ACCOUNT
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.semaphore import Semaphore
@@ -34,11 +34,6 @@ from bfsim.machine.retiming.work import (
 )
 from bfsim.trace import StallReason
 
-REASONS = {
-    w.SETTING_UP: StallReason.DMA_SETUP,
-    w.RING_EMPTY: StallReason.RING_EMPTY,
-    w.RING_FULL: StallReason.RING_FULL,
-}
 NOT_THE_SAME = "what the cores do depends on the hardware, so the recorded run cannot be played on this one; run the firmware itself"
 
 Wait = Generator[Any, Any, Any]
@@ -130,7 +125,7 @@ class ReplayedCore(Core):
                 kernels_account.stall(reason, cclk)
         for number, words in played.accounts.items():
             account = self._account.of(self._account_names[number])
-            for word, reason in REASONS.items():
+            for word, reason in REASON_OF_ACCOUNT.items():
                 if words[word]:
                     account.stall(reason, words[word])
 
