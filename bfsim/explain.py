@@ -9,13 +9,15 @@ from collections import Counter as Tally
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
+from bfsim.building import build_for
 from bfsim.errors import ConfigError
 from bfsim.hardware import find_profile
 from bfsim.kernel import CompilerProfile, Kernel, tree
+from bfsim.kernel.build import Build
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.inlining import decisions
 from bfsim.kernel.isa import MNEMONICS, Op
-from bfsim.loading import load_kernel
+from bfsim.loading import load_firmware, load_kernel
 from bfsim.trace import (
     ExplainedCall,
     ExplainedLine,
@@ -35,7 +37,11 @@ OBJECT_CODE = "as compiled"
 
 def explain_named(name: str, firmware: str, profile: str, run: RunRecord | None = None) -> Explanation:
     """Explain the kernel called `name`, FILE.py:NAME, PACKAGE:NAME or the name of a kernel of `firmware`; see `explain`."""
-    return explain(load_kernel(name, firmware), find_profile(profile).value, run.kernels if run else None)
+    kernel, build = (
+        load_kernel(name, firmware),
+        build_for(load_firmware(firmware), find_profile(profile).value),
+    )
+    return _explained(kernel, build, run.kernels if run else None)
 
 
 def explain(
@@ -45,19 +51,24 @@ def explain(
 
     Raises ConfigError when the kernel did not run, and KernelError when the profile refuses it.
     """
+    return _explained(kernel, Build(profile), records)
+
+
+def _explained(kernel: Kernel, build: Build, records: Sequence[KernelRecord] | None) -> Explanation:
     function = kernel.function
-    counters = [each for each in kernel.counters(profile) if each.routine == function.symbol]
+    is_object = bool(kernel.object_code) or function in build.objects
+    counters = [each for each in build.counters(kernel) if each.routine == function.symbol]
     mine = None if records is None else _of_kernel(function, records)
     used = {each.line.routine for counter in counters for each in counter.charges}
     return Explanation(
         kernel=function.name,
         file=function.file,
         first_line=function.first_line,
-        profile=OBJECT_CODE if kernel.object_code else profile.name,
+        profile=OBJECT_CODE if kernel.object_code else build.code if is_object else build.profile.name,
         code_bytes=sum(each.nbytes for each in counters),
         calls=None if mine is None else sum(each.calls for each in mine),
         lines=_lines(function, counters, mine),
-        kernel_calls=() if kernel.object_code else _kernel_calls(function, profile),
+        kernel_calls=() if is_object else _kernel_calls(function, build.profile),
         inlined=tuple(
             InlinedKernel(kernel=each.name, file=each.file, lines=_lines(each, counters, None))
             for each in function.callees()

@@ -80,7 +80,7 @@ MAY_IMPORT = {
         "watchers",
     },
     "result": {"errors", "run_page", "report", "spans", "trace"},
-    "explain": {"errors", "hardware", "kernel", "loading", "trace"},
+    "explain": {"building", "errors", "hardware", "kernel", "loading", "trace"},
     "assembly": {"blackfin", "compiling", "errors", "kernel", "loading", "machine", "trace"},
     "device_script": {"file_content", "errors"},
     "scenery": {"errors", "loading", "locating", "recording", "shipped"},

@@ -12,9 +12,11 @@ import pytest
 from bfsim import building
 from bfsim.building import build_for
 from bfsim.compiling.object_code import object_code
+from bfsim.errors import KernelError
+from bfsim.explain import explain_named
 from bfsim.kernel import GCC_O2, Kernel
 from bfsim.kernel.profile import GCC
-from bfsim.loading import entries_of, kernels_of, load_firmware
+from bfsim.loading import entries_of, kernels_of, load_firmware, load_kernel
 from bfsim.machine.memories import Row
 from bfsim.report.code import code_in_words, object_share
 from bfsim.result import Run
@@ -122,3 +124,22 @@ def test_without_code_and_compiler_all_is_estimated() -> None:
     """And is said to be."""
     build = build_for(load_firmware(FIRMWARE[0]), GCC)
     assert (build.objects, build.code) == ({}, building.NOTHING_AT_HAND)
+
+
+def test_explain_shows_the_own_code() -> None:
+    """Its operations are instructions, so that their cycles times their executions are those of the run; `cost` estimates."""
+    done = simulate(frames=1, profile="gcc")
+    found = explain_named("sobel_row", FIRMWARE[0], "gcc", done)
+    assert found.profile == "GCC 12.2.0 -O2, timing gnu"
+    records = [each for each in done.kernels if each.kernel == "sobel_row"]
+    assert found.calls == sum(each.calls for each in records) > 0
+    text = range(found.first_line, found.first_line + len(records[0].text))
+    assert {each.line for each in found.lines if each.operations} <= set(text)
+    size = sum(each.nbytes for each in done.code)
+    assert 0 < found.code_bytes < size
+    kernel = load_kernel("isqrt32", FIRMWARE[0])
+    with pytest.raises(
+        KernelError, match="must be asked of a profile that estimates it, such as gcc-O2, not of gcc"
+    ):
+        kernel.cost(100, profile="gcc")
+    assert kernel.cost(100, profile="gcc-O2") > 0

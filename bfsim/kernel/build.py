@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
 from bfsim.kernel import tree
+from bfsim.kernel.counters import Counter
 from bfsim.kernel.decorator import Kernel
 from bfsim.kernel.jit import CompiledKernel
 from bfsim.kernel.profile import VDSP_O2, CompilerProfile
@@ -40,12 +41,16 @@ class Build:
             return self.objects[kernel.function](traced=traced)
         return kernel.compile(self.profile, traced=traced)
 
+    def counters(self, kernel: Kernel) -> tuple[Counter, ...]:
+        """Return what is counted in a run and what it costs, callees included. Raises KernelError as `Kernel.counters`."""
+        if kernel.function in self.objects:
+            return self.objects[kernel.function]().program.costs.counters
+        return kernel.counters(self.profile)
+
     def code_bytes(self, kernel: Kernel) -> dict[str, int]:
         """Return the size of a kernel's code, and of each kernel that it calls, by the names in the machine code."""
-        if kernel.function not in self.objects:
-            return kernel.code_bytes(self.profile)
         nbytes: dict[str, int] = {}
-        for each in self.objects[kernel.function]().counters:
+        for each in self.counters(kernel):
             nbytes[each.routine] = nbytes.get(each.routine, 0) + each.nbytes
         return nbytes
 

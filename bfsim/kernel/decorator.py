@@ -21,7 +21,7 @@ from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import FIRST_ARGUMENT
 from bfsim.kernel.jit import CompiledKernel, compile_kernel
 from bfsim.kernel.language import read_kernel
-from bfsim.kernel.profile import GCC_O0, VDSP_O2, CompilerProfile, profile_named
+from bfsim.kernel.profile import GCC_O0, GCC_O2, RUN_AS_COMPILED, VDSP_O2, CompilerProfile, profile_named
 from bfsim.kernel.types import ArrayType, FloatType, IntType
 from bfsim.kernel.work import PreparedCall, Work, is_single
 
@@ -279,8 +279,14 @@ class Kernel:
         """Run as a call does, and return its CCLK cycles: those of its operations, callees included, and their interlocks.
 
         It is what the call takes with code and arrays in L1, without waits for memory: for a unit test. `profile` names
-        the compiler. Raises KernelError for arguments that do not fit.
+        the compiler. Raises KernelError for arguments that do not fit, and for a profile whose kernels run as its compiler's own code,
+        which there is of whole firmware.
         """
+        if profile in RUN_AS_COMPILED and not self.object_code:
+            raise KernelError(
+                f"the cost of {self.name} must be asked of a profile that estimates it, such as {GCC_O2.name}, not of {profile}; "
+                f"`bfsim explain {self.name} --profile {profile}` has that of its own code ({self.place})"
+            )
         work = self._call(arguments, profile_named(profile))
         return work.issue_cclk + work.stall_cclk
 
