@@ -362,7 +362,8 @@ def between_feet(
     if share > Fraction(5, 4) or too_near or hidden:
         standing = {1: corners[1:], 2: corners[:1]}.get(hidden, corners)
         _, row, depth = min(standing, key=lambda each: each[2])
-        return on_floor(geometry, (corners[0][0] + corners[1][0]) >> 1, row, depth)
+        x, y, z = on_floor(geometry, (corners[0][0] + corners[1][0]) >> 1, row, depth)
+        return {1: right[0] - width_mm // 2, 2: left[0] + width_mm // 2}.get(hidden, x), y, z
     part = Fraction(1, 2) if cuts[0] == cuts[1] else Fraction(width_mm, 2 * apart)
     if cuts[0] and not cuts[1]:
         part = 1 - part

@@ -191,6 +191,18 @@ def test_a_foot_that_is_known_to_be_hidden(hidden: int, turn_deg: float) -> None
     assert placed(blobs, parents, hidden=hidden)[2] == pytest.approx(depth, abs=2)
 
 
+@pytest.mark.parametrize("hidden", [LEFT_HIDDEN, RIGHT_HIDDEN])
+@pytest.mark.parametrize("seen_px", [60, 110, 150])
+def test_the_middle_of_a_goal_that_is_hidden_in_part(hidden: int, seen_px: int) -> None:
+    """However much of it is seen: half a goal's width from the post that is, where its front is parallel to the picture."""
+    blobs, _, place, _ = goal((30, 900), 0)
+    whole = blobs[-1]
+    cut = {"left": whole["right"] - seen_px} if hidden == LEFT_HIDDEN else {"right": whole["left"] + seen_px}
+    post = blobs[1 if hidden == LEFT_HIDDEN else 0]
+    found = placed([post, whole | cut], [1, 1], hidden=hidden)
+    assert found[0] == pytest.approx(place[0], abs=POST_PX * 900 / FOCAL)
+
+
 def test_a_line_of_the_back() -> None:
     """A line above the feet is not theirs."""
     blobs, parents, _, line = goal((0, 900), 0)

@@ -159,7 +159,8 @@ def stand_between_feet(
     If the feet are `wide` apart, give or take a quarter, the middle of the border is between them. If the picture cuts the
     goal off at one side, and at least a quarter of the width is seen, the middle is half of `wide` away from the foot that
     is seen. Otherwise something hides a part of it, and only the nearer foot tells how deep it stands; of two ends of which
-    one is known to be `hidden`, the other. Columns and rows are in 1/16 px from the principal point.
+    one is known to be `hidden`, the other, and half of `wide` beside it is the middle, as from the front: a turn by 25 degrees
+    moves that by a tenth. Columns and rows are in 1/16 px from the principal point.
     """
     at = number * OBJECT_WORDS
     left_z = depth_by_floor(geometry, left_row, 0)
@@ -177,6 +178,10 @@ def stand_between_feet(
             stand_at(geometry, left_z, left + right >> 1, left_row, objects, number)
         else:
             stand_at(geometry, right_z, left + right >> 1, right_row, objects, number)
+        if hidden == RIGHT_HIDDEN:
+            objects[at + OBJECT_X] = left_x + (wide >> 1)
+        elif hidden == LEFT_HIDDEN:
+            objects[at + OBJECT_X] = right_x - (wide >> 1)
         return
     # how far from the left corner the middle is, as a part of the way to the right one
     part = apart
