@@ -45,6 +45,14 @@ from bfsim.sweeping.workers import Pool
 PERIOD_NS = 40_000_000
 WHOLE = 1000
 Figures = dict[str, float]
+COLUMNS = {
+    "s": "whole_s",
+    "of it checks, s": "checked_s",
+    "all runs, s": "runs_s",
+    "CPU s": "cpu_s",
+    "MB a worker": "largest_worker_mb",
+}
+GROWING = ("whole_s", "runs_s", "cpu_s")
 FILE = """\
 base.recording = "long.mcap"
 [axes]
@@ -148,10 +156,10 @@ def main() -> None:
 
 
 def on_line(found: Mapping[int, Mapping[str, Figures]], way: str) -> Figures:
-    """Return the figures of a way for WHOLE frames, on the straight line through two shorter recordings."""
+    """Return what grows with the frames, of a way for WHOLE of them, on the straight line through two shorter recordings."""
     (few, at_few), (many, at_many) = ((frames, ways[way]) for frames, ways in found.items())
     return {
-        name: value + (at_many[name] - value) * (WHOLE - few) / (many - few) for name, value in at_few.items()
+        name: at_few[name] + (at_many[name] - at_few[name]) * (WHOLE - few) / (many - few) for name in GROWING
     }
 
 
@@ -165,17 +173,10 @@ def measured_all(frames: int, workers: int) -> dict[str, Figures]:
 def print_table(title: str, ways: Mapping[str, Figures]) -> None:
     """Print the ways beside each other."""
     table = Table(title=title, title_justify="left")
-    for head in ("way", "s", "of it checks, s", "all runs, s", "CPU s", "MB a worker"):
+    for head in ("way", *COLUMNS):
         table.add_column(head, justify="left" if head == "way" else "right")
     for way, each in ways.items():
-        numbers = (
-            each["whole_s"],
-            each["checked_s"],
-            each["runs_s"],
-            each["cpu_s"],
-            each["largest_worker_mb"],
-        )
-        table.add_row(way, *(f"{number:.1f}" for number in numbers))
+        table.add_row(way, *(f"{each[name]:.1f}" if name in each else "" for name in COLUMNS.values()))
     Console().print(table)
 
 
