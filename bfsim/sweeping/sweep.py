@@ -131,6 +131,7 @@ class Sweep:
         running: dict[Future[Any], Planned] = {}
         with Works(self.store, waiting) as works:
             while waiting or running:
+                waiting = deque(sorted(waiting, key=lambda each: works.is_expected(each.key)))
                 for each in self._claimed(waiting, workers.room() - len(running)):
                     if known := self.store.outcome(each.key):
                         self._done(each, known, works, tell)

@@ -101,6 +101,13 @@ class Works(AbstractContextManager["Works"]):
             return Work(group.path)
         return None
 
+    def is_expected(self, key: str) -> bool:
+        """Whether what a point can be played from may be there soon: others had better run before it."""
+        group = self._groups.get(key)
+        if group is None or group.is_recorded or group.left == group.waiting:
+            return False
+        return group.pays is None or group.recorder in group.left
+
     def done(self, key: str, outcome: Outcome) -> None:
         """Learn from a point, and forget what no point needs any more."""
         if group := self._groups.get(key):

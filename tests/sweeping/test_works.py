@@ -49,6 +49,23 @@ def test_one_records_while_others_run_and_the_rest_is_played(sweep: Sweep) -> No
     assert not list((sweep.store.folder / WORKS).iterdir())
 
 
+def test_points_wait_for_what_they_can_be_played_from(sweep: Sweep) -> None:
+    """While the first one of them runs, and while one is recorded: not before, between or afterwards."""
+    first, second, third, *_ = (each.key for each in sweep.todo)
+    with Works(sweep.store, sweep.todo) as works:
+        assert not works.is_expected(third)
+        works.order(first)
+        assert works.is_expected(third)
+        works.done(first, RUN)
+        assert not works.is_expected(third)
+        order = works.order(second)
+        assert order is not None
+        assert works.is_expected(third)
+        order.path.write_text("whole")
+        works.done(second, RUN)
+        assert not works.is_expected(third)
+
+
 @pytest.mark.parametrize(("left", "waits"), [(5, MOST_WAITS + 0.01), (2, 0)])
 def test_what_does_not_pay_is_not_recorded(sweep: Sweep, left: int, waits: float) -> None:
     """With many waits for memory playing takes as long as running; and of two points the second would be recorded for nobody."""
