@@ -48,10 +48,11 @@ def segments(picture: Picture, groups: Sequence[int]) -> list[Blob]:
 def components(mask: Picture) -> Iterator[list[Pixel]]:
     """Yield the sorted pixels of every 8-connected component of a mask, by flood fill."""
     left = {(int(y), int(x)) for y, x in np.argwhere(mask)}
-    while left:
-        wave = [min(left)]
-        left.remove(wave[0])
-        pixels = []
+    for first in sorted(left):
+        if first not in left:
+            continue  # another one has reached it
+        left.remove(first)
+        wave, pixels = [first], []
         while wave:
             y, x = wave.pop()
             pixels.append((y, x))
