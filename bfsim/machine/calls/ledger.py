@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,6 +75,7 @@ class Ledger:
         """Note who owns what a new group counts."""
         names = {each.symbol: each.name for each in group.code.functions}
 
+        @cache
         def owner(symbol: str) -> int:
             return self._owners.setdefault(Owner(group.stage, names[symbol], symbol), len(self._owners))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -146,15 +147,16 @@ class CoreRecords:
     def _add_events(self, group: CallGroup, totals: Sequence[int]) -> None:
         program, owner_of = group.code.program, group.by_array(group.owners)
         is_object = not isinstance(group.code, CompiledKernel)
+        kernel_of = cache(partial(self._kernel, group))
         executions: dict[tuple[Offset, SourceLine], int] = {}
         for number, path, counter in group.counted():
             events = totals[number]
             for each in counter.enters:
-                self._kernel(group, each.symbol).calls += events
+                kernel_of(each.symbol).calls += events
                 self._paths[group.stage, program.entered(path, each)].calls += events
             for place, issue_cclk, stall_cclk in counter.line_cclk:
                 through = self._paths[group.stage, program.through(path, place)]
-                kernel = self._kernel(group, place.routine)
+                kernel = kernel_of(place.routine)
                 kernel.object_cclk += events * issue_cclk * is_object
                 for cost in (kernel.lines[place.line], through.cost):
                     cost.issue_cclk += events * issue_cclk
@@ -163,17 +165,17 @@ class CoreRecords:
                     once = (path.first, place)
                     executions[once] = max(executions.get(once, 0), events)
             for place, name, times, cclk in counter.line_operations if events else ():
-                operations = self._kernel(group, place.routine).operations[place.line]
+                operations = kernel_of(place.routine).operations[place.line]
                 had_times, had_cclk = operations.get(name, (0, 0))
                 operations[name] = had_times + events * times, had_cclk + events * cclk
             for access in counter.accesses:
                 owner = owner_of.get(path.arrays.get(access.array, ""))
                 if owner is not None and access.is_counted:
-                    sums = self._kernel(group, access.line.routine).accesses[access.line.line, owner]
+                    sums = kernel_of(access.line.routine).accesses[access.line.line, owner]
                     sums.reads += 0 if access.writes else access.times(events)
                     sums.writes += access.times(events) if access.writes else 0
         for (_, place), events in executions.items():
-            self._kernel(group, place.routine).executions[place.line] += events
+            kernel_of(place.routine).executions[place.line] += events
 
     def _add_stalls(self, group: CallGroup, rows: Stalls) -> None:
         for site, row in zip(group.sites(), rows, strict=False):
