@@ -12,6 +12,7 @@ from benchmarks.random_traffic import SIZE, hammer, pictures
 from bfsim.api import Core, Frame, i32, kernel
 from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import GCC_O0, VDSP_O2, CompilerProfile, call_paths
+from bfsim.kernel.build import Build
 from bfsim.linker import link
 from bfsim.machine.board import Board
 from bfsim.machine.symbols import symbols_of
@@ -78,7 +79,7 @@ def read_all(core: Core, frame: Frame) -> Play:
 @pytest.mark.parametrize("profile", [GCC_O0, VDSP_O2])
 def test_a_callee_is_told_apart_by_path_and_by_buffer(profile: CompilerProfile) -> None:
     """One kernel is called three times, on arrays in three memories and through another kernel: each has its own waits."""
-    outcome = play(in_work(read_all), profile=profile)
+    outcome = play(in_work(read_all), build=Build(profile))
     assert_owned(outcome)
     mine = [each for each in outcome.accesses if each.symbol.endswith("sum_of")]
     assert {each.buffer: each.reads for each in mine} == {"words (A)": 3, "in_sdram (A)": 5, "in_l2": 2}
@@ -112,7 +113,7 @@ def test_a_program_of_too_many_paths_is_told_apart_by_kernel_alone(
 
     monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path))
     monkeypatch.setattr(call_paths, "MOST_COUNTERS", 0)
-    outcome = play(in_work(work), profile=GCC_O0)
+    outcome = play(in_work(work), build=Build(GCC_O0))
     assert_owned(outcome)
     assert sorted(each.calls for each in outcome.paths) == [1, 1, 3]
 
