@@ -87,6 +87,10 @@ def require_comparable(case: Case, path: Path) -> None:
     for key, name in (("board", identity.board), ("compiler", identity.compiler), ("script", case.script)):
         if then.differs_in(key, now):
             differences.append(f"{key} {name} {_difference(key, then, now)}")
+    if then.differs_in("code", now):
+        differences.append(
+            f"code was {shown(then.code)} when the limits were measured, and is {shown(now.code)}"
+        )
     if differences:
         raise ConfigError(
             f"{path}: run {shown(case.name)}: {'; '.join(differences)}: limits of one say nothing about the other; "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -235,6 +236,19 @@ def test_a_board_that_was_edited_is_refused_by_its_number(
     )
     Path("boards.py").write_text(BOARDS.replace("nRP=3", "nRP=CM_BF561.sdram.nRP"))
     assert "and has that of cm-bf561" in refused(*what)
+
+
+def test_code_of_another_gcc_is_refused(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The profile is the same; before anything runs. Another edit of the firmware is other code of the same GCC, and held."""
+    what = (*WHAT, "--frames", "1", "--profile", "gcc", "--baseline", "limits.toml")
+    assert call(*what, "--update").exit_code == 0
+    Path("fw_eyes.py").write_text(SLOWER)
+    assert call(*what).exit_code == 1
+    text = Path("limits.toml").read_text()
+    (was,) = re.findall(r'\bcode = "(.+?)"', text)
+    Path("limits.toml").write_text(text.replace(was, "GCC 3.0 -O2"))
+    monkeypatch.setattr("bfsim.machine.board.Board.run", None)
+    assert f"code was 'GCC 3.0 -O2' when the limits were measured, and is {was!r}" in refused(*what)
 
 
 def test_who_stops_reading_gets_the_files_all_the_same(repository: Path) -> None:

@@ -11,6 +11,7 @@ from bfsim.errors import ConfigError
 from bfsim.report.check.baseline import Case, read_baseline
 from bfsim.report.check.cause import difference_of_outcome, explanation
 from bfsim.report.check.judge import judge
+from bfsim.report.check.kept import kept_side
 from bfsim.report.check.tables import changes, verdict_line
 from bfsim.report.check.update import loosened, write_cases
 from bfsim.report.result_file import Result, result_of
@@ -323,6 +324,21 @@ def test_update_for_another_recording_begins_anew(path: Path) -> None:
     other = replace(edge_run(2000), identity=replace(IDENTITY, recording_digest="f" * 64))
     assert loosened(read_baseline(path).run[0], result(other), path) == []
     assert "frame.max <= 2.000000 ms" in measured(path, other).limits
+
+
+def test_update_for_code_of_another_gcc_begins_anew(tmp_path: Path) -> None:
+    """As for another recording; the diff of a failure would name it. A baseline that does not know its code is held as it was."""
+    path = tmp_path / "bfsim.toml"
+
+    def by(code: str) -> RunRecord:
+        return replace(edge_run(2000 if code else 1000), identity=replace(IDENTITY, code=code))
+
+    old = measured(path, by("GCC 12.2.0 -O2"))
+    assert old.measured_on is not None
+    assert old.measured_on.code == "GCC 12.2.0 -O2"
+    assert loosened(old, result(edge_run(3000)), path)
+    assert loosened(old, result(replace(by("GCC 14.1.0 -O2"), frames=edge_run(3000).frames)), path) == []
+    assert kept_side(old).configuration["code"] == "GCC 12.2.0 -O2"
 
 
 def test_a_stage_that_is_gone(path: Path) -> None:

@@ -221,6 +221,20 @@ def test_the_configuration_comes_first() -> None:
     ]
 
 
+def test_code_of_another_gcc_is_named() -> None:
+    """By whose it is; the profile and its digest are the same."""
+    one, other = (
+        replace(IDENTITY, code=f"GCC {version} -O2", code_digest=digit * 64)
+        for version, digit in (("12.2.0", "7"), ("14.1.0", "8"))
+    )
+    measured = run(kernel(line(12, 1, 10)))
+    results = [result_of(replace(measured.run, identity=each), measured.seen) for each in (one, other)]
+    assert [(each.what, each.before, each.after) for each in difference_of(*results).configuration] == [
+        ("code", "GCC 12.2.0 -O2", "GCC 14.1.0 -O2"),
+        ("code: content", "7" * 12, "8" * 12),
+    ]
+
+
 def test_another_clock_is_told_apart_from_cycles() -> None:
     """The same cycles at half the clock take twice as long, and no line is the reason."""
     one = run(kernel(line(12, 1, 1000)))

@@ -23,7 +23,7 @@ Percent = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
 OLD_KEYS = {"core", "measured_by", "tolerance_percent"}
 """At the top of files that were written before there were several runs in one."""
 
-COMPARABLE = ("recording", "frames", "board", "compiler", "script")
+COMPARABLE = ("recording", "frames", "board", "compiler", "code", "script")
 """Of what limits were measured on, what a run must have in common with them."""
 
 
@@ -51,7 +51,11 @@ class Configuration(_Table):
 
 
 class MeasuredOn(_Table):
-    """What the limits were measured on: digests (sha256), sizes and versions."""
+    """What the limits were measured on: digests (sha256), sizes and versions.
+
+    `code` is whose object code kernels ran as, in words: the code itself is another one with each edit of the firmware.
+    It is empty where all was estimated, and in files that were written before it was kept.
+    """
 
     recording: str
     frames: int
@@ -62,13 +66,19 @@ class MeasuredOn(_Table):
     ldf: str
     bfsim_version: str
     llvm_version: str
+    code: str = ""
     board_numbers: list[str] = []
     compiler_numbers: list[str] = []
 
     def differs_in(self, key: str, other: MeasuredOn) -> bool:
-        """Whether a key of COMPARABLE is another one's. A board or compiler with equal numbers is the same, whatever its file says."""
+        """Whether a key of COMPARABLE is another one's.
+
+        A board or compiler with equal numbers is the same, whatever its file says; code is another where both have some.
+        """
         if getattr(self, key) == getattr(other, key):
             return False
+        if key == "code":
+            return bool(self.code and other.code)
         numbers = f"{key}_numbers"
         are_known = numbers in MeasuredOn.model_fields and self.bfsim_version == other.bfsim_version
         return not (
@@ -174,6 +184,7 @@ def measured_on(identity: Identity, frames: int) -> MeasuredOn:
         ldf=identity.ldf_digest,
         bfsim_version=identity.bfsim_version,
         llvm_version=identity.llvm_version,
+        code=identity.code,
         board_numbers=list(identity.board_numbers),
         compiler_numbers=list(identity.compiler_numbers),
     )

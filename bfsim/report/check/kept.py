@@ -81,7 +81,7 @@ def kept_side(case: Case) -> Side:
     digests = {"recording", "board", "compiler", "script", "firmware", "ldf"}
     configuration = {
         f"{key}: content" if key in digests else key.replace("_", " "): str(value)
-        for key, value in on.model_dump(include={*digests, "bfsim_version", "llvm_version"}).items()
+        for key, value in on.model_dump(include={*digests, "bfsim_version", "llvm_version", "code"}).items()
     } | {
         "board numbers": SEPARATOR.join(on.board_numbers),
         "compiler numbers": SEPARATOR.join(on.compiler_numbers),
