@@ -88,10 +88,13 @@ def test_each_call_takes_the_cycles_that_verify_has(runs: dict[str, Run], sample
 
 def test_every_cycle_has_an_owner(runs: dict[str, Run]) -> None:
     """Issue, stall and idle cycles are the elapsed ones, by stages, kernels, lines, accesses and paths."""
-    assert_owned(runs["gcc"])
-    for core in runs["gcc"].frames[0].cores:
-        total = sum(each.issue_cclk + each.idle_cclk + sum(each.stall_cclk.values()) for each in core.stages)
-        assert total == core.end_cclk - core.begin_cclk
+    for run in runs.values():
+        assert_owned(run)
+        for core in run.frames[0].cores:
+            total = sum(
+                each.issue_cclk + each.idle_cclk + sum(each.stall_cclk.values()) for each in core.stages
+            )
+            assert total == core.end_cclk - core.begin_cclk
 
 
 def test_the_run_says_whose_code_and_for_how_much(runs: dict[str, Run]) -> None:

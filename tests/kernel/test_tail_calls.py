@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter as Tally
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from bfsim.kernel import Kernel
 from bfsim.kernel.isa import Op
 from tests.kernel.modules import import_text
 from tests.kernel.running import CALLING_GCC, run
@@ -89,6 +92,60 @@ def test_a_return_on_the_way_does_not_hinder_the_jump(tmp_path: Path) -> None:
         17, abs=1
     )  # P2 = R0; CC = P2 < 0; IF CC JUMP, taken; R0 = P2; JUMP.L _g
     assert added < jumped - called
+
+
+SEVERAL_ENDS = """
+@kernel
+def g(a: i32, b: i32) -> i32:
+    return a * b + (a ^ b)
+
+@kernel
+def ways(a: i32, b: i32) -> i32:
+    if a < 0:
+        return g(b, a)
+    if b < 0:
+        return g(a, a)
+    return a + b
+
+@kernel
+def clear(out: u8[:], count: i32):
+    if count > 0:
+        for x in range(count):
+            out[x] = 0
+"""
+
+
+def own_by_line(kernel: Kernel, *arguments: Any) -> Tally[tuple[int, str]]:
+    """Return how often operations of a kernel's own ran, by line of the kernel and operation; what ran no time is there, too."""
+    code = kernel.compile(CALLING_GCC)
+    totals = code.new_totals()
+    kernel.prepare(code, [each for each in arguments if isinstance(each, np.ndarray)], totals).run(arguments)
+    found: Tally[tuple[int, str]] = Tally()
+    for counter, events in zip(code.counters, totals.tolist(), strict=False):
+        for place, name, times, _ in counter.line_operations:
+            if place.routine == kernel.function.symbol:
+                found[place.line, name] += times * events
+    return found
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "jumps"),
+    [
+        ("ways", (-1, 4), 1),
+        ("ways", (1, -4), 1),
+        ("ways", (1, 4), 0),
+        ("clear", (np.ones(40, np.uint8), 40), 1),  # of memset
+        ("clear", (np.ones(40, np.uint8), 0), 0),
+    ],
+)
+def test_the_return_that_a_jump_leaves_out_is_taken_off_the_line_of_that_return(
+    name: str, arguments: tuple[Any, ...], jumps: int, tmp_path: Path
+) -> None:
+    """The one return of several ends is of another line than the jumps; no line does anything less than no time."""
+    found = own_by_line(getattr(import_text(SEVERAL_ENDS, tmp_path), name), *arguments)
+    assert {each: times for each, times in found.items() if times < 0} == {}
+    assert sum(times for (_, op), times in found.items() if op == Op.TAIL_CALL.value) == jumps
+    assert sum(times for (_, op), times in found.items() if op == Op.RETURN.value) == 1 - jumps
 
 
 @pytest.mark.parametrize(("name", "nops"), [("nothing", 4), ("next_one", 3), ("fourth", 2), ("g", 0)])

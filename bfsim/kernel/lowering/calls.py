@@ -43,8 +43,11 @@ class Calls:
             return
         arguments = self.context.arguments(each)
         self._pass(each, arguments)
-        is_last = self.context.tail_calls.get(self.label) is each
-        self.append(Op.TAIL_CALL if is_last else Op.CALL, each, each.result, DATA)
+        self.append(self._op(each), each, each.result, DATA)
+
+    def _op(self, each: Instruction) -> Op:
+        tail = self.context.tail_calls.get(self.label)
+        return Op.TAIL_CALL if tail is not None and tail.call is each else Op.CALL
 
     def _pass(self, each: Instruction, arguments: list[str]) -> None:
         for number, value in enumerate(arguments):
@@ -120,8 +123,7 @@ class Calls:
             for argument in (root, each.operands[0], ""):
                 used = ((argument, ANY),) if argument.startswith("%") else ()
                 self.append(Op.MOVE if used else Op.IMM, each, None, DATA, *used)
-            is_last = self.context.tail_calls.get(self.label) is each
-            self.append(Op.TAIL_CALL if is_last else Op.CALL, each, None, DATA)
+            self.append(self._op(each), each, None, DATA)
             nbytes = each.bits // isa.BYTE_BITS
             cclk = fill.cclk if iterations is None else fill.of(iterations * nbytes)
             self.append(Op.LIBRARY, each, None, DATA, cclk=cclk, nbytes=0)

@@ -16,7 +16,7 @@ from bfsim.kernel.lowering.jump_threading import JumpThreading
 from bfsim.kernel.lowering.predict import Likelihood
 from bfsim.kernel.lowering.ranges import ranges
 from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
-from bfsim.kernel.lowering.tail_calls import tail_calls
+from bfsim.kernel.lowering.tail_calls import TailCall, tail_calls
 from bfsim.kernel.lowering.widths import PAIR, widest
 from bfsim.kernel.profile import CompilerProfile
 
@@ -57,7 +57,7 @@ class Context:
         """Loops of one block that are an operation or a call."""
 
     @cached_property
-    def tail_calls(self) -> dict[str, Instruction]:
+    def tail_calls(self) -> dict[str, TailCall]:
         """Calls that are jumps, by the labels of their blocks."""
         return tail_calls(self.flow, self.arguments, len(self.parameters()), self.fills)
 

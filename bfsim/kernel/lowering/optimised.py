@@ -249,7 +249,8 @@ class _OptimisedLowering:
         ):
             return
         if label in self.context.tail_calls:
-            cost.charges.append(replace(charge(Op.RETURN, terminator.line), count=-1))
+            left_out = self.context.tail_calls[label].left_out
+            cost.charges.append(replace(charge(Op.RETURN, left_out.line), count=-1))
         if terminator.opcode == "ret":
             self._return(cost, terminator.line)
         elif terminator.opcode == "switch":

@@ -7,10 +7,21 @@ GCC does so at -O2 (-foptimize-sibling-calls), where the arguments on the stack 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction
 from bfsim.kernel.isa import REGISTER_ARGUMENTS
 from bfsim.kernel.loops import ControlFlow, Loop
+
+
+class TailCall(NamedTuple):
+    """A call that is a jump, and the return behind it, which the caller does not execute then.
+
+    The return may be in another block, where other ways end, too, and of another source line.
+    """
+
+    call: Instruction
+    left_out: Instruction
 
 
 def tail_calls(
@@ -18,7 +29,7 @@ def tail_calls(
     arguments: Callable[[Instruction], list[str]],
     parameters: int,
     fills: Mapping[str, Loop],
-) -> dict[str, Instruction]:
+) -> dict[str, TailCall]:
     """Return the calls that become jumps, by the labels of their blocks.
 
     `parameters`: how many the caller has. `fills`: loops that are a call of the routine that fills; it stands for its store.
@@ -28,25 +39,27 @@ def tail_calls(
         (way,) = {*flow.blocks[header].successors} - loop.blocks
         stores = [each for each in flow.blocks[header].instructions if each.opcode == "store"]
         empty = len(flow.blocks[way].instructions) == 1
-        if len(stores) == 1 and empty and _is_returned(flow, way, None):
-            found[flow.entering(loop)] = stores[0]
+        end = _returning(flow, way, None)
+        if len(stores) == 1 and empty and end is not None:
+            found[flow.entering(loop)] = TailCall(stores[0], end)
     for label, block in flow.blocks.items():
         call = block.instructions[-2] if len(block.instructions) > 1 else None
-        if call is None or not call.is_call or not _is_returned(flow, label, call.result):
+        if call is None or not call.is_call or len(arguments(call)) > max(REGISTER_ARGUMENTS, parameters):
             continue
-        if len(arguments(call)) <= max(REGISTER_ARGUMENTS, parameters):
-            found[label] = call
+        end = _returning(flow, label, call.result)
+        if end is not None:
+            found[label] = TailCall(call, end)
     return found
 
 
-def _is_returned(flow: ControlFlow, label: str, value: str | None) -> bool:
-    """Whether nothing is left to do at the end of a block but to return `value`, or nothing."""
+def _returning(flow: ControlFlow, label: str, value: str | None) -> Instruction | None:
+    """Return the `ret` of `value`, or of nothing, that alone is left to do at the end of a block, if so."""
     seen = {label}
     while flow.blocks[label].terminator.opcode == "br" and len(flow.blocks[label].successors) == 1:
         (way,) = flow.blocks[label].successors
         *before, _ = flow.blocks[way].instructions
         if way in seen or any(each.opcode != "phi" for each in before):
-            return False
+            return None
         for phi in before:
             arms: dict[str, str] = {source[1:]: arm for arm, source in PHI_ARM.findall(phi.text)}
             if arms[label] == value:
@@ -54,4 +67,4 @@ def _is_returned(flow: ControlFlow, label: str, value: str | None) -> bool:
         seen.add(way)
         label = way
     end = flow.blocks[label].terminator
-    return end.opcode == "ret" and end.operands in ((), (value,))
+    return end if end.opcode == "ret" and end.operands in ((), (value,)) else None
