@@ -85,6 +85,13 @@ def test_the_legend_is_of_what_is_drawn() -> None:
     assert shown_there == [False, True, False]
 
 
+def test_without_marks_there_is_nothing_to_explain() -> None:
+    """Firmware without a view has none; the sheet is as large."""
+    bare = overlay_of(one())
+    assert bare.size == overlay_of(one(lines=made.LINES)).size
+    assert (np.asarray(bare)[-style.FOOT :] == style.PAPER).all()
+
+
 def test_a_picture_is_darkened() -> None:
     """Marks stand out of it; grey stays grey."""
     red, green, blue = shown(one(), 40, 30)

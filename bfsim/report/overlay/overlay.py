@@ -56,10 +56,17 @@ def overlay_of(
     if above:
         sheet.paste(above, (left, style.HEAD))
         pen.text((left, style.HEAD // 2), "from above, mm", style.WORDS, style.font(style.FONT), anchor="lm")
-    sheet.paste(legend(scale, frozenset(layers)), (style.MARGIN, style.HEAD + highest))
+    marks = frozenset(layers) if any(map(_has_marks, frame.cameras)) else frozenset()
+    sheet.paste(legend(scale, marks), (style.MARGIN, style.HEAD + highest))
     if below:
         sheet.paste(below, (style.MARGIN, height - below.height))
     return sheet
+
+
+def _has_marks(seen: Seen) -> bool:
+    """Whether there is anything that the legend explains: firmware without a view has nothing."""
+    features = (seen.edges, seen.blobs, seen.lines, seen.circles, seen.objects, seen.lines_3d, seen.edges_3d)
+    return any(len(each) for each in features)
 
 
 def _sees_depth(frame: SeenFrame) -> bool:
