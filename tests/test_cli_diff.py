@@ -107,8 +107,8 @@ def test_a_run_does_not_differ_from_itself(home: Path) -> None:
         ("", "must be JSON as `bfsim run --json` writes it"),
         ("[]", "must be a result of `bfsim run --json`, not []"),
         ('{"schema": "bfsim.run/1"}', "must be a result of this version of bfsim"),
-        ('{"schema": "SCHEMA"}', "identity must be there"),
-        ('{"schema": "SCHEMA", "identity": 3}', "identity must"),
+        ('{"schema": "SCHEMA"}', "frames must be there"),
+        ('{"schema": "SCHEMA", "frames": 3}', "frames must be a valid"),
     ],
 )
 def test_a_file_that_is_no_result_is_refused(home: Path, text: str, told: str) -> None:

@@ -15,6 +15,7 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import VDSP_O2, Kernel
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.build import ESTIMATED
 from bfsim.linker import LinkerScript, link
 from bfsim.machine.bus.state import FETCH_BYTES
 from bfsim.machine.calls.fetch import CodeCache
@@ -42,7 +43,7 @@ def executed_bytes(kernel: Kernel, *arguments: Any) -> int:
 
 def code_lines(kernel: Kernel, at: int) -> int:
     """Cache lines that a kernel's code at an address fills."""
-    nbytes = sum(kernel.code_bytes(VDSP_O2).values())
+    nbytes = sum(ESTIMATED.code_bytes(kernel).values())
     return (at + nbytes - 1) // LINE - at // LINE + 1
 
 
@@ -58,7 +59,7 @@ def spinning(*turns: int) -> Any:
 
 def address_of_code(ldf: LinkerScript) -> int:
     """Where the LDF puts the only kernel of core A."""
-    link_map = link(ldf, code_symbols(spinning(1), "p0", VDSP_O2), CHIP.regions)
+    link_map = link(ldf, code_symbols(spinning(1), "p0", ESTIMATED), CHIP.regions)
     (placed,) = link_map.placements
     return placed.address
 

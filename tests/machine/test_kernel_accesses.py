@@ -67,7 +67,7 @@ def test_sdram_reads_stall_by_page(name: str) -> None:
     """1024 words in two or three pages: all hits but where a page begins or a refresh has closed it."""
     board = board_named(name)
     machine = load(reading("in_sdram"), board=name)
-    (row,) = machine._buffers["A"]["in_sdram"]
+    (row,) = machine._buffers.of["A"]["in_sdram"]
     page_bytes = board.sdram.page_bytes
     pages = (row.offset + row.nbytes - 1) // page_bytes - row.offset // page_bytes + 1
     outcome = machine.run(iter(noise(1)))

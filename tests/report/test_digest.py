@@ -40,7 +40,12 @@ def test_cycle_digest_leaves_published_results_out() -> None:
 def test_identity_digest_sees_every_field() -> None:
     """Another value in any field is another identity."""
     tuples = ("board_files", "compiler_files", "board_numbers", "compiler_numbers")
-    others = {**dict.fromkeys(tuples, ("mine",)), "compiler_digest": "6" * 64}
+    others = {
+        **dict.fromkeys(tuples, ("mine",)),
+        "compiler_digest": "6" * 64,
+        "code": "GCC",
+        "code_digest": "7" * 64,
+    }
     changed = [
         replace(IDENTITY, **{name: others.get(name) or getattr(IDENTITY, name) * 2})
         for name in IDENTITY.__dataclass_fields__
