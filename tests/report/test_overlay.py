@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from bfsim.report.overlay import style
-from bfsim.report.overlay.heat import BARS, GAP, LINE, STAGES
+from bfsim.report.overlay.heat import BARS, GAP, LINE, STAGES, _time
 from bfsim.report.overlay.layers import LAYERS
 from bfsim.report.overlay.overlay import overlay_of
 from bfsim.report.overlay.panel import panel_of
@@ -90,6 +90,15 @@ def test_without_marks_there_is_nothing_to_explain() -> None:
     bare = overlay_of(one())
     assert bare.size == overlay_of(one(lines=made.LINES)).size
     assert (np.asarray(bare)[-style.FOOT :] == style.PAPER).all()
+
+
+@pytest.mark.parametrize("us", [0.5, 44.1, 99.9, 100, 12345])
+def test_times_have_no_sign_that_the_font_lacks(us: float) -> None:
+    """What it lacks is drawn as the same empty box as any other sign that it lacks."""
+    font = style.font(style.FONT)
+    lacking = bytes(font.getmask("\u2603"))
+    assert not any(bytes(font.getmask(sign)) == lacking for sign in _time(us) if sign != " ")
+    assert bytes(font.getmask("\u00b5")) == lacking
 
 
 def test_a_picture_is_darkened() -> None:
