@@ -27,7 +27,8 @@ class Build:
     """How the kernels of a run are built.
 
     `objects`: kernels whose object code there is, others are as `profile` estimates them.
-    `code`: whose code it is, and which timing counts its cycles, in words; empty where all is estimated. `digest`: of that code.
+    `code`: whose code it is, and which timing counts its cycles, in words, or why there is none; empty where `profile` is an
+    estimate. `digest`: of that code.
     """
 
     profile: CompilerProfile

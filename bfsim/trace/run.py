@@ -41,7 +41,7 @@ class Identity:
     `..._numbers` say of a board or compiler that is not shipped which shipped one it is like, and what it has otherwise.
     Paths are left out on purpose: `..._files` are relative to the folder that they were imported from; a shipped board or
     compiler has none. `board` ends in --set PATH=VALUE for each number that was changed. `code` says whose object code
-    kernels ran as, and which timing counted its cycles; it is empty where all are estimated.
+    kernels ran as, and which timing counted its cycles, or why there was none; it is empty where `compiler` is an estimate.
     """
 
     recording: str

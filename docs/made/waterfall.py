@@ -29,12 +29,11 @@ PAGE = DOCS / "tinyphoon.md"
 BLOCK = re.compile(r"(<!-- made by docs/made/waterfall.py -->\n\n)(?:\|.*\n)*")
 ROBOT_MS = 219.0  # T §6.6: the mean of Table 6.4
 CCLK_PER_MS = 600e3
-FRAMES = 4
 
 
 def frame_ms(firmware: Firmware) -> float:
     """Return the median frame of the built-in recording, from frame 1 on: frame 0 waits for its picture."""
-    run = simulate(firmware=firmware, frames=FRAMES)
+    run = simulate(firmware=firmware)
     return median(
         (frame.cores[0].end_cclk - frame.cores[0].begin_cclk) / CCLK_PER_MS for frame in run.frames[1:]
     )

@@ -9,7 +9,7 @@ from tinyphoon.buffers import buffers, calibration_buffers, one_core_buffers
 from tinyphoon.core_a import core_a
 from tinyphoon.core_b import core_b
 from tinyphoon.geometry import THESIS_GEOMETRY
-from tinyphoon.losses import LOSSES
+from tinyphoon.losses import LOSSES, THESIS_LOSSES
 from tinyphoon.one_core import one_core
 from tinyphoon.strategy_unit.unit import StrategyUnit
 from tinyphoon.variants import FAST, THESIS, fast_buffers, mains, thesis_buffers
@@ -48,8 +48,8 @@ tinyphoon = Firmware(
 fast = replace(tinyphoon, mains=mains(FAST), buffers=fast_buffers)
 """The same features of the same pictures, in a third of the time."""
 
-thesis = replace(tinyphoon, mains=mains(THESIS), buffers=thesis_buffers)
-"""The same features by the steps that the thesis describes: what the robot ran, as far as it says so."""
+thesis = replace(tinyphoon, mains=mains(THESIS), buffers=thesis_buffers, losses=THESIS_LOSSES)
+"""The steps that the thesis describes: what the robot ran, as far as it says so. Lines are found in another way."""
 
 one_eye = Firmware(
     mains={"A": one_core},

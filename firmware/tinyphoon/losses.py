@@ -17,3 +17,10 @@ LOSSES = {
     "objects_lost": "objects without room in the history",
     "orders_refused": "orders that were refused (the remarks say why)",
 }
+
+THESIS_LOSSES = {
+    **LOSSES,
+    "edges_lost": "edges that had no room in the edge store, which fills from the top: those at the bottom",
+    "labels_lost": "labels and segments of colour without room, which are in no blob",
+}
+"""With the steps that the thesis describes."""

@@ -30,7 +30,7 @@ from tinyphoon.stages.line_segments import (
     START_Y,
     TURN,
 )
-from tinyphoon.stages.rosenfeld_blobs import blank_labels, label_row, rename_row
+from tinyphoon.stages.rosenfeld_blobs import label_row, rename_row
 from tinyphoon.stores.blobs import BLOB_WORDS
 from tinyphoon.stores.edges import EDGE_DATA
 from tinyphoon.strategy.modes import INDOOR_FIELD
@@ -96,6 +96,7 @@ def test_edges_beyond_the_store_are_those_at_the_bottom() -> None:
     board, outcome = run(stereo((noise, np.zeros_like(noise))), thesis)
     counts = buffer(board, "A", "edge_counts")[0]
     assert dict(outcome.frames[0].results)["edges_lost_A"] > 1000
+    assert "those at the bottom" in thesis.losses["edges_lost"]
     assert counts[20:40].min() > 0
     assert counts[-20:].max() == 0
 
@@ -104,7 +105,6 @@ def labels_of(picture: Sequence[str]) -> list[list[int]]:
     """Labels of the pixels that are not blank, renamed by the table."""
     words = np.array([[int(pixel != " ") for pixel in row] for row in picture], np.uint32)
     labels, table = np.zeros(words.shape, np.uint16), np.zeros(64, np.uint16)
-    blank_labels(table)
     used = 0
     for y in range(1, len(words) - 1):
         used = label_row(words[y], labels[y - 1], labels[y], table, 1, 0, used)

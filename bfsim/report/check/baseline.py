@@ -54,7 +54,7 @@ class MeasuredOn(_Table):
     """What the limits were measured on: digests (sha256), sizes and versions.
 
     `code` is whose object code kernels ran as, in words: the code itself is another one with each edit of the firmware.
-    It is empty where all was estimated, and in files that were written before it was kept.
+    It is empty where the compiler is an estimate, and in files that were written before it was kept.
     """
 
     recording: str

@@ -14,6 +14,7 @@ from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, FrameSize, i32, kernel, u16, u32
 from tinyphoon.stages.blob_detection import BlobThresholds, group_of, store_group
+from tinyphoon.stages.hysteresis import clear_labels
 from tinyphoon.stores.blobs import BLOB_WORDS, PIXELS, add_run, close_blob, move_segment, open_segment
 
 LABELS = 2048  # [assumed]; a slope takes one every few rows
@@ -21,20 +22,13 @@ SEGMENTS = 256  # [assumed]: 8 KB of records; number 0 is none
 
 
 def rosenfeld_buffers(size: FrameSize, images: str) -> Sequence[Buffer]:
-    """Return the picture of labels in the memory of `images` and a ring for it, the look-up table, and the number of each label's segment."""
+    """Return the picture of labels in the memory of `images`, a ring for it, the table, and the number of each label's segment."""
     return (
         Buffer("label_image", u16, size.width_px, images, rows=size.height_px),
         Buffer("label_ring", u16, size.width_px, "L1_data_a", rows=3),
         Buffer("label_table", u16, LABELS, "data1"),
         Buffer("segment_numbers", u16, LABELS, "data1"),
     )
-
-
-@kernel
-def blank_labels(labels: u16[:]) -> None:
-    """Make a row, or the table, without labels."""
-    for x in range(len(labels)):
-        labels[x] = 0
 
 
 @kernel
@@ -47,7 +41,10 @@ def rename_line(labels: u16[:], old: i32, new: i32) -> None:
 
 @kernel
 def met(label: i32, neighbour: i32, base: i32, above: u16[:], here: u16[:], table: u16[:]) -> i32:
-    """Return the label of a pixel, so far `label` or 0, beside a pixel of the label `neighbour`; up to `base` they are of other colours."""
+    """Return the label of a pixel, so far `label` or 0, beside one of the label `neighbour`.
+
+    Labels up to `base` are of other colours.
+    """
     if neighbour <= base or neighbour == label:
         return label
     if label == 0:
@@ -64,9 +61,10 @@ def met(label: i32, neighbour: i32, base: i32, above: u16[:], here: u16[:], tabl
 def label_row(
     words: u32[:], above: u16[:], here: u16[:], table: u16[:], colours: u32, base: i32, used: i32
 ) -> i32:
-    """Label the pixels of a row that have one of these colours, with labels 1 to `used` taken before it; return how many are needed.
+    """Label the pixels of a row that have one of `colours`, and return how many labels are needed; `used` were before it.
 
-    The opening leaves no colour in the first and the last column; above the first row is that row itself. Labels from the length of `table` on are not given.
+    The opening leaves no colour in the first and the last column; above the first row is that row itself. Labels from the
+    length of `table` on are not given.
     """
     for x in range(1, len(words) - 1):
         if words[x] & colours != 0:
@@ -122,7 +120,7 @@ def count_row(
 def select_segments(
     blob_data: u32[:], segments: i32, min_pixels: u32, max_pixels: u32, max_blobs: i32
 ) -> i32:
-    """Keep the segments 1 to `segments` that have the right size as blobs, and return how many there are, as `select_blobs` does."""
+    """Keep the segments 1 to `segments` of the right size as blobs, as `select_blobs` does, and return how many there are."""
     found: i32 = 0
     for segment in range(1, segments + 1):
         pixels = blob_data[segment * BLOB_WORDS + PIXELS]
@@ -143,7 +141,7 @@ def rosenfeld_blobs(core: Core, frame: Frame, thresholds: BlobThresholds) -> Gen
     table, numbers, blobs = (core.array(name) for name in ("label_table", "segment_numbers", "blob_data"))
     groups = core.array("colour_groups")
     for tables in (table, numbers, *labels):
-        yield core.run(blank_labels, tables)
+        yield core.run(clear_labels, tables)
     wanted = 0
     for number, colours in enumerate(thresholds.colour_groups):
         yield core.run(store_group, groups, number, colours)
