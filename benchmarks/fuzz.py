@@ -27,7 +27,7 @@ import click
 from click.testing import CliRunner
 
 from benchmarks.fuzzing.inputs import KINDS
-from bfsim.cli import main as bfsim
+from bfsim.cli.main import main as bfsim
 
 LONGEST_STDERR = 1500
 SLOWEST_S = 20.0

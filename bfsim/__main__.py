@@ -26,7 +26,7 @@ def main() -> None:
     hear = signal.getsignal(signal.SIGINT)
     if hear is signal.default_int_handler:  # otherwise Ctrl-C is ignored: in the background of a shell
         signal.signal(signal.SIGINT, _leave)
-    from bfsim.cli import main as command
+    from bfsim.cli.main import main as command
     from bfsim.endings import fault
 
     signal.signal(signal.SIGINT, hear)

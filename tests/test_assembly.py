@@ -13,7 +13,7 @@ from click.testing import CliRunner, Result
 from bfsim.api import Kernel, i32, kernel, kernel_from, u8
 from bfsim.assembly import Counting, KernelCode, find_code, listed
 from bfsim.blackfin.timing import GNU
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.errors import ConfigError
 from bfsim.kernel import GCC_O2
 from bfsim.loading import load_firmware, load_kernel

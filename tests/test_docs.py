@@ -17,7 +17,7 @@ def test_the_blocks_of_a_page_run_one_after_the_other(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Files are written and commands run in an empty folder, as the reader of the page would do it."""
-    monkeypatch.setattr("bfsim.cli_sweep.NOTE_S", math.inf)  # notes by the clock, which a slow machine prints
+    monkeypatch.setattr("bfsim.cli.sweep.NOTE_S", math.inf)  # notes by the clock, which a slow machine prints
     tools = Path(sys.executable).parent
     command = tmp_path / "bin" / "bfsim"  # also where only the sources are on the path
     command.parent.mkdir()

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.recording import RecordingWriter
 from bfsim.run import BUILT_IN_RECORDING
 from tests.test_run import FIRMWARE, record

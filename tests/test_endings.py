@@ -63,8 +63,8 @@ def test_a_full_device_for_the_message() -> None:
 
 def test_trouble_elsewhere_is_not_blamed_on_standard_output(tmp_path: Path) -> None:
     """What the system refuses without a file's name is not standard output."""
-    program = "import bfsim.cli, errno; from unittest.mock import patch\n"
-    program += "with patch('bfsim.cli_boards._summary', side_effect=OSError(errno.EMFILE, 'Too many open files')): bfsim.cli.main()"
+    program = "import bfsim.cli.main, errno; from unittest.mock import patch\n"
+    program += "with patch('bfsim.cli.boards._summary', side_effect=OSError(errno.EMFILE, 'Too many open files')): bfsim.cli.main.main()"
     done = subprocess.run(
         [sys.executable, "-c", program, "boards"], capture_output=True, check=False, text=True, cwd=tmp_path
     )
@@ -74,8 +74,8 @@ def test_trouble_elsewhere_is_not_blamed_on_standard_output(tmp_path: Path) -> N
 
 def test_a_fault_of_bfsim_is_no_broken_limit() -> None:
     """A traceback ends with a code of its own."""
-    program = "import bfsim.cli_boards as boards; from unittest.mock import patch; from bfsim.__main__ import main\n"
-    program += "with patch('bfsim.cli_boards._summary', side_effect=KeyError('x')): main()"
+    program = "import bfsim.cli.boards as boards; from unittest.mock import patch; from bfsim.__main__ import main\n"
+    program += "with patch('bfsim.cli.boards._summary', side_effect=KeyError('x')): main()"
     done = subprocess.run(
         [sys.executable, "-c", program, "boards"], capture_output=True, check=False, text=True
     )

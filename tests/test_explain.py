@@ -7,7 +7,7 @@ import json
 import pytest
 from click.testing import CliRunner, Result
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.errors import ConfigError, FirmwareError
 from bfsim.explain import explain, explain_named
 from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2

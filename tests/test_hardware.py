@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from bfsim.chip.boards import BOARDS, CM_BF561
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.errors import ConfigError
 from bfsim.hardware import find_board, find_profile
 from bfsim.kernel import VDSP_O2

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 import pytest
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from tests.pages import PAGES, ROOT
 
 README = (ROOT / "README.md").read_text()

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.errors import ConfigError
 from bfsim.result import Run
 from bfsim.run import simulate

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.compiling.object_code import object_code
 from bfsim.compiling.toolchain import GCC, Toolchain, blackfin_toolchain
 from bfsim.errors import ConfigError

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.recording import RecordingWriter, StereoGeometry
 from bfsim.shipped import FIRMWARE_FOLDER
 from tinyphoon import one_eye, tinyphoon

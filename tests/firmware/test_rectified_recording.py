@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.recording import RecordingReader, RecordingWriter, StereoGeometry
 from bfsim.recording.planes import YuvPlanes
 from bfsim.recording.scenes.chessboard import write_chessboards

@@ -14,7 +14,7 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from bfsim.cli_record import record
+from bfsim.cli.record import record
 from bfsim.errors import RecordingError
 from bfsim.recording import (
     RecordingReader,

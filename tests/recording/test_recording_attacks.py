@@ -87,7 +87,7 @@ def test_what_a_chunk_decompresses_to_is_bounded(
 def test_a_bomb_takes_little_memory(tmp_path: Path) -> None:
     """`bfsim record info` of a file of 8 KB that says it holds 256 MiB."""
     path = write(tmp_path / "bomb.mcap", [chunk(BOMBS["zstd"], nbytes=BOMB_BYTES, compression="zstd")])
-    program = "from bfsim.cli import main\ntry: main()\nexcept SystemExit as end: print(end.code, open('/proc/self/status').read())"
+    program = "from bfsim.cli.main import main\ntry: main()\nexcept SystemExit as end: print(end.code, open('/proc/self/status').read())"
     command = [sys.executable, "-c", program, "record", "info", str(path)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     words = done.stdout.split()

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from PIL import Image
 
-from bfsim.cli_record import record
+from bfsim.cli.record import record
 from bfsim.errors import RecordingError
 from bfsim.recording import RecordingReader, RecordingWriter, StereoFrame
 from bfsim.recording.importer import import_recording

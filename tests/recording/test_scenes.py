@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 from numpy.typing import NDArray
 
-from bfsim.cli_record import record
+from bfsim.cli.record import record
 from bfsim.errors import RecordingError
 from bfsim.recording import RecordingReader, StereoGeometry
 from bfsim.recording.planes import YuvPlanes

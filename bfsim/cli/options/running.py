@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from bfsim.cli_hardware import BOARD_OPTIONS, PROFILE_OPTION
-from bfsim.cli_ldf import PREPROCESSOR_OPTIONS
+from bfsim.cli.options.hardware import BOARD_OPTIONS, PROFILE_OPTION
+from bfsim.cli.options.ldf import PREPROCESSOR_OPTIONS
 from bfsim.errors import ConfigError
 from bfsim.shipped import FIRMWARE, LDFS
 from bfsim.signals import ending_deaf_kernels, interrupted_code

@@ -14,7 +14,7 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
 from bfsim import run_page
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.report.html.pictures import Pictures
 from bfsim.shipped import accuracy_on
 from tests.browser import PATIENCE_S, Browser, browsing, needs_chromium

@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from tests.sweeping.rig import BASE, FILE, Here, home_in, swept
 from tests.test_run import FIRMWARE, record
 

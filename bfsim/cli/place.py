@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run
+from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_run
 from bfsim.errors import ConfigError
 from bfsim.terminal import print_report
 

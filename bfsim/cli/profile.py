@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bfsim.cli_html import require_told, takes_html, writing_page
-from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run, takes_work, warn
-from bfsim.cli_timeline import takes_timelines, timelines
+from bfsim.cli.options.html import require_told, takes_html, writing_page
+from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_run, takes_work, warn
+from bfsim.cli.options.timeline import takes_timelines, timelines
 from bfsim.errors import ConfigError, shown
 from bfsim.terminal import print_report
 from bfsim.watchers import Watchers

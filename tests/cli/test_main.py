@@ -11,8 +11,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 from bfsim import __version__
-from bfsim.cli import main
-from bfsim.cli_record import SOURCE_FORMATS
+from bfsim.cli.main import main
+from bfsim.cli.record import SOURCE_FORMATS
 from bfsim.recording import sources
 
 
@@ -152,7 +152,7 @@ def test_ctrl_c_while_the_command_line_is_imported(tmp_path: Path) -> None:
     (tmp_path / "click.py").write_text("import signal\nsignal.raise_signal(signal.SIGINT)\n")
     done = subprocess.run(
         [sys.executable, "-m", "bfsim", "boards"],
-        env={**os.environ, "PYTHONPATH": f"{tmp_path}:{Path(__file__).parent.parent}"},
+        env={**os.environ, "PYTHONPATH": f"{tmp_path}:{Path(__file__).parents[2]}"},
         capture_output=True,
         check=False,
         text=True,

@@ -1,31 +1,16 @@
-"""The command line: parses, calls, prints. Everything that takes time to import is imported by the command."""
+"""`bfsim run`: what each frame costs."""
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from bfsim import __version__
-from bfsim.cli_boards import boards
-from bfsim.cli_check import check
-from bfsim.cli_colours import colours
-from bfsim.cli_diff import diff
-from bfsim.cli_explain import explain
-from bfsim.cli_export import export
-from bfsim.cli_html import require_told, takes_html, writing_page
-from bfsim.cli_ldf import ldf
-from bfsim.cli_place import place
-from bfsim.cli_profile import profile
-from bfsim.cli_record import record
-from bfsim.cli_running import exit_if_interrupted, simulated, takes_a_run, takes_work, warn
-from bfsim.cli_seen import stages_named, takes_views, watching
-from bfsim.cli_sweep import sweep
-from bfsim.cli_timeline import takes_timelines, timelines
-from bfsim.cli_verify import verify
-from bfsim.endings import exit_code_of
+from bfsim.cli.options.html import require_told, takes_html, writing_page
+from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_run, takes_work, warn
+from bfsim.cli.options.seen import stages_named, takes_views, watching
+from bfsim.cli.options.timeline import takes_timelines, timelines
 from bfsim.errors import ConfigError
 from bfsim.terminal import print_report
 from bfsim.watchers import Watchers
@@ -36,54 +21,7 @@ if TYPE_CHECKING:
 STDOUT = Path("-")
 
 
-class _Bfsim(click.Group):
-    """Ends every command with an exit code, and one that goes wrong for a known reason with one paragraph."""
-
-    def main(self, *arguments: Any, standalone_mode: bool = True, **options: Any) -> Any:
-        call = partial(super().main, *arguments, standalone_mode=False, **options)
-        if standalone_mode:
-            raise SystemExit(exit_code_of(call))
-        return call()
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        if any("\0" in each for each in args):  # no system gives them, but callers in Python may
-            raise click.UsageError("arguments must be without NUL characters")
-        return super().parse_args(ctx, args)
-
-    def invoke(self, ctx: click.Context) -> Any:
-        try:
-            return super().invoke(ctx)
-        except KeyboardInterrupt:  # click would begin a new line
-            raise click.Abort from None
-
-
-@click.group(cls=_Bfsim, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(__version__, prog_name="bfsim")
-def main() -> None:
-    """Simulate robot-vision firmware on a dual-core Blackfin ADSP-BF561, and report what each frame costs.
-
-    Without arguments, `bfsim run` runs the built-in recording through the built-in firmware.
-
-    Exit codes: 0 done, 1 a limit of `bfsim check` is broken, 2 a mistake in what was given, 70 a fault of bfsim's own;
-    130 Ctrl-C, 143 SIGTERM, 129 SIGHUP, and 141 nobody reads the output any more.
-    """
-
-
-main.add_command(record)
-main.add_command(boards)
-main.add_command(check)
-main.add_command(colours)
-main.add_command(diff)
-main.add_command(explain)
-main.add_command(export)
-main.add_command(ldf)
-main.add_command(profile)
-main.add_command(place)
-main.add_command(sweep)
-main.add_command(verify)
-
-
-@main.command(short_help="Print what each frame costs: the timing budget.")
+@click.command(short_help="Print what each frame costs: the timing budget.")
 @takes_a_run
 @takes_work
 @click.option(

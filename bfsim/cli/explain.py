@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from bfsim.cli_running import simulated, takes_a_run, warn
+from bfsim.cli.options.running import simulated, takes_a_run, warn
 from bfsim.errors import ConfigError
 from bfsim.terminal import print_report
 

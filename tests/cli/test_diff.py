@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.recording import RecordingWriter
 from tests.browser import browsing, needs_chromium
 

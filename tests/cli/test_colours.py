@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 from PIL import Image
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.recording import RecordingWriter
 from bfsim.recording.images import picture_of_file
 from bfsim.run import BUILT_IN_RECORDING

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from tests.kernel.host_c import COMPILER, STRICT, needs_compiler
 
 

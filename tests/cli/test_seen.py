@@ -13,8 +13,8 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 from PIL import Image
 
-from bfsim import cli_seen
-from bfsim.cli import main
+from bfsim.cli.main import main
+from bfsim.cli.options import seen as cli_seen
 from tests.report.records import edge_run
 
 BLIND = """

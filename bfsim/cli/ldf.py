@@ -2,49 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 
 import click
 
-from bfsim.cli_hardware import BOARD_OPTIONS, PROFILE_OPTION
-from bfsim.cli_sizes import Size
-from bfsim.errors import shown
+from bfsim.cli.options.hardware import BOARD_OPTIONS, PROFILE_OPTION
+from bfsim.cli.options.ldf import PREPROCESSOR_OPTIONS
+from bfsim.cli.options.sizes import Size
 from bfsim.shipped import FIRMWARE
 from bfsim.terminal import print_report
-
-
-def _macros(_ctx: click.Context, _param: click.Parameter, given: tuple[str, ...]) -> dict[str, str]:
-    """Return the macros by their names; one without a value is 1, as compilers have it."""
-    macros = {}
-    for each in given:
-        name, has_value, value = each.partition("=")
-        if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
-            raise click.BadParameter(f"must be NAME or NAME=VALUE, not {shown(each)}")
-        macros[name] = value if has_value else "1"
-    return macros
-
-
-PREPROCESSOR_OPTIONS = (
-    click.option(
-        "-D",
-        "defines",
-        metavar="NAME[=VALUE]",
-        multiple=True,
-        callback=_macros,
-        help="Define a macro for the LDF, such as USE_SDRAM.",
-    ),
-    click.option(
-        "-I",
-        "include_dirs",
-        metavar="FOLDER",
-        multiple=True,
-        type=click.Path(path_type=Path),
-        help="Look there, too, for what the LDF includes.",
-    ),
-)
-"""What every command takes that takes an LDF."""
 
 
 def _takes_macros(command: Callable[..., None]) -> Callable[..., None]:

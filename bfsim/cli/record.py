@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import click
 
 from bfsim import shipped
-from bfsim.cli_recorded import info_table, view_text, views_text
-from bfsim.cli_sizes import Size
+from bfsim.cli.options.sizes import Size
+from bfsim.cli.recorded import info_table, view_text, views_text
 from bfsim.errors import RecordingError, shown
 from bfsim.terminal import print_report, progress_bar
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from bfsim.cli_running import run_and_seen, takes_a_run
+from bfsim.cli.options.running import run_and_seen, takes_a_run
 from bfsim.endings import LIMIT_BROKEN
 from bfsim.errors import ConfigError
 from bfsim.terminal import print_report

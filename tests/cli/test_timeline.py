@@ -10,9 +10,9 @@ import time
 from pathlib import Path
 
 import pytest
+from tests.cli.test_main import call
 
 from tests.report.perfetto_files import tracks_of
-from tests.test_cli import call
 
 A_FRAME_BYTES = 150_000  # and some more
 FILES = ("run.pftrace", "run.speedscope.json")

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from bfsim.cli_running import simulated, takes_a_run
+from bfsim.cli.options.running import simulated, takes_a_run
 from bfsim.terminal import print_report
 
 STDOUT = Path("-")

@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from bfsim.chip.boards import BOARDS
-from bfsim.cli import main
+from bfsim.cli.main import main
 
 
 def call(*arguments: str) -> Result:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.recording import RecordingWriter
 
 FIRMWARE = """

@@ -14,7 +14,7 @@ from xml.etree import ElementTree as ET
 import pytest
 from click.testing import CliRunner, Result
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.errors import BfsimError
 from tests.test_run import FIRMWARE, record
 

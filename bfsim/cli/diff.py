@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bfsim.cli_running import run_and_seen, takes_a_run
+from bfsim.cli.options.running import run_and_seen, takes_a_run
 from bfsim.terminal import print_report
 from bfsim.watchers import Watchers
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bfsim.chip.interrupts import SicInterrupt
-from bfsim.cli_hardware import SET_OPTION
+from bfsim.cli.options.hardware import SET_OPTION
 from bfsim.errors import ConfigError
 from bfsim.fields import leaves
 from bfsim.terminal import print_report

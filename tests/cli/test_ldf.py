@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 from PIL import Image
 
-from bfsim.cli import main
+from bfsim.cli.main import main
 from bfsim.run import DEFAULT_LDF
 
 FOLDER = DEFAULT_LDF.parent
