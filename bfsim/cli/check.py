@@ -13,6 +13,7 @@ import click
 from click.core import ParameterSource
 
 from bfsim.cli.options.running import run_and_seen, takes_a_run
+from bfsim.cli.options.sets import takes
 from bfsim.endings import LIMIT_BROKEN
 from bfsim.errors import ConfigError
 from bfsim.terminal import print_report
@@ -30,11 +31,10 @@ OUTPUTS = {
 }
 
 
-def _takes_outputs(command: Any) -> Any:
-    for name, what in reversed(OUTPUTS.items()):
-        path = click.Path(path_type=Path)
-        command = click.option(f"--{name}", metavar="FILE", type=path, help=f"Write {what}.")(command)
-    return command
+_OUTPUT_OPTIONS = [
+    click.option(f"--{name}", metavar="FILE", type=click.Path(path_type=Path), help=f"Write {what}.")
+    for name, what in OUTPUTS.items()
+]
 
 
 @click.command(short_help="Fail if a frame costs more than a baseline allows.")
@@ -50,7 +50,7 @@ def _takes_outputs(command: Any) -> Any:
 @click.option("--case", "name", metavar="NAME", help="Check or update the run of that name only.")
 @click.option("--update", is_flag=True, help="Make what is measured the limits; adds the run if it is new.")
 @click.option("--reason", metavar="TEXT", help="Why --update loosens limits: is kept in the file.")
-@_takes_outputs
+@takes(_OUTPUT_OPTIONS)
 @click.option(
     "--history",
     metavar="FILE",

@@ -2,28 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import click
 
 from bfsim.cli.options.hardware import BOARD_OPTIONS, PROFILE_OPTION
 from bfsim.cli.options.ldf import PREPROCESSOR_OPTIONS
+from bfsim.cli.options.sets import takes
 from bfsim.cli.options.sizes import Size
 from bfsim.shipped import FIRMWARE
 from bfsim.terminal import print_report
-
-
-def _takes_macros(command: Callable[..., None]) -> Callable[..., None]:
-    for option in reversed(PREPROCESSOR_OPTIONS):
-        command = option(command)
-    return command
-
-
-def _takes_a_board(command: Callable[..., None]) -> Callable[..., None]:
-    for option in reversed(BOARD_OPTIONS):
-        command = option(command)
-    return command
 
 
 @click.command(short_help="Print where an LDF puts buffers and code.")
@@ -35,7 +23,7 @@ def _takes_a_board(command: Callable[..., None]) -> Callable[..., None]:
     show_default=True,
     help=f"Firmware to place: {' or '.join(FIRMWARE)}, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
 )
-@_takes_a_board
+@takes(BOARD_OPTIONS)
 @PROFILE_OPTION
 @click.option(
     "--size",
@@ -45,7 +33,7 @@ def _takes_a_board(command: Callable[..., None]) -> Callable[..., None]:
     show_default=True,
     help="Pictures to make room for.",
 )
-@_takes_macros
+@takes(PREPROCESSOR_OPTIONS)
 @click.option("--symbols/--no-symbols", default=True, show_default=True, help="List every symbol.")
 @click.option(
     "--picture",

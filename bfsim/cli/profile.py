@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bfsim.cli.options.html import require_told, takes_html, writing_page
+from bfsim.cli.options.json_file import STDOUT, json_option
 from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_run, takes_work, warn
 from bfsim.cli.options.timeline import takes_timelines, timelines
 from bfsim.errors import ConfigError, shown
@@ -16,8 +17,6 @@ from bfsim.watchers import Watchers
 
 if TYPE_CHECKING:
     from bfsim.report.target import Target
-
-STDOUT = Path("-")
 
 
 @click.command(short_help="Print where the cycles go, down to source lines.")
@@ -40,13 +39,7 @@ STDOUT = Path("-")
     help="What to break the cycles down by; frame: what the worst frames have more than the median one.",
 )
 @click.option("--stage", metavar="NAME", help="Look at one stage only, a row of the budget.")
-@click.option(
-    "--json",
-    "json_path",
-    metavar="FILE",
-    type=click.Path(path_type=Path, allow_dash=True),
-    help="Write the whole profile as JSON, too; - writes it to standard output instead of the tables.",
-)
+@json_option("the whole profile")
 @takes_html
 @takes_timelines
 def profile(

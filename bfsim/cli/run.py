@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bfsim.cli.options.html import require_told, takes_html, writing_page
+from bfsim.cli.options.json_file import STDOUT, json_option
 from bfsim.cli.options.running import exit_if_interrupted, simulated, takes_a_run, takes_work, warn
 from bfsim.cli.options.seen import stages_named, takes_views, watching
 from bfsim.cli.options.timeline import takes_timelines, timelines
@@ -18,19 +19,11 @@ from bfsim.watchers import Watchers
 if TYPE_CHECKING:
     from bfsim.report.target import Target
 
-STDOUT = Path("-")
-
 
 @click.command(short_help="Print what each frame costs: the timing budget.")
 @takes_a_run
 @takes_work
-@click.option(
-    "--json",
-    "json_path",
-    metavar="FILE",
-    type=click.Path(path_type=Path, allow_dash=True),
-    help="Write all records and the budget as JSON, too; - writes it to standard output instead of the tables.",
-)
+@json_option("all records and the budget")
 @click.option(
     "--features",
     is_flag=True,

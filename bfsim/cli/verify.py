@@ -7,10 +7,9 @@ from typing import Any
 
 import click
 
+from bfsim.cli.options.json_file import STDOUT, json_option
 from bfsim.cli.options.running import simulated, takes_a_run
 from bfsim.terminal import print_report
-
-STDOUT = Path("-")
 
 
 @click.command(
@@ -35,13 +34,7 @@ STDOUT = Path("-")
 @click.option(
     "--top", metavar="N", type=click.IntRange(min=1), default=20, show_default=True, help="Show N kernels."
 )
-@click.option(
-    "--json",
-    "json_path",
-    metavar="FILE",
-    type=click.Path(path_type=Path, allow_dash=True),
-    help="Write the comparison as JSON, too; - writes it to standard output instead of the table.",
-)
+@json_option("the comparison")
 def verify(calls: int, toolchain: Path | None, top: int, json_path: Path | None, **what: Any) -> None:
     """Run RECORDING, then play the kernels' calls once more: by GCC's code for the Blackfin.
 

@@ -10,8 +10,8 @@ import time
 from pathlib import Path
 
 import pytest
-from tests.cli.test_main import call
 
+from tests.cli.test_main import call
 from tests.report.perfetto_files import tracks_of
 
 A_FRAME_BYTES = 150_000  # and some more

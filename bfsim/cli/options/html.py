@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from bfsim.cli.options.sets import takes
 from bfsim.errors import ConfigError
 from bfsim.watchers import Watchers
 
 if TYPE_CHECKING:
     from bfsim.report.target import Target
-
-Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class _TargetType(click.ParamType["Target"]):
@@ -53,11 +52,8 @@ _PARAMETERS = (
 )
 
 
-def takes_html(command: Command) -> Command:
-    """Give a command the options of `writing_page`."""
-    for parameter in reversed(_PARAMETERS):
-        command = parameter(command)
-    return command
+takes_html = takes(_PARAMETERS)
+"""Give a command the options of `writing_page`."""
 
 
 def require_told(target: Target | None, html: Path | None, *, is_json_only: bool) -> None:

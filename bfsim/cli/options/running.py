@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from bfsim.cli.options.hardware import BOARD_OPTIONS, PROFILE_OPTION
 from bfsim.cli.options.ldf import PREPROCESSOR_OPTIONS
+from bfsim.cli.options.sets import takes
 from bfsim.errors import ConfigError
 from bfsim.shipped import FIRMWARE, LDFS
 from bfsim.signals import ending_deaf_kernels, interrupted_code
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from bfsim.report.result_file import Result
     from bfsim.trace import RunRecord
 
-Command = TypeVar("Command", bound=Callable[..., Any])
 
 _RUN_PARAMETERS = (
     click.argument("recording", required=False, type=click.Path(path_type=Path)),
@@ -71,11 +70,8 @@ _RUN_PARAMETERS = (
 )
 
 
-def takes_a_run(command: Command) -> Command:
-    """Give a command the argument and the options that say what to run."""
-    for parameter in reversed(_RUN_PARAMETERS):
-        command = parameter(command)
-    return command
+takes_a_run = takes(_RUN_PARAMETERS)
+"""Give a command the argument and the options that say what to run."""
 
 
 _WORK_PARAMETERS = (
@@ -95,11 +91,8 @@ _WORK_PARAMETERS = (
 )
 
 
-def takes_work(command: Command) -> Command:
-    """Give a command the options that record the work of a run, or play it again."""
-    for parameter in reversed(_WORK_PARAMETERS):
-        command = parameter(command)
-    return command
+takes_work = takes(_WORK_PARAMETERS)
+"""Give a command the options that record the work of a run, or play it again."""
 
 
 def simulated(*, feed: str, fidelity: str, watchers: Watchers | None = None, **what: Any) -> RunRecord:

@@ -10,10 +10,11 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING
 
 import click
 
+from bfsim.cli.options.sets import takes
 from bfsim.errors import ConfigError, shown
 from bfsim.watchers import Watchers
 
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
     from bfsim.recording.seen_writer import SeenWriter
     from bfsim.seen import SeenFrame
     from bfsim.trace import RunRecord
-
-Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 ALL_STAGES = ""
@@ -78,11 +77,8 @@ _PARAMETERS = (
 )
 
 
-def takes_views(command: Command) -> Command:
-    """Give a command the options of `watching`."""
-    for parameter in reversed(_PARAMETERS):
-        command = parameter(command)
-    return command
+takes_views = takes(_PARAMETERS)
+"""Give a command the options of `watching`."""
 
 
 @contextmanager

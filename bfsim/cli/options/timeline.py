@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING
 
 import click
 
+from bfsim.cli.options.sets import takes
 from bfsim.watchers import Watchers
 
 if TYPE_CHECKING:
     from bfsim.spans import Span
     from bfsim.trace import Identity, RunRecord
 
-Command = TypeVar("Command", bound=Callable[..., Any])
 
 _PARAMETERS = (
     click.option(
@@ -34,11 +34,8 @@ _PARAMETERS = (
 )
 
 
-def takes_timelines(command: Command) -> Command:
-    """Give a command the options of `timelines`."""
-    for parameter in reversed(_PARAMETERS):
-        command = parameter(command)
-    return command
+takes_timelines = takes(_PARAMETERS)
+"""Give a command the options of `timelines`."""
 
 
 @contextmanager
