@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -11,6 +12,9 @@ from bfsim.linker.predefined import ARCHITECTURE, chip_named
 from bfsim.linker.preprocessor import preprocess
 from bfsim.linker.script import LinkerScript
 from bfsim.linker.source import Source
+
+_OF_GNU = re.compile(r"\b(OUTPUT_FORMAT|OUTPUT_ARCH|PHDRS|ORIGIN)\b(?=\s*[({=])")
+"""Commands of GNU ld's scripts that no LDF has."""
 
 
 def parse_ldf(
@@ -40,6 +44,12 @@ def _script(source: Source) -> LinkerScript:
         if not chip_named(architecture[1]):  # the languages of other families differ, and so would the error
             problem = f"ARCHITECTURE must be a Blackfin such as ADSP-BF561, not {cut(architecture[1])}"
             raise source.error_at(architecture.start(1), problem)
+    if of_gnu := _OF_GNU.search(source.expanded):
+        problem = (
+            f"an LDF must be in the language of VisualDSP++, and {of_gnu[1]} is a command of GNU ld: "
+            "begin with a copy of a shipped LDF, such as the one that `bfsim ldf` shows"
+        )
+        raise source.error_at(of_gnu.start(), problem)
     try:
         return ScriptBuilder(source).transform(parse_tree(source))
     except VisitError as error:

@@ -69,6 +69,22 @@ def test_other_families_are_refused_before_their_language(parse: Parse, name: st
         parse(f"ARCHITECTURE({name}) MEMORY {{ M {{ TYPE(ASYNCHRONOUS) }} }}")
 
 
+@pytest.mark.parametrize(
+    ("script", "place", "command"),
+    [
+        ('OUTPUT_FORMAT("elf32-bfin")\nENTRY(start)', "1:1", "OUTPUT_FORMAT"),
+        ("MEMORY\n{\n  l1code(x) : ORIGIN = 0xffa00000, LENGTH = 0xc000\n}", "3:15", "ORIGIN"),
+    ],
+)
+def test_scripts_of_gnu_ld_are_named(parse: Parse, script: str, place: str, command: str) -> None:
+    """Who builds with bfin-elf-gcc has one, and syntax errors in it would not say what it is."""
+    with pytest.raises(
+        LinkError,
+        match=f"test.ldf:{place}: an LDF must be in the language of VisualDSP.*{command} is a command of GNU ld",
+    ):
+        parse(script)
+
+
 def test_a_list_may_be_defined_below_another_that_holds_it(parse: Parse) -> None:
     """The wizard of VisualDSP++ 5.0 Update 6 writes them so; one that holds itself adds to what it held."""
     script = parse(
