@@ -26,11 +26,12 @@ def build_for(loaded: LoadedFirmware, profile: CompilerProfile) -> Build:
     from bfsim.compiling.loaded_code import LoadedCode  # most runs need none of it
     from bfsim.compiling.object_code import level_of, object_code_at_hand
     from bfsim.compiling.toolchain import blackfin_compiler
+    from bfsim.kernel.objects.timing import timing_of
 
     code = object_code_at_hand(kernels, entries, profile, blackfin_compiler())
     if code is None:
         return Build(profile, code=NOTHING_AT_HAND)
-    there = LoadedCode(code)
+    there = LoadedCode(code, timing_of(profile))
     return Build(
         profile,
         {each: partial(there.compiled, each) for each in code.names if there.has(each)},

@@ -10,7 +10,7 @@ from benchmarks.toolchain.keep import FOLDER, recipes
 from bfsim.blackfin.objects import read_object
 from bfsim.compiling.object_code import object_code
 from bfsim.compiling.recipes import KEPT_COMPILER, shipped
-from bfsim.compiling.toolchain import Toolchain, blackfin_compiler
+from bfsim.compiling.toolchain import Toolchain, blackfin_compiler, prefer
 from bfsim.errors import ConfigError
 from bfsim.kernel import GCC_O0, GCC_O2
 from tests.kernel import c_kernels
@@ -46,8 +46,25 @@ def test_without_a_compiler_code_must_be_kept() -> None:
 
 def test_a_folder_that_is_named_must_have_a_compiler(tmp_path: Path) -> None:
     """On the PATH there may be none."""
-    with pytest.raises(ConfigError, match=f"bfin-elf-gcc must be in {tmp_path}"):
-        blackfin_compiler(tmp_path)
+    with pytest.raises(ConfigError, match=f"bfin-elf-gcc must be in {tmp_path}, but is not; CONTRIBUTING.md"):
+        prefer(tmp_path)
+
+
+def test_a_folder_that_is_named_comes_before_the_path(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The folder itself, or its `bin`, as a toolchain is installed."""
+    for name, folder in (("path", "path"), ("named", "named/bin")):
+        program = tmp_path / folder / "bfin-elf-gcc"
+        program.parent.mkdir(parents=True)
+        program.write_text(f"#!/bin/sh\necho {name}\n")
+        program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path / 'path'}:/bin:/usr/bin")
+    for folder, version in ((None, "path"), ("named", "named"), ("path", "path"), ("named/bin", "named")):
+        if folder:
+            prefer(tmp_path / folder)
+        found = blackfin_compiler()
+        assert found and found.identity.version == version
 
 
 def test_what_comes_with_bfsim_is_the_code_of_what_it_is_now() -> None:

@@ -121,7 +121,7 @@ def test_an_unknown_profile_is_told() -> None:
     """The message lists the profiles."""
     with pytest.raises(
         ConfigError,
-        match="--profile must be one of gcc-O0, gcc-O2, gcc, vdsp-O2, FILE.py:NAME or PACKAGE:NAME, not 'gcc-O3'",
+        match="--profile must be one of gcc-O0, gcc-O2, gcc, gcc-adi, vdsp-O2, FILE.py:NAME or PACKAGE:NAME, not 'gcc-O3'",
     ):
         explain_named("sobel_row", "tinyphoon", "gcc-O3")
 

@@ -137,7 +137,7 @@ def test_errors_are_signed_and_by_share() -> None:
 
 def test_a_profile_without_a_compiler_is_refused() -> None:
     """Nobody here has VisualDSP++."""
-    with pytest.raises(ConfigError, match="one of gcc-O2, gcc-O0, gcc for"):
+    with pytest.raises(ConfigError, match="one of gcc-O2, gcc-O0, gcc, gcc-adi for"):
         object_code([], [], VDSP_O2, None)
 
 
@@ -147,9 +147,10 @@ def test_a_run_without_kernels_is_refused() -> None:
         object_code([], [], GCC_O2, None)
 
 
-def test_a_missing_toolchain_is_told_before_the_run(tmp_path: Path) -> None:
+@pytest.mark.parametrize("command", ["verify", "run", "profile", "check"])
+def test_a_missing_toolchain_is_told_before_the_run(command: str, tmp_path: Path) -> None:
     """The command says what is missing, where, and how one is built."""
-    result = CliRunner().invoke(main, ["verify", "--toolchain", str(tmp_path)])
+    result = CliRunner().invoke(main, [command, "--toolchain", str(tmp_path)])
     assert result.exit_code == 2
     assert f"{GCC} must be in {tmp_path}" in " ".join(result.output.split())
 

@@ -44,7 +44,8 @@ class _Caller:
         counters = self.compiled.subroutine.translated.counters
         found: Tally[Event] = Tally()
         for number, count in zip(self.compiled.order.tolist(), self.totals.tolist(), strict=False):
-            found[Event(counters[number].block.start, counters[number].taken)] += count
+            counter = counters[number]
+            found[Event(counter.block.start, counter.taken, counter.along)] += count
         return found
 
 
@@ -64,7 +65,7 @@ class Counting:
             caller.play(arguments)
 
     def events(self) -> Tally[Event]:
-        """Return how often each block ran and each branch was taken, of the kernel and of what calls it."""
+        """Return how often each block ran, each branch was taken and each counted way was gone, of the kernel and of what calls it."""
         found: Tally[Event] = Tally()
         for each in self._callers.values():
             if each is not None:

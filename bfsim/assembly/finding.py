@@ -17,6 +17,7 @@ from bfsim.errors import ConfigError, KernelError, cut
 from bfsim.kernel import CompilerProfile, Kernel
 from bfsim.kernel.objects.compiled import CompiledObject, compiled_object
 from bfsim.kernel.objects.places import Places
+from bfsim.kernel.objects.timing import timing_of
 from bfsim.loading import LoadedFirmware, entries_of, kernels_of
 
 AS_IT_IS = "as compiled"
@@ -76,12 +77,12 @@ def find_code(
     firmware: LoadedFirmware,
     profile: CompilerProfile,
     toolchain: Toolchain | None,
-    timing: Timing,
 ) -> KernelCode:
-    """Find the code of a kernel: with all those of `firmware` if it is one of them, or by itself.
+    """Find the code of a kernel: with all those of `firmware` if it is one of them, or by itself. It is timed as `profile` has it.
 
     Raises ConfigError where there is neither kept code nor a compiler, and KernelError where the code has no function for the kernel.
     """
+    timing = timing_of(profile)
     if kernel.object_code is not None:
         return KernelCode(kernel, AS_IT_IS, timing, None)
     entries = entries_of(firmware.firmware)

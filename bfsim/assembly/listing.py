@@ -59,7 +59,7 @@ class _Listing:
 
     @property
     def timing(self) -> Timing:
-        return self.kernel_code.timing
+        return self.kernel_code.compiled.subroutine.translated.timing
 
     @cached_property
     def blocks(self) -> list[Block]:
@@ -169,7 +169,7 @@ class _Listing:
         """Of each instruction of a block its longest wait, and the cycles that it waited in a run."""
         jumped = self.stalls.jumped[block.start]
         carried = {edge: waits for edge, waits in self.stalls.carried.items() if edge.target == block.start}
-        times = {edge: self._times(times_gone(self.code, self.edges, edge)) for edge in carried}
+        times = {edge: self._times({Event(edge.target, along=edge): 1}) for edge in carried}
         executed = self._times({Event(block.start): 1})
         found = []
         for number, first in enumerate(jumped):

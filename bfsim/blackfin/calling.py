@@ -31,6 +31,9 @@ HEAD = 13
 PART_WORDS = 4
 """Of memory that is copied: its address here, that of its copy, how many bytes, and how many of them are copied back."""
 RUN = "bfsim_run_object"
+STALL_SHIFT = 32
+"""Of the result of a call, the lower half is cycles without waits, and the upper one waits."""
+ISSUE_MASK = (1 << STALL_SHIFT) - 1
 
 
 def _field(name: str, number: int, kind: str = "i64") -> str:
@@ -146,10 +149,14 @@ take:
   %nbytes = mul i64 %counted, 8
   call void @llvm.memset.p0.i64(ptr %counts, i8 0, i64 %nbytes, i1 false)
   %cclk = load i64, ptr %set.CLOCK
-  ret i64 %cclk
+  %waited.at = getelementptr i64, ptr %state, i64 {SLOTS["WAITED"]}
+  %waited = load i64, ptr %waited.at
+  %waited.high = mul i64 %waited, {(1 << STALL_SHIFT) - 1}
+  %result = add i64 %cclk, %waited.high
+  ret i64 %result
 }}
 """
-"""Its result: the cycles, or -1 less the number of the event for which the code was left."""
+"""Its result: the cycles without waits, and above them the waits; or -1 less the number of the event for which the code was left."""
 
 
 @cache
@@ -210,12 +217,12 @@ class BoundCall:
         self._result = ctypes.c_uint32.from_address(state.slots.ctypes.data + 8 * SLOTS["R0"])
         self._entry, self._run = _entry(), runner().address
 
-    def run(self) -> int:
-        """Call it and return its cycles. Raises KernelError where it does anything else than to return."""
+    def run(self) -> tuple[int, int]:
+        """Call it; return its cycles without waits, and those of waits. Raises KernelError where it does anything else than to return."""
         cclk = self._entry(self._at, self._run)
         if cclk < 0:
             self._subroutine.refuse(Event(-1 - cclk))
-        return cclk
+        return cclk & ISSUE_MASK, cclk >> STALL_SHIFT
 
     @property
     def result(self) -> int:

@@ -16,7 +16,7 @@ from bfsim.blackfin.registers import FLAGS, STATE
 from bfsim.blackfin.semantics import SEMANTICS
 from bfsim.blackfin.value import Value
 
-UNSEEN = {"PC", "CLOCK", "FUEL", "ARGUMENT", "TRACE", "ASTAT_UNUSED", "CYCLES_OFFSET"} | {
+UNSEEN = {"PC", "CLOCK", "WAITED", "FUEL", "ARGUMENT", "TRACE", "ASTAT_UNUSED", "CYCLES_OFFSET"} | {
     each for each in FLAGS if each.endswith(("S", "_COPY"))
 }
 """Slots of the state that no instruction waits for."""

@@ -11,10 +11,11 @@ from bfsim.blackfin.flow import Edge, Way
 
 
 class Event(NamedTuple):
-    """The execution of the block at `block`, or, with `taken`, the branch at its end being taken."""
+    """The execution of the block at `block`, or, with `taken`, the branch at its end being taken, or, with `along`, its being entered so."""
 
     block: int
     taken: bool = False
+    along: Edge | None = None
 
 
 Sum = Tally[Event]

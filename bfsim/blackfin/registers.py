@@ -34,12 +34,12 @@ ACCUMULATORS = ("A0", "A1")
 ACCUMULATOR_PARTS = ("A0.X", "A0.W", "A1.X", "A1.W")
 _PLAIN = tuple(each for each in ENCODED[32:] if each and each[0] != "A" and not each.startswith("CYCLES"))
 STATE = (
-    *("PC", "CLOCK", "FUEL", "ARGUMENT", "TRACE"),
+    *("PC", "CLOCK", "WAITED", "FUEL", "ARGUMENT", "TRACE"),
     *(*DATA, *POINTERS, *DAG, *ACCUMULATORS, *FLAGS, "ASTAT_UNUSED"),
     *(*_PLAIN, "CYCLES_OFFSET", "CYCLES2"),
 )
 """The registers as native code has them, each in 64 bits of the state. PC: where to start, and where it was left. CLOCK: all cycles
-so far; CYCLES_OFFSET: what CYCLES is less than CLOCK while it counts, and CYCLES itself while it does not (SYSCFG has the switch).
+so far; WAITED: those of all counts that instructions waited; CYCLES_OFFSET: what CYCLES is less than CLOCK while it counts, and CYCLES itself while it does not (SYSCFG has the switch).
 FUEL: how many
 blocks may still be run. ARGUMENT: of the event that it was left for. TRACE: where accesses are reported to (`tracing`)."""
 SLOTS = {name: slot for slot, name in enumerate(STATE)}
@@ -49,4 +49,4 @@ def width(name: str) -> int:
     """Return how many bits native code has for a register."""
     if name in FLAGS:
         return 1
-    return 64 if name in {*ACCUMULATORS, "CLOCK", "FUEL", "TRACE", "CYCLES_OFFSET"} else 32
+    return 64 if name in {*ACCUMULATORS, "CLOCK", "WAITED", "FUEL", "TRACE", "CYCLES_OFFSET"} else 32

@@ -29,14 +29,18 @@ class Stalls:
 
 def stalls(code: Code, timing: Timing) -> Stalls:
     """Return how long the instructions of code wait."""
+    jumped = {start: (Wait(),) * len(each.instructions) for start, each in code.blocks.items()}
     if not timing.interlocks:
-        return Stalls({start: (Wait(),) * len(each.instructions) for start, each in code.blocks.items()}, {})
-    carrying = [each for each in edges(code) if each.way in {Way.FALLS, Way.REPEATS}]
+        return Stalls(jumped, {})
+    waiting = {start for start in code.blocks if not timing.whole_at(start)}
+    carrying = [
+        each
+        for each in edges(code)
+        if each.way in {Way.FALLS, Way.REPEATS} and {each.source, each.target} <= waiting
+    ]
     left = _left(code, carrying, timing)
-    jumped = {
-        start: issued_in_turn(each.instructions, NOTHING, timing.interlocks)[0]
-        for start, each in code.blocks.items()
-    }
+    for start in waiting:
+        jumped[start], _ = issued_in_turn(code.blocks[start].instructions, NOTHING, timing.interlocks)
     carried = {}
     for each in carrying:
         before = left[each.source].later(fetched_anew(code.blocks[each.source], each.way, timing))

@@ -18,8 +18,10 @@ from llvmlite import ir
 from bfsim.blackfin.blocks import Block, Code
 from bfsim.blackfin.decode import Instruction
 from bfsim.blackfin.effects import I8, I32, I64, Effects, Event, Flow
+from bfsim.blackfin.flow import Edge, Way
 from bfsim.blackfin.registers import SLOTS, width
 from bfsim.blackfin.semantics import SEMANTICS
+from bfsim.blackfin.stalls import Waits, stalls
 from bfsim.blackfin.timing import Timing
 from bfsim.blackfin.tracing import Tracing
 from bfsim.blackfin.value import Value
@@ -33,11 +35,23 @@ LARGE_PROGRAM_BLOCKS = 500
 
 @dataclass(frozen=True, slots=True)
 class Counter:
-    """How often a block was executed, or, with `taken`, how often it was left by its branch; `cclk`: what each time adds."""
+    """How often a block was executed, with `taken` left by its branch, or with `along` entered that way.
+
+    `cclk`: the cycles that each time adds, without waits; `waits`: of each instruction of the block the wait that each time adds, and
+    of those along an edge the ones in place of which they are.
+    """
 
     block: Block
     cclk: int
     taken: bool = False
+    along: Edge | None = None
+    waits: Waits = ()
+    instead: Waits = ()
+
+    @property
+    def stall_cclk(self) -> int:
+        """Cycles of waits that each time adds."""
+        return sum(each.cclk for each in self.waits) - sum(each.cclk for each in self.instead)
 
 
 def is_large(code: Code) -> bool:
@@ -47,11 +61,19 @@ def is_large(code: Code) -> bool:
 
 def counters(code: Code, timing: Timing) -> list[Counter]:
     """Return the counters of code, in the order of the counts."""
-    found = [Counter(each, sum(map(timing.of, each.instructions))) for each in code.blocks.values()]
+    waits = stalls(code, timing)
+    found = [
+        Counter(each, sum(map(timing.of, each.instructions)), waits=waits.jumped[start])
+        for start, each in code.blocks.items()
+    ]
     for each in code.blocks.values():
         if each.branches:
             last = each.instructions[-1]
             found.append(Counter(each, timing.taken(last) - timing.of(last), taken=True))
+    for edge, carried in waits.carried.items():
+        found.append(
+            Counter(code.blocks[edge.target], 0, along=edge, waits=carried, instead=waits.jumped[edge.target])
+        )
     return found
 
 
@@ -79,8 +101,11 @@ class _Translation:
         self.at = {start: self._new(f"at_{start:08x}") for start in code.blocks}
         self.is_large = is_large(code)
         self.slots: dict[str, ir.Instruction] = {}
-        self.clock = _sum(self.made, [each.cclk for each in counted])
-        self.numbers = {(each.block.start, each.taken): number for number, each in enumerate(counted)}
+        self.clock = _sum(self.made, "clock", [each.cclk + each.stall_cclk for each in counted])
+        self.waited = _sum(self.made, "waited", [each.stall_cclk for each in counted])
+        self.numbers = {
+            (each.block.start, each.taken, each.along): number for number, each in enumerate(counted)
+        }
 
     def module(self) -> ir.Module:
         entry = ir.IRBuilder(self.entry)
@@ -116,24 +141,25 @@ class _Translation:
             self._burn(builder, block.start)
         flow: Flow | None = None
         cclk = 0
-        for instruction in block.instructions:
+        number = self.numbers[block.start, False, None]
+        for instruction, wait in zip(block.instructions, self.counted[number].waits, strict=True):
+            cclk += wait.cclk
             flow = self._instruction(builder, instruction, cclk)
             cclk += self.timing.of(instruction)
-        self._count(builder, block.start)
+        self._add(builder, number, I64(1))
         self._pass(builder, I64(cclk))
         if flow and flow.condition and block.branches:
             taken = flow.condition.zero_extended(64)
-            number = self.numbers[block.start, True]
+            number = self.numbers[block.start, True, None]
             self._add(builder, number, taken.ir)
             self._pass(builder, builder.mul(taken.ir, I64(self.counted[number].cclk)))
-        last = block.instructions[-1].address if block.instructions else block.start
         if flow:
-            self._flow(builder, flow, last, block.end)
+            self._flow(builder, flow, block)
         elif block.refused:
             self._event(builder, Event.ILLEGAL, I32(block.end))
         else:
-            self._loops(builder, last)
-            builder.branch(self.at[block.end])
+            self._loops(builder, block)
+            self._fall(builder, block)
 
     def _instruction(self, builder: ir.IRBuilder, instruction: Instruction, cclk: int) -> Flow | None:
         """Add an instruction that is issued `cclk` cycles after its block has begun."""
@@ -175,16 +201,16 @@ class _Translation:
         if self.tracing:
             builder.store(builder.add(builder.load(self.stamp), cclk), self.stamp)
 
-    def _flow(self, builder: ir.IRBuilder, flow: Flow, last: int, end: int) -> None:
-        """Go where an instruction says, through the end of a loop if there is one."""
+    def _flow(self, builder: ir.IRBuilder, flow: Flow, block: Block) -> None:
+        """Go where the last instruction of a block says, through the end of a loop if there is one."""
         if flow.condition is not None:
             goes, stays = self._new("goes"), self._new("stays")
             builder.cbranch(flow.condition.ir, goes, stays)
             builder.position_at_end(stays)
-            self._loops(builder, last)
-            builder.branch(self.at[end])
+            self._loops(builder, block)
+            self._fall(builder, block)
             builder.position_at_end(goes)
-        self._loops(builder, last, jumps=False)
+        self._loops(builder, block, jumps=False)
         target = flow.target.ir if isinstance(flow.target, Value) else I32(flow.target)
         if flow.event is not None:
             self._event(builder, flow.event, target)
@@ -194,9 +220,21 @@ class _Translation:
         else:
             builder.branch(self.at[flow.target])
 
-    def _loops(self, builder: ir.IRBuilder, address: int, *, jumps: bool = True) -> None:
-        """Count down the loops that end with the instruction at `address`, counter 1 first, and go back to the start of one."""
+    def _fall(self, builder: ir.IRBuilder, block: Block) -> None:
+        """Go on behind a block."""
+        self._go_along(builder, Edge(block.start, block.end, Way.FALLS))
+
+    def _go_along(self, builder: ir.IRBuilder, edge: Edge) -> None:
+        """Go from one block to another, and count the waits that this makes there."""
+        if (number := self.numbers.get((edge.target, False, edge))) is not None:
+            self._add(builder, number, I64(1))
+            self._pass(builder, I64(self.counted[number].stall_cclk))
+        builder.branch(self.at[edge.target])
+
+    def _loops(self, builder: ir.IRBuilder, block: Block, *, jumps: bool = True) -> None:
+        """Count down the loops that end with a block, counter 1 first, and go back to the start of one."""
         done = None
+        address = block.instructions[-1].address if block.instructions else block.start
         for counter in (1, 0):
             starts = self.code.loop_starts.get((address, counter))
             if starts is None:
@@ -212,7 +250,7 @@ class _Translation:
             builder.cbranch(builder.icmp_unsigned("!=", left, I32(0)), again, out)
             builder.position_at_end(again)
             if jumps:
-                self._go_to(builder, self._read(builder, f"LT{counter}"), starts)
+                self._repeat(builder, self._read(builder, f"LT{counter}"), block.start, starts)
             else:
                 builder.branch(done)
             builder.position_at_end(out)
@@ -220,12 +258,14 @@ class _Translation:
             builder.branch(done)
             builder.position_at_end(done)
 
-    def _go_to(self, builder: ir.IRBuilder, target: ir.Value, likely: set[int]) -> None:
-        """Go to a computed address, which is most likely one of a few."""
+    def _repeat(self, builder: ir.IRBuilder, target: ir.Value, source: int, likely: set[int]) -> None:
+        """Go to a computed address, which is most likely the start of one of a few loops that end with the block at `source`."""
         builder.store(target, self.slot("PC"))
         choice = builder.switch(target, self.dispatch)
         for each in sorted(likely):
-            choice.add_case(I32(each), self.at[each])
+            way = self._new("repeats")
+            choice.add_case(I32(each), way)
+            self._go_along(ir.IRBuilder(way), Edge(source, each, Way.REPEATS))
 
     def _following(self, builder: ir.IRBuilder, instruction: Instruction) -> Value:
         """Return the address of what is executed behind an instruction that does not jump: at a loop's end perhaps its start."""
@@ -238,9 +278,6 @@ class _Translation:
                 again = found.constant(1).below(left) & end.equals(instruction.address)
                 found = again.choose(start, found)
         return found
-
-    def _count(self, builder: ir.IRBuilder, start: int) -> None:
-        self._add(builder, self.numbers[start, False], I64(1))
 
     def _burn(self, builder: ir.IRBuilder, start: int) -> None:
         left = self._read(builder, "FUEL")
@@ -279,6 +316,7 @@ class _Translation:
         """Give back the registers."""
         builder = ir.IRBuilder(self.leave)
         builder.store(self._clock(builder).ir, self.slot("CLOCK"))
+        builder.store(builder.call(self.waited, [self.counts]), self.slot("WAITED"))
         for name, slot in self._copied():
             value = builder.load(slot)
             whole = value if width(name) == 64 else builder.zext(value, I64)
@@ -302,13 +340,15 @@ class _Translation:
         return builder.gep(self.state, [I64(8 * SLOTS[register])], source_etype=I8)
 
 
-def _sum(module: ir.Module, factors: list[int]) -> ir.Function:
+def _sum(module: ir.Module, name: str, factors: list[int]) -> ir.Function:
     """Add a function that returns the sum of all counts, each times its factor."""
-    function = ir.Function(module, ir.FunctionType(I64, (POINTER,)), "clock")
+    function = ir.Function(module, ir.FunctionType(I64, (POINTER,)), name)
     function.linkage = "internal"
     builder = ir.IRBuilder(function.append_basic_block())
     total = I64(0)
     for number, factor in enumerate(factors):
+        if not factor:
+            continue
         place = builder.gep(function.args[0], [I64(8 * number)], source_etype=I8)
         total = builder.add(total, builder.mul(builder.load(place, typ=I64, align=8), I64(factor)))
     builder.ret(total)

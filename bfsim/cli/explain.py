@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
 
 from bfsim.cli.options.running import simulated, takes_a_run, warn
-from bfsim.errors import ConfigError
 from bfsim.terminal import print_report
 
 if TYPE_CHECKING:
@@ -26,13 +24,7 @@ if TYPE_CHECKING:
     "as_assembly",
     is_flag=True,
     help="Print the compiler's instructions beneath the source lines, with their cycles, and what bounds each loop. Of a kernel in "
-    "Python, --profile is gcc-O2 then, or gcc-O0.",
-)
-@click.option(
-    "--toolchain",
-    metavar="FOLDER",
-    type=click.Path(path_type=Path, exists=True, file_okay=False),
-    help="With --asm, where bfin-elf-gcc is.  [default: the PATH]",
+    "Python, --profile is gcc-O2 then, gcc-O0 or gcc-adi.",
 )
 @click.pass_context
 def explain(
@@ -42,7 +34,6 @@ def explain(
     runs: bool,
     as_json: bool,
     as_assembly: bool,
-    toolchain: Path | None,
     **what: Any,
 ) -> None:
     """Print the source of KERNEL with the operations chosen for each line and their cycles.
@@ -61,9 +52,7 @@ def explain(
     if as_assembly:
         if context.get_parameter_source("profile") is ParameterSource.DEFAULT:
             what["profile"] = "gcc-O2"
-        done = _explain_code(kernel, toolchain, runs=runs, as_json=as_json, **what)
-    elif toolchain:
-        raise ConfigError("--toolchain must come with --asm, which shows a compiler's instructions")
+        done = _explain_code(kernel, runs=runs, as_json=as_json, **what)
     else:
         done = _explain_lines(kernel, runs=runs, as_json=as_json, **what)
     if done:
@@ -87,12 +76,9 @@ def _explain_lines(kernel: str, *, runs: bool, as_json: bool, **what: Any) -> Ru
     return done
 
 
-def _explain_code(
-    kernel: str, toolchain: Path | None, *, runs: bool, as_json: bool, **what: Any
-) -> RunRecord | None:
+def _explain_code(kernel: str, *, runs: bool, as_json: bool, **what: Any) -> RunRecord | None:
     """Print the instructions of a kernel; return the run, if there was one."""
     from bfsim.assembly import Counting, find_code, listed
-    from bfsim.blackfin.timing import GNU
     from bfsim.compiling.toolchain import blackfin_compiler
     from bfsim.hardware import find_profile
     from bfsim.loading import load_firmware, load_kernel
@@ -100,7 +86,7 @@ def _explain_code(
 
     found = load_kernel(kernel, what["firmware"])
     firmware = load_firmware(what["firmware"])
-    code = find_code(found, firmware, find_profile(what["profile"]).value, blackfin_compiler(toolchain), GNU)
+    code = find_code(found, firmware, find_profile(what["profile"]).value, blackfin_compiler())
     counting = Counting(code)
     done = simulated(on_call=counting.see, **what) if runs else None
     assembly = listed(code, counting.events() if done else None)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bfsim.cli.options.hardware import BOARD_OPTIONS, PROFILE_OPTION
+from bfsim.cli.options.hardware import BOARD_OPTIONS, COMPILER_OPTIONS
 from bfsim.cli.options.ldf import PREPROCESSOR_OPTIONS
 from bfsim.cli.options.sets import takes
 from bfsim.cli.options.sizes import Size
@@ -23,8 +23,7 @@ from bfsim.terminal import print_report
     show_default=True,
     help=f"Firmware to place: {' or '.join(FIRMWARE)}, which are built in, FILE.py:NAME, or PACKAGE:NAME, in the current folder first.",
 )
-@takes(BOARD_OPTIONS)
-@PROFILE_OPTION
+@takes((*BOARD_OPTIONS, *COMPILER_OPTIONS))
 @click.option(
     "--size",
     type=Size(),

@@ -26,16 +26,10 @@ from bfsim.terminal import print_report
     help="Play at most N calls of each kernel, spread evenly over the run.",
 )
 @click.option(
-    "--toolchain",
-    metavar="FOLDER",
-    type=click.Path(path_type=Path, exists=True, file_okay=False),
-    help="Where bfin-elf-gcc is, and bfin-elf-run, the GNU simulator.  [default: the PATH]",
-)
-@click.option(
     "--top", metavar="N", type=click.IntRange(min=1), default=20, show_default=True, help="Show N kernels."
 )
 @json_option("the comparison")
-def verify(calls: int, toolchain: Path | None, top: int, json_path: Path | None, **what: Any) -> None:
+def verify(calls: int, top: int, json_path: Path | None, **what: Any) -> None:
     """Run RECORDING, then play the kernels' calls once more: by GCC's code for the Blackfin.
 
     Every kernel is written as C (see `bfsim export`) and compiled by bfin-elf-gcc at the level of --profile; that of the built-in
@@ -61,7 +55,7 @@ def verify(calls: int, toolchain: Path | None, top: int, json_path: Path | None,
         require_place(json_path)
     profile = find_profile(what["profile"]).value
     level_of(profile)
-    tools = blackfin_compiler(toolchain)
+    tools = blackfin_compiler()
     sampler = Sampler(calls)
     done = simulated(on_call=sampler.see, **what)
     loaded = load_firmware(what["firmware"])

@@ -5,8 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from bfsim.blackfin.linking import Routine, link
@@ -15,10 +14,11 @@ from bfsim.blackfin.subroutines import LoadedImage
 from bfsim.compiling.recipes import Recipe, code_of
 from bfsim.compiling.toolchain import blackfin_compiler
 from bfsim.errors import KernelError
-from bfsim.kernel import Kernel, tree
+from bfsim.kernel import CompilerProfile, Kernel, tree
 from bfsim.kernel.objects.compiled import CompiledObject, compiled_object
 from bfsim.kernel.objects.places import Places, object_function
 from bfsim.kernel.objects.sources import source_of
+from bfsim.kernel.objects.timing import timing_of
 from bfsim.kernel.types import Number
 
 SOURCES = (".c", ".s", ".S")
@@ -37,17 +37,17 @@ class FileCode:
     loaded: LoadedImage
     places: Places
 
-    def compiled(self, *, traced: bool = False) -> CompiledObject:
-        """Return it ready to run; it is translated once. `traced`: its accesses to memory are reported."""
-        return self._traced if traced else self._untraced
+    _compiled: dict[tuple[str, bool], CompiledObject] = field(default_factory=dict)
 
-    @cached_property
-    def _untraced(self) -> CompiledObject:
-        return compiled_object(self.function, self.symbol, self.loaded, self.places)
-
-    @cached_property
-    def _traced(self) -> CompiledObject:
-        return compiled_object(self.function, self.symbol, self.loaded, self.places, traced=True)
+    def compiled(self, profile: CompilerProfile, *, traced: bool = False) -> CompiledObject:
+        """Return it ready to run, timed as `profile` has it; it is translated once. `traced`: its accesses to memory are reported."""
+        timing = timing_of(profile)
+        key = timing.digest, traced
+        if key not in self._compiled:
+            self._compiled[key] = compiled_object(
+                self.function, self.symbol, self.loaded, self.places, timing, traced=traced
+            )
+        return self._compiled[key]
 
 
 def file_kernel(

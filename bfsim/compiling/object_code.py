@@ -13,7 +13,7 @@ from bfsim.errors import ConfigError
 from bfsim.kernel import CompilerProfile, Kernel, keys, tree
 from bfsim.kernel.c import CProgram, Place, c_program
 
-LEVELS = {"gcc-O2": "-O2", "gcc-O0": "-O0", "gcc": "-O2"}
+LEVELS = {"gcc-O2": "-O2", "gcc-O0": "-O0", "gcc": "-O2", "gcc-adi": "-O2"}
 """What the compiler is told, for each profile that stands for it."""
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 from collections.abc import Sequence
@@ -14,7 +15,7 @@ from bfsim.errors import ConfigError
 
 GCC, SIMULATOR = "bfin-elf-gcc", "bfin-elf-run"
 CPU = ("-mcpu=bf561", "-msim")
-ADVICE = "CONTRIBUTING.md says how to build a toolchain in ten minutes, and `bfsim verify --toolchain FOLDER` takes another than the PATH's"
+ADVICE = "CONTRIBUTING.md says how to build a toolchain in ten minutes, and --toolchain FOLDER takes another than the PATH's"
 LIBRARIES = ("-lm", "-lc", "-lgcc")
 
 
@@ -77,31 +78,30 @@ class Toolchain:
         return done.stdout
 
 
-def blackfin_compiler(folder: Path | None = None) -> Toolchain | None:
-    """Find GCC for the Blackfin, and the GNU simulator if it is there: in `folder` or its `bin`, or on the PATH.
+def prefer(folder: Path) -> None:
+    """Look for the toolchain in `folder`, or its `bin`, before the PATH: in this process, and in those that it starts.
 
-    Returns None if there is no GCC on the PATH. Raises ConfigError if there is none in the `folder` that was named.
+    Raises ConfigError if GCC is not there.
     """
-    gcc, simulator = (_program(each, folder) for each in (GCC, SIMULATOR))
-    if gcc is None:
-        if folder is not None:
-            raise _missing(GCC, folder)
-        return None
-    return Toolchain((gcc, *CPU), (simulator,) if simulator else (), LIBRARIES)
+    folders = os.pathsep.join(str(each.absolute()) for each in (folder, folder / "bin"))
+    if shutil.which(GCC, path=folders) is None:
+        raise _missing(GCC, f"in {folder}")
+    os.environ["PATH"] = os.pathsep.join((folders, os.environ.get("PATH", os.defpath)))
 
 
-def blackfin_toolchain(folder: Path | None = None) -> Toolchain:
-    """Find GCC and the GNU simulator for the Blackfin, as `blackfin_compiler`. Raises ConfigError where one is missing."""
-    found = blackfin_compiler(folder)
+def blackfin_compiler() -> Toolchain | None:
+    """Find GCC for the Blackfin on the PATH, and the GNU simulator if it is there. Returns None if there is no GCC."""
+    gcc, simulator = map(shutil.which, (GCC, SIMULATOR))
+    return Toolchain((gcc, *CPU), (simulator,) if simulator else (), LIBRARIES) if gcc else None
+
+
+def blackfin_toolchain() -> Toolchain:
+    """Find GCC and the GNU simulator for the Blackfin. Raises ConfigError where one is missing."""
+    found = blackfin_compiler()
     if found is None or not found.runner:
-        raise _missing(SIMULATOR if found else GCC, folder)
+        raise _missing(SIMULATOR if found else GCC, "on the PATH")
     return found
 
 
-def _program(name: str, folder: Path | None) -> str | None:
-    return shutil.which(name, path=None if folder is None else f"{folder}:{folder / 'bin'}")
-
-
-def _missing(name: str, folder: Path | None) -> ConfigError:
-    where = "on the PATH" if folder is None else f"in {folder}"
+def _missing(name: str, where: str) -> ConfigError:
     return ConfigError(f"{name} must be {where}, but is not; {ADVICE}")

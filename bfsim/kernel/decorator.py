@@ -38,8 +38,8 @@ class ObjectCode(Protocol):
     @property
     def files(self) -> Mapping[Path, str]: ...
 
-    def compiled(self, *, traced: bool = False) -> CompiledObject:
-        """Return it ready to run; `traced`: its accesses to memory are reported."""
+    def compiled(self, profile: CompilerProfile, *, traced: bool = False) -> CompiledObject:
+        """Return it ready to run, timed as `profile` has it; `traced`: its accesses to memory are reported."""
 
 
 class RunnableCall(Protocol):
@@ -58,7 +58,7 @@ class Kernel:
     """A kernel. Calling it runs the compiled code on numpy arrays, and `cost` says the cycles of a call.
 
     `python` is the function as it was written, to be called with lists and ints: elements of numpy arrays would wrap at
-    their own width. A kernel of another language has none, but `object_code`, which runs as it is, whatever the profile.
+    their own width. A kernel of another language has none, but `object_code`, which runs as it is; the profile says how it is timed.
     """
 
     function: tree.Function
@@ -98,14 +98,14 @@ class Kernel:
         Raises KernelError where the kernel has floats and the profile has no library for them.
         """
         if self.object_code:
-            return self.object_code.compiled(traced=traced)
+            return self.object_code.compiled(profile, traced=traced)
         self._refuse_floats(profile)
         return compile_kernel(self.function, profile, traced=traced, counted=counted, checked=checked)
 
     def counters(self, profile: CompilerProfile) -> tuple[Counter, ...]:
         """Return what is counted in a run and what it costs, callees included. Raises KernelError as `compiled`."""
         if self.object_code:
-            return self.object_code.compiled().program.costs.counters
+            return self.object_code.compiled(profile).program.costs.counters
         self._refuse_floats(profile)
         return costs_of(self.function, profile).counters
 

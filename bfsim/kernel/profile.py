@@ -174,8 +174,13 @@ VDSP_O2 = CompilerProfile(
     name="vdsp-O2", optimises=True, interlocks=True, parallel_issue=True, accumulates=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]
     library=ADI, floats=ADI_FLOATS, inlines=Inlines.FILE,  # [assumed] as GCC
 )  # fmt: skip
-PROFILES = {each.name: each for each in (GCC_O0, GCC_O2, GCC, VDSP_O2)}
-RUN_AS_COMPILED = {GCC.name}
+GCC_ADI = replace(
+    GCC, name="gcc-adi", interlocks=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]
+    library=ADI, floats=ADI_FLOATS,
+)  # fmt: skip
+"""The same code on Analog Devices' documented pipeline, with their library."""
+PROFILES = {each.name: each for each in (GCC_O0, GCC_O2, GCC, GCC_ADI, VDSP_O2)}
+RUN_AS_COMPILED = {GCC.name, GCC_ADI.name}
 """Profiles whose kernels run as their compiler's own code where there is some."""
 
 

@@ -224,5 +224,5 @@ def test_a_kernel_has_a_size(tmp_path: Path) -> None:
 def test_profiles_have_names() -> None:
     """An unknown one is told what there is."""
     assert profile_named("gcc-O2") is GCC_O2
-    with pytest.raises(ConfigError, match="must be one of gcc-O0, gcc-O2, gcc, vdsp-O2, not 'icc'"):
+    with pytest.raises(ConfigError, match="must be one of gcc-O0, gcc-O2, gcc, gcc-adi, vdsp-O2, not 'icc'"):
         profile_named("icc")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
 from bfsim.errors import shown
@@ -39,11 +41,32 @@ BOARD_OPTIONS = (
     ),
     SET_OPTION,
 )
-PROFILE_OPTION = click.option(
-    "--profile",
-    metavar="NAME",
-    default="vdsp-O2",
-    show_default=True,
-    help="Compiler whose code is costed: vdsp-O2, gcc-O2 and gcc-O0 are estimates; gcc runs the code that GCC makes of the kernels, "
-    "where there is some; or one of yours, FILE.py:NAME or PACKAGE:NAME.",
+
+
+def _toolchain(_ctx: click.Context, _param: click.Parameter, folder: Path | None) -> None:
+    if folder is not None:
+        from bfsim.compiling.toolchain import prefer  # most commands need none
+
+        prefer(folder)
+
+
+COMPILER_OPTIONS = (
+    click.option(
+        "--profile",
+        metavar="NAME",
+        default="vdsp-O2",
+        show_default=True,
+        help="Compiler whose code is costed: vdsp-O2, gcc-O2 and gcc-O0 are estimates; gcc runs the code that GCC makes of the kernels, "
+        "where there is some, as the GNU simulator times it, and gcc-adi the same code as Analog Devices documents its time; or one of "
+        "yours, FILE.py:NAME or PACKAGE:NAME.",
+    ),
+    click.option(
+        "--toolchain",
+        metavar="FOLDER",
+        type=click.Path(path_type=Path, exists=True, file_okay=False),
+        callback=_toolchain,
+        is_eager=True,
+        expose_value=False,
+        help="Where bfin-elf-gcc is, and bfin-elf-run, the GNU simulator.  [default: the PATH]",
+    ),
 )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bfsim.cli.options.hardware import BOARD_OPTIONS, PROFILE_OPTION
+from bfsim.cli.options.hardware import BOARD_OPTIONS, COMPILER_OPTIONS
 from bfsim.cli.options.ldf import PREPROCESSOR_OPTIONS
 from bfsim.cli.options.sets import takes
 from bfsim.errors import ConfigError
@@ -39,7 +39,7 @@ _RUN_PARAMETERS = (
         help=f"Linker description file that places buffers and code, or a shipped one: {', '.join(LDFS)}.  [default: the board's]",
     ),
     *PREPROCESSOR_OPTIONS,
-    PROFILE_OPTION,
+    *COMPILER_OPTIONS,
     click.option("--frames", metavar="N", type=click.IntRange(min=1), help="Stop after N frames."),
     click.option(
         "--feed",

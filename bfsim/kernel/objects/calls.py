@@ -72,9 +72,11 @@ class ObjectCall:
         for position, is_float in self._numbers:
             value = arguments[position]
             self._words[position] = BITS.unpack(FLOAT.pack(value))[0] if is_float else int(value)
-        cclk = self._call.run()
+        issue_cclk, stall_cclk = self._call.run()
         value = None if self._result is None else _value(self._call.result, self._result)
-        return Work(cclk, 0, value, self._access_trace.take_count() if self._access_trace else 0)
+        return Work(
+            issue_cclk, stall_cclk, value, self._access_trace.take_count() if self._access_trace else 0
+        )
 
 
 def _value(word: int, kind: Number) -> float:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from bfsim.blackfin import translate
 from bfsim.blackfin.pointers import arrays_accessed
 from bfsim.blackfin.subroutines import LoadedImage, Subroutine
-from bfsim.blackfin.timing import GNU, Timing
+from bfsim.blackfin.timing import Timing
 from bfsim.blackfin.tracing import Tracing
 from bfsim.kernel import keys, tree
 from bfsim.kernel.access_trace import WRITE
@@ -54,7 +54,7 @@ def compiled_object(
     symbol: str,
     loaded: LoadedImage,
     places: Places,
-    timing: Timing = GNU,
+    timing: Timing,
     *,
     traced: bool = False,
 ) -> CompiledObject:
@@ -62,7 +62,8 @@ def compiled_object(
 
     With `traced` its accesses to memory are reported.
     """
-    about = loaded.image.digest, symbol, f"{timing!r} {traced}"
+    timing = timing.placed(loaded.image)
+    about = loaded.image.digest, symbol, f"{timing.digest} {traced}"
     subroutine = loaded.subroutine(symbol, timing, keys.object_key(*about, "native code"))
     words = [each.name if isinstance(each.type, ArrayType) else "" for each in function.parameters]
     arrays = (*function.array_names, NO_ARRAY) if traced else ()

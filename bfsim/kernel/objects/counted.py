@@ -6,7 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from bfsim.blackfin import translate
 from bfsim.blackfin.blocks import CALLS, DIRECT, Code, does
+from bfsim.blackfin.decode import Instruction
+from bfsim.blackfin.interlocks import Wait
 from bfsim.blackfin.pointers import Accesses
+from bfsim.blackfin.stalls import Waits
 from bfsim.blackfin.timing import Timing
 from bfsim.kernel.call_paths import RoutineCall
 from bfsim.kernel.counters import Counter
@@ -38,14 +41,16 @@ def _counter(
     traced: Sequence[str],
 ) -> Counter:
     block = each.block
-    charges = [
-        Charge(operation_of(one), places.line_of(one.address), timing.of(one)) for one in block.instructions
-    ]
     routine, label = places.function_at(block.start).symbol, f"{block.start:08x}"
     if each.taken:
-        last = charges[-1]
+        (last,) = _charges(block.instructions[-1:], (Wait(),), places, timing)
         taken = Charge(TAKEN[last.op], last.line, timing.taken(block.instructions[-1]))
         return Counter(routine, label, "taken", None, instead((taken,), (last,)), ())
+    charges = _charges(block.instructions, each.waits, places, timing)
+    if each.along:
+        replaced = _charges(block.instructions, each.instead, places, timing)
+        way = f"from {each.along.source:08x}"
+        return Counter(routine, label, way, None, merged(instead(charges, replaced)), ())
     lines = dict.fromkeys(places.line_of(one.address) for one in block.instructions if accesses_memory(one))
     accesses = (
         *(Access(array, False, label, 0, line, may_be=True) for line in lines for array in traced),  # noqa: FBT003
@@ -60,6 +65,16 @@ def _counter(
     enters = (Entrance(begins, SourceLine(begins, 0)),) if begins else ()
     return Counter(
         routine, label, None, None, merged(charges), accesses, block.end - block.start, enters=enters
+    )
+
+
+def _charges(
+    instructions: Sequence[Instruction], waits: Waits, places: Places, timing: Timing
+) -> tuple[Charge, ...]:
+    """What instructions cost that wait so long."""
+    return tuple(
+        Charge(operation_of(each), places.line_of(each.address), timing.of(each), wait.cclk)
+        for each, wait in zip(instructions, waits, strict=True)
     )
 
 
