@@ -56,7 +56,7 @@ def explain(
 
 def _explained(kernel: Kernel, build: Build, records: Sequence[KernelRecord] | None) -> Explanation:
     function = kernel.function
-    is_object = bool(kernel.object_code) or function in build.objects
+    is_object = build.has_code(kernel)
     counters = [each for each in build.counters(kernel) if each.routine == function.symbol]
     mine = None if records is None else _of_kernel(function, records)
     used = {each.line.routine for counter in counters for each in counter.charges}

@@ -138,7 +138,7 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
         "ldf_digest"
     ] != identity.ldf_digest:
         raise WorkError(
-            f"{path} must be played with the LDF that it was recorded with, where one of the two has caches or code outside of L1: "
+            f"{path} must be played with the LDF that it was recorded with, where one of the two has caches, or code or a stack outside of L1: "
             "what they fetch depends on where everything lies; record it with this LDF"
         )
     if recorded.obstacles:

@@ -201,6 +201,7 @@ MACHINE = {
     "memories": {"program"},
     "named_kernels": set(),
     "code": {"memories", "named_kernels", "program"},
+    "stack": {"memories"},
     "bus": {"memories", "simulation", "timeline"},
     "owner_costs": set(),
     "calls": {"bus", "memories", "owner_costs"},

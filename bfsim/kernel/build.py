@@ -36,6 +36,10 @@ class Build:
     code: str = ""
     digest: str = ""
 
+    def has_code(self, kernel: Kernel) -> bool:
+        """Whether a kernel runs as object code."""
+        return kernel.object_code is not None or kernel.function in self.objects
+
     def compiled(self, kernel: Kernel, *, traced: bool = False) -> CompiledKernel | CompiledObject:
         """Return a kernel ready to run; `traced`: its accesses outside L1 are reported. Raises KernelError as `Kernel.compile`."""
         if kernel.function in self.objects:

@@ -123,17 +123,18 @@ class Kernel:
         totals: NDArray[np.int64],
         access_trace: AccessTrace | None = None,
         first_site: int = 0,
+        stack: NDArray[np.uint8] | None = None,
     ) -> RunnableCall:
         """Bind `arrays`, in the order of the array parameters. Raises KernelError when one does not fit its type.
 
-        `first_site`: what the access trace calls the first site of the program.
+        `first_site`: what the access trace calls the first site of the program. `stack`: memory whose accesses object code reports, too.
         """
         for position, array in zip(self.array_positions, arrays, strict=True):
             self.check_array(position, array)
         if not isinstance(code, CompiledKernel):
             from bfsim.kernel.objects.calls import ObjectCall  # most firmware is Python
 
-            return ObjectCall(code, arrays, self.check, totals, access_trace, first_site)
+            return ObjectCall(code, arrays, self.check, totals, access_trace, first_site, stack)
         self._check_overlaps(arrays)
         slots = self._slots()
         bound = [(slots[position], each) for position, each in zip(self.array_positions, arrays, strict=True)]

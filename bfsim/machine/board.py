@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import partial
 
+import numpy as np
+from numpy.typing import NDArray
+
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.build import ESTIMATED, Build
@@ -40,6 +43,7 @@ from bfsim.machine.program import Firmware, FrameSize, View
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.spi.device import LARGEST_MESSAGE_BYTES, SpiDevice, notes_of
 from bfsim.machine.spi.spi import Spi
+from bfsim.machine.stack import stack_outside_l1
 from bfsim.machine.symbols import PROCESSORS
 from bfsim.trace import BoardRecord, FrameRecord
 
@@ -109,9 +113,10 @@ class Board:
 
     @property
     def is_bound_to_placement(self) -> bool:
-        """Whether what is accessed depends on where everything lies: where there is a cache, or code outside of L1."""
+        """Whether what is accessed depends on where everything lies: where there is a cache, or code or a stack outside of L1."""
         return any(each.data or each.code for each in self._caches.values()) or any(
-            self._code_outside_l1(core) for core in self.spec.chip.cores
+            self._code_outside_l1(core) or self._stack_outside_l1(core) is not None
+            for core in self.spec.chip.cores
         )
 
     def run(
@@ -189,11 +194,15 @@ class Board:
             SubBanks(chip, self._memories, self._bus.words),
             self._bus.owners,
             Ledger(partial(self._bus.logs.stalls_at_sites, number)),
+            stack=self._stack_outside_l1(name),
             before_call=self.before_call,
         )
 
     def _code_outside_l1(self, core: str) -> dict[str, tuple[int, int]]:
         return code_outside_l1(self.link_map, PROCESSORS[core], self.spec.chip.regions, self._memories)
+
+    def _stack_outside_l1(self, core: str) -> NDArray[np.uint8] | None:
+        return stack_outside_l1(self.link_map, PROCESSORS[core], self.spec.chip.regions, self._memories)
 
     def _core(
         self,

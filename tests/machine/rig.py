@@ -20,6 +20,7 @@ from bfsim.chip.sensors import LEFT_CAMERA
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import Kernel
 from bfsim.kernel import access_trace as log
+from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
 from bfsim.machine.board import Board
 from bfsim.machine.bus import state as w
@@ -118,12 +119,18 @@ def every_frame(body: Callable[..., Generator[Any, Any, Any]]) -> Main:
 
 
 def board_of(
-    program: Firmware, size: FrameSize = SIZE, *, board: str = "cm-bf561", feed: Feed = Feed.DEMAND
+    program: Firmware,
+    size: FrameSize = SIZE,
+    *,
+    board: str = "cm-bf561",
+    feed: Feed = Feed.DEMAND,
+    build: Build = ESTIMATED,
+    ldf: LinkerScript | None = None,
 ) -> Board:
-    """Link `program` with the thesis's LDF and put it on a board."""
+    """Link `program`, with the thesis's LDF if no other, and put it on a board."""
     spec = replace(board_named(board), cameras=(STEADY, STEADY))
-    link_map = link(thesis_ldf(), symbols_of(program, size), spec.chip.regions)
-    return Board(spec, program, size, link_map, feed=feed)
+    link_map = link(ldf or thesis_ldf(), symbols_of(program, size, build), spec.chip.regions)
+    return Board(spec, program, size, link_map, feed=feed, build=build)
 
 
 def load(main_a: Main, main_b: Main = see_all, size: FrameSize = SIZE, **how: Any) -> Board:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.blackfin.calling import BoundCall, Counts
-from bfsim.blackfin.subroutines import placed
+from bfsim.blackfin.subroutines import STACK, STACK_BYTES, placed
 from bfsim.blackfin.tracing import Followed, block_of
 from bfsim.kernel import tree
 from bfsim.kernel.access_trace import AccessTrace
@@ -29,10 +29,12 @@ class ObjectCall:
         totals: NDArray[np.int64],
         access_trace: AccessTrace | None = None,
         first_site: int = 0,
+        stack: NDArray[np.uint8] | None = None,
     ) -> None:
         """`arrays`: in the order of the array parameters. `check` raises the error when the arguments of a call are wrong.
 
-        `access_trace` is told of accesses to arrays, by traced code; it calls the code's first site `first_site`.
+        `access_trace` is told of accesses to arrays, by traced code; it calls the code's first site `first_site`. `stack`: where the
+        stack is, if its accesses are told, too.
         """
         function = code.function
         self._check, self._result, self._access_trace = check, function.result, access_trace
@@ -43,13 +45,13 @@ class ObjectCall:
         lengths = [len(array) for name, array in named if name in measured]
         count = len(function.parameters)
         counts = Counts(totals[: len(code.order)], code.order)
-        trace = access_trace and block_of(
-            access_trace.address(),
-            [
-                Followed(address, array.nbytes, array.ctypes.data, first_site + number)
-                for number, (address, array) in enumerate(zip(addresses, arrays, strict=True))
-            ],
-        )
+        followed = [
+            Followed(address, array.nbytes, array.ctypes.data, first_site + number)
+            for number, (address, array) in enumerate(zip(addresses, arrays, strict=True))
+        ]
+        if stack is not None:
+            followed.append(_followed_stack(stack, first_site + len(arrays)))
+        trace = access_trace and block_of(access_trace.address(), followed)
         self._call = BoundCall(code.subroutine, count + len(lengths), parts, counts, trace)
         self._words = self._call.arguments
         self._words[count : count + len(lengths)] = lengths
@@ -77,6 +79,12 @@ class ObjectCall:
         return Work(
             issue_cclk, stall_cclk, value, self._access_trace.take_count() if self._access_trace else 0
         )
+
+
+def _followed_stack(stack: NDArray[np.uint8], site: int) -> Followed:
+    """The stack from its top, where both begin, as far down as both reach."""
+    nbytes = min(STACK_BYTES, len(stack))
+    return Followed(STACK + STACK_BYTES - nbytes, nbytes, stack[len(stack) - nbytes :].ctypes.data, site)
 
 
 def _value(word: int, kind: Number) -> float:

@@ -93,8 +93,10 @@ class CallCache:
         owners: MemoryOwners,
         ledger: Ledger,
         *,
+        stack: NDArray[np.uint8] | None = None,
         before_call: tuple[BeforeCall, ...],
     ) -> None:
+        """`stack`: the memory of the core's stack if it is outside of L1."""
         self._core = core
         self._build = build
         self._access_trace = access_trace
@@ -103,6 +105,7 @@ class CallCache:
         self._before_call = before_call
         self._owners = owners
         self._ledger = ledger
+        self._stack = stack
         self._groups: dict[tuple[str, Kernel, tuple[int, ...]], CallGroup] = {}
         self._in_stage: dict[str, StageGroups] = {}
         self._calls: dict[str, dict[tuple[Kernel, object], BoundCall]] = {}
@@ -168,13 +171,15 @@ class CallCache:
                     f"{name} must be a row of a placed buffer, not {row!r} (kernel {kernel.name}, {kernel.place})"
                 )
             rows.append(row)
-        traced = sum(map(self._is_traced, rows)) > 0  # of every row, since some cannot be reached at all
+        outside = sum(map(self._is_traced, rows))  # of every row, since some cannot be reached at all
+        stack = self._stack if self._build.has_code(kernel) else None
+        traced = outside > 0 or stack is not None
         group = self._group(kernel, tuple(self._owners.of(each.offset) for each in rows), traced)
         for seen, row in zip(group.subbanks, rows, strict=True):
             seen.update(self._subbanks.of(row))
         access_trace = self._access_trace if traced else None
         call: BoundCall = kernel.prepare(
-            group.code, [each.array for each in rows], group.totals, access_trace, group.first_site
+            group.code, [each.array for each in rows], group.totals, access_trace, group.first_site, stack
         )
         if group.fetched:
             call = FetchedCall(call, group, self._code, self._access_trace)
