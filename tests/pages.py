@@ -7,12 +7,15 @@ what they print beneath: those lines must appear in that order, and a line `...`
 
 from __future__ import annotations
 
+import math
+import os
 import re
 import shlex
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator, Mapping
-from contextlib import chdir
+from contextlib import chdir, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -71,21 +74,56 @@ def blocks_of(page: Path) -> list[Block]:
     ]
 
 
-def play(block: Block, folder: Path, environment: Mapping[str, str]) -> None:
-    """Do in `folder` what the reader of a block would do; AssertionError where it fails or prints something else."""
-    if block.title:
-        file = folder / block.title
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(block.text)
-    elif block.language == "console":
-        for command, printed in block.commands():
-            if PLAIN.fullmatch(command):
-                output = _called(command, folder, environment)
-            else:
-                output = _run(["bash", "-c", f"set -euo pipefail\n{command}"], folder, environment)
-            _compare(printed, output, f"{command} (line {block.line})")
-    elif block.language == "python":
-        _execute(block, folder)
+@contextmanager
+def reader() -> Iterator[Reader]:
+    """Yield somebody with an empty folder and an installed `bfsim`, also where only the sources are on the path."""
+    with tempfile.TemporaryDirectory() as temporary:
+        home = Path(temporary)
+        command = home / "bin" / "bfsim"
+        command.parent.mkdir()
+        command.write_text(f'#!/bin/sh\nexec {sys.executable} -m bfsim "$@"\n')
+        command.chmod(0o755)
+        folder = home / "reader"
+        folder.mkdir()
+        environment = {
+            **os.environ,
+            "PATH": f"{command.parent}:{Path(sys.executable).parent}:{os.environ['PATH']}",
+            "PYTHONPATH": f"{ROOT}:{ROOT / 'firmware'}",
+            "COLUMNS": "80",
+        }
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(
+                "bfsim.cli.sweep.NOTE_S", math.inf
+            )  # notes by the clock, which a slow machine prints
+            yield Reader(folder, environment)
+
+
+@dataclass(frozen=True, slots=True)
+class Reader:
+    """Who does what a page says, block by block, in `folder`."""
+
+    folder: Path
+    environment: Mapping[str, str]
+
+    def play(self, block: Block) -> Iterator[tuple[str, list[str], str]]:
+        """Do what a block says; yield each command with the lines that it should print and what it prints.
+
+        Raises AssertionError where something fails.
+        """
+        if block.title:
+            file = self.folder / block.title
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(block.text)
+        elif block.language == "console":
+            for command, printed in block.commands():
+                yield command, printed, self._output_of(command)
+        elif block.language == "python":
+            _execute(block, self.folder)
+
+    def _output_of(self, command: str) -> str:
+        if PLAIN.fullmatch(command):
+            return _called(command, self.folder, self.environment)
+        return _run(["bash", "-c", f"set -euo pipefail\n{command}"], self.folder, self.environment)
 
 
 def _called(command: str, folder: Path, environment: Mapping[str, str]) -> str:
@@ -121,7 +159,7 @@ def _run(command: list[str], folder: Path, environment: Mapping[str, str]) -> st
     return done.stdout
 
 
-def _compare(printed: list[str], output: str, what: str) -> None:
+def compare(printed: list[str], output: str, what: str) -> None:
     """Raise AssertionError unless the lines are printed in their order; only `...` stands for lines left out."""
     rest = [line.rstrip() for line in output.splitlines() if line.strip()]
     may_skip = False

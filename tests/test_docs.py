@@ -2,38 +2,21 @@
 
 from __future__ import annotations
 
-import math
-import os
-import sys
 from pathlib import Path
 
 import pytest
 
-from tests.pages import PAGES, ROOT, blocks_of, play
+from tests.pages import PAGES, ROOT, blocks_of, compare, reader
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_the_blocks_of_a_page_run_one_after_the_other(
-    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_blocks_of_a_page_run_one_after_the_other(page: Path) -> None:
     """Files are written and commands run in an empty folder, as the reader of the page would do it."""
-    monkeypatch.setattr("bfsim.cli.sweep.NOTE_S", math.inf)  # notes by the clock, which a slow machine prints
-    tools = Path(sys.executable).parent
-    command = tmp_path / "bin" / "bfsim"  # also where only the sources are on the path
-    command.parent.mkdir()
-    command.write_text(f'#!/bin/sh\nexec {sys.executable} -m bfsim "$@"\n')
-    command.chmod(0o755)
-    folder = tmp_path / "reader"
-    folder.mkdir()
-    environment = {
-        **os.environ,
-        "PATH": f"{command.parent}:{tools}:{os.environ['PATH']}",
-        "PYTHONPATH": f"{ROOT}:{ROOT / 'firmware'}",
-        "COLUMNS": "80",
-    }
-    for block in blocks_of(page):
-        if not block.runner:
-            play(block, folder, environment)
+    with reader() as somebody:
+        for block in blocks_of(page):
+            if not block.runner:
+                for command, printed, output in somebody.play(block):
+                    compare(printed, output, f"{command} (line {block.line})")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))

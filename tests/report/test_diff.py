@@ -107,8 +107,8 @@ def test_a_line_that_takes_longer_is_named_with_its_cause() -> None:
     assert found.cclk == 300
     assert leaves(found) == {"operations: 2 → 5 cycles x 100": 300}
     assert reason(found) == (
-        "The largest part, in cycles of both cores: Blur +300; in it blur (mine.py:10) +300; in it line 12 +300; "
-        "in it operations: 2 → 5 cycles x 100 +300."
+        "The largest part, in cycles of both cores: Blur +300; in it blur (mine.py:10) +300; in it line 12 +300 "
+        "(operations: 2 → 5 cycles x 100)."
     )
 
 

@@ -53,8 +53,15 @@ def work(difference: Difference) -> str:
 
 def reason(difference: Difference) -> str:
     """Say where the largest contribution is, from the stage down to the cause; nothing where there is no difference."""
-    parts = [f"{_named(each)} {counted(each.cclk, sign=True)}" for each in _largest(difference.stages)]
-    return f"The largest part, in cycles of both cores: {'; in it '.join(parts)}." if parts else ""
+    parts = [*_largest(difference.stages)]
+    places = [each for each in parts if each.kind is not Kind.CAUSE]
+    if not places:
+        return ""
+    told = "; in it ".join(f"{_named(each)} {counted(each.cclk, sign=True)}" for each in places)
+    for cause in parts[len(places) :]:
+        whole = cause.cclk == places[-1].cclk
+        told += f" ({cause.name})" if whole else f" ({cause.name} {counted(cause.cclk, sign=True)})"
+    return f"The largest part, in cycles of both cores: {told}."
 
 
 def _named(contribution: Contribution) -> str:
