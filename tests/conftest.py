@@ -15,6 +15,9 @@ from hypothesis import settings
 settings.register_profile("bfsim", deadline=None)  # the first example compiles kernels, and machines are busy
 settings.load_profile("bfsim")
 
+WHOLE_COMMANDS = (Path(__file__).parent, Path(__file__).parent / "cli")
+"""Folders of tests that do what users do."""
+
 
 @pytest.fixture(scope="session", autouse=True)
 def no_terminal() -> None:
@@ -24,7 +27,7 @@ def no_terminal() -> None:
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the tests of whole commands, the longest ones: at the end no core then waits for the other."""
-    items.sort(key=lambda item: item.path.parent != Path(__file__).parent)
+    items.sort(key=lambda item: item.path.parent not in WHOLE_COMMANDS)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

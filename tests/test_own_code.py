@@ -33,7 +33,7 @@ FEW_CALLED = ("suppress_row", "gauss3_row", "clear_segments")
 @pytest.fixture(scope="module")
 def seen() -> dict[str, list[SeenFrame]]:
     """What each profile saw."""
-    return {"gcc": [], "gcc-O2": []}
+    return {"gcc": [], "vdsp-O2": []}
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +54,7 @@ def runs(seen: dict[str, list[SeenFrame]], sampler: Sampler) -> dict[str, Run]:
         profile: simulate(
             frames=1, profile=profile, on_seen=seen[profile].append, on_call=see if profile == "gcc" else None
         )
-        for profile in ("gcc", "gcc-O2")
+        for profile in ("gcc", "vdsp-O2")
     }
 
 
@@ -62,14 +62,14 @@ def test_it_sees_and_publishes_what_the_estimated_run_does(
     runs: dict[str, Run], seen: dict[str, list[SeenFrame]]
 ) -> None:
     """Bit for bit; only cycles differ."""
-    assert pickle.dumps(seen["gcc"]) == pickle.dumps(seen["gcc-O2"])
-    exact, estimated = ([each.results for each in runs[name].frames] for name in ("gcc", "gcc-O2"))
+    assert pickle.dumps(seen["gcc"]) == pickle.dumps(seen["vdsp-O2"])
+    exact, estimated = ([each.results for each in runs[name].frames] for name in ("gcc", "vdsp-O2"))
     assert exact == estimated
     calls = [
         {(each.core, each.stage, each.path[0]) for each in done.paths if each.calls} for done in runs.values()
     ]
     assert calls[0] == calls[1]
-    assert runs["gcc"].frames[0].cores[0].end_cclk != runs["gcc-O2"].frames[0].cores[0].end_cclk
+    assert runs["gcc"].frames[0].cores[0].end_cclk != runs["vdsp-O2"].frames[0].cores[0].end_cclk
 
 
 def test_each_call_takes_the_cycles_that_verify_has(runs: dict[str, Run], sampler: Sampler) -> None:
@@ -99,7 +99,7 @@ def test_every_cycle_has_an_owner(runs: dict[str, Run]) -> None:
 
 def test_the_run_says_whose_code_and_for_how_much(runs: dict[str, Run]) -> None:
     """In its identity, by kernel, and in words; an estimated run says nothing."""
-    exact, estimated = runs["gcc"], runs["gcc-O2"]
+    exact, estimated = runs["gcc"], runs["vdsp-O2"]
     assert (exact.identity.code, len(exact.identity.code_digest)) == ("GCC 12.2.0 -O2, timing gnu", 64)
     assert (estimated.identity.code, estimated.identity.code_digest) == ("", "")
     assert all(0 <= each.object_cclk <= each.issue_cclk for each in exact.kernels)

@@ -50,9 +50,9 @@ def explain(
     """
     runs = runs or what["recording"] is not None
     if as_assembly:
-        if context.get_parameter_source("profile") is ParameterSource.DEFAULT:
-            what["profile"] = "gcc-O2"
-        done = _explain_code(kernel, runs=runs, as_json=as_json, **what)
+        is_asked = context.get_parameter_source("profile") is not ParameterSource.DEFAULT
+        compiler = what["profile"] if is_asked else "gcc-O2"
+        done = _explain_code(kernel, compiler, runs=runs, as_json=as_json, **what)
     else:
         done = _explain_lines(kernel, runs=runs, as_json=as_json, **what)
     if done:
@@ -76,8 +76,8 @@ def _explain_lines(kernel: str, *, runs: bool, as_json: bool, **what: Any) -> Ru
     return done
 
 
-def _explain_code(kernel: str, *, runs: bool, as_json: bool, **what: Any) -> RunRecord | None:
-    """Print the instructions of a kernel; return the run, if there was one."""
+def _explain_code(kernel: str, compiler: str, *, runs: bool, as_json: bool, **what: Any) -> RunRecord | None:
+    """Print the instructions that a compiler makes of a kernel; return the run, if there was one, which is that of the profile."""
     from bfsim.assembly import Counting, find_code, listed
     from bfsim.compiling.toolchain import blackfin_compiler
     from bfsim.hardware import find_profile
@@ -86,7 +86,7 @@ def _explain_code(kernel: str, *, runs: bool, as_json: bool, **what: Any) -> Run
 
     found = load_kernel(kernel, what["firmware"])
     firmware = load_firmware(what["firmware"])
-    code = find_code(found, firmware, find_profile(what["profile"]).value, blackfin_compiler())
+    code = find_code(found, firmware, find_profile(compiler).value, blackfin_compiler())
     counting = Counting(code)
     done = simulated(on_call=counting.see, **what) if runs else None
     assembly = listed(code, counting.events() if done else None)

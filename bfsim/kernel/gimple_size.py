@@ -7,10 +7,12 @@ count one; phis and widenings are free. The size of 230 routines was 12 % off on
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import json
+from dataclasses import asdict, dataclass
 from functools import cache, cached_property
 
-from bfsim.kernel import generic, tree
+from bfsim import store
+from bfsim.kernel import generic, keys, tree
 from bfsim.kernel.emit import emit_alone
 from bfsim.kernel.ir_text import Instruction, read_module
 from bfsim.kernel.loops import ControlFlow, pointee_nbytes
@@ -48,7 +50,18 @@ class Estimate:
 
 @cache
 def estimate(function: tree.Function) -> Estimate:
-    """Estimate one kernel, nothing inlined into it."""
+    """Estimate one kernel, nothing inlined into it, or take what was estimated from the cache on disk: profiles and programs share it."""
+    key = keys.estimate_key(function)
+    kept = store.load(key)
+    if kept is not None:
+        found = json.loads(kept)
+        return Estimate(found["size"], found["time"], tuple(CallSite(**each) for each in found["calls"]))
+    made = _estimated(function)
+    store.save(key, json.dumps(asdict(made), separators=(",", ":")).encode())
+    return made
+
+
+def _estimated(function: tree.Function) -> Estimate:
     module = generic.parsed(emit_alone(function))
     generic.run(EARLY_PASSES, module)
     (routine,) = read_module(str(module))

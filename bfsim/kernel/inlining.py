@@ -77,7 +77,7 @@ class _Node:
 @cache
 def decisions(function: tree.Function, profile: CompilerProfile) -> tuple[Decision, ...]:
     """Return what becomes of the calls in `function` and in the kernels that it calls, callers in the order of their symbols."""
-    if not profile.optimises or profile.inlines is Inlines.NOTHING:
+    if not profile.optimises or profile.inlines is Inlines.NOTHING or not function.callees():
         return ()
     within = {each.symbol for each in (*function.callees(), function)}
     kernels = {each.symbol: each for each in compiled_with(function, profile)}

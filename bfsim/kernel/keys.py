@@ -21,6 +21,12 @@ def key(function: tree.Function, profile: CompilerProfile, variant: str) -> str:
     return hashlib.sha256(f"{variant}\0{_source(function, profile)}".encode()).hexdigest()
 
 
+def estimate_key(function: tree.Function) -> str:
+    """Digest of all that the estimate of `function` by itself depends on, in whatever profile and program."""
+    parts = ("estimate", tools(), *map(_text, (function, *function.callees())))
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
 def program_key(functions: Iterable[tree.Function], entries: Iterable[str]) -> str:
     """Digest of all that the C of kernels depends on; `entries`: symbols of those that something else than kernels calls."""
     rows = sorted((each.file, each.first_line, each.source, each.text) for each in functions)

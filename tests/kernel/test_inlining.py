@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from bfsim.explain import explain
-from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, CompilerProfile, Kernel
+from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2, CompilerProfile, Kernel, gimple_size
 from bfsim.kernel.inlining import Decision, Why, decisions
 from bfsim.kernel.profile import Inlines
 from tests.kernel.modules import import_text
@@ -181,3 +181,18 @@ def test_the_explanation_says_what_became_of_each_call(tmp_path: Path) -> None:
     assert not any("total" in each.text for each in found.lines)
     bytes_of = sum(each.nbytes for each in top.counters(GCC_O2))
     assert found.code_bytes == bytes_of
+
+
+def test_an_estimate_is_made_once_for_all_programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The cache has what another process would estimate again, to the last bit; another text is estimated by itself."""
+    monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path / "cache"))
+    text = LARGE.format(name="large") + SMALL + TOP.format(expression="large(a, i) + twice(i)")
+    again = gimple_size.estimate.__wrapped__  # as in a process that has estimated nothing
+    top = kernels(text, tmp_path).top.function
+    made = again(top)
+    assert {each.callee.rpartition("_")[2] for each in made.calls} == {"large", "twice"}
+    estimated = []
+    monkeypatch.setattr(gimple_size, "_estimated", lambda function: estimated.append(function) or made)
+    changed = kernels(text.replace("s = 0", "s = 1"), tmp_path).top.function
+    assert [again(each) for each in (top, changed)] == [made, made]
+    assert estimated == [changed]

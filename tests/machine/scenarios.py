@@ -180,5 +180,7 @@ def record_grants() -> list[tuple[int, int]]:
 
 if __name__ == "__main__":
     noted = record_grants()
-    left = Scene(Random(int(sys.argv[1])), plain_weave).play()
-    print(json.dumps({"left": left, "grants": noted}))  # noqa: T201
+    for seed in map(int, sys.argv[1:]):
+        left = Scene(Random(seed), plain_weave).play()
+        print(json.dumps({"seed": seed, "left": left, "grants": noted}))  # noqa: T201
+        noted.clear()
