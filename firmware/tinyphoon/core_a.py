@@ -12,7 +12,7 @@ from tinyphoon.stages.object_history import follow_area
 from tinyphoon.stages.stereo_edges import stereo_edges
 from tinyphoon.stages.stereo_lines import stereo_lines
 from tinyphoon.strategy.orders import Orders, halvings_of, read_mode, see_by
-from tinyphoon.strategy.report import report
+from tinyphoon.strategy.report import Depth, report
 
 
 def core_a(core: Core, steps: Steps = PLAIN) -> Generator[Any, Any, None]:
@@ -32,11 +32,12 @@ def core_a(core: Core, steps: Steps = PLAIN) -> Generator[Any, Any, None]:
         yield from core.wait("core B is done")
         with core.stage("Line detection"):
             vote = yield from stereo_lines(core, found.frame, found.lines, mode.stereo_lines)
-            yield from stereo_edges(core, found.frame, mode.stereo_edges, vote)
-            yield from vote.close()
+            edges_3d = yield from stereo_edges(core, found.frame, mode.stereo_edges, vote)
+            lines_3d = yield from vote.close()
         with core.stage("Object detection"):
             yield from follow_area(core, area, halvings_of(core, frame))
             yield from object_detection(core, found.frame, mode.objects)
         yield from orders.take()  # for the next frame; core B reads them when core A is done
         yield from core.post("core A is done")
-        yield from report(core, frame, area, orders.close())
+        depth = Depth(lines_3d=lines_3d, edges_3d=edges_3d, limits=mode.report)
+        yield from report(core, frame, area, orders.close(), depth)

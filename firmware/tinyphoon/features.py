@@ -16,7 +16,7 @@ from tinyphoon.stages.edge_detection import EdgeThresholds, edge_detection
 from tinyphoon.stages.line_detection import LineScan, line_detection, scan_by_labels
 from tinyphoon.stages.line_refinement import line_refinement
 from tinyphoon.stages.object_detection import Outlines
-from tinyphoon.stages.open_closing import open_closing
+from tinyphoon.stages.open_closing import NoiseRemoval, open_closing
 from tinyphoon.stages.rectangle_detection import rectangle_detection
 from tinyphoon.stages.rectification import rectification
 from tinyphoon.strategy.modes import Mode
@@ -37,7 +37,7 @@ class Steps:
     """The steps that take most of a frame: plain ones, or others with the same results, or nearly so."""
 
     edge_detection: Callable[[Core, Frame, EdgeThresholds, Area], Generator[Any, Any, int]] = edge_detection
-    open_closing: Callable[[Core, Frame], Generator[Any, Any, None]] = open_closing
+    open_closing: Callable[[Core, Frame, NoiseRemoval], Generator[Any, Any, None]] = open_closing
     blob_detection: Callable[[Core, Frame, BlobThresholds], Generator[Any, Any, int]] = blob_detection
     line_scan: LineScan = scan_by_labels
 
@@ -55,7 +55,7 @@ def features(
         yield from join_groups(core, mode.blobs.colour_groups)
         edges = yield from steps.edge_detection(core, frame, mode.edges, area)
     with core.stage("Open & closing"):
-        yield from steps.open_closing(core, frame)
+        yield from steps.open_closing(core, frame, mode.noise)
     with core.stage("Blob detection"):
         blobs = yield from steps.blob_detection(core, frame, mode.blobs)
     with core.stage("Line detection"):

@@ -111,8 +111,11 @@ def tests_of(
     if not box["colours"] & model.colours:
         return 0
     passed = 1
-    for bit, test in ((2, dimension), (4, area)):
-        if not test(box, model, geometry, thresholds, width, height):
+    by_circle = model.shape == BALL and thresholds.circle_area
+    has_area = circle_area(box, outline, thresholds) if by_circle else area(box, model, thresholds)
+    has_dimension = dimension(box, model, geometry, thresholds, width, height)
+    for bit, test_passed in ((2, has_dimension), (4, has_area)):
+        if not test_passed:
             hidden = (
                 model.shape == BALL
                 and outline
@@ -204,7 +207,15 @@ def cut_size(box: Record, model: Any, geometry: Sequence[int], thresholds: Any, 
     )
 
 
-def area(box: Record, model: Any, _geometry: Any, thresholds: Any, *_size: int) -> bool:
+def circle_area(box: Record, circle: Record | None, thresholds: Any) -> bool:
+    """The area test of T Eq. 2.13: P_a, the area of the circle by that of the blob, is near one."""
+    if circle is None:
+        return False
+    square = (2 * circle["radius"]) ** 2 // 256
+    return abs(square * 201 // box["pixels"] - 256) <= thresholds.ball_area
+
+
+def area(box: Record, model: Any, thresholds: Any) -> bool:
     """The area test."""
     wide, high = sides(box)
     share = 256 * box["pixels"] // (wide * high)

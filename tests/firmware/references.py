@@ -144,3 +144,14 @@ def edge_store(edges: Picture, direction: Picture, capacity: int) -> EdgeStore:
         counts.append(len(data) - index[-1])
         found += len(words)
     return EdgeStore(data, index, counts, found - len(data))
+
+
+def opened(picture: Picture) -> Picture:
+    """Remove what is narrower than three pixels (T §2.3.1)."""
+    return dilate(erode(picture))
+
+
+def closed(picture: Picture) -> Picture:
+    """Fill what is narrower than three pixels; what lies beyond the border is as what is beside it (T §2.3.1)."""
+    grown = np.pad(dilate(picture)[:, 1:-1], ((0, 0), (1, 1)), mode="edge")
+    return erode(grown)

@@ -170,6 +170,27 @@ def test_a_ball_that_fails(box: dict[str, int], circle: dict[str, int], passed: 
         assert each["accuracy"] < sum(THRESHOLDS.weights[:5])
 
 
+@pytest.mark.parametrize(
+    ("box", "circle", "passed"),
+    [
+        (ROUND, CIRCLE, True),  # 2083 px by 2123 (T Eq. 2.13)
+        (ROUND | {"pixels": 2704}, CIRCLE, False),  # a square as wide
+        (ROUND | {"pixels": 1815}, CIRCLE, True),  # a little dented: 1.15
+        (ROUND | {"pixels": 1780}, CIRCLE, False),
+        (ROUND, CIRCLE | {"radius": 350}, False),  # too small a circle
+        (ROUND, CIRCLE | {"tests": 0, "radius": 0}, False),  # none was found
+        (ROUND, CIRCLE | {"blob": 1}, False),
+    ],
+)
+def test_the_area_of_the_circle_as_the_thesis_has_it(
+    box: dict[str, int], circle: dict[str, int], passed: bool
+) -> None:
+    """P_a near one, not the share of the square."""
+    thresholds = replace(THRESHOLDS, circle_area=True, hidden_arc=0)
+    (ball,) = see([box], [circle], models=(BALL,), thresholds=thresholds)
+    assert bool(ball["tests"] & AREA_TEST) == passed
+
+
 # The left third of it: a robot hides the others, but for a bit of outline at the top.
 SLICE = ROUND | {"right": 150, "pixels": 600}
 SEEN_WELL = CIRCLE | {"arc": THRESHOLDS.hidden_arc}
@@ -381,12 +402,12 @@ upright_lines = st.tuples(
     st.lists(circles, max_size=4),
     st.lists(borders, max_size=4),
     st.tuples(level_lines, upright_lines),
-    st.booleans(),
+    st.fixed_dictionaries({"refined": st.booleans(), "circle_area": st.booleans()}),
     st.sampled_from([THESIS, StereoGeometry(311, 30, 60, 0), StereoGeometry(772, 60, 300, 45)]),
 )
-def test_as_the_reference(blobs, circles, rectangles, lines, refined, geometry) -> None:
+def test_as_the_reference(blobs, circles, rectangles, lines, ways, geometry) -> None:
     """Bit for bit, with any records."""
-    thresholds = replace(THRESHOLDS, refined=refined)
+    thresholds = replace(THRESHOLDS, **ways)
     boxes, parents = blobs
     limits = {"thresholds": thresholds, "geometry": geometry, "room": 4}
     see(boxes, circles, rectangles, parents=parents, lines=lines, **limits)

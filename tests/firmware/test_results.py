@@ -14,8 +14,15 @@ from bfsim.api import FirmwareError
 from tests.firmware.object_rig import models_of, object_words, rectangle_words
 from tests.firmware.test_rectangles import line_words
 from tinyphoon.exchange import load_word, store_word
+from tinyphoon.stores.lines3d import EDGE3D_WORDS, LINE3D_WORDS
 from tinyphoon.stores.objects import BY_FLOOR, NO_OUTLINE, OBJECT_CAPACITY
 from tinyphoon.stores.rectangles import NO_LINE
+from tinyphoon.strategy.depth_report import (
+    EDGES_3D_CAPACITY,
+    LINES_3D_CAPACITY,
+    pack_edges_3d,
+    pack_lines_3d,
+)
 from tinyphoon.strategy.framing import crc16_byte
 from tinyphoon.strategy.models import MODELS
 from tinyphoon.strategy.results import (
@@ -24,10 +31,10 @@ from tinyphoon.strategy.results import (
     MESSAGE_WORDS,
     PAYLOAD_WORDS,
     close_message,
-    pack_goal_lines,
+    pack_border_lines,
     pack_objects,
 )
-from tinyphoon.strategy_unit.decoding import GoalLine, ReportedObject, Results, Side, decode_results
+from tinyphoon.strategy_unit.decoding import BorderLine, ReportedObject, Results, Side, decode_results
 from tinyphoon.strategy_unit.messages import Message, MessageType, decode, encode, message_nbytes
 
 SEQUENCES = st.integers(0, 0xFFFF)
@@ -42,13 +49,24 @@ LINES = [(952, 1720, 4168, 1721), (952, 952, 953, 1700), (4168, 1700, 4168, -8)]
 
 
 def packed(
-    objects, seen=(), rectangles=(), lines=LINES, sequence: int = 7, frame: int = 0, known=(0, 0, 0)
+    objects,
+    seen=(),
+    rectangles=(),
+    lines=LINES,
+    sequence: int = 7,
+    frame: int = 0,
+    known=(0, 0, 0),
+    depth=None,
 ) -> bytes:
-    """The bytes of the message that the firmware makes. `known`: a refusal, and the corner of the area."""
+    """The bytes of the message that the firmware makes. `known`: a refusal, and the corner of the area. `depth`: see `clouds`."""
     message = np.full(MESSAGE_WORDS, 0xA5A5, np.uint16)
     words = pack_objects(message, object_words(*objects, room=OBJECT_CAPACITY))
     now = object_words(*seen), models_of()
-    words = pack_goal_lines(message, words, *now, rectangle_words(*rectangles), line_words(lines))
+    words = pack_border_lines(message, words, *now, rectangle_words(*rectangles), line_words(lines))
+    if depth is not None:
+        (lines_3d, most_lines), (edges_3d, most_edges) = depth
+        words = pack_lines_3d(message, words, np.ravel(lines_3d).astype(np.int16), len(lines_3d), most_lines)
+        words = pack_edges_3d(message, words, np.ravel(edges_3d).astype(np.int16), len(edges_3d), most_edges)
     nbytes = close_message(message, sequence, frame, *known, words)
     assert not (message[nbytes // 2 :] != 0xA5A5).any()
     return message.tobytes()[:nbytes]
@@ -69,7 +87,7 @@ def test_the_largest_message_has_room_for_all_objects_and_lines() -> None:
 
 def test_an_empty_frame() -> None:
     """Nothing seen is a message too, and says so."""
-    payload = struct.pack("<L5H", 70_000, 0, 0, 0, 0, 0)
+    payload = struct.pack("<L9H", 70_000, *[0] * 9)
     assert packed([], frame=70_000) == encode(Message(MessageType.RESULTS, 7, payload))
 
 
@@ -90,27 +108,50 @@ def test_objects_leave_as_they_are() -> None:
     assert [each.has_place for each in found.objects] == [True, False]
 
 
-def test_lines_of_goals_leave_too() -> None:
-    """Posts and bottom line; none of what is no goal, has no rectangle, or has no such line."""
+def test_lines_of_rectangles_leave_too() -> None:
+    """Posts and bottom line of a goal, all four of a mark; none of what is a ball, has no rectangle, or has no such line."""
     goal = A_GOAL | {"outline": 1}
     seen = [A_BALL, goal, A_GOAL | {"outline": NO_OUTLINE}, A_GOAL | {"model": 4}, A_GOAL | {"outline": 2}]
     ends = (0,) * 7  # nothing hidden, and of no account here
     rectangles = [(0, 0, 0, 0, 0, *ends), (1, 2, 0, 0, 1, *ends), (NO_LINE, NO_LINE, 0, 0, 2, *ends)]
-    found = read(packed([], seen, rectangles)).lines
-    assert found == (
-        GoalLine(model=2, side=Side.LEFT, ends_px=(59.5, 59.5, 59.5625, 106.25)),
-        GoalLine(model=2, side=Side.RIGHT, ends_px=(260.5, 106.25, 260.5, -0.5)),
-        GoalLine(model=2, side=Side.BOTTOM, ends_px=(59.5, 107.5, 260.5, 107.5625)),
-        GoalLine(model=2, side=Side.BOTTOM, ends_px=(59.5, 107.5, 260.5, 107.5625)),
+    first, second, third, *mark, last = read(packed([], seen, rectangles)).lines
+    assert (first, second, third, last) == (
+        BorderLine(model=2, side=Side.LEFT, ends_px=(59.5, 59.5, 59.5625, 106.25)),
+        BorderLine(model=2, side=Side.RIGHT, ends_px=(260.5, 106.25, 260.5, -0.5)),
+        BorderLine(model=2, side=Side.BOTTOM, ends_px=(59.5, 107.5, 260.5, 107.5625)),
+        BorderLine(model=2, side=Side.BOTTOM, ends_px=(59.5, 107.5, 260.5, 107.5625)),
     )
+    assert {(each.model, each.side) for each in mark} == {(4, side) for side in Side}
+
+
+def clouds(lines: int, edges: int, most_lines: int, most_edges: int):
+    """So many 3-D lines and edges with words that tell them apart, and how many of each may leave."""
+    words = np.arange(lines * LINE3D_WORDS).reshape(-1, LINE3D_WORDS)
+    return (words - 100, most_lines), (-np.arange(edges * EDGE3D_WORDS).reshape(-1, EDGE3D_WORDS), most_edges)
+
+
+@pytest.mark.parametrize(
+    "limits", [(0, 0, 9, 9), (5, 20, 9, 99), (5, 20, 5, 20), (5, 20, 3, 7), (5, 20, 0, 0)]
+)
+def test_what_has_depth_leaves_as_far_as_there_is_room(limits: tuple[int, int, int, int]) -> None:
+    """The last lines, which begin lowest, and every n-th edge; and how many there were."""
+    (lines, most_lines), (edges, most_edges) = clouds(*limits)
+    found = read(packed([A_BALL], depth=clouds(*limits)))
+    assert (found.lines_3d_found, found.edges_3d_found) == (len(lines), len(edges))
+    assert found.lines_3d.tolist() == lines[max(len(lines) - most_lines, 0) :, :6].reshape(-1, 2, 3).tolist()
+    sent = min(len(edges), most_edges)
+    assert found.edges_3d.tolist() == [edges[at * len(edges) // sent, :3].tolist() for at in range(sent)]
+    assert len(found.objects) == 1
 
 
 def test_the_largest_message() -> None:
-    """A full history and more lines than there is room: the message has its capacity, and no word more."""
-    octets = packed([A_BALL] * OBJECT_CAPACITY, [A_GOAL] * 5, [(0, 1, 0, 2, 0, 0)])
+    """A full history and more lines and depth than there is room: the message has its capacity, and no word more."""
+    depth = clouds(256, 4096, LINES_3D_CAPACITY, EDGES_3D_CAPACITY)
+    octets = packed([A_BALL] * OBJECT_CAPACITY, [A_GOAL] * 9, [(0, 1, 0, 2, 0, 0)], depth=depth)
     assert len(octets) == 2 * MESSAGE_WORDS
     found = read(octets)
     assert (len(found.objects), len(found.lines)) == (OBJECT_CAPACITY, LINE_CAPACITY)
+    assert (len(found.lines_3d), len(found.edges_3d)) == (LINES_3D_CAPACITY, EDGES_3D_CAPACITY)
 
 
 @given(SEQUENCES, st.integers(0, 2**31 - 1))
@@ -142,17 +183,23 @@ def test_old_ages_are_cut() -> None:
     assert (found.age, found.measures) == (255, BY_FLOOR)
 
 
+def counts(objects: int = 0, lines: int = 0, lines_3d: int = 0, edges_3d: int = 0) -> bytes:
+    """The beginning of a payload with so much to follow."""
+    return struct.pack("<11h", 0, 0, objects, lines, 0, 0, 0, lines_3d, edges_3d, 0, 0)
+
+
 @pytest.mark.parametrize(
     ("payload", "message"),
     [
-        (b"", "at least 14 bytes, not 0"),
-        (bytes(13), "at least 14 bytes, not 13"),
-        (struct.pack("<7H", 0, 0, 1, 0, 0, 0, 0), "of 1 objects and 0 lines must have 34 bytes, not 14"),
-        (bytes(16), "0 lines must have 14 bytes, not 16"),
-        (struct.pack("<7h", 0, 0, -1, 2, 0, 0, 0), "-1 objects"),
+        (b"", "at least 22 bytes, not 0"),
+        (bytes(21), "at least 22 bytes, not 21"),
+        (counts(objects=1), "of 1 objects, 0 lines, 0 3-D lines and 0 3-D edges must have 42 bytes, not 22"),
+        (counts(lines_3d=1, edges_3d=1), "1 3-D lines and 1 3-D edges must have 40 bytes, not 22"),
+        (counts() + bytes(2), "0 3-D edges must have 22 bytes, not 24"),
+        (counts(objects=-1, lines=2), "-1 objects"),
         (
-            struct.pack("<7H5h", 0, 0, 0, 1, 0, 0, 0, 2 | 2 << 8, 0, 0, 0, 0),
-            "side of a line must be 0, 1 or 3, not 2",
+            counts(lines=1) + struct.pack("<5h", 2 | 4 << 8, 0, 0, 0, 0),
+            "side of a line must be 0 to 3, not 4",
         ),
     ],
 )
@@ -160,7 +207,7 @@ def test_what_is_no_result_is_refused(payload: bytes, message: str) -> None:
     """Cut short, too long, or nonsense."""
     with pytest.raises(FirmwareError, match=message):
         decode_results(payload)
-    assert COUNTS_WORDS == 7
+    assert len(counts()) == 2 * COUNTS_WORDS
 
 
 @given(st.integers(0, 0xFFFF), st.integers(0, 255))

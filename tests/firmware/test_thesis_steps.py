@@ -55,7 +55,7 @@ def up_to_blobs(firmware: Firmware, steps: Steps) -> Firmware:
         while (frame := (yield from core.next_frame())) is not None:
             with core.stage("Edge detection"):
                 yield from steps.edge_detection(core, frame, INDOOR_FIELD.edges, WHOLE_PICTURE)
-                yield from steps.open_closing(core, frame)
+                yield from steps.open_closing(core, frame, INDOOR_FIELD.noise)
                 yield from steps.blob_detection(core, frame, INDOOR_FIELD.blobs)
 
     return replace(firmware, mains={"A": main, "B": main})

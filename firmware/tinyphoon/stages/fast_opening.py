@@ -6,7 +6,7 @@ from collections.abc import Generator
 from typing import Any
 
 from bfsim.api import Core, Frame, kernel, u32
-from tinyphoon.stages.open_closing import open_closing
+from tinyphoon.stages.open_closing import NoiseRemoval, open_closing
 
 
 @kernel
@@ -39,6 +39,6 @@ def dilate_columns(above: u32[:], here: u32[:], below: u32[:], dilated: u32[:]) 
     dilated[last] = 0
 
 
-def fast_opening(core: Core, frame: Frame) -> Generator[Any, Any, None]:
-    """Open the colour image in one pass of DMA lines; leaves `opened_image` in SDRAM."""
-    yield from open_closing(core, frame, erode_columns, dilate_columns)
+def fast_opening(core: Core, frame: Frame, noise: NoiseRemoval) -> Generator[Any, Any, None]:
+    """Leave the colour image without its noise in `opened_image` in SDRAM."""
+    yield from open_closing(core, frame, noise, erode_columns, dilate_columns)

@@ -34,7 +34,8 @@ class ObjectThresholds:
 
     `*_weight`: what passing a test adds to the accuracy; together at most 255. `shortest_side`: of a blob in pixels, for
     the dimension test. `size_range`: by what factor, of 16, its height may be off that of the model where it stands.
-    `ball_area`: how far the share of its square that a ball fills may be from pi/4, of 256.
+    `ball_area`: how far the share of its square that a ball fills may be from pi/4, of 256. `circle_area`: whether the test of
+    area is that of T Eq. 2.13 instead, which compares with the circle that was found: then it is how far P_a may be from 1.
     `rectangle_area`: the least share of its rectangle that another object fills, of 256. `hidden_arc`: the least share of its
     circle that must be seen of a ball that is hidden in part, of 256; 0: its size is never taken from that.
 
@@ -62,6 +63,7 @@ class ObjectThresholds:
     disparity_range: int = allowed(0, 255)
     hidden_arc: int = allowed(0, 256)
     refined: bool
+    circle_area: bool
     age_max: int = allowed(0, 255)
     apart_max: int = allowed(0, 1024)
 
@@ -81,8 +83,8 @@ class ObjectThresholds:
     @property
     def limits(self) -> tuple[int, ...]:
         """What kernels read of them, in the order of `object_limits`."""
-        areas = self.ball_area, self.rectangle_area
-        return *self.weights, self.shortest_side, self.size_range, *areas, int(self.refined), self.hidden_arc
+        sizes = self.shortest_side, self.size_range, self.ball_area, self.rectangle_area
+        return *self.weights, *sizes, int(self.refined), self.hidden_arc, int(self.circle_area)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -72,7 +72,8 @@ BALL_AREA = 8  # 1/256
 RECTANGLE_AREA = 9  # 1/256
 REFINED = 10
 HIDDEN_ARC = 11  # 1/256
-LIMIT_WORDS = 12
+AREA_OF_CIRCLE = 12
+LIMIT_WORDS = 13
 
 SIZE_UNITS = 16
 
@@ -81,12 +82,18 @@ DISC_AREA = 201  # of its square: pi/4 (T §2.2.2)
 
 
 @kernel
+def shape_of(models: i32[:], number: i32) -> i32:
+    """Return the shape of the model with a number, or 0 if there is none."""
+    for at in range(0, len(models), MODEL_WORDS):
+        if models[at + MODEL_NUMBER] == number:
+            return models[at + MODEL_SHAPE]
+    return 0
+
+
+@kernel
 def is_goal(models: i32[:], number: i32) -> i32:
     """Return 1 if the model with a number is a goal; else 0."""
-    for at in range(0, len(models), MODEL_WORDS):
-        if models[at + MODEL_NUMBER] == number and models[at + MODEL_SHAPE] == GOAL:
-            return 1
-    return 0
+    return 1 if shape_of(models, number) == GOAL else 0
 
 
 @kernel
@@ -210,6 +217,17 @@ def area_passes(blob_data: u32[:], blob: i32, shape: i32, ball_area: i32, rectan
 
 
 @kernel
+def circle_area_passes(blob_data: u32[:], blob: i32, circles: i16[:], circle: i32, ball_area: i32) -> i32:
+    """Return 1 if a blob has as many pixels as its circle, P_a of T Eq. 2.13, to `ball_area` 256ths; 0 without a radius."""
+    if circle == NO_OUTLINE:
+        return 0
+    diameter = 2 * circles[circle * CIRCLE_WORDS + CIRCLE_RADIUS]
+    square = diameter * diameter >> 8  # of the diameter, px
+    area = square * DISC_AREA // i32(blob_data[blob * BLOB_WORDS + PIXELS])
+    return 1 if abs(area - (1 << AREA_BITS)) <= ball_area else 0
+
+
+@kernel
 def circle_tests(blob_data: u32[:], blob: i32, circles: i16[:], circle: i32) -> i32:
     """Return which tests of its shape a ball passes. A circle out of which its blob looks has not the size of the ball."""
     if circle == NO_OUTLINE:
@@ -294,7 +312,11 @@ def tests_passed(
     passed = COLOUR_TEST
     if dimension_passes(blob_data, blob, models, model, geometry, limits, width, height) != 0:
         passed = COLOUR_TEST | DIMENSION_TEST
-        if area_passes(blob_data, blob, shape, limits[BALL_AREA], limits[RECTANGLE_AREA]) != 0:
+        if shape == BALL and limits[AREA_OF_CIRCLE] != 0:
+            has_area = circle_area_passes(blob_data, blob, circles, outline, limits[BALL_AREA])
+        else:
+            has_area = area_passes(blob_data, blob, shape, limits[BALL_AREA], limits[RECTANGLE_AREA])
+        if has_area != 0:
             passed = COLOUR_TEST | DIMENSION_TEST | AREA_TEST
     if shape == BALL:
         if passed & AREA_TEST != 0:

@@ -13,21 +13,24 @@ from typing import Any
 from bfsim.api import Core, Frame
 from tinyphoon.scan_lines import line_ring, window
 from tinyphoon.stages.fast_opening import dilate_columns, erode_columns
+from tinyphoon.stages.open_closing import NoiseRemoval, first_row
 
 
-def sdram_opening(core: Core, frame: Frame) -> Generator[Any, Any, None]:
-    """Open the colour image; leaves `opened_image` in SDRAM, the same as `open_closing` does."""
-    colours, height = core.rows("colour_image"), frame.height
-    opened = core.output_ring("opened_ring", core.rows("opened_image"))
-    eroded = line_ring(core.rows("eroded_ring"), height)
-    for y in range(height + 1):
-        if y < height:
-            core.at(y)
-            yield core.run(erode_columns, *window(colours, y, height), eroded[y])
-        if y >= 1:
-            core.at(y - 1)
-            row = yield from opened.row()
-            yield core.run(dilate_columns, *window(eroded, y - 1, height), row)
-            opened.send()
-    core.at()
-    yield from opened.flush()
+def sdram_opening(core: Core, frame: Frame, noise: NoiseRemoval) -> Generator[Any, Any, None]:
+    """Leave the colour image without its noise in `opened_image` in SDRAM, the same as `open_closing` does."""
+    for image, closes in noise.passes:
+        first, second = (dilate_columns, erode_columns) if closes else (erode_columns, dilate_columns)
+        colours, height = core.rows(image), frame.height
+        opened = core.output_ring("opened_ring", core.rows("opened_image"))
+        between = line_ring(core.rows("eroded_ring"), height)
+        for y in range(height + 1):
+            if y < height:
+                core.at(y)
+                yield from first_row(core, first, window(colours, y, height), between[y], closes)
+            if y >= 1:
+                core.at(y - 1)
+                row = yield from opened.row()
+                yield core.run(second, *window(between, y - 1, height), row)
+                opened.send()
+        core.at()
+        yield from opened.flush()

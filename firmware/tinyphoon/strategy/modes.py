@@ -13,9 +13,11 @@ from tinyphoon.stages.edge_detection import EdgeThresholds
 from tinyphoon.stages.line_detection import LineThresholds
 from tinyphoon.stages.line_refinement import RefinementThresholds
 from tinyphoon.stages.object_detection import ObjectThresholds
+from tinyphoon.stages.open_closing import NoiseOrder, NoiseRemoval
 from tinyphoon.stages.rectangle_detection import RectangleThresholds
 from tinyphoon.stages.stereo_edges import StereoEdgeThresholds
 from tinyphoon.stages.stereo_lines import Correspondence, StereoLineThresholds
+from tinyphoon.strategy.depth_report import ReportLimits
 from tinyphoon.strategy.models import (
     MODELS,
     ObjectModel,
@@ -30,6 +32,7 @@ class Mode:
     """The thresholds of every stage, and what of the pictures is looked at. Thresholds depend on lighting and cameras, never on one picture."""
 
     edges: EdgeThresholds
+    noise: NoiseRemoval
     blobs: BlobThresholds
     lines: LineThresholds
     circles: CircleThresholds
@@ -39,6 +42,7 @@ class Mode:
     refinement: RefinementThresholds
     stereo_lines: StereoLineThresholds
     stereo_edges: StereoEdgeThresholds
+    report: ReportLimits
     camera: Camera = AS_RECORDED
     area: Area = WHOLE_PICTURE
 
@@ -118,6 +122,8 @@ INDOOR_FIELD = Mode(
         # balls in a real hall, and four times as many false ones: wood and clothes are pale and dim.
         shade_gain=AS_IT_IS,
     ),
+    # Noise is single pixels of a colour; gaps of one pixel in a thing leave its blob whole.
+    noise=NoiseRemoval(order=NoiseOrder.OPENING),
     blobs=BlobThresholds(
         colour_groups=colour_groups(MODELS),
         # A mark of 5 cm that is 3 m away still has 6 x 6 pixels; what is smaller is a reflection or noise.
@@ -175,6 +181,9 @@ INDOOR_FIELD = Mode(
         # Twice what a pixel of error in each picture may be off.
         disparity_range=2,
         refined=True,
+        # The radius of T Eq. 2.13 is that of a circle that has not been tested yet, and wrong where edges of other things are taken
+        # for its outline; the square round the blob is always known.
+        circle_area=False,
         # A second at 5 frames a second.
         age_max=5,
         # A robot that turns by 90 degrees a second turns by 18 degrees in a frame.
@@ -217,5 +226,7 @@ INDOOR_FIELD = Mode(
         # Three quarters of a row around that agrees: of patterns that come again, only those with an end in reach.
         margin=24,
     ),
+    # A frame of the soccer field has 10 to 20 lines with depth; a cloud of 64 has one edge in every 35 px square.
+    report=ReportLimits(lines_3d=32, edges_3d=64),
 )
 """A FIRA field lit from above in a dark room, as in the recording that comes with bfsim, in pictures of 320x240."""

@@ -1,14 +1,15 @@
-"""What leaves for the strategy unit after every frame: the object history, and the border lines of goals (T §5.2.6, §6.4).
+"""What leaves for the strategy unit after every frame: the object history, the border lines of rectangles (T §5.2.6, §6.4), and depth.
 
-The payload of a message (`framing.py`) is 16-bit words: the frame's number, low half first; how many objects and how many lines follow; why an order
-was refused (`order_checks.py`), or 0; the corner of the area, in pixels, that the places in the picture count from; then
-objects and lines.
+The payload of a message (`framing.py`) is 16-bit words: the frame's number, low half first; how many objects and how many border lines
+follow; why an order was refused (`order_checks.py`), or 0; the corner of the area, in pixels, that the places in the picture
+count from; how many 3-D lines and 3-D edges follow, and how many there were (`depth_report.py`); then objects, border
+lines, 3-D lines and 3-D edges.
 """
 
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel, u16
-from tinyphoon.stages.object_tests import is_goal
+from tinyphoon.stages.object_tests import BALL, GOAL, shape_of
 from tinyphoon.stores.lines import LINE_WORDS, LINE_X0
 from tinyphoon.stores.objects import (
     NO_MODEL,
@@ -30,16 +31,31 @@ from tinyphoon.stores.rectangles import (
     RECTANGLE_BOTTOM,
     RECTANGLE_LEFT,
     RECTANGLE_RIGHT,
+    RECTANGLE_TOP,
     RECTANGLE_WORDS,
+)
+from tinyphoon.strategy.depth_report import (
+    EDGE3D_REPORT_WORDS,
+    EDGES_3D_CAPACITY,
+    EDGES_3D_FOUND,
+    LINE3D_REPORT_WORDS,
+    LINES_3D,
+    LINES_3D_CAPACITY,
 )
 from tinyphoon.strategy.framing import HEADER_WORDS, RESULTS, SYNC, crc16_byte
 
-COUNTS_WORDS = 7  # of the payload: frame number, objects, lines, refusal, corner of the area
+COUNTS_WORDS = 11  # of the payload: frame number, objects, border lines, refusal, corner of the area, depth
 PLACE_WORDS = OBJECT_HEIGHT - OBJECT_X + 1  # position, image, size: as they are in t_Object
 REPORT_WORDS = 3 + PLACE_WORDS
 LINE_REPORT_WORDS = 5
-LINE_CAPACITY = 12  # of four goals
-PAYLOAD_WORDS = COUNTS_WORDS + OBJECT_CAPACITY * REPORT_WORDS + LINE_CAPACITY * LINE_REPORT_WORDS
+LINE_CAPACITY = 24  # of four goals and three marks
+PAYLOAD_WORDS = (
+    COUNTS_WORDS
+    + OBJECT_CAPACITY * REPORT_WORDS
+    + LINE_CAPACITY * LINE_REPORT_WORDS
+    + LINES_3D_CAPACITY * LINE3D_REPORT_WORDS
+    + EDGES_3D_CAPACITY * EDGE3D_REPORT_WORDS
+)
 MESSAGE_WORDS = HEADER_WORDS + PAYLOAD_WORDS + 1
 """The largest message."""
 
@@ -60,12 +76,14 @@ def pack_objects(message: u16[:], objects: i16[:]) -> i32:
             count = count + 1
     message[HEADER_WORDS + 2] = count
     message[HEADER_WORDS + 3] = 0
+    for word in range(LINES_3D, EDGES_3D_FOUND + 1):
+        message[HEADER_WORDS + word] = 0
     return to - HEADER_WORDS
 
 
 @kernel
 def pack_line(message: u16[:], words: i32, model: i32, side: i32, lines: i16[:], line: i32) -> i32:
-    """Append the line `line` of a goal to the payload of `words` words if there is one and room; returns its words then."""
+    """Append the line `line` of a rectangle to the payload of `words` words if there is one and room; returns its words then."""
     if line == NO_LINE or message[HEADER_WORDS + 3] == LINE_CAPACITY:
         return words
     to = HEADER_WORDS + words
@@ -77,19 +95,28 @@ def pack_line(message: u16[:], words: i32, model: i32, side: i32, lines: i16[:],
 
 
 @kernel
-def pack_goal_lines(
+def pack_border_lines(
     message: u16[:], words: i32, seen: i16[:], models: i32[:], rectangles: i16[:], lines: i16[:]
 ) -> i32:
-    """Append posts and bottom line of the goals in `seen` to a payload of `words` words; returns its words then."""
+    """Append the border lines of the rectangles in `seen` to a payload of `words` words; returns its words then.
+
+    Those of a goal are its posts and its bottom line; a mark, which is seen over the floor, has a top line too (T §6.4).
+    """
     for at in range(0, len(seen), OBJECT_WORDS):
         model = i32(seen[at + OBJECT_MODEL])
-        if model != NO_MODEL and is_goal(models, model) != 0 and seen[at + OBJECT_OUTLINE] != NO_OUTLINE:
+        shape: i32 = BALL
+        if model != NO_MODEL and seen[at + OBJECT_OUTLINE] != NO_OUTLINE:
+            shape = shape_of(models, model)
+        if shape != BALL:
             borders = seen[at + OBJECT_OUTLINE] * RECTANGLE_WORDS
             left = i32(rectangles[borders + RECTANGLE_LEFT])
             right = i32(rectangles[borders + RECTANGLE_RIGHT])
+            top = i32(rectangles[borders + RECTANGLE_TOP])
             bottom = i32(rectangles[borders + RECTANGLE_BOTTOM])
             words = pack_line(message, words, model, RECTANGLE_LEFT, lines, left)
             words = pack_line(message, words, model, RECTANGLE_RIGHT, lines, right)
+            if shape != GOAL:
+                words = pack_line(message, words, model, RECTANGLE_TOP, lines, top)
             words = pack_line(message, words, model, RECTANGLE_BOTTOM, lines, bottom)
     return words
 

@@ -5,20 +5,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from itertools import accumulate, pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.api import FirmwareError
 from tinyphoon.stores.lines import SUBPIXELS
-from tinyphoon.stores.rectangles import RECTANGLE_BOTTOM, RECTANGLE_LEFT, RECTANGLE_RIGHT
+from tinyphoon.stores.rectangles import RECTANGLE_BOTTOM, RECTANGLE_LEFT, RECTANGLE_RIGHT, RECTANGLE_TOP
+from tinyphoon.strategy.depth_report import EDGE3D_REPORT_WORDS, LINE3D_REPORT_WORDS
 from tinyphoon.strategy.results import COUNTS_WORDS, LINE_REPORT_WORDS, REPORT_WORDS
 
 
 class Side(IntEnum):
-    """Which border of a goal a line is."""
+    """Which border of a rectangle a line is."""
 
     LEFT = RECTANGLE_LEFT
     RIGHT = RECTANGLE_RIGHT
+    TOP = RECTANGLE_TOP
     BOTTOM = RECTANGLE_BOTTOM
 
 
@@ -46,8 +50,8 @@ class ReportedObject:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GoalLine:
-    """A border line of a goal in the left picture: x and y of its start and of its end."""
+class BorderLine:
+    """A border line of a rectangle in the left picture: x and y of its start and of its end."""
 
     model: int
     side: Side
@@ -56,12 +60,20 @@ class GoalLine:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Results:
-    """What the strategy unit is told after a frame. `refusal`: why it refused an order, or 0."""
+    """What the strategy unit is told after a frame. `refusal`: why an order was refused, or 0.
+
+    `lines_3d` are starts and ends in mm in the left camera's frame, of shape (lines, 2, 3), the bright side on the left; `edges_3d`, of
+    shape (edges, 3), are places. `*_found`: how many of them there were; only a part has room.
+    """
 
     frame: int
     refusal: int
     objects: tuple[ReportedObject, ...]
-    lines: tuple[GoalLine, ...]
+    lines: tuple[BorderLine, ...]
+    lines_3d: NDArray[np.int16]
+    edges_3d: NDArray[np.int16]
+    lines_3d_found: int
+    edges_3d_found: int
 
 
 def decode_results(payload: bytes) -> Results:
@@ -69,20 +81,29 @@ def decode_results(payload: bytes) -> Results:
     words = np.frombuffer(payload[: len(payload) // 2 * 2], "<i2").tolist()
     if len(payload) < 2 * COUNTS_WORDS:
         raise FirmwareError(f"results must have at least {2 * COUNTS_WORDS} bytes, not {len(payload)}")
-    low, high, objects, lines, refusal, *corner = words[:COUNTS_WORDS]
-    expected = 2 * (COUNTS_WORDS + objects * REPORT_WORDS + lines * LINE_REPORT_WORDS)
-    if min(objects, lines) < 0 or len(payload) != expected:
+    low, high, objects, lines, refusal, left, top, lines_3d, edges_3d, *found = words[:COUNTS_WORDS]
+    counts = objects, lines, lines_3d, edges_3d
+    sizes = REPORT_WORDS, LINE_REPORT_WORDS, LINE3D_REPORT_WORDS, EDGE3D_REPORT_WORDS
+    ends = list(
+        accumulate((each * size for each, size in zip(counts, sizes, strict=True)), initial=COUNTS_WORDS)
+    )
+    if min(counts) < 0 or len(payload) != 2 * ends[-1]:
         raise FirmwareError(
-            f"results of {objects} objects and {lines} lines must have {expected} bytes, not {len(payload)}"
+            f"results of {objects} objects, {lines} lines, {lines_3d} 3-D lines and {edges_3d} 3-D edges must have "
+            f"{2 * ends[-1]} bytes, not {len(payload)}"
         )
-    first_line = COUNTS_WORDS + objects * REPORT_WORDS
+    parts = [
+        _records(words[first:last], size) for (first, last), size in zip(pairwise(ends), sizes, strict=True)
+    ]
     return Results(
         frame=low & 0xFFFF | high << 16,
         refusal=refusal & 0xFFFF,
-        objects=tuple(
-            _object(each, *corner) for each in _records(words[COUNTS_WORDS:first_line], REPORT_WORDS)
-        ),
-        lines=tuple(_line(each, *corner) for each in _records(words[first_line:], LINE_REPORT_WORDS)),
+        objects=tuple(_object(each, left, top) for each in parts[0]),
+        lines=tuple(_line(each, left, top) for each in parts[1]),
+        lines_3d=np.array(parts[2], np.int16).reshape(-1, 2, 3),
+        edges_3d=np.array(parts[3], np.int16).reshape(-1, 3),
+        lines_3d_found=found[0],
+        edges_3d_found=found[1],
     )
 
 
@@ -108,10 +129,10 @@ def _object(words: Sequence[int], left: int, top: int) -> ReportedObject:
     )
 
 
-def _line(words: Sequence[int], left: int, top: int) -> GoalLine:
+def _line(words: Sequence[int], left: int, top: int) -> BorderLine:
     x0, y0, x1, y1 = (each / SUBPIXELS for each in words[1:])
     side = words[0] >> 8 & 0xFF
     if side not in set(Side):
-        raise FirmwareError(f"the side of a line must be 0, 1 or 3, not {side}")
+        raise FirmwareError(f"the side of a line must be 0 to 3, not {side}")
     ends = left + x0, top + y0, left + x1, top + y1
-    return GoalLine(model=words[0] & 0xFF, side=Side(side), ends_px=ends)
+    return BorderLine(model=words[0] & 0xFF, side=Side(side), ends_px=ends)
