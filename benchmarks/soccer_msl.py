@@ -88,7 +88,7 @@ class Count:
 def hall_mode() -> Mode:
     """Return the indoor field's mode with the ball of the league and the light of its hall."""
     ball = next(each for each in MODELS if each.shape == Shape.BALL)
-    models = (replace(ball, colours=BALL_HUES, width_mm=BALL_MM, height_mm=BALL_MM),)
+    models = (replace(ball, colours=BALL_HUES, width_mm=BALL_MM, height_mm=BALL_MM, depth_mm=BALL_MM),)
     return replace(
         INDOOR_FIELD,
         edges=replace(INDOOR_FIELD.edges, edge_threshold=12, strong_threshold=24, eps_black=0, eps_white=200),

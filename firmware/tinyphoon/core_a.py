@@ -36,7 +36,8 @@ def core_a(core: Core, steps: Steps = PLAIN) -> Generator[Any, Any, None]:
             lines_3d = yield from vote.close()
         with core.stage("Object detection"):
             yield from follow_area(core, area, halvings_of(core, frame))
-            yield from object_detection(core, found.frame, mode.objects)
+            box_lines = lines_3d if mode.has_boxes else 0
+            yield from object_detection(core, found.frame, mode.objects, box_lines)
         yield from orders.take()  # for the next frame; core B reads them when core A is done
         yield from core.post("core A is done")
         depth = Depth(lines_3d=lines_3d, edges_3d=edges_3d, limits=mode.report)

@@ -58,6 +58,6 @@ def changed(**words: int) -> list[int]:
 
 def model(number: int, **changes: Any) -> list[int]:
     """The words of a model of its own colour."""
-    words = {"number": number, "shape": 3, "colours": 1 << number, "width_mm": 50, "height_mm": 40, "floor_mm": 0,
+    words = {"number": number, "shape": 3, "colours": 1 << number, "width_mm": 50, "height_mm": 40, "depth_mm": 50, "floor_mm": 0,
              "aspect_min": 16, "aspect_max": 32}  # fmt: skip
     return list((words | changes).values())

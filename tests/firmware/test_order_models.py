@@ -11,7 +11,7 @@ from bfsim.api import FirmwareError
 from tests.firmware.order_messages import GOOD, framed, model, refusal_of_models
 from tinyphoon.fields import to_words
 from tinyphoon.strategy import order_checks as checks
-from tinyphoon.strategy.models import MODELS, ObjectModel, Shape, check_models
+from tinyphoon.strategy.models import MODEL_CAPACITY, MODEL_WORDS, MODELS, ObjectModel, Shape, check_models
 from tinyphoon.strategy.order_checks import WHICH_BIT
 from tinyphoon.strategy.orders import mode_in, store_order
 from tinyphoon.strategy_unit.messages import MessageType
@@ -23,7 +23,7 @@ def test_models_there_and_back() -> None:
     for models in (MODELS, MODELS[:1], MODELS[2:]):
         words = [to_words(each) for each in models]
         assert refusal_of_models(words) == 0
-        stored = np.full(8 * 8, 77, np.int32)
+        stored = np.full(MODEL_CAPACITY * MODEL_WORDS, 77, np.int32)
         store_order(framed(MessageType.MODELS, [word for each in words for word in each]), stored)
         mode = mode_in(np.array(GOOD), stored)
         assert mode.models == models
@@ -35,13 +35,15 @@ def test_models_there_and_back() -> None:
     [
         ([model(1), model(2)], 0),
         ([model(1, shape=1, height_mm=50)], 0),
+        ([model(1, shape=1, height_mm=50, depth_mm=40)], checks.BALL_SIZE),
+        ([model(1, shape=4, depth_mm=40)], 0),
         ([model(1), model(2), model(3, shape=1)], checks.BALL_SIZE | 2 << WHICH_BIT),
         ([model(1), model(1, colours=4)], checks.SAME_NUMBER | 1 << WHICH_BIT),
         ([model(1, colours=6), model(2, colours=6, shape=2)], 0),
         ([model(1, colours=6), model(2, colours=2)], checks.SHARED_COLOURS | 1 << WHICH_BIT),
         ([model(1, colours=6), model(2, colours=6)], checks.SAME_MODEL | 1 << WHICH_BIT),
-        ([model(1), model(2, aspect_min=33)], checks.ABOVE | 14 << WHICH_BIT),
-        ([model(1), model(2, width_mm=0)], checks.RANGE | 11 << WHICH_BIT),
+        ([model(1), model(2, aspect_min=33)], checks.ABOVE | 16 << WHICH_BIT),
+        ([model(1), model(2, width_mm=0)], checks.RANGE | 12 << WHICH_BIT),
         ([model(1, colours=3)], checks.RANGE | 2 << WHICH_BIT),
         ([model(1)[:7]], checks.LENGTH),
         ([], checks.LENGTH),
@@ -54,7 +56,7 @@ def test_models_that_contradict_themselves_are_refused(records: list[list[int]],
     assert refusal_of_models(records) == refusal
 
 
-@given(st.lists(st.builds(model, st.integers(1, 4), shape=st.integers(1, 3), colours=st.sampled_from([2, 4, 6]),
+@given(st.lists(st.builds(model, st.integers(1, 4), shape=st.integers(1, 4), colours=st.sampled_from([2, 4, 6]),
                           height_mm=st.sampled_from([40, 50]), aspect_min=st.sampled_from([16, 33])),
                 min_size=1, max_size=4))  # fmt: skip
 def test_the_chip_refuses_the_models_that_the_host_refuses(records: list[list[int]]) -> None:
@@ -66,6 +68,7 @@ def test_the_chip_refuses_the_models_that_the_host_refuses(records: list[list[in
             "colours",
             "width_mm",
             "height_mm",
+            "depth_mm",
             "floor_mm",
             "aspect_min",
             "aspect_max",

@@ -12,6 +12,7 @@ from typing import Any
 
 from bfsim.api import Buffer, Core, Frame, Row, i16, i32, kernel
 from tinyphoon.fields import allowed
+from tinyphoon.stages.box_places import place_boxes
 from tinyphoon.stages.object_history import AREA_WORDS, age_objects, remember_objects
 from tinyphoon.stages.object_sight import see_objects
 from tinyphoon.stages.object_tests import LIMIT_WORDS
@@ -151,9 +152,12 @@ def _sight(
     core.publish(seen=min(found, SEEN_CAPACITY), seen_lost=max(found - SEEN_CAPACITY, 0))
 
 
-def object_detection(core: Core, frame: Frame, thresholds: ObjectThresholds) -> Generator[Any, Any, None]:
+def object_detection(
+    core: Core, frame: Frame, thresholds: ObjectThresholds, box_lines: int = 0
+) -> Generator[Any, Any, None]:
     """Verify `left_seen` by `right_seen` and take both into the history, `objects`.
 
+    `box_lines`: by how many 3-D lines boxes are placed; 0 where there are none to place, or none to see.
     Publishes `verified`, how many objects both cameras see, and what `remember` does.
     """
     tables = core.array("left_seen"), core.array("right_seen")
@@ -165,6 +169,8 @@ def object_detection(core: Core, frame: Frame, thresholds: ObjectThresholds) -> 
         *(thresholds.camera_weight, thresholds.size_weight, int(thresholds.refined), frame.width),
     )
     core.publish(verified=verified)
+    if box_lines:
+        yield from place_boxes(core, box_lines)
     yield from remember(core, tables, thresholds)
 
 

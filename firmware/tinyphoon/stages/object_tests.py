@@ -63,6 +63,7 @@ from tinyphoon.strategy.models import (
 
 BALL = int(Shape.BALL)  # kernels know integers
 GOAL = int(Shape.GOAL)
+BOX = int(Shape.BOX)
 
 # `object_limits`: the thresholds of the stage as kernels read them. The weights come in the order of the tests' bits.
 TESTS = 6

@@ -18,7 +18,7 @@ from tinyphoon.geometry import (
     beside_mm,
 )
 from tinyphoon.stages.object_places import HALF_PIXEL, depth_by_floor, floor_extent, place_object, principal
-from tinyphoon.stages.object_tests import GOAL
+from tinyphoon.stages.object_tests import BOX, GOAL
 from tinyphoon.stages.rectangle_detection import crossing, lower
 from tinyphoon.stages.rectangle_ends import LEFT_HIDDEN, RIGHT_HIDDEN
 from tinyphoon.stores.blobs import (
@@ -54,7 +54,14 @@ from tinyphoon.stores.rectangles import (
     RECTANGLE_WORDS,
     rows_at,
 )
-from tinyphoon.strategy.models import LARGEST_MM, MODEL_FLOOR, MODEL_HEIGHT, MODEL_SHAPE, MODEL_WIDTH
+from tinyphoon.strategy.models import (
+    LARGEST_MM,
+    MODEL_DEPTH,
+    MODEL_FLOOR,
+    MODEL_HEIGHT,
+    MODEL_SHAPE,
+    MODEL_WIDTH,
+)
 
 OPENING_LOSS = SUBPIXELS  # so far above its bottom line the opening may end a blob [ours]
 FLOOR_LINE = 4 * SUBPIXELS  # so far below the feet the line may be that is painted along the goal [ours]
@@ -195,6 +202,16 @@ def stand_between_feet(
 
 
 @kernel
+def go_inside(geometry: i32[:], further: i32, objects: i16[:], number: i32) -> None:
+    """Move an object that stands on the floor away over it, by `further` mm: from the nearest point of a box towards its middle."""
+    at = number * OBJECT_WORDS
+    depth = i32(objects[at + OBJECT_Z])
+    objects[at + OBJECT_X] = objects[at + OBJECT_X] * (depth + further) // max(depth, 1)
+    objects[at + OBJECT_Y] = objects[at + OBJECT_Y] - (further * geometry[GEOMETRY_SINE] >> SINE_BITS)
+    objects[at + OBJECT_Z] = depth + (further * geometry[GEOMETRY_COSINE] >> SINE_BITS)
+
+
+@kernel
 def see_rectangle(
     blob_data: u32[:],
     blob: i32,
@@ -211,6 +228,8 @@ def see_rectangle(
     height: i32,
 ) -> None:
     """Set where the centre of a rectangle is: by the floor below its bottom, or else the way to its blob's middle.
+
+    That of a box is a quarter of width and depth together behind what is seen there, until its upright edges tell (`box_places.py`).
 
     The floor tells only if the blob has the dimension of the model and is seen down to its bottom. The centre of a goal is
     that of its mouth if `refined`.
@@ -253,4 +272,6 @@ def see_rectangle(
         stand_between_feet(
             geometry, wide, left, left_row, right, right_row, cut_left, cut_right, hidden, seen, place
         )
+    if models[model + MODEL_SHAPE] == BOX:
+        go_inside(geometry, models[model + MODEL_WIDTH] + models[model + MODEL_DEPTH] >> 2, seen, place)
     lift(geometry, models, model, row, seen, place)

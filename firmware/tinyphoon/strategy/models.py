@@ -4,7 +4,7 @@
         long iNumber;              // 0: no model
         long eShape;
         long iColours;             // bits of the 32-colour image
-        long iWidth, iHeight;      // mm
+        long iWidth, iHeight, iDepth;  // mm
         long iFloor;               // mm from the floor up to its lower border
         long iAspectMin, iAspectMax;
     } t_Model;
@@ -34,10 +34,11 @@ MODEL_SHAPE = 1
 MODEL_COLOURS = 2
 MODEL_WIDTH = 3
 MODEL_HEIGHT = 4
-MODEL_FLOOR = 5
-MODEL_ASPECT_MIN = 6
-MODEL_ASPECT_MAX = 7
-MODEL_WORDS = 8
+MODEL_DEPTH = 5
+MODEL_FLOOR = 6
+MODEL_ASPECT_MIN = 7
+MODEL_ASPECT_MAX = 8
+MODEL_WORDS = 9
 
 MODEL_CAPACITY = COLOUR_GROUPS
 LARGEST_NUMBER = 255
@@ -48,20 +49,22 @@ ALL_COLOURS = (1 << COLOURS) - 2  # bit 0 is no colour
 
 
 class Shape(IntEnum):
-    """What is looked for near a blob: a circle, or the border lines of a rectangle."""
+    """What is looked for near a blob: a circle, the border lines of a rectangle, or the upright edges of a box."""
 
     BALL = 1
     GOAL = 2
     """There is one of a model on the field: the rules give each goal a colour of its own (T §2.3). Its bottom line and its posts
     go out separately too (T §6.4)."""
     MARKER = 3
+    BOX = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ObjectModel:
-    """What is known of a kind of objects.
+    """What is known of a kind of objects: its colours, its shape and its size (T §4.1).
 
-    `number` is its name on the SPI. `colours` are bits of the 32-colour image. `floor_mm` is how high above the floor
+    `number` is its name on the SPI. `colours` are bits of the 32-colour image. `width_mm`, `height_mm` and `depth_mm` are its
+    size from the front; only that of a box is looked at from all sides. `floor_mm` is how high above the floor
     its lower border is. `aspect_min`, `aspect_max`, of the dimension test, are limits of width by height of its blob
     in sixteenths. Raises FirmwareError where the model contradicts itself.
     """
@@ -72,6 +75,7 @@ class ObjectModel:
     colours: int = allowed(2, ALL_COLOURS, step=2)
     width_mm: int = allowed(1, LARGEST_MM)
     height_mm: int = allowed(1, LARGEST_MM)
+    depth_mm: int = allowed(1, LARGEST_MM)
     floor_mm: int = allowed(0, LARGEST_MM)
     aspect_min: int = allowed(1, LARGEST_ASPECT, at_most="aspect_max")
     aspect_max: int = allowed(1, LARGEST_ASPECT)
@@ -82,7 +86,7 @@ class ObjectModel:
         self._check(self.shape in set(Shape), f"shape must be one of {shapes}", self.shape)
         colours = 0 < self.colours <= ALL_COLOURS and not self.colours & ~ALL_COLOURS
         self._check(colours, f"colours must be bits of 0x{ALL_COLOURS:08X}", f"0x{self.colours:08X}")
-        for name in ("width_mm", "height_mm"):
+        for name in ("width_mm", "height_mm", "depth_mm"):
             size = getattr(self, name)
             self._check(1 <= size <= LARGEST_MM, f"{name} must be 1 to {LARGEST_MM}", size)
         self._check(0 <= self.floor_mm <= LARGEST_MM, f"floor_mm must be 0 to {LARGEST_MM}", self.floor_mm)
@@ -90,11 +94,12 @@ class ObjectModel:
         limits = f"{self.aspect_min} to {self.aspect_max}"
         self._check(aspects, f"aspects must be a range within 1 to {LARGEST_ASPECT}", limits)
         if self.shape == Shape.BALL:
-            self._check(self.width_mm == self.height_mm, "a ball must be as high as wide", self._size)
+            is_round = self.width_mm == self.height_mm == self.depth_mm
+            self._check(is_round, "a ball must be as high and as deep as wide", self._size)
 
     @property
     def _size(self) -> str:
-        return f"{self.width_mm} x {self.height_mm} mm"
+        return f"{self.width_mm} x {self.height_mm} x {self.depth_mm} mm"
 
     def _check(self, sound: bool, demand: str, value: object) -> None:
         if not sound:
@@ -103,8 +108,9 @@ class ObjectModel:
     @property
     def words(self) -> tuple[int, ...]:
         """The t_Model."""
-        size = self.width_mm, self.height_mm, self.floor_mm
-        return self.number, self.shape, self.colours, *size, self.aspect_min, self.aspect_max
+        size = self.width_mm, self.height_mm, self.depth_mm
+        aspects = self.aspect_min, self.aspect_max
+        return self.number, self.shape, self.colours, *size, self.floor_mm, *aspects
 
 
 def check_models(models: Sequence[ObjectModel]) -> None:
@@ -153,10 +159,18 @@ def model_buffers() -> Sequence[Buffer]:
 BLUE = hues(9, 11)
 YELLOW = hues(21, 23)
 RED = hues(25, 27)
+GREEN = hues(15, 19)
 
-# Goals 400 mm wide [MiroSot] and 100 mm high [assumed, as in scenes/soccer.py]: 4 to 1 from the
+# Goals 400 mm wide and 150 mm deep [MiroSot] and 100 mm high [assumed, as in scenes/soccer.py]: 4 to 1 from the
 # front, and not even as wide as high at a sharp angle (T Figure 6.14) or half in view.
-_GOAL_MM = {"width_mm": 400, "height_mm": 100, "floor_mm": 0, "aspect_min": 12, "aspect_max": 96}
+_GOAL_MM = {
+    "width_mm": 400,
+    "height_mm": 100,
+    "depth_mm": 150,
+    "floor_mm": 0,
+    "aspect_min": 12,
+    "aspect_max": 96,
+}
 
 MODELS = (
     # Round: 1 to 1, and a quarter off for shade and reflections. A ball of 6 cm [T §6.3.1].
@@ -167,6 +181,7 @@ MODELS = (
         colours=YELLOW,
         width_mm=60,
         height_mm=60,
+        depth_mm=60,
         floor_mm=0,
         aspect_min=12,
         aspect_max=21,
@@ -181,9 +196,25 @@ MODELS = (
         colours=RED,
         width_mm=75,
         height_mm=50,
+        depth_mm=75,
         floor_mm=70,
         aspect_min=16,
         aspect_max=40,
     ),
 )
 """The objects of the indoor field."""
+
+# Its aspects hold from every side, and a quarter more for shade and reflections: a side of 100 mm by 100 mm, and the diagonal.
+BOX = ObjectModel(
+    name="box",
+    number=5,
+    shape=Shape.BOX,
+    colours=GREEN,
+    width_mm=100,
+    height_mm=100,
+    depth_mm=100,
+    floor_mm=0,
+    aspect_min=12,
+    aspect_max=29,
+)
+"""What other boxes are made after; the field has none."""

@@ -54,12 +54,17 @@ class Mode:
     @property
     def rectangle_colours(self) -> int:
         """The colours of rectangles."""
-        return colours_of(self.models, Shape.GOAL, Shape.MARKER)
+        return colours_of(self.models, Shape.GOAL, Shape.MARKER, Shape.BOX)
 
     @property
     def goal_colours(self) -> int:
         """The colours of goals."""
         return colours_of(self.models, Shape.GOAL)
+
+    @property
+    def has_boxes(self) -> bool:
+        """Whether boxes are looked for."""
+        return any(each.shape == Shape.BOX for each in self.models)
 
 
 FITTED_CIRCLES = CircleThresholds(

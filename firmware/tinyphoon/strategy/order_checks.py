@@ -10,6 +10,7 @@ from bfsim.api import i32, kernel, u16
 from tinyphoon.strategy.framing import FRAME_BYTES, HEADER_WORDS, MODE, MODELS, SYNC, checksum
 from tinyphoon.strategy.models import (
     MODEL_COLOURS,
+    MODEL_DEPTH,
     MODEL_HEIGHT,
     MODEL_NUMBER,
     MODEL_SHAPE,
@@ -139,7 +140,9 @@ def models_refusal(message: u16[:]) -> i32:
         at = model * MODEL_WORDS
         shape = order_word(message, at + MODEL_SHAPE)
         colours = order_word(message, at + MODEL_COLOURS)
-        if shape == BALL and order_word(message, at + MODEL_WIDTH) != order_word(message, at + MODEL_HEIGHT):
+        width = order_word(message, at + MODEL_WIDTH)
+        height = order_word(message, at + MODEL_HEIGHT)
+        if shape == BALL and (width != height or width != order_word(message, at + MODEL_DEPTH)):
             return BALL_SIZE | model << WHICH_BIT
         for before in range(model):
             other = before * MODEL_WORDS

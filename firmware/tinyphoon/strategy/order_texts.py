@@ -103,7 +103,7 @@ def _order_text(
             f"not be {area[2]}x{area[3]} from ({area[0]}, {area[1]}) on",
         }[reason]
     return {
-        BALL_SIZE: f"model {which} must be as high as wide, since it is a ball",
+        BALL_SIZE: f"model {which} must be as high and as deep as wide, since it is a ball",
         SAME_NUMBER: f"model {which} must have a number of its own, not that of one before it",
         SHARED_COLOURS: f"model {which} must have all colours in common with one before it, or none",
         SAME_MODEL: f"model {which} must differ in colour or shape from those before it",

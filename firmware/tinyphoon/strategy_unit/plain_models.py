@@ -2,11 +2,12 @@
 
     {"name": "ball", "colour": "orange", "diameter_mm": 43}
     {"name": "cone", "shape": "marker", "colour": ["red", "orange"], "width_mm": 40, "height_mm": 60}
+    {"name": "crate", "shape": "box", "colour": "green", "width_mm": 120, "height_mm": 70, "depth_mm": 80}
     {"name": "blue goal", "hue_deg": [90, 155], "width_mm": 600}
 
 A name of the indoor field stands for its model, and what is given besides changes that. Any other name is a new model: it
 must have a shape, a colour and a size; its number is the first free one, and the rest is as in the first model of that
-shape. The limits of a blob's width by height follow the size unless they are given. A name does not go over the SPI: the
+shape, boxes after one of 100 mm. The limits of a blob's width by height follow the size unless they are given. A name does not go over the SPI: the
 report calls a new model by its number.
 """
 
@@ -17,7 +18,7 @@ from dataclasses import fields
 from fractions import Fraction
 from functools import reduce
 from itertools import count
-from math import ceil, floor
+from math import ceil, floor, hypot
 from operator import or_
 from typing import Any
 
@@ -30,12 +31,13 @@ from tinyphoon.strategy.colour_names import (
     colours_named,
     width_deg,
 )
-from tinyphoon.strategy.models import LARGEST_ASPECT, MODELS, ObjectModel, Shape
+from tinyphoon.strategy.models import BOX, LARGEST_ASPECT, MODELS, ObjectModel, Shape
 
 BY_NAME = {each.name: each for each in MODELS}
 FIELDS = tuple(each.name for each in fields(ObjectModel) if each.name != "name")
 COLOUR_KEYS = "colour", "hue_deg", "colours"
 KEYS = (*FIELDS, "colour", "hue_deg", "diameter_mm")
+SIDES = "width_mm", "height_mm", "depth_mm"
 
 
 def words_of_models(models: Sequence[object], at: str) -> list[int]:
@@ -77,7 +79,7 @@ def _base(given: Mapping[str, Any], at: str) -> tuple[ObjectModel, bool]:
         return BY_NAME[name], False
     if not isinstance(name, str) or "shape" not in given:
         raise _no_model(given, at)
-    for each in MODELS:
+    for each in (*MODELS, BOX):
         if _is_shape(given["shape"], each.shape):
             return each, True
     names = ", ".join(each.name.lower() for each in Shape)
@@ -127,30 +129,41 @@ def _by_hue(value: object, at: str) -> int:
 
 
 def _size(given: Mapping[str, Any], base: ObjectModel, at: str, *, needed: bool) -> dict[str, Any]:
-    """Return the width and the height of a model that has them in one number, as balls have."""
+    """Return the sides of a model. A ball has all of them in one number; only boxes must say how deep they are."""
     is_ball = _is_shape(given.get("shape", base.shape), Shape.BALL)
-    sides = {key: given[key] for key in ("width_mm", "height_mm") if key in given}
+    is_box = _is_shape(given.get("shape", base.shape), Shape.BOX)
+    sides = {key: given[key] for key in SIDES if key in given}
     if "diameter_mm" in given and (sides or not is_ball):
         raise FirmwareError(
             f"{at}.diameter_mm must be the only size, and that of a ball; others have width_mm and height_mm"
         )
     if "diameter_mm" in given:
-        return dict.fromkeys(("width_mm", "height_mm"), given["diameter_mm"])
-    if is_ball and len(sides) == 1:
-        return dict.fromkeys(("width_mm", "height_mm"), *sides.values())
-    if needed and len(sides) < 2:
-        missing = "diameter_mm" if is_ball else "height_mm" if "width_mm" in sides else "width_mm"
-        raise FirmwareError(f"the key {at}.{missing} must be there")
+        return dict.fromkeys(SIDES, given["diameter_mm"])
+    if is_ball and sides:
+        return dict.fromkeys(SIDES, next(iter(sides.values()))) | sides
+    wanted = SIDES if is_box else SIDES[:2]
+    missing = ("diameter_mm",) if is_ball else [key for key in wanted if key not in sides]
+    if needed and missing:
+        raise FirmwareError(f"the key {at}.{missing[0]} must be there")
+    if needed and not is_box:
+        sides.setdefault("depth_mm", sides["width_mm"])
     return sides
 
 
 def _aspects(base: ObjectModel, named: Mapping[str, Any]) -> dict[str, int]:
-    """Return the limits of width by height: those of `base`, by as much wider or narrower as the model is."""
-    width, height = named.get("width_mm", base.width_mm), named.get("height_mm", base.height_mm)
-    if not (_is_whole(width) and _is_whole(height)):
+    """Return the limits of width by height: those of `base`, by as much wider or narrower as the model is.
+
+    A box looks narrowest from its shorter side and widest along its diagonal.
+    """
+    width, height, depth = (named.get(key, getattr(base, key)) for key in SIDES)
+    if not all(map(_is_whole, (width, height, depth))):
         return {}
-    wider = Fraction(width * base.height_mm, height * base.width_mm)
-    least, most = floor(base.aspect_min * wider), ceil(base.aspect_max * wider)
+    least = most = Fraction(width * base.height_mm, height * base.width_mm)
+    if base.shape == Shape.BOX:
+        least = Fraction(min(width, depth) * base.height_mm, height * base.width_mm)
+        diagonal = Fraction(hypot(width, depth) / hypot(base.width_mm, base.depth_mm))
+        most = diagonal * Fraction(base.height_mm, height)
+    least, most = floor(base.aspect_min * least), ceil(base.aspect_max * most)
     return {"aspect_min": min(max(least, 1), LARGEST_ASPECT), "aspect_max": min(max(most, 1), LARGEST_ASPECT)}
 
 
