@@ -19,9 +19,11 @@ def build_for(loaded: LoadedFirmware, profile: CompilerProfile) -> Build:
     The code of the compiler is kept, or compiled now by the one on the PATH; where there is neither, all is estimated. Raises
     ConfigError with what the compiler says if it refuses.
     """
+    if profile.name not in RUN_AS_COMPILED:
+        return Build(profile)
     entries = {each for each in entries_of(loaded.firmware) if each.object_code is None}
     kernels = {each for each in kernels_of(loaded.own) if each.object_code is None} | entries
-    if profile.name not in RUN_AS_COMPILED or not kernels:
+    if not kernels:
         return Build(profile)
     from bfsim.compiling.loaded_code import LoadedCode  # most runs need none of it
     from bfsim.compiling.object_code import level_of, object_code_at_hand

@@ -121,5 +121,7 @@ class Ledger:
 
 def stalls_by_reason(interlocks_cclk: int, at_sites: Sequence[int]) -> dict[StallReason, int]:
     """Return stalls by reason: interlocks, and those in the order of SITE_STALLS; what is 0 is left out."""
+    if not interlocks_cclk and not any(at_sites):
+        return {}  # most lines wait for nothing
     pairs = zip((StallReason.INTERLOCK, *SITE_STALLS), (interlocks_cclk, *at_sites), strict=True)
     return dict(sorted(pair for pair in pairs if pair[1]))
