@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 ROUNDS = ((0.4, 0.5), (0.2, 0.2), (0.1, 0.05), (0.0, 0.0))
 """Least probability of an edge, and least count of it for one of the entry, in each round."""
@@ -31,7 +32,7 @@ class Edge:
     may_fall: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Graph:
     """Blocks, the entry first, with their counts and bytes of code.
 
@@ -46,9 +47,14 @@ class Graph:
     back: frozenset[tuple[str, str]]
     ends: frozenset[str]
 
-    def into(self, name: str) -> list[Edge]:
-        """Edges to a block."""
-        return [edge for each in self.names for edge in self.edges[each] if edge.target == name]
+    @cached_property
+    def into(self) -> Mapping[str, Sequence[Edge]]:
+        """Edges to each block."""
+        found: dict[str, list[Edge]] = {name: [] for name in self.names}
+        for name in self.names:
+            for edge in self.edges[name]:
+                found[edge.target].append(edge)
+        return found
 
 
 @dataclass(slots=True)
@@ -65,7 +71,7 @@ def laid_out(graph: Graph) -> Layout:
 
 
 def _is_copied(graph: Graph, name: str, most: int) -> bool:
-    return len(graph.into(name)) > 1 and 0 < graph.nbytes[name] <= most
+    return len(graph.into[name]) > 1 and 0 < graph.nbytes[name] <= most
 
 
 class _Tracing:
@@ -102,7 +108,7 @@ class _Tracing:
         frequency = SCALE * self.graph.count[name] / self.most
         edges = [
             each.count
-            for each in self.graph.into(name)
+            for each in self.graph.into[name]
             if each.source in self.ends or (each.source, name) in self.graph.back
         ]
         urgent = SCALE * max(edges, default=0) / self.most
@@ -195,7 +201,7 @@ class _Tracing:
             behind = self.graph.edges[edge.target]
             if (
                 edge.target not in (best.target, *self.trace_of)
-                and len(self.graph.into(edge.target)) == 1
+                and len(self.graph.into[edge.target]) == 1
                 and len(behind) == 1
                 and behind[0].target == best.target
                 and 2 * self.graph.count[edge.target] >= best.count
@@ -235,7 +241,7 @@ class _Connecting:
     def _before(self, number: int) -> int | None:
         edges = [
             each
-            for each in self.graph.into(self.traces[number][0])
+            for each in self.graph.into[self.traces[number][0]]
             if self.end.get(each.source, -1) in self.left and each.may_fall
         ]
         best = max(
