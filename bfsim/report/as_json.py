@@ -60,8 +60,8 @@ def _plain(value: Any) -> Any:
 
 def _flat(warning: RunWarning) -> dict[str, Any]:
     """Return a warning with its numbers beside kind and text."""
-    result = {"result": warning.result} if warning.result else {}
-    return {"kind": warning.kind.value, "text": warning.text, **result, **warning.numbers}
+    results = {"results": list(warning.results)} if warning.results else {}
+    return {"kind": warning.kind.value, "text": warning.text, **results, **warning.numbers}
 
 
 def json_chunks(run: RunRecord, seen: Seen | None = None) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from bfsim.trace import RunRecord, RunWarning, WarningKind
 
@@ -32,23 +32,30 @@ def _missed(run: RunRecord) -> Iterator[RunWarning]:
 
 
 def _lost(run: RunRecord) -> Iterator[RunWarning]:
+    """Yield what was lost. Cores that lost the very same share a warning: a recording of one camera is seen by both."""
     for name, what in (*MACHINE_LOSSES.items(), *run.losses.items()):
+        alike: dict[tuple[tuple[tuple[int, int], ...], str], list[str]] = {}
         for core in run.frames[0].cores:
-            counts = [(frame.results.get(f"{name}_{core.core}", 0), frame.index) for frame in run.frames]
-            lost = [each for each in counts if each[0]]
-            if not lost:
-                continue
-            total, (worst, at) = (
-                sum(count for count, _ in lost),
-                max(lost, key=lambda each: (each[0], -each[1])),
-            )
+            counts = ((frame.results.get(f"{name}_{core.core}", 0), frame.index) for frame in run.frames)
+            lost = tuple(each for each in counts if each[0])
+            if lost:
+                rows = _rows(run, f"{name}_{{}}_{core.core}", _worst(lost)[1])
+                alike.setdefault((lost, rows), []).append(core.core)
+        for (lost, rows), cores in alike.items():
+            total, (worst, at) = sum(count for count, _ in lost), _worst(lost)
+            where = f"core {cores[0]}" if len(cores) == 1 else f"each of cores {' and '.join(cores)}"
             yield RunWarning(
                 kind=WarningKind.LOST,
-                text=f"{what}: {total:,} on core {core.core}, in {len(lost):,} of {len(counts):,} frames; "
-                f"most in frame {at}: {worst:,}{_rows(run, f'{name}_{{}}_{core.core}', at)}",
+                text=f"{what}: {total:,} on {where}, in {len(lost):,} of {len(run.frames):,} frames; "
+                f"most in frame {at}: {worst:,}{rows}",
                 numbers={"total": total, "frames": len(lost), "worst": worst, "worst_frame": at},
-                result=f"{name}_{core.core}",
+                results=tuple(f"{name}_{core}" for core in cores),
             )
+
+
+def _worst(lost: Sequence[tuple[int, int]]) -> tuple[int, int]:
+    """Return the greatest of (count, frame), the first of equal ones."""
+    return max(lost, key=lambda each: (each[0], -each[1]))
 
 
 def _rows(run: RunRecord, name: str, index: int) -> str:

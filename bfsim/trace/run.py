@@ -84,12 +84,12 @@ class WarningKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunWarning:
-    """Something about a run that must not be overlooked, and the numbers in its text. `result` is the published number, if it is of one."""
+    """Something about a run that must not be overlooked, and the numbers in its text. `results` are the published numbers that it is of."""
 
     kind: WarningKind
     text: str
     numbers: Mapping[str, int] = field(default_factory=dict)
-    result: str = ""
+    results: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -49,7 +49,7 @@ def test_a_run_on_noise_ends_with_warnings(tmp_path: Path, geometry: StereoGeome
         main, ["run", str(tmp_path / "noise.mcap"), "--json", "-"], catch_exceptions=False
     )
     run = json.loads(result.stdout)
-    warnings = {(each["kind"], each.get("result")): each for each in run["warnings"]}
+    warnings = {(each["kind"], *each.get("results", [None])): each for each in run["warnings"]}
     assert (("geometry", None) in warnings) == (geometry is None)
     lost = run["frames"][0]["results"]["edges_lost_A"]
     assert warnings["lost", "edges_lost_A"]["total"] == lost > 0

@@ -47,14 +47,14 @@ def test_json_is_plain_whatever_mapping_the_machine_used() -> None:
 
 
 def test_json_has_the_warnings_with_their_numbers() -> None:
-    """Kind, text, the published result, and what the text says in numbers."""
+    """Kind, text, the published results, and what the text says in numbers."""
     lossy = frame(4, core_frame("A", 0, cost("Edge detection", 9)))
     run = run_of([replace(lossy, results={"edges_lost_A": 20})])
     assert as_json(run)["warnings"] == [
         {
             "kind": "lost",
             "text": "edges without room: 20 on core A, in 1 of 1 frames; most in frame 4: 20",
-            "result": "edges_lost_A",
+            "results": ["edges_lost_A"],
             "total": 20,
             "frames": 1,
             "worst": 20,
@@ -62,3 +62,30 @@ def test_json_has_the_warnings_with_their_numbers() -> None:
         }
     ]
     assert as_json(run_of([lossy]))["warnings"] == []
+
+
+def test_cores_that_lost_the_same_share_a_warning() -> None:
+    """A recording of one camera is seen by both cores; what only one of them lost, or at another place, stands alone."""
+    cores = [core_frame(core, 0, cost("Edge detection", 9)) for core in ("A", "B")]
+    alike, apart = {"edges_lost_A": 20, "edges_lost_B": 20}, {"edges_lost_top_B": 3}
+    rows = {f"edges_lost_{each}_{core}": 8 for each in ("top", "bottom", "percent") for core in ("A", "B")}
+    found = [
+        [(each["text"], each["results"]) for each in as_json(run_of(frames))["warnings"]]
+        for frames in (
+            [replace(frame(4, *cores), results=alike | rows)],
+            [replace(frame(4, *cores), results=alike | rows | apart)],
+        )
+    ]
+    told = "20 on {}, in 1 of 1 frames; most in frame 4: 20, 8 % of those in rows {} to 8"
+    assert found == [
+        [
+            (
+                f"edges without room: {told.format('each of cores A and B', 8)}",
+                ["edges_lost_A", "edges_lost_B"],
+            )
+        ],
+        [
+            (f"edges without room: {told.format('core A', 8)}", ["edges_lost_A"]),
+            (f"edges without room: {told.format('core B', 3)}", ["edges_lost_B"]),
+        ],
+    ]
