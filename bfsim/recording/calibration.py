@@ -16,7 +16,13 @@ from numpy.typing import NDArray
 
 from bfsim.errors import RecordingError
 from bfsim.recording.boards import BoardView, find_views
-from bfsim.recording.calibration_report import CalibrationReport, LensFit, LensName, ViewError
+from bfsim.recording.calibration_report import (
+    CalibrationReport,
+    LensFit,
+    LensName,
+    ViewError,
+    mean_focal_px,
+)
 from bfsim.recording.camera_models import CameraModel, Fisheye, Fit, FittedCamera, Floats, Pinhole
 from bfsim.recording.frames import RectificationTables, StereoGeometry
 from bfsim.recording.reader import RecordingReader
@@ -62,11 +68,12 @@ def calibrate_recording(
     """Write `recording` with the rectification tables and the geometry of its cameras to `output`, or in its own place.
 
     See `calibrate` for the folder `chessboards`. The recording's focal length, height and tilt are kept, if it has
-    them and no others are given, and its baseline becomes the measured one. Pictures, time stamps and ground truth
-    stay as they are. Raises RecordingError.
+    them and no others are given, and its baseline becomes the measured one; a focal length that was measured before is
+    measured anew. Pictures, time stamps and ground truth stay as they are. Raises RecordingError.
     """
     with RecordingReader(recording) as reader:
         size, old, text = (reader.width, reader.height), reader.geometry, reader.description
+        before = reader.calibration
         if output is None and reader.other_topics:
             raise RecordingError(
                 f"{reader.path}: recording must hold nothing but bfsim's topics to be calibrated in place, not "
@@ -77,7 +84,7 @@ def calibrate_recording(
         size,
         corners=corners,
         square_mm=square_mm,
-        focal_px=old.focal_px if old else None,
+        focal_px=None if old is None or (before and before.has_measured_focal) else old.focal_px,
         lens=lens,
         mono=mono,
         resize=resize,
@@ -140,14 +147,15 @@ def calibrate(
     board[:, :2] = np.mgrid[: corners[0], : corners[1]].T.reshape(-1, 2) * square_mm
     fit, used, errors = _fit_without_outliers(model, board, views, size)
     turns = _turns(fit, folder)
-    focal = focal_px or float(np.trace(fit.cameras[0].matrix[:2, :2]) / 2)
+    lenses = tuple(_lens_fit(camera) for camera in fit.cameras)
+    focal = focal_px or mean_focal_px(lenses[0].focal_px)
     target = np.array([[focal, 0, (size[0] - 1) / 2], [0, focal, (size[1] - 1) / 2], [0, 0, 1]])
     pairs = list(zip(fit.cameras, turns, strict=True))
     tables = [nearest_table(model, camera, turn, target, size) for camera, turn in pairs]
     before, after = _row_differences(model, pairs, used, target, size)
     report = CalibrationReport(
         lens=lens,
-        cameras=tuple(_lens_fit(camera) for camera in fit.cameras),
+        cameras=lenses,
         views=errors,
         skipped=tuple(skipped),
         reprojection_px=_rms(fit.errors_px),

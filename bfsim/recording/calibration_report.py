@@ -68,6 +68,11 @@ class CalibrationReport:
         """The views that were left out because they fit none of the others."""
         return tuple(view for view in self.views if view.is_outlier)
 
+    @property
+    def has_measured_focal(self) -> bool:
+        """Whether the focal length is what was measured, the mean of the left camera's, and not one that was given."""
+        return any(self.focal_px == mean_focal_px(left.focal_px) for left in self.cameras[:1])
+
     def to_json(self) -> str:
         """The report as text."""
         return _adapter().dump_json(self).decode()
@@ -85,6 +90,11 @@ class CalibrationReport:
             raise RecordingError(
                 f"calibration must be as bfsim writes it: {cut(where)}: {cut(first['msg'])}"
             ) from None
+
+
+def mean_focal_px(focal_px: tuple[float, float]) -> float:
+    """The one focal length of a rectified picture, from that across and that down of its camera."""
+    return sum(focal_px) / 2
 
 
 @cache

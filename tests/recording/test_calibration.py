@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from PIL import Image
+from PIL import Image, ImageFilter
 
 from bfsim.cli.record import record
 from bfsim.errors import RecordingError
@@ -30,7 +30,7 @@ from bfsim.recording.calibration import (
     calibrate,
     calibrate_recording,
 )
-from bfsim.recording.calibration_report import CalibrationReport, ViewError
+from bfsim.recording.calibration_report import CalibrationReport, ViewError, mean_focal_px
 from bfsim.recording.camera_models import Fisheye
 from bfsim.recording.planes import Plane
 from bfsim.recording.residual_plot import draw_residuals
@@ -108,6 +108,7 @@ def test_errors_are_a_fraction_of_a_pixel(found: StereoCalibration) -> None:
     assert found.report.vertical_before_px > 4
     assert found.report.vertical_rms_px < 0.15
     assert found.report.vertical_worst_px < 0.5
+    assert not found.report.has_measured_focal  # it was given
 
 
 def test_baseline_is_measured(found: StereoCalibration) -> None:
@@ -224,7 +225,7 @@ def test_a_grossly_wrong_pair_does_not_end_a_fisheye_calibration() -> None:
 
 
 def test_recording_without_geometry_gets_the_measured_one(chessboards: Path, tmp_path: Path) -> None:
-    """Focal length and baseline are kept, what nobody measured is unknown, and options say it."""
+    """Focal length and baseline are kept, what nobody measured is unknown, and options say it; what was measured is again."""
     pytest.importorskip("cv2")
     path, few = tmp_path / "run.mcap", tmp_path / "few"
     few.mkdir()
@@ -242,13 +243,18 @@ def test_recording_without_geometry_gets_the_measured_one(chessboards: Path, tmp
     assert geometry.focal_px == pytest.approx(386, rel=0.02)
     assert geometry.baseline_mm == report.baseline_mm == pytest.approx(30.77, rel=0.02)
     assert (geometry.height_mm, geometry.tilt_deg) == (None, None)
-    CliRunner().invoke(record, [*command, "--height", "90", "--tilt", "7"], catch_exceptions=False)
+    again = [*command, "--height", "90", "--tilt", "7", "--fisheye"]
+    CliRunner().invoke(record, again, catch_exceptions=False)
     with RecordingReader(path) as reader:
         assert reader.geometry is not None
         assert reader.geometry.stance == (90, 7)
+        assert reader.calibration is not None
+        assert reader.calibration.lens == "fisheye"
+        assert reader.geometry.focal_px == mean_focal_px(reader.calibration.cameras[0].focal_px)
+        assert reader.geometry.focal_px != geometry.focal_px
     shown = CliRunner().invoke(record, ["info", str(path)]).output
-    assert "6 chessboard pairs, 0 left out, 0 pictures skipped, pinhole lens" in shown
-    assert f"left_05.png {report.views[5].errors_px[0]:.2f} px" in shown
+    assert "6 chessboard pairs, 0 left out, 0 pictures skipped, fisheye lens" in shown
+    assert "left_05.png 0." in shown
     CliRunner().invoke(
         record, ["info", str(path), "--plot", str(tmp_path / "plot.png")], catch_exceptions=False
     )
@@ -302,6 +308,25 @@ def test_single_camera(chessboards: Path, tmp_path: Path) -> None:
     assert found.report.baseline_mm == 0
     assert found.report.focal_px == pytest.approx(386, rel=0.01)
     np.testing.assert_array_equal(found.tables.left, found.tables.right)
+
+
+def test_bent_and_blurred_boards_are_left_out(chessboards: Path, tmp_path: Path) -> None:
+    """One camera alone tells, for its other pictures agree; corners of a picture out of focus are found beside their places."""
+    pytest.importorskip("cv2")
+    for picture in chessboards.glob("left_[01]*.png"):
+        shutil.copy(picture, tmp_path)
+    with Image.open(tmp_path / "left_04.png") as picture:
+        columns = np.asarray(picture).T
+    bend_px = np.rint(8 * np.sin(np.linspace(0, np.pi, SIZE[0]))).astype(int)
+    bent = [np.roll(column, by) for column, by in zip(columns, bend_px, strict=True)]
+    Image.fromarray(np.array(bent).T).save(tmp_path / "left_04.png")
+    with Image.open(tmp_path / "left_06.png") as picture:
+        picture.filter(ImageFilter.GaussianBlur(3.5)).save(tmp_path / "left_06.png")
+    report = calibrate(tmp_path, SIZE, corners=CORNERS, square_mm=SQUARE_MM, mono=True).report
+    assert {view.names for view in report.outliers} == {("left_04.png",), ("left_06.png",)}
+    assert len(report.used) == 18
+    assert report.reprojection_px < 0.1
+    assert report.focal_px == pytest.approx(386, rel=0.01)
 
 
 class TestBadPictures:
