@@ -116,6 +116,7 @@ def line_3d(rig: Rig, line: Words, other: Words) -> tuple[Point, Point] | None:
 Edge = tuple[int, int, int]
 """x, direction, gradient."""
 Rows = Sequence[Sequence[Edge]]
+Partners = Mapping[Edge, Edge]
 NEVER = 65535
 
 
@@ -148,16 +149,18 @@ class EdgeLimits:
     farthest_mm: int
     lack: int
     margin: int
+    follow_range: int = 0
 
     def disparities(self, rig: Rig) -> range:
         """Those that are wanted."""
         least, most = (rig.disparity(depth) // 16 for depth in (self.farthest_mm, self.nearest_mm))
         return range(least + 1, most + 1)
 
-    def unlike(self, edge: Edge, other: Edge) -> int | None:
-        """How unlike two edges are; None if too much."""
+    def unlike(self, edge: Edge, other: Edge, most: int | None = None) -> int | None:
+        """How unlike two edges are; None if too much: turned by more than the range, or `most`."""
         off = turn(edge[1], other[1])
-        return 2 * off + abs(edge[2] - other[2]) if off <= self.direction_range else None
+        limit = self.direction_range if most is None else most
+        return 2 * off + abs(edge[2] - other[2]) if off <= limit else None
 
     def around(self, left: Rows, right: Rows, y: int, x: int, disparity: int) -> int:
         """How unlike the most similar pairs of this disparity are in the four rows around."""
@@ -195,6 +198,42 @@ class EdgeLimits:
             and all(each.best + self.margin <= each.rival for each in (mine, theirs))
         }
 
+    def settled(
+        self, matched: Sequence[dict[Edge, Edge]], left: Rows, right: Rows, most: int
+    ) -> list[Partners]:
+        """The partners that rows around believe, and of edges that follow these: from the bottom row on."""
+        found = [dict(each) for each in matched]
+
+        def around(y: int, edge: Edge) -> list[int]:
+            """The disparities of the edges beside."""
+            return [
+                beside[0] - partner[0]
+                for row in (y - 2, y - 1, y + 1, y + 2)
+                if 0 <= row < len(found)
+                for beside, partner in found[row].items()
+                if abs(beside[0] - edge[0]) <= abs(row - y)
+            ]
+
+        for y in reversed(range(len(found))):
+            found[y] = {
+                edge: other
+                for edge, other in found[y].items()
+                if any(abs(each - edge[0] + other[0]) <= 1 for each in around(y, edge))
+            }
+            for edge in left[y]:
+                if edge not in found[y]:
+                    near = {each + step for each in around(y, edge) for step in (-1, 0, 1)}
+                    offers = [
+                        (off, edge[0] - other[0], other)
+                        for other in right[y]
+                        if edge[0] - other[0] in near & set(range(most + 1))
+                        and other not in found[y].values()
+                        and (off := self.unlike(edge, other, self.follow_range)) is not None
+                    ]
+                    if offers:
+                        found[y][edge] = min(offers)[2]
+        return [dict(sorted(each.items())) for each in found]
+
     def nearest(self, left: Sequence[Edge], right: Sequence[Edge], wanted: range) -> dict[Edge, Edge]:
         """T §5.2.8: the partners with the least disparity."""
         found = {}
@@ -213,15 +252,13 @@ class EdgeLimits:
         return min(turn(edge[1], 64), turn(edge[1], 192)) < self.level_range
 
 
-Partners = Mapping[Edge, Edge]
-
-
 def partners_of(rig: Rig, left: Rows, right: Rows, limits: EdgeLimits) -> list[Partners]:
     """The left edges of each row that have a partner, and that."""
     wanted = limits.disparities(rig)
     steep = [[[edge for edge in row if not limits.is_level(edge)] for row in rows] for rows in (left, right)]
     if limits.is_mutual:
-        return [limits.supported(*steep, y, wanted.stop - 1) for y in range(len(left))]
+        matched = [limits.supported(*steep, y, wanted.stop - 1) for y in range(len(left))]
+        return limits.settled(matched, *steep, wanted.stop - 1)
     return [limits.nearest(*pair, wanted) for pair in zip(*steep, strict=True)]
 
 

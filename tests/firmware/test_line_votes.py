@@ -42,11 +42,14 @@ def elected(
     vote = LineVote(core, len(pairs), table_of(lefts), table_of(rights), votes, edge_range)
     core.play(vote.open())
     for y, partners in enumerate(rows):
-        edges = sorted({**partners, (3, 0, 1): None, (61, 0, 1): None}.items())
-        others = sorted(set(partners.values()))
-        words = [np.array([edge[0] << 16 for edge in row], np.uint32) for row in (dict(edges), others)]
-        places = np.array([others.index(other) + 1 if other else 0 for _, other in edges], np.uint16)
-        core.play(vote.add(y, (words[0], len(edges), words[1], len(others)), places))
+        edges = sorted({*partners, (3, 0, 1), (61, 0, 1)})
+        words, disparities = (
+            np.array([edge[0] << 16 for edge in edges], np.uint32),
+            np.zeros(WIDTH, np.uint16),
+        )
+        for own, other in partners.items():
+            disparities[own[0]] = own[0] - other[0] + 1
+        core.play(vote.add(y, (words, len(edges), disparities)))
     kept = core.play(vote.close())
     assert core.published["lines_3d"] == kept
     found = [tuple(each) for each in core.array("lines_3d").reshape(-1, LINE3D_WORDS)[:kept].tolist()]
@@ -131,7 +134,7 @@ lines = st.tuples(*[st.integers(0, 16 * WIDTH), st.integers(0, 16 * HEIGHT)] * 2
 )
 rows_of_edges = st.lists(
     st.dictionaries(st.integers(4, 60), st.integers(0, 60), max_size=12).map(
-        lambda row: {edge(x): edge(other) for x, other in row.items()}
+        lambda row: {edge(x): edge(min(x, other)) for x, other in row.items()}
     ),
     min_size=HEIGHT,
     max_size=HEIGHT,

@@ -4,31 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bfsim.api import FrameSize
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
+from tests.firmware.line_rig import BareCore, size_of
 from tests.firmware.stereo_references import Edge, EdgeLimits, Rig, edges_3d
 from tests.firmware.whole_pictures import buffer, random_frames, run, stereo
 from tinyphoon.exchange import copy_words, pack_edge_rows
-from tinyphoon.geometry import GEOMETRY_WORDS, disparity_at
-from tinyphoon.stages.edge_correspondence import (
-    REACH,
-    WINDOW_ROWS,
-    is_level,
-    match_edges,
-    match_nearest,
-    spread_left_row,
-    spread_right_row,
-    store_edges3d_row,
-    take_left_row,
-    take_right_row,
-)
-from tinyphoon.stages.stereo_edges import StereoEdgeThresholds
+from tinyphoon.geometry import GEOMETRY_WORDS
+from tinyphoon.stages.edge_correspondence import is_level
+from tinyphoon.stages.line_votes import LineVote
+from tinyphoon.stages.stereo_edges import StereoEdgeThresholds, stereo_edges
 from tinyphoon.stages.stereo_lines import Correspondence
 from tinyphoon.stores.edges import EDGE_DATA
 from tinyphoon.stores.lines import LINE_WORDS
@@ -48,40 +41,42 @@ def store(rows: Sequence[Row]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.array([*data, GARBAGE], np.uint32), index.astype(np.uint32), np.array(counts, np.uint16)
 
 
+class StereoCore(BareCore):
+    """A core whose buffers are arrays of rows that follow each other."""
+
+    def overlay(self, name: str, element: Any, columns: int) -> list[np.ndarray]:
+        """The memory of a buffer as other rows."""
+        numbers = np.asarray(self.arrays[name]).reshape(-1).view(element.dtype)
+        return [*numbers[: len(numbers) // columns * columns].reshape(-1, columns)]
+
+
 def found(
     left: Sequence[Row], right: Sequence[Row], mode: StereoEdgeThresholds, rig: Rig = ROBOT, room: int = 500
 ) -> tuple[list[tuple[int, ...]], int]:
-    """What the kernels make of two edge stores, and how many there would be."""
+    """What the stage makes of two edge stores, and how many there would be."""
     data, index, counts = store(right)
     shared = np.full_like(data, GARBAGE)
     copy_words(data, shared, len(data) - 1)
     rows = np.full(len(right), GARBAGE, np.uint32)
     pack_edge_rows(index, counts, rows)
-    table = np.full(room * EDGE3D_WORDS, GARBAGE, np.int16)
-    left_row, right_row = np.full((2, rig.width), GARBAGE, np.uint32)
-    windows = np.full((2, WINDOW_ROWS * rig.width), GARBAGE, np.uint16)
-    partners, *scores = np.full((4, rig.width), GARBAGE, np.uint16)
-    geometry = np.array([rig.focal, rig.baseline, *[0] * (GEOMETRY_WORDS - 2)], np.int32)
-    least, most = (disparity_at(geometry, depth) // 16 for depth in (mode.farthest_mm, mode.nearest_mm))
-    number, pictures = 0, (store(left), (shared, rows))
-    for ahead in reversed(range(-REACH, len(left) + REACH)):
-        y, level = ahead + REACH, mode.level_range
-        spread_left_row(*pictures[0], ahead, windows[0], ahead % WINDOW_ROWS, level)
-        spread_right_row(*pictures[1], ahead, windows[1], ahead % WINDOW_ROWS, level)
-        if y >= len(left):
-            continue
-        left_count = take_left_row(*pictures[0], y, left_row, level)
-        row = left_row, left_count, right_row, take_right_row(*pictures[1], y, right_row, level)
-        if mode.correspondence is Correspondence.MUTUAL:
-            limits = mode.direction_range, most, mode.lack, mode.margin
-            match_edges(*row, *windows, y % WINDOW_ROWS, partners, *scores, *limits)
-        else:
-            match_nearest(*row, partners, mode.direction_range, least + 1, most)
-        pairs = left_row, left_count, right_row, partners, least + 1
-        number = store_edges3d_row(
-            *pictures[0][:2], y, *pairs, geometry, rig.width, rig.height, table, number
-        )
-    return [tuple(each) for each in table.reshape(-1, EDGE3D_WORDS)[: min(number, room)].tolist()], number
+    rings = {"candidate_ring": 2, "colour_ring": 4, "eroded_ring": 3, "opened_ring": 2}
+    stores = zip(("edge_data", "edge_index", "edge_counts"), store(left), strict=True)
+    core = StereoCore(
+        {
+            **{name: np.full((count, rig.width), GARBAGE, np.uint32) for name, count in rings.items()},
+            **{name: [each] for name, each in stores},
+            "edge_ring": np.full((2, rig.width), GARBAGE, np.uint8),
+            "right_edge_data": [shared],
+            "right_edge_rows": [rows],
+            "geometry": [np.array([rig.focal, rig.baseline, *[0] * (GEOMETRY_WORDS - 2)], np.int32)],
+            "edges_3d": [np.full(room * EDGE3D_WORDS, GARBAGE, np.int16)],
+        }
+    )
+    nobody = LineVote(core, 0, (), (), (), 0)
+    core.play(stereo_edges(core, size_of(FrameSize(rig.width, len(left))), mode, nobody))
+    number = core.published["edges_3d"] + core.published["edges_3d_lost"]
+    kept = core.array("edges_3d").reshape(-1, EDGE3D_WORDS)[: min(number, room)]
+    return [tuple(each) for each in kept.tolist()], number
 
 
 def limits_of(mode: StereoEdgeThresholds) -> EdgeLimits:
@@ -94,6 +89,7 @@ def limits_of(mode: StereoEdgeThresholds) -> EdgeLimits:
         farthest_mm=mode.farthest_mm,
         lack=mode.lack,
         margin=mode.margin,
+        follow_range=mode.follow_range,
     )
 
 
@@ -115,10 +111,11 @@ def test_any_edges(pairs: list[tuple[Row, Row]], data: st.DataObject) -> None:
         farthest_mm=low + data.draw(st.integers(0, 30000)),
         lack=data.draw(st.integers(0, 4096)),
         margin=data.draw(st.integers(0, 60)),
+        follow_range=data.draw(st.integers(0, 64)),
     )
     rig = replace(ROBOT, focal=data.draw(st.integers(300, 20000)), baseline=data.draw(st.integers(1, 100000)))
     left, right = (list(rows) for rows in zip(*pairs, strict=True))
-    wanted = edges_3d(rig, left, right, limits_of(mode))
+    wanted = edges_3d(replace(rig, height=len(left)), left, right, limits_of(mode))
     assert found(left, right, mode, rig) == (wanted, len(wanted))
 
 
@@ -131,6 +128,7 @@ NEAR = StereoEdgeThresholds(
     farthest_mm=1500,
     lack=32,
     margin=24,
+    follow_range=16,
 )
 LIKE = replace(NEAR, correspondence=Correspondence.MUTUAL, level_range=16)
 BOTH = pytest.mark.parametrize("mode", [NEAR, LIKE])
@@ -141,7 +139,7 @@ def test_edge_in_closed_form(mode: StereoEdgeThresholds) -> None:
     """20 pixels are 588 mm; the points lie where T Eq. 3.17 says, and the first edge of the store has none."""
     left = [[(30, 0, 9), (200, 5, 9)], [(200, 5, 9)]]
     right = [[(180, 0, 20)], [(180, 0, 20)]]
-    assert found(left, right, mode) == ([(62, -181, 588, 2), (62, -182, 588, 1)], 2)
+    assert found(left, right, mode) == ([(62, 1, 588, 2), (62, -1, 588, 1)], 2)
 
 
 @pytest.mark.parametrize(
@@ -199,6 +197,47 @@ def test_an_edge_needs_support(columns: list[int | None], disparities: list[int 
     left = [[] if x is None else [(x, 0, 80)] for x, _ in pairs]
     right = [[] if x is None or d is None else [(x - d, 0, 80)] for x, d in pairs]
     assert found(left, right, LIKE)[1] == number
+
+
+def test_a_pair_needs_another_to_be_believed() -> None:
+    """Two rows below there is a pair like it, but its right edge belongs to another edge: nobody has that disparity."""
+    edge, other, owner = (200, 0, 80), (170, 0, 80), (190, 0, 80)
+    left, right = [[edge], [], [edge], [], []], [[other], [], [other], [], []]
+    assert found(left, right, LIKE)[1] == 2
+    left[2:], right[2:] = [[owner, edge], [owner], [owner]], [[other]] * 3
+    assert [each[3] for each in found(left, right, LIKE)[0]] == [4, 3, 1]
+
+
+@pytest.mark.parametrize(
+    ("x", "other", "direction", "number"),
+    [
+        (200, 170, 0, 3),
+        (200, 169, 0, 3),  # a pixel more disparity
+        (200, 168, 0, 2),
+        (201, 172, 0, 3),  # it leans
+        (201, 173, 0, 2),
+        (202, 172, 0, 3),  # beside that two rows below
+        (203, 173, 0, 2),
+        (200, 170, 16, 3),  # turned by as much as those that follow may be
+        (200, 170, 17, 2),
+        (200, 170, -16, 3),
+    ],
+)
+def test_an_edge_follows_those_around(x: int, other: int, direction: int, number: int) -> None:
+    """Two rows agree; the third is too unlike to match by itself, or has a rival, and takes their disparity."""
+    pair, rival = (other, direction % 256, 80), (100, 0, 80)
+    left, right = [[(x, 0, 80)]], [sorted([rival, pair])]
+    assert found([*left, *[[(200, 0, 80)]] * 2], [*right, *[[(170, 0, 80)]] * 2], LIKE)[1] == number
+
+
+def test_a_chain_is_followed_to_its_ends() -> None:
+    """From the only two rows that are certain upwards row by row, and downwards as far as two rows."""
+    unsure = [[(100, 0, 80), (170, 0, 80)]]
+    left = [[(200, 0, 80)]] * 9
+    right = [*unsure * 3, *[[(170, 0, 80)]] * 2, *unsure * 4]
+    limits = replace(LIKE, lack=0)
+    assert found(left, right, limits)[1] == 0  # without support nothing is certain
+    assert found(left, right, LIKE)[1] == 9
 
 
 def test_an_edge_belongs_to_one_edge_only() -> None:

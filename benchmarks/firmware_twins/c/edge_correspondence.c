@@ -14,8 +14,8 @@
 
 HELPER int32_t is_level(uint32_t edge, int32_t level_range)
 {
-    int32_t from_up = abs(turn_between((int32_t)(edge >> 8 & 255) << 1 & 255, 128));
-    return from_up < level_range << 1 ? 1 : 0;
+    /* half a turn is 128: above 0 and below twice the range, counted from as far before straight down */
+    return (((int32_t)(edge >> 8) + level_range - 65) & 127) < 2 * level_range - 1 ? 1 : 0;
 }
 
 HELPER int32_t take_edges(const uint32_t edges[], int32_t first, int32_t count, uint32_t row[], int32_t level_range)
@@ -89,10 +89,9 @@ HELPER int32_t unlike(int32_t edge, int32_t other, int32_t direction_range)
     return 2 * turn + abs((other & 255) - (edge & 255));
 }
 
-HELPER int32_t unlike_around(const uint16_t left_window[], const uint16_t right_window[], int32_t slot, int32_t x,
-                             int32_t disparity, int32_t direction_range, int32_t lack, int32_t left_window_length)
+HELPER int32_t unlike_around(const uint16_t left_window[], const uint16_t right_window[], int32_t pitch,
+                             int32_t slot, int32_t x, int32_t disparity, int32_t direction_range, int32_t lack)
 {
-    int32_t pitch = left_window_length / WINDOW_ROWS;
     int32_t total = 0;
     for (int32_t step = 0; step < WINDOW_ROWS; step++) {
         int32_t away = abs(step - REACH);
@@ -161,6 +160,7 @@ KERNEL void match_edges(const uint32_t left_row[], int32_t left_count, const uin
         rivals[right] = WORST;
         owners[right] = 0;
     }
+    int32_t pitch = left_window_length / WINDOW_ROWS;
     for (int32_t left = 0; left < left_count; left++) {
         uint32_t edge = left_row[left];
         int32_t x = (int32_t)(edge >> 16);
@@ -177,8 +177,8 @@ KERNEL void match_edges(const uint32_t left_row[], int32_t left_count, const uin
             if (x - other_x <= max_disparity)
                 score = unlike((int32_t)(edge & 0xFFFF), (int32_t)(other & 0xFFFF), direction_range);
             if (score < WORST) {
-                int32_t around = unlike_around(left_window, right_window, slot, x, x - other_x, direction_range,
-                                               lack, left_window_length);
+                int32_t around = unlike_around(left_window, right_window, pitch, slot, x, x - other_x,
+                                               direction_range, lack);
                 score = score + around;
                 if (score < best) {
                     if (other_x - best_x > 1)
@@ -198,30 +198,27 @@ KERNEL void match_edges(const uint32_t left_row[], int32_t left_count, const uin
 }
 
 KERNEL int32_t store_edges3d_row(const uint32_t edge_data[], const uint32_t edge_index[], int32_t y,
-                                 const uint32_t left_row[], int32_t left_count, const uint32_t right_row[],
-                                 const uint16_t partners[], int32_t min_disparity, const int32_t geometry[],
-                                 int32_t width, int32_t height, int16_t edges_3d[], int32_t found,
-                                 int32_t edges_3d_length)
+                                 const uint32_t left_row[], int32_t left_count, const uint16_t disparities[],
+                                 int32_t min_disparity, const int32_t geometry[], int32_t width, int32_t height,
+                                 int16_t edges_3d[], int32_t found, int32_t edges_3d_length)
 {
     int32_t place = (int32_t)edge_index[y];
     for (int32_t left = 0; left < left_count; left++) {
-        if (partners[left] != 0) {
-            uint32_t edge = left_row[left];
-            int32_t x = (int32_t)(edge >> 16);
-            int32_t disparity = x - (int32_t)(right_row[partners[left] - 1] >> 16);
-            if (disparity >= min_disparity) {
-                int32_t base = EDGE3D_WORDS * found;
-                int32_t stored = 1;
-                if (base < edges_3d_length)
-                    stored = store_point(geometry, SUBPIXELS * x, SUBPIXELS * y, SUBPIXELS * disparity, width,
-                                         height, edges_3d, base + EDGE3D_X);
-                if (stored != 0 && base < edges_3d_length) {
-                    while (edge_data[place] != edge)
-                        place = place + 1;
-                    edges_3d[base + EDGE3D_LEFT] = (int16_t)place;
-                }
-                found = found + stored;
+        uint32_t edge = left_row[left];
+        int32_t x = (int32_t)(edge >> 16);
+        int32_t disparity = disparities[x] - 1;
+        if (disparity >= min_disparity) {
+            int32_t base = EDGE3D_WORDS * found;
+            int32_t stored = 1;
+            if (base < edges_3d_length)
+                stored = store_point(geometry, SUBPIXELS * x, SUBPIXELS * y, SUBPIXELS * disparity, width, height,
+                                     edges_3d, base + EDGE3D_X);
+            if (stored != 0 && base < edges_3d_length) {
+                while (edge_data[place] != edge)
+                    place = place + 1;
+                edges_3d[base + EDGE3D_LEFT] = (int16_t)place;
             }
+            found = found + stored;
         }
     }
     return found;

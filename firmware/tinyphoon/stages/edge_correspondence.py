@@ -4,7 +4,8 @@ The pictures are rectified, so both show a point in one row. The plain way of th
 the one with the least disparity. The better way, ours, asks the rows around: what has a disparity has it in the next rows
 too, along the edge. A pair's score is how unlike its gradients are, and for each of four rows around how unlike the most
 similar pair of that disparity is that lies beside the edge. The pair with the least score must be the best of both its
-edges, by a margin, and must have support in one row at least.
+edges, by a margin, and must have support in one row at least. Whether it is believed, and what else is, say the disparities
+around (`edge_following.py`).
 """
 
 from __future__ import annotations
@@ -25,8 +26,8 @@ WORST = 0xFFFF
 @kernel
 def is_level(edge: u32, level_range: i32) -> i32:
     """Return 1 for an edge whose gradient looks up or down, to less than `level_range`; else 0."""
-    from_up = abs(turn_between(i32(edge >> 8 & 255) << 1 & 255, 128))
-    return 1 if from_up < level_range << 1 else 0
+    # half a turn is 128: above 0 and below twice the range, counted from as far before straight down
+    return 1 if (i32(edge >> 8) + level_range - 65 & 127) < 2 * level_range - 1 else 0
 
 
 @kernel
@@ -141,6 +142,7 @@ def match_nearest(
 def unlike_around(
     left_window: u16[:],
     right_window: u16[:],
+    pitch: i32,
     slot: i32,
     x: i32,
     disparity: i32,
@@ -149,9 +151,8 @@ def unlike_around(
 ) -> i32:
     """Return how unlike the pairs around are that have this disparity, `lack` at most for each row.
 
-    `slot` is the row of the windows that the edge in column `x` is in.
+    `slot` is the row of the windows that the edge in column `x` is in, `pitch` the columns of each row.
     """
-    pitch = len(left_window) // WINDOW_ROWS
     total = 0
     for step in range(WINDOW_ROWS):
         away = abs(step - REACH)
@@ -230,6 +231,7 @@ def match_edges(
         bests[right] = WORST
         rivals[right] = WORST
         owners[right] = 0
+    pitch = len(left_window) // WINDOW_ROWS
     for left in range(left_count):
         edge = left_row[left]
         x = i32(edge >> 16)
@@ -246,7 +248,9 @@ def match_edges(
             if x - other_x <= max_disparity:
                 score = unlike(i32(edge & 0xFFFF), i32(other & 0xFFFF), direction_range)
             if score < WORST:
-                around = unlike_around(left_window, right_window, slot, x, x - other_x, direction_range, lack)
+                around = unlike_around(
+                    left_window, right_window, pitch, slot, x, x - other_x, direction_range, lack
+                )
                 score = score + around
                 if score < best:
                     if other_x - best_x > 1:
@@ -268,8 +272,7 @@ def store_edges3d_row(
     y: i32,
     left_row: u32[:],
     left_count: i32,
-    right_row: u32[:],
-    partners: u16[:],
+    disparities: u16[:],
     min_disparity: i32,
     geometry: i32[:],
     width: i32,
@@ -277,34 +280,33 @@ def store_edges3d_row(
     edges_3d: i16[:],
     found: i32,
 ) -> i32:
-    """Store the 3-D edges of row `y`: left edges with a partner that is not too far away.
+    """Store the 3-D edges of row `y`: left edges with a disparity, in `disparities` and 1 more, that are not too far away.
 
     `found` is how many the rows before gave; returns it with this row. Those beyond the length of `edges_3d` are counted,
     not stored.
     """
     place = i32(edge_index[y])
     for left in range(left_count):
-        if partners[left] != 0:
-            edge = left_row[left]
-            x = i32(edge >> 16)
-            disparity = x - i32(right_row[partners[left] - 1] >> 16)
-            if disparity >= min_disparity:
-                base = EDGE3D_WORDS * found
-                stored = 1
-                if base < len(edges_3d):
-                    stored = store_point(
-                        geometry,
-                        SUBPIXELS * x,
-                        SUBPIXELS * y,
-                        SUBPIXELS * disparity,
-                        width,
-                        height,
-                        edges_3d,
-                        base + EDGE3D_X,
-                    )
-                if stored != 0 and base < len(edges_3d):
-                    while edge_data[place] != edge:
-                        place = place + 1
-                    edges_3d[base + EDGE3D_LEFT] = place
-                found = found + stored
+        edge = left_row[left]
+        x = i32(edge >> 16)
+        disparity = i32(disparities[x]) - 1
+        if disparity >= min_disparity:
+            base = EDGE3D_WORDS * found
+            stored = 1
+            if base < len(edges_3d):
+                stored = store_point(
+                    geometry,
+                    SUBPIXELS * x,
+                    SUBPIXELS * y,
+                    SUBPIXELS * disparity,
+                    width,
+                    height,
+                    edges_3d,
+                    base + EDGE3D_X,
+                )
+            if stored != 0 and base < len(edges_3d):
+                while edge_data[place] != edge:
+                    place = place + 1
+                edges_3d[base + EDGE3D_LEFT] = place
+            found = found + stored
     return found

@@ -28,23 +28,23 @@ def clear_votes(votes: i32[:]) -> None:
 def majority_at(
     left_row: u32[:],
     left_count: i32,
-    right_row: u32[:],
-    partners: u16[:],
+    disparities: u16[:],
     column: i32,
     disparity: i32,
     edge_range: i32,
 ) -> i32:
     """Return how many more edges of a row are for a line than against it: those `edge_range` from its `column` at most.
 
-    They are for it if their disparity is that of the line as nearly. All in 1/16 px.
+    They are for it if their disparity is that of the line as nearly. All in 1/16 px, but `disparities`: by column, in
+    pixels and 1, or 0 for none.
     """
     majority = 0
     for left in range(left_count):
-        x = SUBPIXELS * i32(left_row[left] >> 16)
-        if x > column + edge_range:
+        x = i32(left_row[left] >> 16)
+        if SUBPIXELS * x > column + edge_range:
             break
-        if x >= column - edge_range and partners[left] != 0:
-            off = x - SUBPIXELS * i32(right_row[partners[left] - 1] >> 16) - disparity
+        if SUBPIXELS * x >= column - edge_range and disparities[x] != 0:
+            off = SUBPIXELS * (i32(disparities[x]) - 1) - disparity
             majority = majority + 1 if abs(off) <= edge_range else majority - 1
     return majority
 
@@ -60,14 +60,13 @@ def vote_row(
     y: i32,
     left_row: u32[:],
     left_count: i32,
-    right_row: u32[:],
-    partners: u16[:],
+    disparities: u16[:],
     votes: i32[:],
     edge_range: i32,
 ) -> None:
     """Add the votes of row `y` for each of `count` 3-D lines that cross it.
 
-    `left_row` has the row's edges, and `partners` the places of theirs in `right_row`, from 1 on, or 0.
+    `left_row` has the row's edges, and `disparities` by column theirs and 1, in pixels, or 0 for none.
     """
     row = SUBPIXELS * y
     for number in range(count):
@@ -79,7 +78,7 @@ def vote_row(
             column = column_at(lines, line, slopes, row)
             disparity = column - column_at(others, other, other_slopes, row)
             votes[number] = votes[number] + majority_at(
-                left_row, left_count, right_row, partners, column, disparity, edge_range
+                left_row, left_count, disparities, column, disparity, edge_range
             )
 
 
@@ -113,13 +112,11 @@ class LineVote:
         """Begin to count."""
         yield self.core.run(clear_votes, self.votes)
 
-    def add(self, y: int, row: tuple[Row, int, Row, int], partners: Row) -> Generator[Any, Any, None]:
-        """Let the edges of row `y` vote: those of the left picture and how many, and those of the right one."""
-        left_row, left_count, right_row, _ = row
+    def add(self, y: int, row: tuple[Row, int, Row]) -> Generator[Any, Any, None]:
+        """Let the edges of row `y` vote: those of the left picture, how many, and their disparities by column."""
         if self.count and self.edge_range:
             lines = self.core.array("lines_3d"), self.count, *self.left, *self.right
-            edges = left_row, left_count, right_row, partners
-            yield self.core.run(vote_row, *lines, y, *edges, self.votes, self.edge_range)
+            yield self.core.run(vote_row, *lines, y, *row, self.votes, self.edge_range)
 
     def close(self) -> Generator[Any, Any, int]:
         """Keep what was elected in `lines_3d`. Publishes `lines_3d`, how many that is, and returns it."""

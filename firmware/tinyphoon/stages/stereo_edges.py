@@ -1,7 +1,7 @@
 """3-D edges: edges of the left picture that an edge of the right one corresponds to, for obstacles of any kind (T §5.2.8).
 
 The corresponding edge lies in the same row, has nearly the same gradient direction and a disparity within limits; which one
-it is says `edge_correspondence.py`. Edges whose gradient looks up or down belong to lines along the row, all of whose edges
+it is say `edge_correspondence.py` and, two rows later, `edge_following.py`. Edges whose gradient looks up or down belong to lines along the row, all of whose edges
 are alike: with `level_range` they are left out, as T §5.2.7 leaves out such lines.
 """
 
@@ -11,7 +11,7 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from bfsim.api import Buffer, Core, Frame, Row, i16, u16
+from bfsim.api import Buffer, Core, Frame, Row, i16, u16, u32
 from tinyphoon.fields import allowed
 from tinyphoon.geometry import FARTHEST_MM, disparity_at
 from tinyphoon.stages.edge_correspondence import (
@@ -24,6 +24,12 @@ from tinyphoon.stages.edge_correspondence import (
     store_edges3d_row,
     take_left_row,
     take_right_row,
+)
+from tinyphoon.stages.edge_following import (
+    believe_edges,
+    clear_disparities,
+    follow_edges,
+    place_disparities,
 )
 from tinyphoon.stages.line_votes import LineVote
 from tinyphoon.stages.stereo_lines import Correspondence, check_depths
@@ -40,7 +46,8 @@ class StereoEdgeThresholds:
     1/256 of a turn; 0 for none. `direction_range`: how far their gradient directions may differ, in 1/256 of a turn.
     `nearest_mm`, `farthest_mm`: depths between which edges are wanted. Only for MUTUAL: `lack`, what a pair's score gets for
     each of the rows around without a pair of its disparity, and `margin`, how much less its score must be than any
-    rival's. A score is made of grey levels of gradients and of twice the directions' 1/256.
+    rival's. A score is made of grey levels of gradients and of twice the directions' 1/256. `follow_range`: how far the
+    directions may differ where the rows around have the disparity.
     """
 
     correspondence: Correspondence
@@ -50,6 +57,7 @@ class StereoEdgeThresholds:
     farthest_mm: int = allowed(1, FARTHEST_MM)
     lack: int = allowed(0, 4096)
     margin: int = allowed(0, 4096)
+    follow_range: int = allowed(0, 64)
 
     def __post_init__(self) -> None:
         check_depths(self.nearest_mm, self.farthest_mm)
@@ -64,7 +72,7 @@ def stereo_edge_buffers(images: str) -> Sequence[Buffer]:
 class _Rows:
     """Rows of both edge stores, without level edges: one as a list, and those around it in windows.
 
-    They lie in L1 over the rings of the stages before, which have finished with them.
+    They lie in L1 over the rings of the stages before, which have finished with them, as all that the search needs.
     """
 
     core: Core
@@ -73,23 +81,27 @@ class _Rows:
     left_row: Row
     right_row: Row
     windows: tuple[Row, Row]
+    right_window_rows: tuple[Row, ...]
     level_range: int
 
     @classmethod
     def of(cls, core: Core, width: int, level_range: int) -> _Rows:
-        left_row, right_row = core.rows("candidate_ring")
+        lists = core.rows("candidate_ring")
         right = core.array("right_edge_data"), core.array("right_edge_rows")
-        rings = ("colour_ring", "eroded_ring")
-        left_window, right_window = (core.overlay(each, u16, WINDOW_ROWS * width)[0] for each in rings)
-        return cls(
-            core, edge_store(core), right, left_row, right_row, (left_window, right_window), level_range
-        )
+        left_window, right_window = (core.overlay(each, u16, WINDOW_ROWS * width)[0] for each in _WINDOWS)
+        right_window_rows = core.overlay(_WINDOWS[1], u16, width)[:WINDOW_ROWS]
+        windows = (left_window, right_window), right_window_rows
+        return cls(core, edge_store(core), right, *lists, *windows, level_range)
 
-    def take(self, y: int) -> Generator[Any, Any, tuple[Row, int, Row, int]]:
-        """Return row `y`: the edges of the left picture and how many, those of the right one and how many."""
-        left: int = yield self.core.run(take_left_row, *self.left, y, self.left_row, self.level_range)
-        right: int = yield self.core.run(take_right_row, *self.right, y, self.right_row, self.level_range)
-        return self.left_row, left, self.right_row, right
+    def take_left(self, y: int) -> Generator[Any, Any, tuple[Row, int]]:
+        """Return the edges of the left picture in row `y`, and how many."""
+        count: int = yield self.core.run(take_left_row, *self.left, y, self.left_row, self.level_range)
+        return self.left_row, count
+
+    def take_right(self, y: int) -> Generator[Any, Any, tuple[Row, int]]:
+        """Return the edges of the right picture in row `y`, and how many."""
+        count: int = yield self.core.run(take_right_row, *self.right, y, self.right_row, self.level_range)
+        return self.right_row, count
 
     def spread(self, y: int) -> Generator[Any, Any, None]:
         """Put row `y` into the windows; it may lie outside the picture."""
@@ -97,6 +109,94 @@ class _Rows:
         rest = y % WINDOW_ROWS, self.level_range
         yield self.core.run(spread_left_row, *self.left, y, left, *rest)
         yield self.core.run(spread_right_row, *self.right, y, right, *rest)
+
+
+_WINDOWS = "colour_ring", "eroded_ring"
+"""Where the windows of both pictures lie."""
+
+
+def _disparity_rows(core: Core, element: Any, columns: int) -> tuple[Row, ...]:
+    """Return the memory of WINDOW_ROWS rows of disparities: what the windows leave, and one row more."""
+    left, right = (core.overlay(each, element, columns)[WINDOW_ROWS:] for each in _WINDOWS)
+    return (*left, *right, *core.overlay("edge_ring", element, columns))[:WINDOW_ROWS]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Search:
+    """The search for the disparities of left edges, row by row from the bottom of the picture.
+
+    They are found in two steps: `match` asks the edges, and `settle`, `delay` rows later, the disparities around; the
+    thesis's way has the first one only. `least` and `most` are the disparities that are wanted, in pixels.
+    """
+
+    core: Core
+    rows: _Rows
+    thresholds: StereoEdgeThresholds
+    height: int
+    least: int
+    most: int
+    partners: Row
+    scores: tuple[Row, ...]
+    disparities: tuple[Row, ...]
+    words: tuple[Row, ...]
+
+    @classmethod
+    def of(cls, core: Core, frame: Frame, thresholds: StereoEdgeThresholds, least: int, most: int) -> _Search:
+        partners, *scores = core.overlay("opened_ring", u16, frame.width)
+        return cls(
+            core=core, rows=_Rows.of(core, frame.width, thresholds.level_range), thresholds=thresholds,
+            height=frame.height, least=least, most=most, partners=partners, scores=tuple(scores),
+            disparities=_disparity_rows(core, u16, frame.width),
+            words=_disparity_rows(core, u32, frame.width // 2),
+        )  # fmt: skip
+
+    @property
+    def is_mutual(self) -> bool:
+        """Whether it is our way."""
+        return self.thresholds.correspondence is Correspondence.MUTUAL
+
+    @property
+    def delay(self) -> int:
+        """How many rows later a row is settled than matched."""
+        return REACH if self.is_mutual else 0
+
+    def open(self) -> Generator[Any, Any, None]:
+        """Begin below the picture."""
+        for words in self.words:
+            yield self.core.run(clear_disparities, words)
+        if self.is_mutual:
+            for y in range(self.height + REACH - 1, self.height - REACH - 1, -1):
+                yield from self.rows.spread(y)
+
+    def match(self, y: int) -> Generator[Any, Any, None]:
+        """Look for partners of the edges of row `y`; it may lie above the picture."""
+        slot = y % WINDOW_ROWS
+        yield self.core.run(clear_disparities, self.words[slot])
+        if self.is_mutual:
+            yield from self.rows.spread(y - REACH)
+        if y < 0:
+            return
+        left = yield from self.rows.take_left(y)
+        right = yield from self.rows.take_right(y)
+        limit = self.thresholds.direction_range
+        if self.is_mutual:
+            limits = limit, self.most, self.thresholds.lack, self.thresholds.margin
+            room = self.partners, *self.scores
+            yield self.core.run(match_edges, *left, *right, *self.rows.windows, slot, *room, *limits)
+        else:
+            yield self.core.run(match_nearest, *left, *right, self.partners, limit, self.least, self.most)
+        yield self.core.run(place_disparities, *left, right[0], self.partners, self.disparities[slot])
+
+    def settle(self, y: int) -> Generator[Any, Any, tuple[Row, int, Row]]:
+        """Return the edges of the left picture in row `y`, how many, and their disparities."""
+        left = yield from self.rows.take_left(y)
+        slot = y % WINDOW_ROWS
+        if self.is_mutual:
+            around = [self.disparities[(y + step) % WINDOW_ROWS] for step in range(-REACH, REACH + 1)]
+            row = *left, *around, self.rows.right_window_rows[slot]
+            yield self.core.run(believe_edges, *row)
+            yield self.core.run(follow_edges, *row, self.thresholds.follow_range, self.most)
+        return *left, self.disparities[slot]
 
 
 def stereo_edges(
@@ -107,33 +207,26 @@ def stereo_edges(
     Core B must have posted that its edges are there. Publishes `edges_3d`, that number, and `edges_3d_lost`, how many
     found no room.
     """
-    rows = _Rows.of(core, frame.width, thresholds.level_range)
     geometry, edges_3d = core.array("geometry"), core.array("edges_3d")
-    partners, *scores = core.overlay("opened_ring", u16, frame.width)
     far: int = yield core.run(disparity_at, geometry, thresholds.farthest_mm)
     near: int = yield core.run(disparity_at, geometry, thresholds.nearest_mm)
     least, most = far // SUBPIXELS + 1, near // SUBPIXELS  # whole pixels between
-    is_mutual = thresholds.correspondence is Correspondence.MUTUAL
-    limits = thresholds.direction_range, most, thresholds.lack, thresholds.margin
-    if is_mutual:
-        for y in range(frame.height + REACH - 1, frame.height - REACH - 1, -1):
-            yield from rows.spread(y)
+    search = _Search.of(core, frame, thresholds, least, most)
+    yield from search.open()
+    store = core.array("edge_data"), core.array("edge_index")
+    size = frame.width, frame.height
     found = 0
-    for y in range(frame.height - 1, -1, -1):
-        core.at(y, edge_columns(core, y))
-        row = yield from rows.take(y)
-        if is_mutual:
-            yield from rows.spread(y - REACH)
-            place = *rows.windows, y % WINDOW_ROWS
-            yield core.run(match_edges, *row, *place, partners, *scores, *limits)
-        else:
-            yield core.run(match_nearest, *row, partners, thresholds.direction_range, least, most)
-        yield from vote.add(y, row, partners)
-        left, left_count, right, _ = row
-        pairs = left, left_count, right, partners, least
-        store = core.array("edge_data"), core.array("edge_index"), y
-        size = frame.width, frame.height
-        found = yield core.run(store_edges3d_row, *store, *pairs, geometry, *size, edges_3d, found)
+    for matched in range(frame.height - 1, -1 - search.delay, -1):
+        y = matched + search.delay
+        core.at(max(matched, 0), edge_columns(core, max(matched, 0)))
+        yield from search.match(matched)
+        if y < frame.height:
+            core.at(y, edge_columns(core, y))
+            row = yield from search.settle(y)
+            yield from vote.add(y, row)
+            found = yield core.run(
+                store_edges3d_row, *store, y, *row, least, geometry, *size, edges_3d, found
+            )
     core.at()
     kept = min(found, EDGE3D_CAPACITY)
     core.publish(edges_3d=kept, edges_3d_lost=found - kept)

@@ -230,6 +230,8 @@ INDOOR_FIELD = Mode(
         lack=32,
         # Three quarters of a row around that agrees: of patterns that come again, only those with an end in reach.
         margin=24,
+        # 22.5 degrees. Corners and noise turn single edges so far; there are few disparities to choose from, not the whole row.
+        follow_range=16,
     ),
     # A frame of the soccer field has 10 to 20 lines with depth; a cloud of 64 has one edge in every 35 px square.
     report=ReportLimits(lines_3d=32, edges_3d=64),

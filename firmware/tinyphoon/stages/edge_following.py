@@ -1,0 +1,129 @@
+"""What the disparities around say of an edge's: most things go on in the next rows, at nearly the depth that they have here.
+
+A pair that matched by itself (`edge_correspondence.py`) is believed if some pair in the rows around has its disparity, to a
+pixel. An edge without a pair then follows those around: it takes the most similar of the right edges at their disparities.
+There are few of these, so its gradient may be turned farther than that of a pair which had the whole row to choose from.
+
+A row of disparities holds by the column of each left edge its disparity in pixels and 1, or 0 where there is none.
+"""
+
+from __future__ import annotations
+
+from bfsim.api import i32, kernel, u16, u32
+from tinyphoon.stages.edge_correspondence import WORST, unlike
+
+OFFER_BITS = 12
+"""More than the disparities of any picture need."""
+
+NO_OFFER = WORST << OFFER_BITS
+
+
+@kernel
+def clear_disparities(words: u32[:]) -> None:
+    """Begin a row of disparities, two columns a word."""
+    for word in range(len(words)):
+        words[word] = 0
+
+
+@kernel
+def place_disparities(
+    left_row: u32[:], left_count: i32, right_row: u32[:], partners: u16[:], disparities: u16[:]
+) -> None:
+    """Put the disparities of the left edges of a row that have a partner into a cleared row."""
+    for left in range(left_count):
+        if partners[left] != 0:
+            x = left_row[left] >> 16
+            disparities[i32(x)] = x - (right_row[partners[left] - 1] >> 16) + 1
+
+
+@kernel
+def has_like(disparities: u16[:], x: i32, away: i32, disparity: i32) -> i32:
+    """Return 1 if an edge `away` from column `x` at most has a disparity (and 1), to a pixel; else 0."""
+    for column in range(max(x - away, 0), min(x + away, len(disparities) - 1) + 1):
+        known = i32(disparities[column])
+        if known != 0 and abs(known - disparity) <= 1:
+            return 1
+    return 0
+
+
+@kernel
+def believe_edges(
+    left_row: u32[:],
+    left_count: i32,
+    above2: u16[:],
+    above: u16[:],
+    here: u16[:],
+    below: u16[:],
+    below2: u16[:],
+    right_edges: u16[:],
+) -> None:
+    """Take the disparities of a row away that no row around believes, and from `right_edges` the edges of the others.
+
+    `right_edges` has the row's gradients and directions by column, or 0, as a window of `spread_edges`.
+    """
+    for left in range(left_count):
+        x = i32(left_row[left] >> 16)
+        disparity = i32(here[x])
+        if disparity != 0:
+            if (
+                has_like(below, x, 1, disparity) != 0
+                or has_like(above, x, 1, disparity) != 0
+                or has_like(below2, x, 2, disparity) != 0
+                or has_like(above2, x, 2, disparity) != 0
+            ):
+                right_edges[x - disparity + 1] = 0
+            else:
+                here[x] = 0
+
+
+@kernel
+def best_offer(
+    edge: u32, disparities: u16[:], away: i32, right_edges: u16[:], follow_range: i32, max_disparity: i32
+) -> i32:
+    """Return how unlike `edge` the right edge is that is most like it of those that a row around offers.
+
+    These are those at the disparities of the edges `away` from its column at most, and a pixel beside. The lower OFFER_BITS
+    are the disparity and 1; without an offer it is NO_OFFER or more.
+    """
+    x = i32(edge >> 16)
+    most = min(x, max_disparity) + 1
+    best = NO_OFFER
+    before = 0
+    for column in range(max(x - away, 0), min(x + away, len(disparities) - 1) + 1):
+        known = i32(disparities[column])
+        if known != before and known > 0:
+            for disparity in range(max(known - 1, 1), min(known + 1, most) + 1):
+                other = i32(right_edges[x - disparity + 1])
+                if other != 0:
+                    off = unlike(i32(edge & 0xFFFF), other, follow_range)
+                    best = min(best, off << OFFER_BITS | disparity)
+        before = known
+    return best
+
+
+@kernel
+def follow_edges(
+    left_row: u32[:],
+    left_count: i32,
+    above2: u16[:],
+    above: u16[:],
+    here: u16[:],
+    below: u16[:],
+    below2: u16[:],
+    right_edges: u16[:],
+    follow_range: i32,
+    max_disparity: i32,
+) -> None:
+    """Give the left edges of a row that have no disparity one of those around; a right edge belongs to one only."""
+    for left in range(left_count):
+        edge = left_row[left]
+        x = i32(edge >> 16)
+        if here[x] == 0:
+            best = best_offer(edge, below, 1, right_edges, follow_range, max_disparity)
+            best = min(best, best_offer(edge, above, 1, right_edges, follow_range, max_disparity))
+            best = min(best, best_offer(edge, below2, 2, right_edges, follow_range, max_disparity))
+            best = min(best, best_offer(edge, above2, 2, right_edges, follow_range, max_disparity))
+            if best < NO_OFFER:
+                disparity = best & (1 << OFFER_BITS) - 1
+                here[x] = disparity
+                right_edges[x - disparity + 1] = 0
