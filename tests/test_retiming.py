@@ -63,7 +63,7 @@ def plain() -> Run:
 def work(folder: Path, plain: Run) -> Path:
     """Return the recorded work of that run; recording it changes nothing."""
     path = folder / "thesis.work"
-    assert differing(plain, simulate(frames=FRAMES, record_work=path)) == set()
+    assert differing(plain, simulate(frames=FRAMES, record_work=path)) <= HOSTS_OWN
     return path
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,6 +94,8 @@ class AccessTrace:
         """
         self._arena = arena  # the state has its address only
         self._state = room
+        self._words: Any = room.data
+        self._kept = 0
         self._state[TAGS:LOG] = EMPTY
         self._state[ARENA], self._state[END] = arena.ctypes.data, arena.ctypes.data + traced_nbytes
         self._state[ROOM] = (len(room) - LOG) // ENTRY_WORDS
@@ -116,11 +119,21 @@ class AccessTrace:
         return int(self._state.ctypes.data)
 
     def take_count(self) -> int:
-        """Return how many accesses the last call logged, and begin the log anew."""
-        count = int(self._state[ENTRIES])
-        self._state[ENTRIES] = 0
+        """Return how many accesses the last call logged, and begin the log anew behind what is kept."""
+        count = int(self._words[ENTRIES]) - self._kept
+        self._words[ENTRIES] = self._kept
         self._check_room(count)
         return count
+
+    def keep(self, count: int) -> int:
+        """Keep the `count` entries of the last call in front of those to come; return the number of the first."""
+        first = self._kept
+        self._words[ENTRIES] = self._kept = first + count
+        return first
+
+    def drop(self) -> None:
+        """Keep nothing any more."""
+        self._words[ENTRIES] = self._kept = 0
 
     def entries(self, count: int) -> NDArray[np.int64]:
         """Return the first `count` entries of the log."""
@@ -142,9 +155,10 @@ class AccessTrace:
         return total
 
     def _check_room(self, count: int) -> None:
-        if count > self._state[ROOM]:
+        room = self._words[ROOM] - self._kept
+        if count > room:
             raise KernelError(
-                f"a kernel call must access memory outside L1 at most {self._state[ROOM]} times, not {count} times: split it"
+                f"a kernel call must access memory outside L1 at most {room} times, not {count} times: split it"
             )
 
     def caches(self, offset: int) -> bool:

@@ -25,6 +25,7 @@ from bfsim.machine.calls.ledger import Ledger
 from bfsim.machine.cameras.capture import Capture, Feed, StereoPictures
 from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.code import code_outside_l1, code_records
+from bfsim.machine.core.ahead_core import AheadCore
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.interrupts import Interrupts
 from bfsim.machine.core.layouts import Layouts
@@ -57,7 +58,7 @@ class Fidelity(StrEnum):
 
 @dataclass
 class Board:
-    """A board with firmware in it, and `device` on its SPI, ready to run once. `core`: makes its cores."""
+    """A board with firmware in it, and `device` on its SPI, ready to run once. `core`: makes its cores, where they need not be detailed."""
 
     spec: BoardSpec
     firmware: Firmware
@@ -69,7 +70,7 @@ class Board:
     device: SpiDevice = field(default_factory=SpiDevice)
     fidelity: Fidelity = Fidelity.FAST
     weave: Weave = compiled_weave
-    core: Callable[..., Core] = Core
+    core: Callable[..., Core] = AheadCore
     cores: dict[str, Core] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -195,6 +196,7 @@ class Board:
             self._bus.owners,
             Ledger(partial(self._bus.logs.stalls_at_sites, number)),
             stack=self._stack_outside_l1(name),
+            own=self._buffers.only_of(name),
             before_call=self.before_call,
         )
 
@@ -216,7 +218,8 @@ class Board:
     ) -> Core:
         inward, outward = (MdmaStream(self._bus, self.spec, each) for each in RING_STREAMS[number])
         placed, declared = self._buffers.of[name], partial(self._buffers.declared, name)
-        return self.core(
+        make = Core if self.fidelity is Fidelity.DETAILED else self.core
+        return make(
             self._env,
             name,
             self.spec,

@@ -44,7 +44,12 @@ class LoadedBuffers:
         }
         self.records = tuple(_own(placed, owners))
         shared = placed.get("shared", {})
+        self._own_names = {core: set(placed.get(core, {})) for core in self._cores}
         self.of: dict[str, dict[str, Rows]] = {core: shared | placed.get(core, {}) for core in self._cores}
+
+    def only_of(self, core: str) -> frozenset[str]:
+        """Return the buffers that a core works on alone: no other core knows them, and no camera writes them."""
+        return frozenset(self._own_names[core] - {self._firmware.camera})
 
     def declared(self, core: str, size: FrameSize) -> dict[str, Buffer]:
         """Return the buffers that a core knows by name, as the firmware declares them for pictures of `size`."""

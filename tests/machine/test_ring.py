@@ -15,7 +15,7 @@ from bfsim.chip.bf561 import BF561
 from bfsim.errors import FirmwareError
 from bfsim.trace import StallReason
 from tests.machine.kernels import copy, first, negate, spin
-from tests.machine.rig import SIZE, Bench, Picture, Play, every_frame, noise, run, stage_of
+from tests.machine.rig import SIZE, Bench, Picture, Play, every_frame, load, noise, run, stage_of
 
 LINE_BYTES = 2 * SIZE.width_px
 EVENTS = BF561.events
@@ -315,6 +315,8 @@ def test_rings_never_hold_more_than_they_have_rows(turns: list[int]) -> None:
         yield from out.flush()
         written.append(np.stack([row.array for row in core.rows("image")]))
 
-    run(every_frame(work), every_frame(work), frames=2)
+    board = load(every_frame(work), every_frame(work))
+    board.core = Core  # which is where its firmware is at every moment
+    board.run(noise(2))
     for picture, (left, right) in zip(noise(2), zip(written[::2], written[1::2], strict=True), strict=True):
         assert {left.tobytes(), right.tobytes()} == {picture.left.tobytes(), picture.right.tobytes()}

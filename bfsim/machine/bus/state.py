@@ -101,8 +101,9 @@ NOTHING, SDRAM, L2 = range(3)  # what a request can need
     PLACE, LINE_BEGAN,  # where the next element is: in its line, and when that began, in parts from the start
     OF_MASTER,      # whose it is
     FROM_OWNER, TO_OWNER,  # the memory owners (below) that its sides begin in
-) = range(30)  # fmt: skip
-TRANSFER_WORDS = 30
+    IS_MOVED,       # whether its bytes have been moved already, and only the time is left
+) = range(31)  # fmt: skip
+TRANSFER_WORDS = 31
 MAX_TRANSFERS = 256
 ENDS = 1 << 16
 """Transfers whose end is remembered: the latest so many."""
@@ -167,7 +168,7 @@ PLAY_WORDS = ACCOUNTS + MAX_ACCOUNTS * ACCOUNT_WORDS
     ACCESS,         # a call that does not: the same, the first of its accesses in the log, and the one behind its last
     CATCH_UP,       # let the bus come up to the core
     SET_UP,         # program a device: cycles, account
-    COPY,           # post a copy: its plan
+    COPY,           # post a copy: its plan, and where it begins to read and to write
     AWAIT,          # wait for a copy: how many were posted since, why that is a stall, account
 ) = range(6)  # fmt: skip
 OPERATION_WORDS = 5

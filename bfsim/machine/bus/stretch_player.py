@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -35,17 +36,21 @@ class StretchPlayer:
         `operations`: rows of OPERATION_WORDS as in `bus.state`, at most MAX_OPERATIONS of them. `accesses`: the log that those
         of their calls refer to, a row of entries and one of sites.
         """
+        first = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS
+        self._state[first : first + operations.size] = operations.reshape(-1)
+        self._logs.replace(core, accesses)
+        return self.start(core, clock_cclk, 0, len(operations))
+
+    def start(self, core: int, clock_cclk: int, first: int, end: int) -> simpy.Event:
+        """Let a core do the operations from `first` to before `end` of those that stand in the state; else as `play`."""
         play = w.PLAYS_AT + core * w.PLAY_WORDS
         copies = self._words[play + w.COPIES]
         self._state[play : play + w.PLAY_WORDS] = 0
         for word, value in (
-            (w.OPERATIONS_END, len(operations)), (w.CLOCK, clock_cclk), (w.ACTS_AT, self._env.tick),
+            (w.OPERATION, first), (w.OPERATIONS_END, end), (w.CLOCK, clock_cclk), (w.ACTS_AT, self._env.tick),
             (w.AWAITED, w.NONE), (w.COPIES, copies),
         ):  # fmt: skip
             self._words[play + word] = value
-        first = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS
-        self._state[first : first + operations.size] = operations.reshape(-1)
-        self._logs.replace(core, accesses)
         return self._ends.of_stretch(core)
 
     def played(self, core: int) -> Played:
@@ -54,24 +59,32 @@ class StretchPlayer:
         words: list[int] = self._words[play : play + w.PLAY_WORDS].tolist()
         if words[w.OPERATION] < words[w.OPERATIONS_END]:
             raise FirmwareError(f"DMA must have at most {w.MAX_TRANSFERS} transfers to do at a time")
-        accounts = [
-            words[each : each + w.ACCOUNT_WORDS] for each in range(w.ACCOUNTS, w.PLAY_WORDS, w.ACCOUNT_WORDS)
-        ]
-        used = sorted((each[w.TOUCH], number) for number, each in enumerate(accounts) if each[w.TOUCH])
+        touches = words[w.ACCOUNTS + w.TOUCH :: w.ACCOUNT_WORDS] if words[w.TOUCHED] else ()
+        used = sorted((touch, number) for number, touch in enumerate(touches) if touch)
+        begins = ((number, w.ACCOUNTS + number * w.ACCOUNT_WORDS) for _, number in used)
         return Played(
             clock_cclk=words[w.CLOCK],
             issue_cclk=words[w.ISSUED],
             interlocks_cclk=words[w.INTERLOCKED],
             bus_stalls_cclk=words[w.ON_BUS : w.ACCOUNTS],
-            accounts={number: accounts[number] for _, number in used},
+            accounts={number: words[begin : begin + w.ACCOUNT_WORDS] for number, begin in begins},
         )
 
-    def keep_plans(self, words: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Keep plans where stretches find them, each a row of the `words` of a `TransferPlan`; return their numbers."""
+    def copy_of(self, core: int, number: int) -> tuple[int, int]:
+        """Return number and place of the transfer that the copy `number` of a core was, of those that it has posted."""
+        at = w.COPIES_AT + 2 * (core * w.ENDS + number % w.ENDS)
+        return self._words[at], self._words[at + 1]
+
+    def keep_plans(self, words: Sequence[Sequence[int]]) -> NDArray[np.int64]:
+        """Keep plans where stretches find them, each the `words` of a `TransferPlan`; return their numbers.
+
+        Their bytes do not move: where somebody looks at them, they have been moved before.
+        """
         numbers = np.arange(self._plans, self._plans + len(words))
         self._plans += len(words)
         if self._plans > w.MAX_PLANS:
             raise FirmwareError(f"a recorded run must have at most {w.MAX_PLANS} different copies")
         plans = self._state[w.PLANS_AT : w.PLANS_AT + self._plans * w.PLAN_WORDS].reshape(-1, w.PLAN_WORDS)
         plans[numbers, w.SETUP :] = words
+        plans[numbers, w.IS_MOVED] = 1
         return numbers

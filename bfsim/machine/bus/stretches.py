@@ -90,7 +90,7 @@ def do(state: State, core: int, at: int, now: int) -> bool:
     elif kind == w.AWAIT:
         wait_until(state, core, end_of_copy(state, core, state[at + 1]))
     elif kind == w.COPY:
-        return post(state, core, state[at + 1], now)
+        return post(state, core, at, now)
     return True
 
 
@@ -173,9 +173,9 @@ def end_of_copy(state: State, core: int, back: int) -> int:
 
 
 @native
-def post(state: State, core: int, number: int, now: int) -> bool:
-    """Post the copy of plan `number` at tick `now`, not before the core's clock; return whether there was room for it."""
-    play, plan = w.PLAYS_AT + core * w.PLAY_WORDS, w.PLANS_AT + number * w.PLAN_WORDS
+def post(state: State, core: int, at: int, now: int) -> bool:
+    """Post the copy of the operation `at` at tick `now`, not before the core's clock; return whether there was room for it."""
+    play, plan = w.PLAYS_AT + core * w.PLAY_WORDS, w.PLANS_AT + state[at + 1] * w.PLAN_WORDS
     if state[w.FREE_TRANSFERS] == 0:
         return False
     state[w.FREE_TRANSFERS] -= 1
@@ -185,6 +185,7 @@ def post(state: State, core: int, number: int, now: int) -> bool:
     state[w.ENDS_AT + identity % w.ENDS] = w.NONE
     for word in range(w.SETUP, w.TRANSFER_WORDS):
         state[transfer + word] = state[plan + word]
+    state[transfer + w.FROM], state[transfer + w.TO] = state[at + 2], state[at + 3]
     state[transfer + w.IDENTITY], state[transfer + w.NEXT] = identity, w.NONE
     state[transfer + w.AT] = max(now, state[play + w.CLOCK] * state[w.CCLK])
     posted = w.POSTS_AT + 2 * state[w.POSTED]

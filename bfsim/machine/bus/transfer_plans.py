@@ -80,7 +80,7 @@ class TransferPlan:
             source.offset, source.x_count, source.x_modify, source.y_modify, source.x_count,
             destination.offset, destination.x_count, destination.x_modify, destination.y_modify, destination.x_count,
             pace.start, parts, element, line, pace.line_elements, 0, 0,
-            self.master, *self.owners,
+            self.master, *self.owners, 0,
         )  # fmt: skip
 
 

@@ -33,6 +33,17 @@ def copy_element(memory: Memory, source: int, target: int, bits: int) -> None:
 @native
 def move(state: State, memory: Memory, transfer: int, count: int) -> None:
     """Move `count` elements, none beyond the end of either side's line, and step both sides on."""
+    if not state[transfer + w.IS_MOVED]:
+        move_bytes(state, memory, transfer, count)
+    go_on(state, transfer + w.FROM, count)
+    go_on(state, transfer + w.TO, count)
+    state[transfer + w.MOVED] += count
+    state[transfer + w.LEFT] -= count
+
+
+@native
+def move_bytes(state: State, memory: Memory, transfer: int, count: int) -> None:
+    """Move the bytes of the next `count` elements."""
     source, target, bits = state[transfer + w.FROM], state[transfer + w.TO], state[transfer + w.ELEMENT_BITS]
     source_step, target_step = state[transfer + w.FROM_X_MODIFY], state[transfer + w.TO_X_MODIFY]
     if bits == WORD_BITS and source_step == target_step == WORD_BYTES:
@@ -44,7 +55,3 @@ def move(state: State, memory: Memory, transfer: int, count: int) -> None:
             copy_element(memory, source, target, bits)
             source += source_step
             target += target_step
-    go_on(state, transfer + w.FROM, count)
-    go_on(state, transfer + w.TO, count)
-    state[transfer + w.MOVED] += count
-    state[transfer + w.LEFT] -= count

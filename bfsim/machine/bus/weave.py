@@ -66,11 +66,11 @@ def count_direction(state: State, before: int) -> None:
 
 
 @native
-def first_request(state: State, until: int) -> tuple[int, int]:
-    """Return who can be served first, and when; NONE if nobody before tick `until`."""
+def first_request(state: State, masters: int, until: int) -> tuple[int, int]:
+    """Return who, of `masters` and those behind it, can be served first, and when; NONE if nobody before tick `until`."""
     sdram_free, l2_free = state[w.COMMAND_FREE], state[w.L2_FREE]
     first, first_at, first_rank = w.NONE, until, w.NEVER
-    for number in range(w.MASTERS):
+    for number in range(masters, w.MASTERS):
         master = w.MASTERS_AT + number
         at = state[master + w.READY]
         if at >= until:
@@ -115,14 +115,33 @@ def serve_cameras(state: State, memory: Memory, number: int, at: int, until: int
 
 
 @native
+def serve_cores(state: State, number: int, at: int, until: int) -> int:
+    """Serve a core, and then the accesses of both that come before a DMA can want anything; return who is woken.
+
+    Where buffers lie outside of L1 most requests are theirs; this saves looking at everybody each time.
+    """
+    limit = until
+    for other in range(w.STORES_A):
+        limit = min(limit, state[w.MASTERS_AT + other + w.READY])
+    while True:
+        if number >= w.CORE_A:
+            woken = serve_core(state, number - w.CORE_A, at, until)
+        else:
+            woken = serve_stores(state, number - w.STORES_A, at)
+        if woken != w.NONE:
+            return woken
+        number, at = first_request(state, w.STORES_A, limit)
+        if number == w.NONE or (state[w.MASTERS_AT + number + w.USES] == w.SDRAM and hold_up(state, at)):
+            return w.NONE
+
+
+@native
 def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int:
     """Serve the request of a master; return who is woken."""
     if number <= w.PPI1 and not state[w.DEB_PERIOD]:
         return serve_cameras(state, memory, number, at, until)
-    if number >= w.CORE_A:
-        return serve_core(state, number - w.CORE_A, at, until)
     if number >= w.STORES_A:
-        return serve_stores(state, number - w.STORES_A, at)
+        return serve_cores(state, number, at, until)
     return serve_dma(state, memory, number, at, until)
 
 
@@ -130,7 +149,7 @@ def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int
 def grant(state: State, memory: Memory, until: int) -> int:
     """Grant all requests before tick `until`, in order; return early with who is woken, at tick DONE_AT, else NONE."""
     while True:
-        first, at = first_request(state, until)
+        first, at = first_request(state, w.PPI0, until)
         if first == w.NONE:
             return w.NONE
         if state[w.MASTERS_AT + first + w.USES] == w.SDRAM and hold_up(state, at):

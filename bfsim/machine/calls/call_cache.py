@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Collection, Generator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -14,7 +14,7 @@ from bfsim.kernel import Kernel, Work
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.build import Build
 from bfsim.machine.bus.memory_owners import MemoryOwners
-from bfsim.machine.calls.conflicts import StageGroups, SubBanks
+from bfsim.machine.calls.conflicts import Accesses, StageGroups, SubBanks
 from bfsim.machine.calls.fetch import CodeOutside, FetchedCall
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.calls.ledger import Ledger, Snapshot
@@ -25,11 +25,7 @@ from bfsim.trace import REST
 
 
 class BoundCall(Protocol):
-    """A kernel bound to its rows, ready to run."""
-
-    @property
-    def stays_in_l1(self) -> bool:
-        """Whether neither its accesses nor its code can leave L1."""
+    """What can be run with arguments."""
 
     def run(self, arguments: tuple[Row | int, ...]) -> Work:
         """Run the kernel now and say what it cost."""
@@ -45,17 +41,25 @@ def sanitized(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
 
 
 @dataclass(frozen=True, slots=True)
+class KnownCall:
+    """A kernel bound to its rows, ready to run.
+
+    `stays_in_l1`: whether neither its accesses nor its code can leave L1; `is_own`: whether they reach nothing but buffers that
+    belong to its core alone.
+    """
+
+    run: Callable[[tuple[Row | int, ...]], Work]
+    stays_in_l1: bool
+    is_own: bool
+
+
+@dataclass(frozen=True, slots=True)
 class WatchedCall:
     """A call that others are told of before it runs."""
 
     call: BoundCall
     kernel: Kernel
     before: tuple[BeforeCall, ...]
-
-    @property
-    def stays_in_l1(self) -> bool:
-        """Whether neither its accesses nor its code can leave L1."""
-        return self.call.stays_in_l1
 
     def run(self, arguments: tuple[Row | int, ...]) -> Work:
         """Tell of the call, run the kernel, and say what it cost."""
@@ -94,21 +98,23 @@ class CallCache:
         ledger: Ledger,
         *,
         stack: NDArray[np.uint8] | None = None,
+        own: Collection[str],
         before_call: tuple[BeforeCall, ...],
     ) -> None:
-        """`stack`: the memory of the core's stack if it is outside of L1."""
+        """`stack`: the memory of the core's stack if it is outside of L1. `own`: the buffers that only this core works on."""
         self._core = core
         self._build = build
         self._access_trace = access_trace
         self._code = code
         self._subbanks = subbanks
+        self._own = own
         self._before_call = before_call
         self._owners = owners
         self._ledger = ledger
         self._stack = stack
         self._groups: dict[tuple[str, Kernel, tuple[int, ...]], CallGroup] = {}
         self._in_stage: dict[str, StageGroups] = {}
-        self._calls: dict[str, dict[tuple[Kernel, object], BoundCall]] = {}
+        self._calls: dict[str, dict[tuple[Kernel, object], KnownCall]] = {}
         self.enter(REST)
 
     def enter(self, stage: str) -> None:
@@ -118,14 +124,18 @@ class CallCache:
         self.known = self._calls.setdefault(stage, {})
         """Calls of this stage by kernel and rows, ready to run."""
 
-    def conflicts_cclk(self, elapsed_cclk: int) -> int:
-        """Return what conflicts in L1 cost the present stage in its `elapsed_cclk`, since it was asked last."""
-        conflicts = self._subbanks.since(self._in_stage[self.stage], self._ledger.events, elapsed_cclk)
+    def accessed(self) -> Accesses:
+        """Return what the calls of the present stage have accessed in L1 since this was asked last."""
+        return self._subbanks.accessed(self._in_stage[self.stage], self._ledger.events)
+
+    def conflicts_cclk(self, accessed: Accesses, elapsed_cclk: int) -> int:
+        """Return what conflicts in L1 cost calls that have `accessed` it in `elapsed_cclk`, all since this was asked last."""
+        conflicts = self._subbanks.conflicts(accessed, elapsed_cclk)
         if conflicts.cclk:
             self._ledger.add_conflicts(conflicts.sites, conflicts.at_sites_cclk)
         return conflicts.cclk
 
-    def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> BoundCall:
+    def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> KnownCall:
         """Prepare a call for the first time, and know it from now on. Rows outside of L1 are traced."""
         if not isinstance(kernel, Kernel):
             name = getattr(kernel, "__name__", repr(kernel))
@@ -154,7 +164,7 @@ class CallCache:
         """Return the records of what was reported."""
         return CoreRecords(self._core, self._groups.values(), self._ledger.reported)
 
-    def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> BoundCall:
+    def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> KnownCall:
         for each in arguments:
             if isinstance(each, Generator):
                 wait = f"{getattr(each, '__name__', 'wait')}(...)"
@@ -171,9 +181,9 @@ class CallCache:
                     f"{name} must be a row of a placed buffer, not {row!r} (kernel {kernel.name}, {kernel.place})"
                 )
             rows.append(row)
-        outside = sum(map(self._is_traced, rows))  # of every row, since some cannot be reached at all
+        outside = [each for each in rows if self._is_traced(each)]
         stack = self._stack if self._build.has_code(kernel) else None
-        traced = outside > 0 or stack is not None
+        traced = bool(outside) or stack is not None
         group = self._group(kernel, tuple(self._owners.of(each.offset) for each in rows), traced)
         for seen, row in zip(group.subbanks, rows, strict=True):
             seen.update(self._subbanks.of(row))
@@ -183,7 +193,13 @@ class CallCache:
         )
         if group.fetched:
             call = FetchedCall(call, group, self._code, self._access_trace)
-        return WatchedCall(call, kernel, self._before_call) if self._before_call else call
+        if self._before_call:
+            call = WatchedCall(call, kernel, self._before_call)
+        return KnownCall(
+            call.run,
+            stays_in_l1=not (traced or group.fetched),
+            is_own=not group.fetched and all(each.buffer in self._own for each in outside),
+        )
 
     def _is_traced(self, row: Row) -> bool:
         """Whether accesses to `row` take longer than one cycle. Another core's L1 cannot be reached at all."""

@@ -20,6 +20,14 @@ from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.memories import Memories, Row
 
 
+class Accesses(NamedTuple):
+    """Accesses of L1 by calls: so many of each site, to each sub-bank."""
+
+    banks: NDArray[np.int64]
+    made: NDArray[np.float64]
+    sites: NDArray[np.int64]
+
+
 class Conflicts(NamedTuple):
     """Cycles that were lost, and the sites that lost how many of them."""
 
@@ -81,13 +89,18 @@ class SubBanks:
         first, last = row.offset - self._first, row.offset + row.nbytes - 1 - self._first
         return range(first // self._bytes, last // self._bytes + 1)
 
-    def since(self, groups: StageGroups, events: NDArray[np.int64], elapsed_cclk: int) -> Conflicts:
-        """Return what conflicts cost in the last `elapsed_cclk`, in which the calls of `groups` ran, by the core's `events`."""
+    @staticmethod
+    def accessed(groups: StageGroups, events: NDArray[np.int64]) -> Accesses:
+        """Return what the calls of `groups` have accessed since the last time, by the core's `events`."""
+        _, banks, each, parts, sites = groups.spread
+        return Accesses(banks, groups.counted(events) * each / parts, sites)
+
+    def conflicts(self, accessed: Accesses, elapsed_cclk: int) -> Conflicts:
+        """Return what conflicts cost since the last time, `elapsed_cclk` ago: all was `accessed` in these."""
         moved = self._dma_words()
         dma = moved - self._moved
         self._moved = moved
-        _, banks, each, parts, sites = groups.spread
-        made = groups.counted(events) * each / parts
+        banks, made, sites = accessed
         if elapsed_cclk <= 0:
             return NO_CONFLICTS
         accesses = np.zeros(w.MAX_SUBBANKS, np.float64)

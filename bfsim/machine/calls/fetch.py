@@ -103,11 +103,6 @@ class FetchedCall:
             for line in range(offset // line_bytes, (offset + nbytes - 1) // line_bytes + 1)
         ]
 
-    @property
-    def stays_in_l1(self) -> bool:
-        """Whether no access can leave L1: its code does."""
-        return False
-
     def run(self, arguments: tuple[Row | int, ...]) -> Work:
         """Run the kernel now and say what it cost."""
         before = self._totals.copy()

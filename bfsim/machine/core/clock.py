@@ -7,7 +7,7 @@ issue + stall + idle = elapsed holds by construction.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -15,7 +15,8 @@ import simpy
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine.bus.bus import Bus
-from bfsim.machine.bus.transfer_plans import Transfer
+from bfsim.machine.bus.stalls import BUS_STALLS, REASON_OF_ACCOUNT
+from bfsim.machine.bus.transfer_plans import Played, Transfer
 from bfsim.machine.core.accounts import FrameAccounts
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.timeline import CoreTimeline
@@ -51,6 +52,15 @@ class CoreClock:
         ahead_ticks = self._cclk * self._cclk_ticks - self._env.tick
         return self._env.after(ahead_ticks) if ahead_ticks > 0 else None
 
+    def sync(self) -> Generator[Any, Any, None]:
+        """Wait until the simulated time has reached the core's clock."""
+        if late := CoreClock.catch_up(self):
+            yield late
+
+    def when_there(self, what: Callable[[], None]) -> None:
+        """Do `what` when all is done that the core has been told before: at once, unless its clock is still to be found out."""
+        what()
+
     def settle(self) -> None:
         """Let everything on the bus happen that is due; the core's clock must have been caught up with."""
         self._bus.settle()
@@ -63,7 +73,7 @@ class CoreClock:
     def wait_transfer(self, transfer: Transfer, reason: StallReason, owner: str) -> Generator[Any, Any, None]:
         """Stall for `reason` until `transfer` is done; `owner`: whom these cycles belong to, as everywhere here."""
         if transfer.end is None:
-            yield from self._sync()
+            yield from self.sync()
             self._bus.settle()
             if transfer.end is None:
                 yield from self._blocked(iter([self._bus.when_done(transfer)]), "DMA", reason)
@@ -73,7 +83,7 @@ class CoreClock:
         self, event: simpy.Event | None, what: str, last: Callable[[], Transfer | None]
     ) -> Generator[Any, Any, None]:
         """Stall until `event`, the end of a DMA that this core started; `last`: returns its last transfer then."""
-        yield from self._sync()
+        yield from self.sync()
         if event is not None and not event.processed:
             yield from self._blocked(iter([event]), what, StallReason.RING_EMPTY)
             self._wake(StallReason.RING_EMPTY, what, ended_by=last())
@@ -112,15 +122,26 @@ class CoreClock:
         yield
         self._timeline.place = before
 
+    def _charge_stretch(self, played: Played, owners: Sequence[str]) -> None:
+        """Charge what a stretch of work took that the bus has played; `owners`: of its accounts, by their numbers."""
+        self._cclk = played.clock_cclk
+        kernels = self._account.kernels
+        kernels.issue_cclk += played.issue_cclk
+        stalls = (played.interlocks_cclk, *played.bus_stalls_cclk)
+        for reason, cclk in zip((StallReason.INTERLOCK, *BUS_STALLS), stalls, strict=True):
+            if cclk:
+                kernels.stall(reason, cclk)
+        for number, words in played.accounts.items():
+            account = self._account.of(owners[number])
+            for word, reason in REASON_OF_ACCOUNT.items():
+                if words[word]:
+                    account.stall(reason, words[word])
+
     def program_device(self, owner: str, *, writes: int, reads: int = 0) -> None:
         """Write and read registers of a device: that is DMA set-up."""
         events = self._board.chip.events
         cclk = writes * events.mmr_write_cclk + reads * events.mmr_read_cclk
         self.stall(StallReason.DMA_SETUP, cclk, owner)
-
-    def _sync(self) -> Generator[Any, Any, None]:
-        if late := self.catch_up():
-            yield late
 
     def _until(self, tick: int | None) -> int:
         """Return the cycles up to the first CCLK edge from `tick` on, which must be known; 0 if that is over."""

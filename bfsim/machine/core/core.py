@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from operator import index
 from typing import Any
 
@@ -16,6 +17,7 @@ from bfsim.kernel.types import Number
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
 from bfsim.machine.calls.call_cache import CallCache
+from bfsim.machine.calls.conflicts import Accesses
 from bfsim.machine.calls.ledger import Snapshot
 from bfsim.machine.cameras.capture import Capture
 from bfsim.machine.cameras.settling import CameraSettings
@@ -223,7 +225,7 @@ class Core(SynchronisedCore):
         if self._is_over:
             raise FirmwareError("next_frame must not be called again after None, for the recording is over")
         self._check_claimed()
-        yield from self._sync()
+        yield from self.sync()
         self.at()
         self._close_frame()
         pair = yield from self._blocked(self._capture.claim(self.name), "the next picture", None)
@@ -251,13 +253,13 @@ class Core(SynchronisedCore):
 
         The two-wire bus to the camera is not modelled.
         """
-        self._capture.change_camera(self.name, settings)
+        self.when_there(partial(self._capture.change_camera, self.name, settings))
 
     @awaited
     def ppi_status(self) -> Generator[Any, Any, int]:
         """Read PPI_STATUS of this core's PPI, which clears it: the bits of `PpiStatusBit` that were set since the last time."""
         self.program_device(CAMERAS, writes=0, reads=1)
-        yield from self._sync()
+        yield from self.sync()
         return self._capture.read_status(self.name)
 
     def set_picture_size(self, size: FrameSize) -> None:
@@ -265,7 +267,7 @@ class Core(SynchronisedCore):
 
         It does so once every camera is told the same, from the next picture on that it begins.
         """
-        self._capture.change_size(self.name, size)
+        self.when_there(partial(self._capture.change_size, self.name, size))
 
     def remark(self, text: str) -> None:
         """Add a sentence about the current frame to the report."""
@@ -278,22 +280,22 @@ class Core(SynchronisedCore):
     @awaited
     def send(self, row: Row, nbytes: int) -> Generator[Any, Any, None]:
         """Send the first `nbytes` of `row` to the device on the SPI, by DMA, once the message before is out."""
-        yield from self._sync()
+        yield from self.sync()
         if self._spi.busy is not None:
             yield from self._blocked(iter([self._spi.busy]), "the SPI", StallReason.RING_FULL)
             self._wake(StallReason.RING_FULL, SPI)
         self.program_device(SPI, writes=TRANSFER_WRITES)
-        yield from self._sync()
+        yield from self.sync()
         self._spi.send(row, nbytes)
 
     @awaited
     def receive(self, row: Row) -> Generator[Any, Any, int]:
         """Take the next message of the device on the SPI into `row`, if it has one; return its bytes, 0 without one."""
-        yield from self._sync()
+        yield from self.sync()
         if not self._spi.has_message:
             return 0
         self.program_device(SPI, writes=TRANSFER_WRITES)
-        yield from self._sync()
+        yield from self.sync()
         if not self._spi.has_message:  # the other core was faster
             return 0
         transfer, nbytes = self._spi.receive(row)
@@ -312,8 +314,14 @@ class Core(SynchronisedCore):
     def _enter(self, stage: str) -> None:
         """Go over to another row of the budget, and charge the one that ends what conflicts in L1 cost it."""
         self._check_claimed()
+        accessed = self._calls.accessed()
+        self._calls.enter(stage)
+        self.when_there(partial(self._change_account, stage, accessed))
+
+    def _change_account(self, stage: str, accessed: Accesses) -> None:
+        """Let cycles go to `stage` from now on; what was `accessed` in L1 before is charged to the one that ends."""
         self._bus.settle()
-        conflicts_cclk = self._calls.conflicts_cclk(self._cclk - self._entered_at_cclk)
+        conflicts_cclk = self._calls.conflicts_cclk(accessed, self._cclk - self._entered_at_cclk)
         if conflicts_cclk:
             self.stall(StallReason.L1_CONFLICT, conflicts_cclk, KERNELS)
         self._entered_at_cclk = self._cclk
@@ -321,7 +329,6 @@ class Core(SynchronisedCore):
             self._timeline.enter(stage, self._cclk)
         self._accounts.enter(stage)
         self._account = self._accounts.now
-        self._calls.enter(stage)
 
     # What the board uses
 
@@ -344,7 +351,7 @@ class Core(SynchronisedCore):
                 "it waits with `yield from core.next_frame()`, and runs kernels with `yield core.run(...)`"
             )
         yield from self._perform(task)
-        yield from self._sync()
+        yield from self.sync()
         self._close_frame()
         self.is_done = True
 

@@ -29,6 +29,8 @@ class Interrupts:
         self._handlers: dict[SicInterrupt, Handler] = {}
         self._waiting: set[SicInterrupt] = set()
         self._raised = env.event()
+        self.are_handled = False
+        """Whether any interrupt has a handler."""
         self.counts: dict[str, int] = {}
         """Interrupts that were taken, by source."""
 
@@ -42,6 +44,7 @@ class Interrupts:
     def attach(self, name: str, handler: Handler) -> None:
         """Unmask an interrupt and have `handler` called for it."""
         self._handlers[self.source(name)] = handler
+        self.are_handled = True
 
     def request(self, name: str) -> None:
         """Ask for an interrupt now. A source that waits already is not counted twice; one without a handler is masked."""
@@ -50,11 +53,6 @@ class Interrupts:
             self._waiting.add(source)
             event, self._raised = self._raised, self._env.event()
             event.succeed()
-
-    @property
-    def are_handled(self) -> bool:
-        """Whether any interrupt has a handler."""
-        return bool(self._handlers)
 
     @property
     def is_waiting(self) -> bool:

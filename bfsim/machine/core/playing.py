@@ -14,7 +14,7 @@ from bfsim.kernel.work import UNYIELDED
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.calls.call_cache import CallCache, DeferredWork
-from bfsim.machine.core.accounts import KERNELS, Account
+from bfsim.machine.core.accounts import Account
 from bfsim.machine.core.clock import CoreClock
 from bfsim.machine.core.interrupts import Handler, Interrupts
 from bfsim.machine.core.waits import Waits, awaited, name_of
@@ -51,6 +51,7 @@ class PlayingCore(CoreClock):
         self._in_handler = False
         self._frame_index: int | None = None
         """Index of the picture that is worked on, None between two."""
+        self._is_full = False  # of work done ahead: the simulated time must come up
         self._is_spinning = False  # on a lock, when no handler comes between
         self.is_done = False
         """Whether the main loop has ended."""
@@ -67,7 +68,8 @@ class PlayingCore(CoreClock):
             call = self._calls.prepare(kernel, arguments)
         # what reaches outside L1 may meet what others do: it runs when the simulated time is there
         self._unclaimed_kernel = kernel
-        work = self._unclaimed = call.run(arguments) if call.stays_in_l1 else DeferredWork(call, arguments)
+        is_now = call.stays_in_l1 or (call.is_own and self._goes_ahead())
+        work = self._unclaimed = call.run(arguments) if is_now else DeferredWork(call, arguments)
         return work
 
     def on_interrupt(self, source: str, handler: Handler) -> None:
@@ -85,7 +87,7 @@ class PlayingCore(CoreClock):
     def idle(self) -> Generator[Any, Any, None]:
         """Wait for an interrupt, and let its handler run; one that was asked for already ends the wait at once."""
         before, self._in_handler = self._in_handler, True
-        yield from self._sync()
+        yield from self.sync()
         self._in_handler = before
         if not self._interrupts.is_waiting:
             yield from self._blocked(iter([self._interrupts.next_request()]), "an interrupt", None)
@@ -116,26 +118,39 @@ class PlayingCore(CoreClock):
                 raise self._told(error) from error
             if item is self._unclaimed and item is not None:
                 self._unclaimed = None
-                stalls: dict[StallReason, int] = {}
-                owner = KERNELS
                 if isinstance(item, DeferredWork):
-                    owner = item.owner
-                    yield from self._sync()
+                    account = item.owner
+                    yield from self.sync()
                     item = self._made(item, task)
-                    if item.accesses:
-                        stalls = yield from self._outside_l1(item)
-                self._charge_work(item, stalls, self._account.of(owner))
+                    stalls = (yield from self._outside_l1(item)) if item.accesses else {}
+                    self._charge_work(item, stalls, self._account.of(account))
+                else:
+                    self._charge_call(item)
                 value = item.value
             elif isinstance(item, simpy.Event):
                 value = yield item
             else:
                 raise self._misused(item, line_at(task))
-            if self.can_be_interrupted:
-                yield from self._sync()
-                yield from self._take_interrupts()
+            if self._is_full or self._interrupts.are_handled:
+                yield from self._meet_others()
         self._check_claimed()
         self._check_waits(task)
         self._task = before
+
+    def _meet_others(self) -> Generator[Any, Any, None]:
+        """Let the simulated time come up to the core where that is needed, and take the interrupts that wait then."""
+        if self._is_full or self.can_be_interrupted:
+            yield from self.sync()
+        if self.can_be_interrupted:
+            yield from self._take_interrupts()
+
+    def _goes_ahead(self) -> bool:
+        """Whether calls that nobody else can meet run before the simulated time is there."""
+        return False
+
+    def _charge_call(self, work: Work) -> None:
+        """Charge a call that has met nobody."""
+        self._charge_work(work, {}, self._account.kernels)
 
     def _charge_work(self, work: Work, stalls: dict[StallReason, int], account: Account) -> None:
         """Let the cycles of a call pass, on `account`; `stalls` are those of its accesses outside L1."""

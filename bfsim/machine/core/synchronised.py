@@ -131,7 +131,7 @@ class SynchronisedCore(PlayingCore):
             access = SharedAccess(self._bus, self._number, kind, issue_cclk, asks_cclk)
             self._unclaimed = DeferredWork(access, (), owner)
             yield self._unclaimed
-        yield from self._sync()
+        yield from self.sync()
 
     def _semaphore(self, name: str) -> Semaphore:
         return self._shared.semaphores.setdefault(name, Semaphore(self._env, name))
@@ -146,5 +146,5 @@ class SynchronisedCore(PlayingCore):
         if other not in others or other == self.name:
             raise FirmwareError(f"core {self.name} can interrupt another core of the chip, not {other!r}")
         self.issue(self._board.chip.events.mmr_write_cclk, f"interrupt {OTHER_CORE}")
-        yield from self._sync()
+        yield from self.sync()
         others[other].request(OTHER_CORE)

@@ -36,6 +36,18 @@ class MdmaStream:
             plan = self._plans[source, destination] = self.plan(source, destination)
         return self._bus.post(plan, at)
 
+    def kind_of(self, source: Row, destination: Row) -> tuple[object, ...]:
+        """Return what copies have in common whose plans differ only in where they begin: buffers, sizes, and alignment."""
+        within_word = (source.offset | destination.offset) % self._word_bytes
+        return (
+            source.buffer,
+            source.memory,
+            destination.buffer,
+            destination.memory,
+            source.nbytes,
+            within_word,
+        )
+
     def plan(self, source: Row, destination: Row) -> TransferPlan:
         """Plan to copy `source` to `destination`."""
         size = element_bytes(self._word_bytes, source.offset, destination.offset, source.nbytes)

@@ -100,8 +100,7 @@ class MemoryDma:
         """Write both CONFIG registers; the first work unit begins. MmrError for what the chip would flag."""
         place = running_line()
         self.core.program_device(self.name, writes=2)
-        if late := self.core.catch_up():
-            yield late
+        yield from self.core.sync()
         steps = self.source.start(source, place), self.destination.start(destination, place)
         check_pair(self.source, self.destination)
         self._stopping = False

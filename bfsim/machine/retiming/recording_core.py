@@ -134,9 +134,10 @@ class RecordingCore(Core):
             self._operations.append((w.CATCH_UP, 0, 0, 0, 0))
         return super().catch_up()
 
-    def _sync(self) -> Wait:
+    def sync(self) -> Wait:
+        """Catch up as every core does."""
         with self._as_a_whole():
-            yield from super()._sync()
+            yield from super().sync()
 
     def has(self, transfer: Transfer) -> bool:  # noqa: ARG002
         """Let every wait be asked for, also of what is there already: on other hardware it may not be."""

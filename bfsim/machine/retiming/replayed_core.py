@@ -12,7 +12,6 @@ from bfsim.kernel import Kernel
 from bfsim.kernel.types import ArrayType, IntType, Number, u8
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
-from bfsim.machine.bus.stalls import BUS_STALLS, REASON_OF_ACCOUNT
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.semaphore import Semaphore
@@ -32,7 +31,6 @@ from bfsim.machine.retiming.work import (
     Place,
     Table,
 )
-from bfsim.trace import StallReason
 
 NOT_THE_SAME = "what the cores do depends on the hardware, so the recorded run cannot be played on this one; run the firmware itself"
 
@@ -58,7 +56,7 @@ class ReplayedCore(Core):
         self._is_outside = self._firsts < int(bus.words[w.L2_END])
         self._kinds_of_calls: list[int] = []  # of those that were prepared: what running them is to the bus
         self._account_names: list[str] = []
-        self._plans = np.zeros(0, np.int64)
+        self._copies = np.zeros((0, 3), np.int64)
         self._known_calls: dict[str, Callable[..., Any]] = {
             "prepare": self._prepare,
             "stage": self._enter,
@@ -95,8 +93,8 @@ class ReplayedCore(Core):
     def _play_work(self, work: FrameWork) -> Wait:
         self._account_names += work.accounts
         if len(work.copies):
-            self._plans = np.concatenate([self._plans, self._planned(work.copies)])
-        frame = translated(work, self._firsts, self._is_outside, self._plans, self._board.chip.events)
+            self._copies = np.concatenate([self._copies, self._planned(work.copies)])
+        frame = translated(work, self._firsts, self._is_outside, self._copies, self._board.chip.events)
         events = np.searchsorted(work.events[:, 0], np.arange(len(work.calls) + 1)).tolist()
         for number, stretches in enumerate(frame.stretches()):
             for each in stretches:
@@ -112,25 +110,13 @@ class ReplayedCore(Core):
         if len(runs_at):
             stretch.operations[runs_at, 0] = np.array(self._kinds_of_calls)[kernels]
         yield self._bus.stretches.play(self._number, self._cclk, stretch.operations, stretch.accesses)
-        played = self._bus.stretches.played(self._number)
-        self._cclk = played.clock_cclk
-        kernels_account = self._account.kernels
-        kernels_account.issue_cclk += played.issue_cclk
-        for reason, cclk in zip(
-            (StallReason.INTERLOCK, *BUS_STALLS),
-            (played.interlocks_cclk, *played.bus_stalls_cclk),
-            strict=True,
-        ):
-            if cclk:
-                kernels_account.stall(reason, cclk)
-        for number, words in played.accounts.items():
-            account = self._account.of(self._account_names[number])
-            for word, reason in REASON_OF_ACCOUNT.items():
-                if words[word]:
-                    account.stall(reason, words[word])
+        self._charge_stretch(self._bus.stretches.played(self._number), self._account_names)
 
     def _planned(self, copies: Table) -> Table:
-        """Plan copies; return their numbers. Those of a kind differ only in where they go from and to."""
+        """Plan copies; return the numbers of their plans, and where they go from and to: rows of what is behind COPY.
+
+        Those of a kind differ only in where they go.
+        """
         sources, destinations = (
             self._firsts[copies[:, owner]] + copies[:, byte]
             for owner, byte in ((SOURCE, SOURCE_BYTE), (DESTINATION, DESTINATION_BYTE))
@@ -138,9 +124,8 @@ class ReplayedCore(Core):
         within_word = (sources | destinations) % self._board.chip.dma.word_bytes
         kinds = np.column_stack([copies[:, [STREAM, SOURCE, DESTINATION, NBYTES]], within_word])
         _, examples, kind_of = np.unique(kinds, axis=0, return_index=True, return_inverse=True)
-        words = np.array([self._plan(*copies[each].tolist()) for each in examples])[kind_of.reshape(-1)]
-        words[:, w.FROM - w.SETUP], words[:, w.TO - w.SETUP] = sources, destinations
-        return self._bus.stretches.keep_plans(words)
+        plans = self._bus.stretches.keep_plans([self._plan(*copies[each].tolist()) for each in examples])
+        return np.column_stack([plans[kind_of.reshape(-1)], sources, destinations])
 
     def _plan(
         self, stream: int, source: int, from_byte: int, destination: int, to_byte: int, nbytes: int

@@ -107,13 +107,13 @@ def translated(
     work: FrameWork,
     firsts: NDArray[np.int64],
     outside: NDArray[np.bool_],
-    plans: NDArray[np.int64],
+    copies_made: Table,
     events: EventSpec,
 ) -> Translated:
     """Return the operations of a frame for a board.
 
-    `firsts`: where in the arena the memory of each owner begins, and `outside`: whether it is outside of L1. `plans`: of the copies,
-    in the order of their first use. `events`: what the board's cores take for registers.
+    `firsts`: where in the arena the memory of each owner begins, and `outside`: whether it is outside of L1. `copies_made`: what is
+    behind COPY for each copy, in the order of their first use. `events`: what the board's cores take for registers.
     """
     operations, kinds = np.ascontiguousarray(work.operations), work.operations[:, 0]
     log_of_frame = _logged(work.accesses, np.where(outside, firsts, IN_L1))
@@ -131,7 +131,7 @@ def translated(
     operations[setups, 1] = writes * events.mmr_write_cclk + reads * events.mmr_read_cclk
     operations[setups, 2] = accounts
     copies = np.flatnonzero(kinds == w.COPY)
-    operations[copies, 1] = plans[work.operations[copies, 1]]
+    operations[copies, 1:4] = copies_made[work.operations[copies, 1]]
     return Translated(
         operations,
         np.flatnonzero(kinds == CALL).tolist(),

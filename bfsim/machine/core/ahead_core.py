@@ -1,0 +1,248 @@
+"""A core that runs ahead: what nobody else can meet is done at once, and the buses play it when the core has to meet somebody.
+
+Kernels in L1 or on buffers of its own and the lines of its rings run as the firmware asks for them, so bytes are where they belong
+before time has passed; they are noted as operations of a stretch (`bus.stretches`), which says at which cycle each of them was.
+Before the core waits for a picture, for the other core or for a device, the bus plays its stretches, and its clock is known again.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Generator
+from functools import partial
+from typing import Any
+
+from bfsim.errors import FirmwareError
+from bfsim.kernel import Work
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.stalls import COUNTER_OF
+from bfsim.machine.bus.transfer_plans import Transfer
+from bfsim.machine.core.core import Core
+from bfsim.machine.core.interrupts import Handler
+from bfsim.machine.dma.mdma import MdmaStream
+from bfsim.machine.dma.memory_dma import MemoryDma
+from bfsim.machine.memories import Row
+from bfsim.trace import StallReason
+
+OPERATION = struct.Struct(f"@{w.OPERATION_WORDS}q")
+MOST_OPERATIONS, MOST_ACCESSES = w.MAX_OPERATIONS // 2, 1 << 16
+"""What is done ahead, at most, before a core meets the others: its room is larger, for it cannot do so at every operation."""
+
+Wait = Generator[Any, Any, Any]
+
+
+class Copy:
+    """A copy that a core has made ahead: the how-manieth of all of its own."""
+
+    __slots__ = ("number",)
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+
+
+class AheadStream(MdmaStream):
+    """A memory DMA stream of a core that runs ahead: the bytes move at once, and the time that takes is found out later."""
+
+    def __init__(self, stream: MdmaStream, core: AheadCore) -> None:
+        self._stream = stream
+        self._core = core
+        self._copies: dict[tuple[Row, Row], tuple[int, int, int]] = {}
+        self._kinds: dict[tuple[object, ...], int] = {}
+
+    def copy(self, source: Row, destination: Row, at: int) -> Any:
+        """Copy as the stream does."""
+        if not self._core.runs_ahead:
+            return self._stream.copy(source, destination, at)
+        copy = self._copies.get((source, destination))
+        if copy is None:
+            copy = self._copies[source, destination] = self._planned(source, destination)
+        destination.octets[:] = source.octets
+        return self._core.copied(*copy)
+
+    def _planned(self, source: Row, destination: Row) -> tuple[int, int, int]:
+        """Return the number of the plan of a copy, which those of its kind share, and where it begins to read and to write."""
+        kind = self._stream.kind_of(source, destination)
+        if kind not in self._kinds:
+            self._kinds[kind] = self._core.keep_plan(self._stream.plan(source, destination).words)
+        return self._kinds[kind], source.offset, destination.offset
+
+
+class AheadCore(Core):
+    """A core whose firmware runs ahead, unless somebody looks at every moment of it or may interrupt it."""
+
+    def __init__(
+        self, *arguments: Any, bus: Bus, number: int, streams: tuple[MdmaStream, MdmaStream], **named: Any
+    ) -> None:
+        inward, outward = (AheadStream(each, self) for each in streams)
+        super().__init__(*arguments, bus=bus, number=number, streams=(inward, outward), **named)
+        self._may_run_ahead = self._timeline is None
+        self._words = bus.words
+        self._operations_at = 8 * (w.OPERATIONS_AT + number * w.MAX_OPERATIONS * w.OPERATION_WORDS)
+        self._copies = 0
+        self._has_traced = False  # whether the call that was made last has a log
+        self._begin()
+
+    def _begin(self) -> None:
+        """Begin anew: the clock is where the firmware is."""
+        self._operations = 0  # how many there are,
+        self._issued = self._interlocked = 0  # and what the calls behind the last of them took
+        self._moments: list[tuple[int, Callable[[], None]]] = []  # what to do, and behind how many operations
+        self._owners: dict[str, int] = {}  # of their accounts
+        self._is_full = False
+        self._access_trace.drop()
+
+    @property
+    def runs_ahead(self) -> bool:
+        """Whether the next operation is only noted."""
+        return self._may_run_ahead or self._is_behind
+
+    @property
+    def _is_behind(self) -> bool:
+        """Whether the core's clock is behind its firmware."""
+        return self._operations > 0
+
+    # Kernels
+
+    def _goes_ahead(self) -> bool:
+        self._has_traced = self.runs_ahead
+        return self._has_traced
+
+    def _charge_call(self, work: Work) -> None:
+        if self._has_traced:
+            self._has_traced = False
+            first = self._access_trace.keep(work.accesses)
+            last = first + work.accesses
+            self._note(w.ACCESS, work.issue_cclk, work.stall_cclk, first, last)
+            self._is_full |= last > MOST_ACCESSES
+        elif self._operations:
+            self._issued += work.issue_cclk
+            self._interlocked += work.stall_cclk
+        else:
+            super()._charge_call(work)
+
+    # Rings
+
+    def catch_up(self) -> Any:
+        """Catch up with the clock, when that is known."""
+        if not self._may_run_ahead:
+            return self._env.process(self.sync()) if self._is_behind else super().catch_up()
+        self._note(w.CATCH_UP)
+        return None
+
+    def settle(self) -> None:
+        """Let everything on the bus happen that is due; what is done ahead does not depend on it."""
+        if not self.runs_ahead:
+            super().settle()
+
+    def has(self, transfer: Any) -> bool:
+        """Whether a transfer is done by the core's clock: nobody knows that of one made ahead before it is waited for."""
+        return not self.runs_ahead and super().has(self._posted(transfer))
+
+    def wait_transfer(self, transfer: Any, reason: StallReason, owner: str) -> Wait:
+        """Wait as every core does."""
+        if self._may_run_ahead and isinstance(transfer, Copy):
+            self._note(w.AWAIT, self._copies - transfer.number, COUNTER_OF[reason], self._account_of(owner))
+            self._is_full |= self._operations > MOST_OPERATIONS
+        else:
+            yield from self.play_stretches()
+            yield from super().wait_transfer(self._posted(transfer), reason, owner)
+
+    def program_device(self, owner: str, *, writes: int, reads: int = 0) -> None:
+        """Write and read registers as every core does."""
+        if not self.runs_ahead:
+            super().program_device(owner, writes=writes, reads=reads)
+            return
+        events = self._board.chip.events
+        cclk = writes * events.mmr_write_cclk + reads * events.mmr_read_cclk
+        self._note(w.SET_UP, cclk, self._account_of(owner))
+
+    def issue(self, cclk: int, owner: str) -> None:
+        """Let cycles pass as every core does."""
+        self.when_there(partial(super().issue, cclk, owner))
+
+    def copied(self, plan: int, source: int, destination: int) -> Copy:
+        """Note a copy that was made; return it."""
+        self._note(w.COPY, plan, source, destination)
+        copy = Copy(self._copies)
+        self._copies += 1
+        return copy
+
+    def keep_plan(self, words: tuple[int, ...]) -> int:
+        """Keep the words of a plan for copies of its kind; return its number."""
+        (number,) = self._bus.stretches.keep_plans([words])
+        return int(number)
+
+    # Who may interrupt it is met at every call
+
+    def on_interrupt(self, source: str, handler: Handler) -> None:
+        """Attach a handler as every core does."""
+        self._may_run_ahead = False
+        super().on_interrupt(source, handler)
+
+    def memory_dma(self, name: str) -> MemoryDma:
+        """Return a stream as every core does; what it moves may be anybody's."""
+        self._may_run_ahead = False
+        return super().memory_dma(name)
+
+    # Where the clock is needed
+
+    def when_there(self, what: Callable[[], None]) -> None:
+        """Do `what` when the clock is where the firmware is now."""
+        if not self._is_behind:
+            what()
+            return
+        self._note_calls()
+        self._moments.append((self._operations, what))
+
+    def sync(self) -> Wait:
+        """Find the clock out, and wait until the simulated time has reached it."""
+        yield from self.play_stretches()
+        yield from super().sync()
+
+    def play_stretches(self) -> Wait:
+        """Have the bus play what was done ahead, and do at each moment what was to be done then."""
+        if not self._is_behind:
+            return
+        before, self._in_handler = self._in_handler, True  # no handler comes between
+        self._note_calls()
+        owners, first = list(self._owners), 0
+        for end, what in (*self._moments, (self._operations, self._begin)):
+            if end > first:
+                yield self._bus.stretches.start(self._number, self._cclk, first, end)
+                self._charge_stretch(self._bus.stretches.played(self._number), owners)
+                first = end
+            what()
+        self._in_handler = before
+
+    # Inside
+
+    def _note(self, kind: int, one: int = 0, two: int = 0, three: int = 0, four: int = 0) -> None:
+        """Note an operation and its numbers, as in `bus.state`, behind the calls before it."""
+        if self._issued:
+            self._note_calls()
+        at = self._operations_at + OPERATION.size * self._operations
+        OPERATION.pack_into(self._words, at, kind, one, two, three, four)
+        self._operations += 1
+
+    def _note_calls(self) -> None:
+        """Note the calls that have met nobody since the last operation, as one."""
+        issued, interlocked = self._issued, self._interlocked
+        if issued or interlocked:
+            self._issued = self._interlocked = 0
+            self._note(w.RUN, issued, interlocked)
+
+    def _account_of(self, owner: str) -> int:
+        number = self._owners.setdefault(owner, len(self._owners))
+        if number == w.MAX_ACCOUNTS:
+            raise FirmwareError(
+                f"core {self.name} must use at most {w.MAX_ACCOUNTS} rings before it waits for a picture or another core"
+            )
+        self._is_full |= number > w.MAX_ACCOUNTS // 2
+        return number
+
+    def _posted(self, transfer: Any) -> Transfer:
+        """Return a transfer of the bus for one that was made ahead and has been played."""
+        if not isinstance(transfer, Copy):
+            return transfer  # type: ignore[no-any-return]
+        return Transfer(self._bus, *self._bus.stretches.copy_of(self._number, transfer.number))

@@ -1,0 +1,81 @@
+"""A core that runs ahead is one that does not: every record is the same, whatever its firmware does."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bfsim.api import Core, Frame
+from bfsim.machine.program import Main
+from bfsim.trace import BoardRecord
+from tests.machine.kernels import copy, first, negate, spin
+from tests.machine.rig import SIZE, Play, every_frame, load, noise
+
+DEEDS = ("rings", "own", "shared", "stage", "post", "handle", "interrupt")
+Deeds = list[tuple[str, int]]
+
+
+def through_rings(core: Core, frame: Frame, cycles: int) -> Play:
+    """Invert some lines of a picture, on the way from one ring to another."""
+    ring, out = core.input_ring(frame.rows, "in_ring"), core.output_ring("out_ring", core.rows("image"))
+    for _ in range(1 + cycles % frame.height):
+        source, target = (yield from ring.line()), (yield from out.row())
+        yield core.run(negate, source, target)
+        yield core.run(spin, cycles)
+        out.send()
+    yield from out.flush()
+
+
+def kernels(core: Core, cycles: int, image: str) -> Play:
+    """Read a picture where it lies, outside of L1."""
+    core.publish(found=(yield core.run(first, core.rows(image)[cycles % SIZE.height_px])))
+    yield core.run(copy, core.rows(image)[cycles % SIZE.height_px], core.array("single_row"))
+
+
+def staged(core: Core, cycles: int) -> Play:
+    """Work in a stage of its own."""
+    with core.stage("Work"):
+        yield core.run(spin, cycles)
+
+
+def handled(core: Core) -> Play:
+    """From now on every call may be interrupted."""
+    core.on_interrupt("SUPPLEMENTAL_0", lambda core: core.remark("was interrupted"))
+    yield from ()
+
+
+def doing(deeds: Deeds) -> Main:
+    """Return what a core does with a frame: `deeds`, each with a number of cycles."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        for deed, cycles in deeds:
+            yield from {
+                "rings": lambda cycles: through_rings(core, frame, cycles),
+                "own": lambda cycles: kernels(core, cycles, "image"),
+                "shared": lambda cycles: kernels(core, cycles, "shared_image"),
+                "stage": lambda cycles: staged(core, cycles),
+                "post": lambda _: core.post("a turn"),
+                "handle": lambda _: handled(core),
+                "interrupt": lambda _: core.interrupt_core("B" if core.name == "A" else "A"),
+            }[deed](cycles)
+
+    return every_frame(work)
+
+
+def outcome(deeds: tuple[Deeds, Deeds], core: type[Core] | None = None) -> BoardRecord:
+    """Run a firmware of two cores on cores of a kind, or of the kind that is used by itself."""
+    board = load(*map(doing, deeds))
+    board.core = core or board.core
+    return replace(board.run(noise(2)), events=0)
+
+
+deeds = st.lists(st.tuples(st.sampled_from(DEEDS), st.integers(1, 400)), max_size=6)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.tuples(deeds, deeds))
+def test_what_is_done_ahead_is_charged_as_if_it_were_not(deeds: tuple[Deeds, Deeds]) -> None:
+    """Rings, own and shared memory, stages, semaphores, and handlers that come in between."""
+    assert outcome(deeds) == outcome(deeds, Core)
