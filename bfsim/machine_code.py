@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import IntEnum
 from functools import cache
 
 import llvmlite
@@ -10,16 +11,36 @@ import llvmlite.binding as llvm
 HOST_SPEED_LEVEL = 3
 
 
-def host_code(text: str, *, optimised: bool = True) -> bytes:
-    """Compile a module's text to an object file for this host; without optimisation in a tenth of the time or less."""
-    machine = _host_machine(HOST_SPEED_LEVEL if optimised else 0)
+class Effort(IntEnum):
+    """How much LLVM does for code to be fast: nothing, what makes registers of variables, or all that it can."""
+
+    NONE = 0
+    REGISTERS = 1
+    ALL = HOST_SPEED_LEVEL
+
+
+def host_code(text: str, effort: Effort = Effort.ALL) -> bytes:
+    """Compile a module's text to an object file for this host."""
+    machine = _host_machine(effort)
     parsed = llvm.parse_assembly(text)
     parsed.triple, parsed.data_layout = machine.triple, str(machine.target_data)
     parsed.verify()
-    if optimised:
+    if effort is Effort.ALL:
         _optimise(parsed, machine)
+    elif effort is Effort.REGISTERS:
+        _make_registers(parsed, machine)
     code: bytes = machine.emit_object(parsed)
     return code
+
+
+def _make_registers(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
+    """Turn variables on the stack into registers, and leave out what nobody reads."""
+    passes = llvm.create_new_module_pass_manager()
+    passes.add_sroa_pass()
+    passes.add_aggressive_dce_pass()
+    passes.add_instruction_combine_pass()
+    passes.add_simplify_cfg_pass()
+    passes.run(module, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=1)))
 
 
 def _optimise(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:

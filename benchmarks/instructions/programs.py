@@ -22,7 +22,8 @@ from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.decode import InstructionError
 from bfsim.blackfin.effects import Event
 from bfsim.blackfin.objects import Use, read_object
-from bfsim.blackfin.processor import AccessError, Processor, unoptimised
+from bfsim.blackfin.processor import AccessError, Processor
+from bfsim.machine_code import Effort
 
 STACK = 128 << 20
 """Where the simulator's memory ends without an operating system, and the stack begins."""
@@ -134,7 +135,7 @@ def _loaded(program: Path) -> Processor:
     for section in sections:
         if section.octets:
             space.at(section.address, section.nbytes)[:] = np.frombuffer(section.octets, np.uint8)
-    processor = Processor(space, fuel=FUEL, compiled=unoptimised)
+    processor = Processor(space, fuel=FUEL, effort=Effort.NONE)
     (processor.state["PC"],) = struct.unpack_from("<I", octets, 0x18)
     processor.state["SP"] = STACK
     return processor

@@ -31,8 +31,9 @@ from bfsim.blackfin.forms import (
     video,
 )
 from bfsim.blackfin.operands import Operand
-from bfsim.blackfin.processor import Processor, unoptimised
+from bfsim.blackfin.processor import Processor
 from bfsim.blackfin.registers import ACCUMULATORS, DAG, DATA, ENCODED
+from bfsim.machine_code import Effort
 
 POINTERS = tuple(f"P{number}" for number in range(5))
 """Those that sequences may use; the simulated program needs the others."""
@@ -246,7 +247,7 @@ def _translated(sequences: Several[Sequence]) -> list[Registers]:
     for start, each in zip(starts, sequences, strict=True):
         code = each.code + HALT
         space.at(start, len(code))[:] = np.frombuffer(code, np.uint8)
-    processor = Processor(space, entries=set(starts), compiled=unoptimised)
+    processor = Processor(space, entries=set(starts), effort=Effort.NONE)
     return [_run(processor, start, each.before) for start, each in zip(starts, sequences, strict=True)]
 
 

@@ -22,11 +22,14 @@ from bfsim.blackfin.timing import GNU, Timing
 from bfsim.blackfin.tracing import Tracing
 from bfsim.blackfin.translate import NAME, Counter, counters, is_large, translate
 from bfsim.errors import BfsimError
+from bfsim.machine_code import Effort
 
 OUTSIDE = 0xFFFFFFFE
 """[ours] Where a subroutine that is called from outside returns to: no memory is there, and no code can be."""
 
 
+LOOP_BLOCKS = 50
+"""[ours] Code of up to so many blocks is most often a loop over pixels, which is worth all of LLVM's effort."""
 COUNT_BYTES = 4
 """Of the number of counters before machine code that is kept."""
 
@@ -87,8 +90,8 @@ class Processor:
     """A core, its registers and its address space.
 
     `entries`: addresses at which it can be started or that its code computes; others are found when control comes there, and the
-    code is translated anew with them. `fuel`: with it, at most so many blocks are run by a call of `run`. `compiled`: makes machine
-    code of an LLVM module. `name`: under which the first native code is kept, so that it need not be made of the instructions again.
+    code is translated anew with them. `fuel`: with it, at most so many blocks are run by a call of `run`. `effort`: of LLVM, if
+    not by the code's size. `name`: under which the first native code is kept, so that it need not be made of the instructions again.
     `tracing`: how accesses to memory are reported. `explored`: adds to the entries what is found by looking at the code, before it is translated for the first time.
     """
 
@@ -96,7 +99,7 @@ class Processor:
     timing: Timing = GNU
     entries: set[int] = field(default_factory=set)
     fuel: int | None = None
-    compiled: Callable[[str], bytes] = field(default_factory=lambda: optimised)
+    effort: Effort | None = None
     state: State = field(default_factory=State)
     translated: Translated | None = None
     name: str = ""
@@ -164,7 +167,7 @@ class Processor:
         """Make the machine code; return how many counters it has, and it."""
         code = self.code()
         text = translate(code, self.timing, fuel=self.fuel is not None, tracing=self.tracing)
-        machine = unoptimised(text) if is_large(code) else self.compiled(text)
+        machine = native_code(text, self.effort if self.effort is not None else effort_for(code))
         return len(counters(code, self.timing)).to_bytes(COUNT_BYTES, "little") + machine
 
     def code(self) -> Code:
@@ -179,16 +182,20 @@ class Processor:
         return next(each.refused for each in blocks if each.refused and each.end == address)
 
 
-def optimised(text: str) -> bytes:
-    """Compile a module to run fast, or take its machine code from the cache on disk."""
-    key = hashlib.sha256(f"object code\0{machine_code.host()}\0{text}".encode()).hexdigest()
+def effort_for(code: Code) -> Effort:
+    """Return how much LLVM is to do for code: less of what is long, for it takes ten times as long for all that it can."""
+    if is_large(code):
+        return Effort.NONE
+    return Effort.ALL if len(code.blocks) <= LOOP_BLOCKS else Effort.REGISTERS
+
+
+def native_code(text: str, effort: Effort) -> bytes:
+    """Compile a module, or take its machine code from the cache on disk, where only what took long is kept."""
+    if effort is Effort.NONE:
+        return machine_code.host_code(text, effort)
+    key = hashlib.sha256(f"object code\0{effort}\0{machine_code.host()}\0{text}".encode()).hexdigest()
     kept = store.load(key)
     if kept is None:
-        kept = machine_code.host_code(text)
+        kept = machine_code.host_code(text, effort)
         store.save(key, kept)
     return kept
-
-
-def unoptimised(text: str) -> bytes:
-    """Compile a module in little time: for long programs that are run once, for whose hundreds of blocks LLVM's optimiser takes minutes."""
-    return machine_code.host_code(text, optimised=False)
