@@ -10,8 +10,8 @@ from typing import Any
 
 from bfsim.kernel import Kernel
 
-LIBRARIES = frozenset({*sys.stdlib_module_names, "bfsim", "numpy"})
-"""Packages whose code names no kernel of a firmware; to look there would take time only."""
+LIBRARIES = frozenset({*sys.stdlib_module_names, "bfsim", "numpy", "_pytest", "pytest"})
+"""Packages whose code names no kernel of a firmware; to look there would take time only. Each `assert` in a file of tests names pytest's."""
 
 WRAPPERS = (partial, cached_property, MethodType, staticmethod, classmethod, property)
 WRAPPED = ("__func__", "__self__", "fget", "fset", "func", "args", "keywords")
