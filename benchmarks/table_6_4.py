@@ -1,19 +1,26 @@
-"""T Table 6.4, the time of each stage: the robot, the firmware `thesis` and today's, on the scenes of its columns. Nothing is fitted.
+"""T Table 6.4, the time of each stage: the robot, the firmware `thesis` and today's, on the scenes of its columns.
 
-`python -m benchmarks.table_6_4 FOLDER`: a folder of recordings of `bfsim record render thesis FOLDER`. The range is that of the clocks
-that the robot's module is known to have been run with (HARDWARE: CM-BF561 from 500/100 to 600/133 MHz); the default is 600/120 MHz.
-Shape detection is not the thesis's: see docs/tinyphoon.md for what the firmware `thesis` shares with the built-in one.
+`python -m benchmarks.table_6_4 FOLDER`: a folder of recordings of `bfsim record render thesis FOLDER`.
+
+First nothing is fitted: the default is the board cm-bf561, and low and high are what the ranges of HARDWARE make of each row: the least and
+the most with any clocks that such modules are known to have been run with, and every latency at the end of its range. Then three
+numbers are fitted to the column of Figure 6.7 alone: the clocks, the way of a core's read to the SDRAM and back, and what it takes to
+open a row there. What they make of the other columns is a prediction.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from itertools import count, product
+from math import log
 from pathlib import Path
 from statistics import mean, median
+from typing import Any
 
 import click
-from rich.table import Table
 
+from bfsim.api import Firmware
 from bfsim.report.tables import new_table
 from bfsim.run import simulate
 from bfsim.terminal import print_report, progress_bar
@@ -27,85 +34,205 @@ ROWS = (
     "Shape detection",
     "Object detection",
 )
-COLUMNS: Mapping[str, tuple[str, tuple[float, ...], float]] = {
-    "ball-beside-goal": ("Figure 6.7", (89, 26, 70, 20, 19, 1), 225),
-    "hidden-ball": ("Figure 6.10, top row", (89, 26, 75, 22, 18, 1), 231),
-    "ball-too-close": ("Figure 6.13", (85, 27, 60, 15, 18, 1), 206),
+COLUMNS: Mapping[str, tuple[str, tuple[float, ...]]] = {
+    "ball-beside-goal": ("Figure 6.7", (89, 26, 70, 20, 19, 1)),
+    "hidden-ball": ("Figure 6.10, top row", (89, 26, 75, 22, 18, 1)),
+    "ball-too-close": ("Figure 6.13", (85, 27, 60, 15, 18, 1)),
 }
-DEFAULT = "cm-bf561"
-OTHERS = ("cm-bf561-ratings", "cm-bf561-500-125", "cm-bf561-550-110", "cm-bf561-500-100")
+FITTED = "ball-beside-goal"
 FRAME = "Frame"
 
+DEFAULT = "cm-bf561"
+CLOCKS = (DEFAULT, "cm-bf561-525-131", "cm-bf561-500-125", "cm-bf561-550-110", "cm-bf561-500-100")
+"""Boards that differ by their clocks: HARDWARE 2.1."""
+
+LATENCIES: Mapping[str, tuple[int, int]] = {
+    "chip.external.core_sync_sclk": (4, 7),
+    "chip.external.store_buffer": (8, 4),
+    "chip.l2.read_cclk": (7, 11),
+    "chip.l2.next_cclk": (1, 2),
+    "chip.dma.fifo_words": (8, 4),
+    "chip.dma.startup_sclk": (10, 20),
+    "chip.events.mmr_read_cclk": (10, 30),
+    "sdram.nRCD": (2, 3),  # the board's boot code, and that of the EZ-KIT
+    "sdram.nRP": (2, 3),
+}
+"""The fast and the slow end of the ranges of HARDWARE 0 and 2.3."""
+
 Times = dict[str, float]
+Tell = Callable[[], None]
 
 
-def times(recording: Path, firmware: str, board: str, frames: int) -> Times:
-    """Return core A's median ms of each row, and of the frame without the wait for the first picture."""
-    run = simulate(recording, firmware=firmware, board=board, frames=frames)
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """A board and numbers to change in it."""
+
+    board: str
+    numbers: Mapping[str, int]
+
+
+FAST, SLOW = ({path: ends[end] for path, ends in LATENCIES.items()} for end in (0, 1))
+LOW = tuple(Setting(board, FAST) for board in CLOCKS)
+HIGH = tuple(Setting(board, SLOW) for board in CLOCKS)
+PLAIN = Setting(DEFAULT, {})
+GRID = tuple(
+    Setting(board, {"chip.external.core_sync_sclk": sync, "sdram.nRCD": opening, "sdram.nRP": opening})
+    for board, sync, opening in product(CLOCKS, range(4, 8), (2, 3))
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Column:
+    """A column of the table: the robot's times, those of the firmware `thesis` within its range, today's, and what the fit makes."""
+
+    title: str
+    robot: Times
+    low: Times
+    default: Times
+    high: Times
+    fitted: Times
+    today: Times
+
+
+PREDICTED = (
+    "robot",
+    "low",
+    "`thesis`",
+    "high",
+    "by robot",
+    "fitted",
+    "by robot",
+    "`tinyphoon`",
+    "robot by it",
+)
+"""Titles of `cells`."""
+
+
+def times(
+    recording: Path | None,
+    firmware: Firmware | str,
+    setting: Setting = PLAIN,
+    frames: int = 2,
+    **options: Any,
+) -> Times:
+    """Return core A's median ms of each row, and their sum, from frame 1 on if there are more: beside frame 0 no next picture comes in."""
+    board, numbers = setting.board, setting.numbers
+    run = simulate(recording, firmware=firmware, board=board, settings=numbers, frames=frames, **options)
     per_ms = run.identity.cclk_hz / 1e3
-    of_frames = [
-        {each.stage: each.elapsed_cclk / per_ms for each in frame.cores[0].stages} for frame in run.frames
-    ]
-    found = {row: median(each[row] for each in of_frames) for row in ROWS}
-    return {**found, FRAME: sum(found.values())}
+    row_of = {each.stage: each.within or each.stage for each in run.rows}
+    measured = run.frames[1:] or run.frames
+    found: dict[str, list[float]] = {row: [0.0] * len(measured) for row in ROWS}
+    for number, frame in enumerate(measured):
+        for each in frame.cores[0].stages:
+            if each.stage in row_of:
+                found[row_of[each.stage]][number] += each.elapsed_cclk / per_ms
+    medians = {row: median(each) for row, each in found.items()}
+    return {**medians, FRAME: sum(medians.values())}
 
 
-def table_of(title: str, robot: Times, by_board: Mapping[str, Times], today: Times) -> Table:
-    """Return one column of the thesis's table as a table."""
-    table = new_table(title, "ms of core A")
-    for name in ("robot", "thesis", "from", "to", "thesis / robot", "tinyphoon", "robot / tinyphoon"):
-        table.add_column(name, justify="right")
-    for row in (*ROWS, FRAME):
-        default = by_board[DEFAULT][row]
-        ends = [each[row] for each in by_board.values()]
-        table.add_row(
-            row,
-            f"{robot[row]:.0f}",
-            f"{default:.1f}",
-            f"{min(ends):.1f}",
-            f"{max(ends):.1f}",
-            f"{default / robot[row]:.2f}",
-            f"{today[row]:.1f}",
-            f"{robot[row] / today[row]:.1f}",
-        )
-    return table
+def robot_times(cells: Sequence[float]) -> Times:
+    """Return a column of the thesis; the frame is the sum of its rows there, too."""
+    return {**dict(zip(ROWS, cells, strict=True)), FRAME: sum(cells)}
 
 
-def mean_of(several: list[Times]) -> Times:
-    """Return the mean of each row."""
-    return {row: mean(each[row] for each in several) for row in several[0]}
+def error(found: Times, robot: Times) -> float:
+    """Return what the fit makes least: the squares of the logarithms of the rows by the robot's, but for the object detection."""
+    return sum(log(found[row] / robot[row]) ** 2 for row in ROWS[:-1])
 
 
-def measured(folder: Path, frames: int) -> Iterator[tuple[str, Times, dict[str, Times], Times]]:
-    """Yield of each column its title, the robot's times, those of the firmware `thesis` by board, and today's."""
-    boards = (DEFAULT, *OTHERS)
-    done, total = 0, len(COLUMNS) * (len(boards) + 1)
-    with progress_bar("simulating") as tell:
-        for name, (title, cells, frame) in COLUMNS.items():
-            recording = folder / f"{name}.mcap"
-            by_board: dict[str, Times] = {}
-            for board in boards:
-                by_board[board] = times(recording, "thesis", board, frames)
-                done += 1
-                tell(done, total)
-            today = times(recording, "tinyphoon", DEFAULT, frames)
-            done += 1
-            tell(done, total)
-            yield title, {**dict(zip(ROWS, cells, strict=True)), FRAME: frame}, by_board, today
+def fit(folder: Path, tell: Tell) -> Setting:
+    """Return the setting of `GRID` that fits the column of `FITTED` best."""
+    robot = robot_times(COLUMNS[FITTED][1])
+    errors = []
+    for setting in GRID:
+        errors.append(error(times(folder / f"{FITTED}.mcap", "thesis", setting), robot))
+        tell()
+    return GRID[errors.index(min(errors))]
+
+
+def ends(several: Sequence[Times], end: Callable[[Iterable[float]], float]) -> Times:
+    """Return the least, the most or the mean of each row."""
+    return {row: end(each[row] for each in several) for row in several[0]}
+
+
+def column(folder: Path, name: str, fitted: Setting, frames: int, tell: Tell) -> Column:
+    """Return one column."""
+
+    def measured(firmware: str, setting: Setting) -> Times:
+        found = times(folder / f"{name}.mcap", firmware, setting, frames)
+        tell()
+        return found
+
+    title, cells = COLUMNS[name]
+    return Column(
+        title=title,
+        robot=robot_times(cells),
+        low=ends([measured("thesis", each) for each in LOW], min),
+        default=measured("thesis", PLAIN),
+        high=ends([measured("thesis", each) for each in HIGH], max),
+        fitted=measured("thesis", fitted),
+        today=measured("tinyphoon", PLAIN),
+    )
+
+
+def average(columns: Sequence[Column]) -> Column:
+    """Return the mean of columns."""
+    parts = (each.name for each in fields(Column) if each.name != "title")
+    return Column(
+        title="Average",
+        **{part: ends([getattr(each, part) for each in columns], mean) for part in parts},
+    )
+
+
+def cells(each: Column, row: str) -> tuple[str, ...]:
+    """Return a row of a column's table."""
+    robot, default, fitted, today = (
+        times[row] for times in (each.robot, each.default, each.fitted, each.today)
+    )
+    return (
+        f"{robot:.0f}",
+        f"{each.low[row]:.1f}",
+        f"{default:.1f}",
+        f"{each.high[row]:.1f}",
+        f"{default / robot:.2f}",
+        f"{fitted:.1f}",
+        f"{fitted / robot:.2f}",
+        f"{today:.1f}",
+        f"{robot / today:.1f}",
+    )
+
+
+def in_words(setting: Setting) -> str:
+    """Return a fitted setting."""
+    return f"{setting.board}, {', '.join(f'{path} {value}' for path, value in setting.numbers.items())}"
+
+
+def measured_columns(folder: Path, frames: int) -> tuple[Setting, list[Column]]:
+    """Return the fitted setting, and all columns, their mean last."""
+    total = len(GRID) + len(COLUMNS) * (len(LOW) + len(HIGH) + 3)
+    with progress_bar("simulating") as show:
+        done = count(1)
+
+        def tell() -> None:
+            show(next(done), total)
+
+        setting = fit(folder, tell)
+        columns = [column(folder, name, setting, frames, tell) for name in COLUMNS]
+    return setting, [*columns, average(columns)]
 
 
 @click.command(help=__doc__)
 @click.argument("folder", type=click.Path(path_type=Path, exists=True, file_okay=False))
-@click.option("--frames", type=click.IntRange(min=1), default=3, show_default=True, help="Of each scene.")
+@click.option("--frames", type=click.IntRange(min=2), default=3, show_default=True, help="Of each scene.")
 def main(folder: Path, frames: int) -> None:
     """Print the tables."""
-    columns = list(measured(folder, frames))
-    tables = [table_of(*each) for each in columns]
-    robots, by_boards, todays = ([each[part] for each in columns] for part in (1, 2, 3))
-    average = {board: mean_of([each[board] for each in by_boards]) for board in by_boards[0]}
-    tables.append(table_of("Average", mean_of(robots), average, mean_of(todays)))
-    for each in tables:
-        print_report(each)
+    setting, columns = measured_columns(folder, frames)
+    for each in columns:
+        table = new_table(each.title, "ms of core A", *(title.replace("`", "") for title in PREDICTED))
+        for row in (*ROWS, FRAME):
+            table.add_row(row, *cells(each, row))
+        print_report(table)
+    print_report(f"Fitted to Figure 6.7 alone: {in_words(setting)}")
 
 
 if __name__ == "__main__":

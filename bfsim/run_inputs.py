@@ -9,7 +9,7 @@ from bfsim import shipped
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import LinkError, shown
 from bfsim.linker import LinkerScript, parse_ldf
-from bfsim.machine.program import Calibration, SourcePixels
+from bfsim.machine.program import Calibration, FrameSize, SourcePixels
 from bfsim.recording import RecordingReader
 
 
@@ -34,6 +34,7 @@ def calibration_of(reader: RecordingReader) -> Calibration:
     tables, geometry = reader.rectification, reader.geometry
     pictures = (("A", tables.left), ("B", tables.right)) if tables else ()
     return Calibration(
+        size=FrameSize(reader.width, reader.height),
         sources={core: SourcePixels(*table) for core, table in pictures},
         geometries=(geometry,) if geometry else (),
     )

@@ -68,9 +68,10 @@ class Calibration:
     """What a recording knows of its cameras.
 
     `sources`: the source pixels of each core's camera, none where it is rectified. `geometries`: the geometry, none
-    where the recording does not say.
+    where the recording does not say. `size`: that of the recorded pictures, None where nobody says.
     """
 
+    size: FrameSize | None = None
     sources: Mapping[str, SourcePixels] = field(default_factory=dict)
     geometries: tuple[Geometry, ...] = ()
 

@@ -1,7 +1,7 @@
 """Draw what each improvement of the built-in firmware is worth: `python docs/made/waterfall.py`, after a change of any cycle.
 
-From the robot's frame (T Table 6.4) over the steps that the thesis describes to the built-in ones and the fast ones, one step exchanged
-after the other. Makes `docs/images/waterfall.png`, and the table below it in `docs/tinyphoon.md`.
+From the robot's frame (T Table 6.4) over the steps that the thesis describes to the built-in ones and the fast ones, one exchanged
+after the other: each bar is one change. Makes `docs/images/waterfall.png`, and the table below it in `docs/tinyphoon.md`.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from statistics import median
 
 import altair as alt
 
-from bfsim.api import Firmware
+from bfsim.api import Buffers, Calibration, Firmware
 from bfsim.run import simulate
-from tinyphoon import thesis, tinyphoon
-from tinyphoon.features import PLAIN, Steps
-from tinyphoon.stages.fast_opening import fast_opening
-from tinyphoon.stages.fast_scan import fast_edge_detection
-from tinyphoon.variants import FAST, THESIS, fast_buffers, mains
+from tinyphoon import fast, thesis, tinyphoon
+from tinyphoon.buffers import calibration_buffers
+from tinyphoon.features import PLAIN
+from tinyphoon.stages.sdram_rectification import untouched
+from tinyphoon.variants import FAST, THESIS, mains
 
 DOCS = Path(__file__).parent.parent
 PICTURE = DOCS / "images" / "waterfall.png"
@@ -39,28 +39,36 @@ def frame_ms(firmware: Firmware) -> float:
     )
 
 
+def windowed(calibration: Calibration) -> Buffers:
+    """Return the buffers of the built-in firmware for cameras that have a table, as the robot's had."""
+    assert calibration.size
+    sources = {core: untouched(calibration.size) for core in ("A", "B")}
+    return calibration_buffers(replace(calibration, sources=sources))
+
+
 def stages() -> Iterator[tuple[str, float]]:
     """Yield each improvement and the frame with it, in ms."""
     yield "the robot (T Table 6.4)", ROBOT_MS
     yield "the thesis's steps, simulated", frame_ms(thesis)
-    steps: Steps = THESIS
-    for what, changed in (
+    steps, rectified = THESIS, thesis
+    for what, change in (
         ("blobs by runs, in one pass", {"blob_detection": PLAIN.blob_detection}),
         ("opening on lines that DMA brings", {"open_closing": PLAIN.open_closing}),
+        ("rectification through a window that DMA moves", {"rectification": PLAIN.rectification}),
+        ("colours eroded at edges only", {"circle_detection": PLAIN.circle_detection}),
         ("lines by the labels of the row above", {"line_scan": PLAIN.line_scan}),
         ("hysteresis over the edge store", {"edge_detection": PLAIN.edge_detection}),
     ):
-        steps = replace(steps, **changed)
-        yield what, frame_ms(replace(thesis, mains=mains(steps)) if steps != PLAIN else tinyphoon)
-    yield (
-        "edges and colours four pixels at once",
-        frame_ms(
-            replace(tinyphoon, mains=mains(Steps(edge_detection=fast_edge_detection)), buffers=fast_buffers)
-        ),
-    )
-    steps = Steps(edge_detection=fast_edge_detection, open_closing=fast_opening)
-    assert steps == FAST
-    yield "opening column by column", frame_ms(replace(tinyphoon, mains=mains(FAST), buffers=fast_buffers))
+        steps = replace(steps, **change)
+        if "rectification" in change:
+            rectified = replace(thesis, calibration=windowed)
+        yield what, frame_ms(replace(rectified, mains=mains(steps)))
+    assert steps == PLAIN
+    yield "finer lines, circles and depths", frame_ms(replace(tinyphoon, calibration=windowed))
+    yield "no rectification, which this recording does not need", frame_ms(tinyphoon)
+    steps = replace(PLAIN, edge_detection=FAST.edge_detection)
+    yield "edges and colours four pixels at once", frame_ms(replace(fast, mains=mains(steps)))
+    yield "opening column by column", frame_ms(fast)
 
 
 def draw(found: list[tuple[str, float]]) -> None:
@@ -81,7 +89,7 @@ def draw(found: list[tuple[str, float]]) -> None:
         for (_, before), (what, ms) in gains
     ]
     base = alt.Chart(alt.Data(values=rows)).encode(
-        y=alt.Y("what:N", sort=None, title=None, axis=alt.Axis(labelLimit=300)),
+        y=alt.Y("what:N", sort=None, title=None, axis=alt.Axis(labelLimit=340)),
         x=alt.X("from:Q", title="ms a frame", scale=alt.Scale(domain=[0, ROBOT_MS + 30])),
         x2="to:Q",
     )

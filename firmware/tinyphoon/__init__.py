@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 from bfsim.api import BudgetRow, Firmware, Reference
 from tinyphoon.buffers import buffers, calibration_buffers, one_core_buffers
@@ -11,8 +12,9 @@ from tinyphoon.core_b import core_b
 from tinyphoon.geometry import THESIS_GEOMETRY
 from tinyphoon.losses import LOSSES, THESIS_LOSSES
 from tinyphoon.one_core import one_core
+from tinyphoon.strategy.modes import THESIS_FIELD
 from tinyphoon.strategy_unit.unit import StrategyUnit
-from tinyphoon.variants import FAST, THESIS, fast_buffers, mains, thesis_buffers
+from tinyphoon.variants import FAST, THESIS, fast_buffers, mains, thesis_buffers, thesis_calibration
 from tinyphoon.view.picture_colours import picture_colours
 from tinyphoon.view.view import view
 
@@ -48,7 +50,15 @@ tinyphoon = Firmware(
 fast = replace(tinyphoon, mains=mains(FAST), buffers=fast_buffers)
 """The same features of the same pictures, in a third of the time."""
 
-thesis = replace(tinyphoon, mains=mains(THESIS), buffers=thesis_buffers, losses=THESIS_LOSSES)
+thesis = replace(
+    tinyphoon,
+    mains=mains(THESIS),
+    buffers=thesis_buffers,
+    calibration=thesis_calibration,
+    spi=partial(StrategyUnit, mode=THESIS_FIELD),
+    colours=partial(picture_colours, mode=THESIS_FIELD),
+    losses=THESIS_LOSSES,
+)
 """The steps that the thesis describes: what the robot ran, as far as it says so. Lines are found in another way."""
 
 one_eye = Firmware(

@@ -10,7 +10,7 @@ from bfsim.api import Core, Frame
 from tinyphoon.areas import WHOLE_PICTURE, Area
 from tinyphoon.stages.blob_detection import BlobThresholds, blob_detection
 from tinyphoon.stages.blob_merging import blob_merging
-from tinyphoon.stages.circle_detection import circle_detection
+from tinyphoon.stages.circle_detection import CircleThresholds, circle_detection
 from tinyphoon.stages.colour_reduction import join_groups
 from tinyphoon.stages.edge_detection import EdgeThresholds, edge_detection
 from tinyphoon.stages.line_detection import LineScan, line_detection, scan_by_labels
@@ -36,10 +36,14 @@ class Features:
 class Steps:
     """The steps that take most of a frame: plain ones, or others with the same results, or nearly so."""
 
+    rectification: Callable[[Core, Frame, Area], Generator[Any, Any, Frame]] = rectification
     edge_detection: Callable[[Core, Frame, EdgeThresholds, Area], Generator[Any, Any, int]] = edge_detection
     open_closing: Callable[[Core, Frame, NoiseRemoval], Generator[Any, Any, None]] = open_closing
     blob_detection: Callable[[Core, Frame, BlobThresholds], Generator[Any, Any, int]] = blob_detection
     line_scan: LineScan = scan_by_labels
+    circle_detection: Callable[[Core, Frame, int, int, CircleThresholds], Generator[Any, Any, int]] = (
+        circle_detection
+    )
 
 
 PLAIN = Steps()
@@ -51,7 +55,7 @@ def features(
     """Leave edges, colours, blobs, lines and outlines of an area in the core's memories, in its coordinates."""
     with core.stage("Edge detection"):
         with core.stage("Rectification"):
-            frame = yield from rectification(core, frame, area)
+            frame = yield from steps.rectification(core, frame, area)
         yield from join_groups(core, mode.blobs.colour_groups)
         edges = yield from steps.edge_detection(core, frame, mode.edges, area)
     with core.stage("Open & closing"):
@@ -62,7 +66,7 @@ def features(
         lines = yield from line_detection(core, frame, mode.lines, steps.line_scan)
         yield from line_refinement(core, frame, lines, mode.refinement)
     with core.stage("Shape detection"):
-        circles = yield from circle_detection(core, frame, blobs, mode.ball_colours, mode.circles)
+        circles = yield from steps.circle_detection(core, frame, blobs, mode.ball_colours, mode.circles)
         blobs = yield from blob_merging(core, blobs, circles, mode.blobs.merged)
         rectangles = yield from rectangle_detection(
             core, frame, blobs, lines, mode.rectangle_colours, mode.goal_colours, mode.rectangles

@@ -6,25 +6,35 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from bfsim.api import Buffer, FrameSize
+import numpy as np
+
+from bfsim.api import Buffer, Buffers, Calibration, FrameSize
 from tinyphoon.buffers import buffers
 from tinyphoon.core_a import core_a
 from tinyphoon.core_b import core_b
 from tinyphoon.features import Steps
+from tinyphoon.fields import to_words
+from tinyphoon.geometry import geometry_buffer
+from tinyphoon.stages.circle_erosion import eroded_circles, shape_buffers
 from tinyphoon.stages.fast_opening import fast_opening
 from tinyphoon.stages.fast_scan import fast_edge_detection, fast_scan_buffers
 from tinyphoon.stages.line_ends import scan_by_ends
+from tinyphoon.stages.looped_erosion import looped_buffers
 from tinyphoon.stages.rosenfeld_blobs import SEGMENTS, rosenfeld_blobs, rosenfeld_buffers
 from tinyphoon.stages.rosenfeld_hysteresis import rosenfeld_edges
 from tinyphoon.stages.sdram_opening import sdram_opening
+from tinyphoon.stages.sdram_rectification import sdram_rectification, sdram_rectification_buffers, untouched
 from tinyphoon.stores.blobs import BLOB_WORDS
+from tinyphoon.strategy.modes import THESIS_FIELD
 
 FAST = Steps(edge_detection=fast_edge_detection, open_closing=fast_opening)
 THESIS = Steps(
+    rectification=sdram_rectification,
     edge_detection=rosenfeld_edges,
     open_closing=sdram_opening,
     blob_detection=rosenfeld_blobs,
     line_scan=scan_by_ends,
+    circle_detection=eroded_circles,
 )
 
 
@@ -46,5 +56,19 @@ def thesis_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
             replace(each, columns=SEGMENTS * BLOB_WORDS) if each.name == "blob_data" else each
             for each in of_core[core]
         )
-        of_core[core] = (*records, *rosenfeld_buffers(size, images))
+        more = *rosenfeld_buffers(size, images), *shape_buffers(size, images), *looped_buffers()
+        of_core[core] = (*records, *more)
+    of_core["shared"] = tuple(
+        replace(each, values=np.array(to_words(THESIS_FIELD))) if each.name == "ordered_mode" else each
+        for each in of_core["shared"]
+    )
     return of_core
+
+
+def thesis_calibration(calibration: Calibration) -> Buffers:
+    """Return the buffers that depend on the cameras of a recording: every picture has a table, and the geometry."""
+    size = calibration.size
+    sources = calibration.sources or ({core: untouched(size) for core in ("A", "B")} if size else {})
+    tables = sdram_rectification_buffers(sources)
+    geometry = tuple(geometry_buffer(each) for each in calibration.geometries)
+    return {core: (*tables.get(core, ()), *geometry) for core in ("A", "B")}

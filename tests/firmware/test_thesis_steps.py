@@ -9,15 +9,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bfsim.api import Core, Firmware
+from bfsim.api import Calibration, Core, Firmware, FrameSize
 from bfsim.machine.board import Board
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.run import BUILT_IN_RECORDING
+from tests.firmware.lenses import nearest, source_points
 from tests.firmware.pictures import EXTREMES, grey_uyvy
 from tests.firmware.whole_pictures import buffer, random_frames, run, stereo
 from tinyphoon import thesis, tinyphoon
 from tinyphoon.areas import WHOLE_PICTURE
 from tinyphoon.features import PLAIN, Steps
+from tinyphoon.stages.circle_erosion import has_ball_form
+from tinyphoon.stages.colour_reduction import join_groups
 from tinyphoon.stages.line_ends import continued_line
 from tinyphoon.stages.line_segments import (
     DIRECTION,
@@ -31,12 +34,17 @@ from tinyphoon.stages.line_segments import (
     TURN,
 )
 from tinyphoon.stages.rosenfeld_blobs import label_row, rename_row
-from tinyphoon.stores.blobs import BLOB_WORDS
+from tinyphoon.stages.sdram_rectification import move_row, untouched
+from tinyphoon.stores.blobs import ACROSS, BLOB_WORDS, COLOURS, DOWN, pair
+from tinyphoon.stores.circles import CIRCLE_BLOB, CIRCLE_WORDS
 from tinyphoon.stores.edges import EDGE_DATA
-from tinyphoon.strategy.modes import INDOOR_FIELD
+from tinyphoon.strategy.models import BLUE, MODELS, YELLOW, model_words
+from tinyphoon.strategy.modes import THESIS_FIELD
 from tinyphoon.variants import THESIS
 
-SAME = ("edges", "edges_lost", "edge_groups_shared", "blobs", "blobs_lost", "labels_lost")
+SAME = ("edges", "edges_lost", "edge_groups_shared", "blobs", "blobs_lost", "labels_lost", "circles")
+MODE = THESIS_FIELD
+RECTIFIED = Calibration()
 
 
 def left_by(board: Board, core: str, counts: dict[str, int]) -> list[list[int]]:
@@ -48,27 +56,43 @@ def left_by(board: Board, core: str, counts: dict[str, int]) -> list[list[int]]:
     return [each.tolist() for each in (edges, blobs, *pictures, *rows)]
 
 
-def up_to_blobs(firmware: Firmware, steps: Steps) -> Firmware:
-    """The firmware without what comes behind the blobs: lines differ, and blobs are merged by them."""
+def circles_by(board: Board, core: str, counts: dict[str, int], size: tuple[int, int]) -> list[list[int]]:
+    """Circles of the blobs that have a ball's form: the thesis looks for no others."""
+    blobs, models = (buffer(board, core, name)[0] for name in ("blob_data", "models"))
+    circles = buffer(board, core, "circles")[0].reshape(-1, CIRCLE_WORDS)[: counts[f"circles_{core}"]]
+    return [each.tolist() for each in circles if has_ball_form(blobs, each[CIRCLE_BLOB], models, *size)]
+
+
+def up_to_circles(firmware: Firmware, steps: Steps) -> Firmware:
+    """The firmware without lines, which differ, and what is made of them."""
 
     def main(core: Core) -> Generator[Any, Any, None]:
         while (frame := (yield from core.next_frame())) is not None:
             with core.stage("Edge detection"):
-                yield from steps.edge_detection(core, frame, INDOOR_FIELD.edges, WHOLE_PICTURE)
-                yield from steps.open_closing(core, frame, INDOOR_FIELD.noise)
-                yield from steps.blob_detection(core, frame, INDOOR_FIELD.blobs)
+                seen = yield from steps.rectification(core, frame, WHOLE_PICTURE)
+                yield from join_groups(core, MODE.blobs.colour_groups)
+                yield from steps.edge_detection(core, seen, MODE.edges, WHOLE_PICTURE)
+                yield from steps.open_closing(core, seen, MODE.noise)
+                blobs = yield from steps.blob_detection(core, seen, MODE.blobs)
+                yield from steps.circle_detection(core, seen, blobs, MODE.ball_colours, MODE.circles)
 
     return replace(firmware, mains={"A": main, "B": main})
 
 
-def check_same(frames: Sequence[StereoFrame]) -> None:
-    """Compare what both firmwares leave of the last frame, on both cores."""
-    plain, of_plain = run(frames, up_to_blobs(tinyphoon, PLAIN))
-    other, of_other = run(frames, up_to_blobs(thesis, THESIS))
+def check_same(frames: Sequence[StereoFrame], calibration: Calibration = RECTIFIED) -> int:
+    """Compare what both firmwares leave of the last frame, on both cores; returns how many circles there are."""
+    height, double_width = frames[0].left.shape
+    plain, of_plain = run(frames, up_to_circles(tinyphoon, PLAIN).calibrated(calibration))
+    other, of_other = run(frames, up_to_circles(thesis, THESIS).calibrated(calibration))
     counts, others = (dict(each.frames[-1].results) for each in (of_plain, of_other))
+    found = 0
     for core in "AB":
         assert [counts[f"{name}_{core}"] for name in SAME] == [others[f"{name}_{core}"] for name in SAME]
         assert left_by(plain, core, counts) == left_by(other, core, counts)
+        circles = circles_by(plain, core, counts, (double_width // 2, height))
+        assert circles == circles_by(other, core, counts, (double_width // 2, height))
+        found += len(circles)
+    return found
 
 
 @pytest.mark.parametrize(("width", "height"), [(4, 3), (10, 5), (34, 50), (160, 121)])
@@ -78,9 +102,44 @@ def test_pictures_of_any_size(width: int, height: int) -> None:
 
 
 def test_the_built_in_recording() -> None:
-    """Its second frame."""
+    """Its second frame: the ball is in it."""
     with RecordingReader(BUILT_IN_RECORDING) as reader:
-        check_same(list(reader.frames(2)))
+        assert (
+            check_same(list(reader.frames(2)), Calibration(size=FrameSize(reader.width, reader.height))) == 2
+        )
+
+
+@pytest.mark.parametrize("width", [6, 34, 160])
+def test_pictures_that_a_table_rectifies(width: int) -> None:
+    """Tables with pixels from nowhere; each core has its own."""
+    sources = {
+        "A": nearest(*source_points(width, 50, barrel=0.06, turn_deg=1.0, down_px=2.5)),
+        "B": nearest(*source_points(width, 50, barrel=0.03, turn_deg=-0.7, down_px=-3)),
+    }
+    check_same(random_frames(width, 50, count=1), Calibration(sources=sources))
+
+
+def test_pictures_that_are_rectified_have_a_table_too() -> None:
+    """As the robot's always had; it leaves each pixel where it is."""
+    rng = np.random.default_rng(3)
+    camera, sources = rng.integers(0, 256, 2 * 8 * 2, np.uint8), untouched(FrameSize(8, 2))
+    places = (sources.rows * 8 + sources.columns).astype(np.int32)
+    moved = np.empty(4, np.uint32)
+    move_row(camera, camera.view(np.uint32), places[1], moved)
+    np.testing.assert_array_equal(moved.view(np.uint8), camera[16:])
+
+
+def test_the_circles_of_the_balls_that_the_thesis_erodes_for() -> None:
+    """A blob without a ball's form costs no erosion, and no circle is found for it."""
+    form = np.zeros(BLOB_WORDS, np.uint32)
+    form[COLOURS], form[DOWN] = YELLOW, pair(10, 29)
+    models = model_words(MODELS)
+    for right, is_ball in ((23, 0), (24, 1), (35, 1), (36, 0)):  # 14, 15, 26 and 27 columns by 20 rows
+        form[ACROSS] = pair(10, right)
+        assert has_ball_form(form, 0, models, 64, 64) == is_ball
+    form[COLOURS] = BLUE
+    form[ACROSS] = pair(10, 29)
+    assert has_ball_form(form, 0, models, 64, 64) == 0
 
 
 @pytest.mark.parametrize("name", ["checkerboard of five pixels", "slopes", "coloured columns", "noise"])
@@ -107,7 +166,7 @@ def labels_of(picture: Sequence[str]) -> list[list[int]]:
     labels, table = np.zeros(words.shape, np.uint16), np.zeros(64, np.uint16)
     used = 0
     for y in range(1, len(words) - 1):
-        used = label_row(words[y], labels[y - 1], labels[y], table, 1, 0, used)
+        used = label_row(words[y], labels[y - 1], labels[y], table, 1, used)
     for row in labels:
         rename_row(row, table)
     return labels.tolist()

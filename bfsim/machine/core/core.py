@@ -159,9 +159,9 @@ class Core(SynchronisedCore):
         """Whether there is a buffer called `name`: some come only with the tables of a recording."""
         return name in self._layouts
 
-    def overlay(self, name: str, element: Number, columns: int) -> tuple[Row, ...]:
-        """Return the memory of buffer `name`, all its rows as one, as rows of another kind: a union in C."""
-        return self._layouts.overlay(name, element, columns)
+    def overlay(self, buffer: str | Sequence[Row], element: Number, columns: int) -> tuple[Row, ...]:
+        """Return the memory of the buffer of that name, or of the rows of a picture, all as one, as rows of another kind: a union in C."""
+        return self._layouts.overlay(buffer, element, columns)
 
     def part(self, rows: Sequence[Row], first: int, count: int) -> tuple[Row, ...]:
         """Return `count` elements of each row from element `first` on, such as the columns of an area: no bytes move."""

@@ -31,7 +31,7 @@ class Layouts:
         self._declared = declared
         self._layouts = {size: placed}
         # the same rows every time, so that calls and copies with them are prepared once
-        self._overlays: dict[tuple[FrameSize, str, Number, int], Rows] = {}
+        self._overlays: dict[tuple[Row, Row, Number, int], Rows] = {}
         self._parts: dict[tuple[Row, int, int], Row] = {}
         self.use(size)
 
@@ -67,11 +67,12 @@ class Layouts:
             known = ", ".join(sorted(self._buffers))
             raise FirmwareError(f"core {self._core} has no buffer {name!r}; it has {known}") from None
 
-    def overlay(self, name: str, element: Number, columns: int) -> Rows:
-        """Return the memory of buffer `name` as rows of `columns` elements of another kind."""
-        kind = (self._size, name, element, columns)
+    def overlay(self, buffer: str | Sequence[Row], element: Number, columns: int) -> Rows:
+        """Return the memory of a buffer, or of rows that follow each other, as rows of `columns` elements of another kind."""
+        rows = self.rows(buffer) if isinstance(buffer, str) else buffer
+        kind = (rows[0], rows[-1], element, columns)
         if kind not in self._overlays:
-            self._overlays[kind] = self.memories.overlay(self.rows(name), element, columns)
+            self._overlays[kind] = self.memories.overlay(rows, element, columns)
         return self._overlays[kind]
 
     def part(self, rows: Sequence[Row], first: int, count: int) -> Rows:

@@ -7,7 +7,7 @@ by the picture's border, the edges that are left decide. The sphere's image is t
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -244,8 +244,39 @@ def close_circle(fit: i32[:], circles: i16[:], number: i32) -> None:
     circles[at + CIRCLE_RADIUS] = (fit[RADIUS] + part // 2) // part
 
 
+def select_edges(
+    core: Core, frame: Frame, blob: int, colours: int, thresholds: CircleThresholds, selected: Row
+) -> Generator[Any, Any, int]:
+    """Select the edges of a blob's outline; returns how many there are. Its lines come through the opening's ring."""
+    area, atan = core.array("circle_area"), core.array("atan")
+    top, bottom = yield from open_outline(core, frame, blob, thresholds)
+    first = max(top - 1, 0)
+    image = core.rows("opened_image")[first : min(bottom + 2, frame.height)]
+    lines = core.input_ring(image, "colour_ring")
+    store = edge_store(core)
+    filters = area, thresholds.angle_range, int(thresholds.beside_colour), atan
+    found = 0
+    for ahead in range(first, bottom + 2):
+        if ahead < frame.height:
+            yield from lines.line()
+        y = ahead - 1
+        if top <= y:
+            near = window(lines, y - first, len(image))
+            found = yield core.run(select_edges_row, *store, y, *near, colours, *filters, selected, found)
+    return found
+
+
+EdgeSelection = Callable[[Core, Frame, int, int, CircleThresholds, Row], Generator[Any, Any, int]]
+"""How the edges of a blob's outline are told from others: `select_edges`, or another way."""
+
+
 def circle_detection(
-    core: Core, frame: Frame, blobs: int, colours: int, thresholds: CircleThresholds
+    core: Core,
+    frame: Frame,
+    blobs: int,
+    colours: int,
+    thresholds: CircleThresholds,
+    select: EdgeSelection = select_edges,
 ) -> Generator[Any, Any, int]:
     """Look for a circle round each of the first `blobs` blobs that has some of `colours`. Leaves them in `circles`.
 
@@ -260,7 +291,7 @@ def circle_detection(
     while blob != NONE:
         core.at(*box_of(blob_data, blob))
         if number < CIRCLE_CAPACITY:
-            found = yield from _select_edges(core, frame, blob, colours, thresholds, selected)
+            found = yield from select(core, frame, blob, colours, thresholds, selected)
             count = min(found, room)
             edges_lost += found - count
             if thresholds.fit_rounds:
@@ -279,27 +310,14 @@ def circle_detection(
     return number
 
 
-def _select_edges(
-    core: Core, frame: Frame, blob: int, colours: int, thresholds: CircleThresholds, selected: Row
-) -> Generator[Any, Any, int]:
-    """Select the edges of a blob's outline; returns how many there are. Its lines come through the opening's ring."""
-    area, atan = core.array("circle_area"), core.array("atan")
+def open_outline(
+    core: Core, frame: Frame, blob: int, thresholds: CircleThresholds
+) -> Generator[Any, Any, tuple[int, int]]:
+    """Say in `circle_area` where the outline of a blob is looked for; returns the first row and the last."""
     limits = thresholds.border, thresholds.patch_reach, frame.width, frame.height
-    top, bottom = ends((yield core.run(open_area, core.array("blob_data"), blob, area, *limits)))
-    first = max(top - 1, 0)
-    image = core.rows("opened_image")[first : min(bottom + 2, frame.height)]
-    lines = core.input_ring(image, "colour_ring")
-    store = edge_store(core)
-    filters = area, thresholds.angle_range, int(thresholds.beside_colour), atan
-    found = 0
-    for ahead in range(first, bottom + 2):
-        if ahead < frame.height:
-            yield from lines.line()
-        y = ahead - 1
-        if top <= y:
-            near = window(lines, y - first, len(image))
-            found = yield core.run(select_edges_row, *store, y, *near, colours, *filters, selected, found)
-    return found
+    return ends(
+        (yield core.run(open_area, core.array("blob_data"), blob, core.array("circle_area"), *limits))
+    )
 
 
 def _measure(

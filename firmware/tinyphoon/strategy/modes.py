@@ -237,3 +237,16 @@ INDOOR_FIELD = Mode(
     report=ReportLimits(lines_3d=32, edges_3d=64),
 )
 """A FIRA field lit from above in a dark room, as in the recording that comes with bfsim, in pictures of 320x240."""
+
+THESIS_FIELD = replace(
+    INDOOR_FIELD,
+    edges=replace(INDOOR_FIELD.edges, least_chroma=0),  # T Eq. 5.2 alone
+    blobs=replace(INDOOR_FIELD.blobs, merged=False),
+    circles=PLAIN_CIRCLES,
+    objects=replace(INDOOR_FIELD.objects, refined=False, hidden_arc=0),  # T Eq. 4.1, the mean of both cameras
+    refinement=replace(INDOOR_FIELD.refinement, reach=0),
+    # T §5.2.7 and §5.2.8: the nearest of like direction
+    stereo_lines=replace(INDOOR_FIELD.stereo_lines, correspondence=Correspondence.NEAREST, edge_range=0),
+    stereo_edges=replace(INDOOR_FIELD.stereo_edges, correspondence=Correspondence.NEAREST),
+)
+"""The same field without what is [ours]."""

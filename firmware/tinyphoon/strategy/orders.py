@@ -129,7 +129,7 @@ def _obey(core: Core, message: Row, nbytes: int) -> Generator[Any, Any, int]:
         return refusal
     if is_mode:
         # tables of a recording are for one size of pictures
-        halvings = 0 if core.has_buffer("camera_window") else HALVINGS
+        halvings = 0 if core.has_buffer("places") else HALVINGS
         full = core.array("full_size")
         refusal = yield core.run(picture_refusal, message, CAMERA, AREA, full, halvings, LEAST_AREA_PX)
     else:

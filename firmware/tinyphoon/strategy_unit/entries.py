@@ -31,8 +31,9 @@ from typing import Any
 import numpy as np
 
 from bfsim.api import FirmwareError, Script, SpiMessage, shown
+from tinyphoon.strategy.modes import INDOOR_FIELD, Mode
 from tinyphoon.strategy_unit.messages import Message, MessageError, MessageType, decode, encode
-from tinyphoon.strategy_unit.payloads import BY_NAME
+from tinyphoon.strategy_unit.payloads import BY_NAME, payload_by_name
 
 MOST_FRAMES = 0x7FFF_FFFF
 ORDERS = (MessageType.MODE, MessageType.MODELS)
@@ -58,8 +59,10 @@ class _Asked:
     type: MessageType | None = None
 
 
-def entries_of(script: Script) -> tuple[Entry, ...]:
+def entries_of(script: Script, mode: Mode = INDOOR_FIELD) -> tuple[Entry, ...]:
     """Return the entries of a script in the order in which they are due; their messages are numbered in that order.
+
+    `mode` is what an ordered mode is in all that the script does not name.
 
     Raises FirmwareError that names the key and what must be.
     """
@@ -67,7 +70,7 @@ def entries_of(script: Script) -> tuple[Entry, ...]:
     send = script.get("send", [])
     if not isinstance(send, list):
         raise FirmwareError(f"send must be a list of tables, not {shown(send)}")
-    asked = [_asked(each, f"send.{number}") for number, each in enumerate(send)]
+    asked = [_asked(each, f"send.{number}", mode) for number, each in enumerate(send)]
     return tuple(_numbered(sorted(asked, key=lambda each: each.after_frames)))
 
 
@@ -93,7 +96,7 @@ def _type_of(octets: bytes) -> str:
         return DAMAGED
 
 
-def _asked(entry: object, at: str) -> _Asked:
+def _asked(entry: object, at: str, mode: Mode) -> _Asked:
     if not isinstance(entry, Mapping):
         raise FirmwareError(f"{at} must be a table, not {shown(entry)}")
     kinds = (*BY_NAME, "words", "bytes")
@@ -115,7 +118,8 @@ def _asked(entry: object, at: str) -> _Asked:
             _order(entry["type"], f"{at}.type"),
         )
     else:
-        payload, order = BY_NAME[kind](entry[kind], f"{at}.{kind}"), MessageType[kind.upper()]
+        payload = payload_by_name(kind, entry[kind], f"{at}.{kind}", mode)
+        order = MessageType[kind.upper()]
     return _Asked(f"{at}.{kind}", after_frames, payload, order)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from bfsim.api import FirmwareError, shown
 from tinyphoon.fields import named_words
-from tinyphoon.strategy.modes import INDOOR_FIELD
+from tinyphoon.strategy.modes import INDOOR_FIELD, Mode
 from tinyphoon.strategy_unit.plain_models import words_of_models
 
 
@@ -17,12 +17,12 @@ def payload(words: Sequence[int]) -> bytes:
     return np.array(words, np.int64).astype("<i4").tobytes()
 
 
-def mode_payload(names: object, at: str = "mode") -> bytes:
-    """Return the payload of the mode that differs from `INDOOR_FIELD` by `names`: fields, or fields of fields.
+def mode_payload(names: object, at: str = "mode", mode: Mode = INDOOR_FIELD) -> bytes:
+    """Return the payload of the mode that differs from `mode` by `names`: fields, or fields of fields.
 
     Raises FirmwareError that names the field under `at`.
     """
-    return payload(named_words(INDOOR_FIELD, names, at))
+    return payload(named_words(mode, names, at))
 
 
 def models_payload(models: object, at: str = "models") -> bytes:
@@ -35,5 +35,10 @@ def models_payload(models: object, at: str = "models") -> bytes:
     return payload(words_of_models(models, at))
 
 
-BY_NAME = {"mode": mode_payload, "models": models_payload}
+BY_NAME = "mode", "models"
 """What the strategy unit may order by name."""
+
+
+def payload_by_name(name: str, order: object, at: str, mode: Mode) -> bytes:
+    """Return the payload of an order of `BY_NAME`; a mode is what it says, and `mode` in the rest."""
+    return mode_payload(order, at, mode) if name == "mode" else models_payload(order, at)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from bfsim.api import Script, SpiDevice, SpiMessage
+from tinyphoon.strategy.modes import INDOOR_FIELD, Mode
 from tinyphoon.strategy_unit.entries import entries_of
 from tinyphoon.strategy_unit.messages import Message, MessageType, decode
 
@@ -23,9 +24,9 @@ class Received:
 class StrategyUnit(SpiDevice):
     """Takes messages whole and at once, and asks to be heard as soon as an entry of its script is due."""
 
-    def __init__(self, script: Script = MappingProxyType({})) -> None:
-        """`script`: see `entries_of`, which raises FirmwareError for what is wrong with it."""
-        self._to_send = deque(entries_of(script))
+    def __init__(self, script: Script = MappingProxyType({}), mode: Mode = INDOOR_FIELD) -> None:
+        """`script`, `mode`: see `entries_of`, which raises FirmwareError for what is wrong with the script."""
+        self._to_send = deque(entries_of(script, mode))
         self._reported = 0
         self.received: list[Received] = []
         """Every message so far, in the order of arrival."""

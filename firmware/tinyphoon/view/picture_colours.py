@@ -30,9 +30,11 @@ LEAST_GAIN, MOST_GAIN = next(
 )
 
 
-def picture_colours(picture: NDArray[np.uint8], script: Script, frame: int) -> PictureColours:
-    """Return the colours of a UYVY picture by the mode that a script has put in force at `frame`."""
-    thresholds = mode_at(script, frame).edges
+def picture_colours(
+    picture: NDArray[np.uint8], script: Script, frame: int, mode: Mode = INDOOR_FIELD
+) -> PictureColours:
+    """Return the colours of a UYVY picture by the mode that a script has put in force at `frame`, in place of `mode`."""
+    thresholds = mode_at(script, frame, mode).edges
     atan, words = arctangent_table(), np.zeros((picture.shape[0], picture.shape[1] // 2), np.uint32)
     for line, found in zip(picture.copy(), words, strict=True):
         if not thresholds.is_balanced:
@@ -45,10 +47,9 @@ def picture_colours(picture: NDArray[np.uint8], script: Script, frame: int) -> P
     return PictureColours(numbers=numbers, named=tuple(known.values()), notes=(_balance(picture),))
 
 
-def mode_at(script: Script, frame: int) -> Mode:
-    """Return the mode that holds in a frame. Raises FirmwareError where a script orders what is not allowed."""
-    mode = INDOOR_FIELD
-    for entry in entries_of(script):
+def mode_at(script: Script, frame: int, mode: Mode = INDOOR_FIELD) -> Mode:
+    """Return the mode that holds in a frame, `mode` at first. Raises FirmwareError where a script orders what is not allowed."""
+    for entry in entries_of(script, mode):
         if entry.after_frames == 0 or entry.after_frames < frame:
             mode = _ordered(entry) or mode
     return mode

@@ -1,0 +1,1 @@
+"""What else could have taken the robot's times: other readings of the thesis, and other programs."""
