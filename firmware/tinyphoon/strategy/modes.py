@@ -243,7 +243,9 @@ THESIS_FIELD = replace(
     edges=replace(INDOOR_FIELD.edges, least_chroma=0),  # T Eq. 5.2 alone
     blobs=replace(INDOOR_FIELD.blobs, merged=False),
     circles=PLAIN_CIRCLES,
-    objects=replace(INDOOR_FIELD.objects, refined=False, hidden_arc=0),  # T Eq. 4.1, the mean of both cameras
+    objects=replace(
+        INDOOR_FIELD.objects, refined=False, hidden_arc=0, circle_area=True
+    ),  # T Eq. 4.1, the mean of both cameras; T Eq. 2.13
     refinement=replace(INDOOR_FIELD.refinement, reach=0),
     # T §5.2.7 and §5.2.8: the nearest of like direction
     stereo_lines=replace(INDOOR_FIELD.stereo_lines, correspondence=Correspondence.NEAREST, edge_range=0),
