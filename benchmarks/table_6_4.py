@@ -46,6 +46,9 @@ DEFAULT = "cm-bf561"
 CLOCKS = (DEFAULT, "cm-bf561-525-131", "cm-bf561-500-125", "cm-bf561-550-110", "cm-bf561-500-100")
 """Boards that differ by their clocks: HARDWARE 2.1."""
 
+FASTEST, SLOWEST = CLOCKS[:2], CLOCKS[-1:]
+"""Those of them that no other one is faster than, or slower than, in both clocks."""
+
 LATENCIES: Mapping[str, tuple[int, int]] = {
     "chip.external.core_sync_sclk": (4, 7),
     "chip.external.store_buffer": (8, 4),
@@ -72,8 +75,8 @@ class Setting:
 
 
 FAST, SLOW = ({path: ends[end] for path, ends in LATENCIES.items()} for end in (0, 1))
-LOW = tuple(Setting(board, FAST) for board in CLOCKS)
-HIGH = tuple(Setting(board, SLOW) for board in CLOCKS)
+LOW = tuple(Setting(board, FAST) for board in FASTEST)
+HIGH = tuple(Setting(board, SLOW) for board in SLOWEST)
 PLAIN = Setting(DEFAULT, {})
 GRID = tuple(
     Setting(board, {"chip.external.core_sync_sclk": sync, "sdram.nRCD": opening, "sdram.nRP": opening})
