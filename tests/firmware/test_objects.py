@@ -87,10 +87,10 @@ def test_the_goal_by_its_posts(frames: list[Seen]) -> None:
         assert wrong_mm < far_mm / 40
 
 
-def test_the_goal_leaves_its_lines(frames: list[Seen]) -> None:
-    """Posts or bottom line, in the left picture."""
+def test_the_goal_and_the_marker_leave_their_lines(frames: list[Seen]) -> None:
+    """The goal its posts or bottom line, the marker its borders, in the left picture; the ball has none."""
     for seen in frames:
-        assert {each.model for each in seen.results.lines} == {NUMBERS[Shape.GOAL]}
+        assert {each.model for each in seen.results.lines} == {NUMBERS[Shape.GOAL], NUMBERS[Shape.MARKER]}
 
 
 def test_each_camera_has_its_own_frame(frames: list[Seen]) -> None:

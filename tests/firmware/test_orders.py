@@ -18,7 +18,7 @@ from tests.machine.rig import thesis_ldf
 from tinyphoon import tinyphoon
 from tinyphoon.fields import to_words
 from tinyphoon.strategy import order_checks as checks
-from tinyphoon.strategy.models import MODELS
+from tinyphoon.strategy.models import MODEL_CAPACITY, MODEL_WORDS, MODELS
 from tinyphoon.strategy_unit.decoding import decode_results
 from tinyphoon.strategy_unit.unit import StrategyUnit
 
@@ -103,8 +103,9 @@ def test_models_reach_both_cores() -> None:
         {"after_frames": 1, "models": ["ball", "ball"]},
     ]
     _, board, outcome = run(script, 3)
-    expected = np.zeros(64, np.int32)
-    expected[:8] = to_words(MODELS[3])
+    expected = np.zeros(MODEL_CAPACITY * MODEL_WORDS, np.int32)
+    words = to_words(MODELS[3])
+    expected[: len(words)] = words
     for core in "AB":
         np.testing.assert_array_equal(buffer(board, core, "models")[0], expected)
         assert buffer(board, core, "colour_groups")[0, 0] == MODELS[3].colours
