@@ -75,7 +75,7 @@ def write_page(run: RunRecord, again: partial[Any], path: Path, target: Target |
                 f"its cycles are {cycle_digest(done.frames)[:12]} now, not {cycle_digest(run.frames)[:12]}"
             )
         for each in watchers.done:
-            each(run)
+            each(done)
 
 
 def _rows(firmware: Firmware | str) -> tuple[BudgetRow, ...]:
