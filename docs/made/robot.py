@@ -44,7 +44,7 @@ def main(folder: Path) -> None:
     rows = ([title, *(f"{found[row]:.1f}" for row in (*ROWS, FRAME))] for title, found in measured(folder))
     put("readings", table(["", *short], rows))
     setting, columns = measured_columns(folder, FRAMES)
-    put("table", "\n\n".join(map(of_column, columns)))
+    put("scenes", "\n\n".join(map(of_column, columns)))
     put("fit", f"Fitted to Figure 6.7: {in_words(setting)}.")
     put("claims", table(["", "robot", "`thesis`"], claims(folder)))
 
