@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Generic, TypeVar
 
-from bfsim.api import Firmware, FrameSize, Readout
+from bfsim.api import Firmware, FrameSize, Readout, Script
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board
@@ -42,8 +43,12 @@ def play(
     firmware: Firmware,
     take: Callable[[Readout], Taken],
     on_frame: Callable[[FrameRecord], None] | None = None,
+    script: Script = MappingProxyType({}),
 ) -> list[Played[Taken]]:
-    """Play frames of one size on one board, and `take` from each core's memories what is wanted: no time passes."""
+    """Play frames of one size on one board, and `take` from each core's memories what is wanted: no time passes.
+
+    `script`: what the other end of the SPI orders.
+    """
     taken: dict[tuple[int, str], Taken] = {}
 
     def view(readout: Readout) -> None:
@@ -53,7 +58,7 @@ def play(
     size = FrameSize(double_width // 2, height)
     firmware = replace(firmware, view=view)
     places = link(parse_ldf(DEFAULT_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
-    board = Board(CM_BF561, firmware, size, places)
+    board = Board(CM_BF561, firmware, size, places, device=firmware.device(script))
     outcome = board.run(iter(frames), on_frame, on_seen=lambda _index, _seen: None)
     return [
         Played(record, {each.core: taken[record.index, each.core] for each in record.cores})

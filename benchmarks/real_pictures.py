@@ -33,10 +33,11 @@ CCLK_PER_MS = 600_000
 
 @dataclass(frozen=True, slots=True)
 class SeenSet:
-    """A set of pictures, and what both cameras made of each frame."""
+    """A set of pictures, and what both cameras made of each frame; of stereo pairs also with each edge matched alone."""
 
     pictures: PictureSet
     played: Sequence[Played[Seen]]
+    alone: Sequence[Played[Seen]]
 
     @property
     def cameras(self) -> list[tuple[Seen, ...]]:
@@ -58,7 +59,8 @@ def see(folder: Path, size: tuple[int, int]) -> SeenSet:
     with progress_bar(f"Simulating {pictures.name}") as progress:
         done = iter(range(1, len(pictures.frames) + 1))
         played = play(pictures.frames, tinyphoon, view, lambda _: progress(next(done), len(pictures.frames)))
-    return SeenSet(pictures, played)
+        alone = play(pictures.frames, tinyphoon, view, script=depth.ALONE) if pictures.is_stereo else ()
+    return SeenSet(pictures, played, alone)
 
 
 def edge_table(sets: Sequence[SeenSet]) -> Table:
@@ -77,7 +79,7 @@ def depth_table(sets: Sequence[SeenSet]) -> Table:
     table.caption, table.caption_justify = depth.NOTE, "left"
     for each in sets:
         if each.pictures.is_stereo:
-            for row in depth.rows_of(each.pictures, each.cameras):
+            for row in depth.rows_of(each.pictures, each.played, each.alone):
                 table.add_row(each.pictures.name, *row)
     return table
 

@@ -8,18 +8,36 @@ dense ones round it is near its own. `plain` is without that, the pixel's own al
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.playing import Played
 from benchmarks.real.sets import Disparities, PictureSet
 from bfsim.api import Seen
 from bfsim.report.tables import percent
+from tinyphoon.stages.stereo_lines import Correspondence
 
 TITLE = "3-D edges and lines beside dense disparities"
-COLUMNS = "beside", "kind", "of them judged", "within 1 px %", "plain %", "over 5 px off %", "of left edges %"
-NOTE = "In % of those judged: where the dense disparity is known. Of left edges: how many of the stored edges have a depth."
+COLUMNS = (
+    "beside",
+    "kind",
+    "of them judged",
+    "within 1 px %",
+    "plain %",
+    "over 5 px off %",
+    "kept %",
+    "right kept %",
+)
+NOTE = (
+    "In % of those judged: where the dense disparity is known. Kept: how many 3-D edges there are of those that the thesis "
+    "matches on the same edges, right or wrong; right kept: how many are within 1 px, of those of the thesis that are."
+)
+
+ALONE = {"send": [{"mode": {"stereo_edges": {"correspondence": int(Correspondence.NEAREST)}}}]}
+"""What orders the thesis's way: each edge is matched alone."""
 
 NEAR_PX, FAR_PX = 1.0, 5.0
 MOST_DISPARITIES = 128
@@ -88,21 +106,58 @@ def _errors(points: Points, dense: Disparities, reach: int) -> NDArray[np.float6
     return best
 
 
-def rows_of(pictures: PictureSet, seen: Sequence[tuple[Seen, ...]]) -> list[list[str]]:
-    """Return the rows of the table for a set of stereo pairs."""
-    found = []
-    for number, (frame, cameras) in enumerate(zip(pictures.frames, seen, strict=True)):
-        left = next(each for each in cameras if each.camera == "left")
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """3-D edges or lines of a frame: points, how many were found with those that had no room, and the errors known."""
+
+    points: Points
+    count: int
+    near: NDArray[np.float64]
+    plain: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, points: Points, lost: int, dense: Disparities) -> _Found:
+        near, plain = (_errors(points, dense, reach) for reach in (1, 0))
+        return cls(points, len(points) + lost, near[~np.isnan(near)], plain[~np.isnan(plain)])
+
+    @property
+    def right(self) -> float:
+        """How many of all that were found are right, if those without room are as good as the others."""
+        share = (self.near <= NEAR_PX).mean() if len(self.near) else 0.0
+        return float(share * self.count)
+
+
+def rows_of(
+    pictures: PictureSet, ours: Sequence[Played[Seen]], alone: Sequence[Played[Seen]]
+) -> list[list[str]]:
+    """Return the rows of the table for a set of stereo pairs, played our way and with each edge matched alone."""
+    rows = []
+    for number, (frame, *played) in enumerate(zip(pictures.frames, ours, alone, strict=True)):
         lumas = [np.ascontiguousarray(each[:, 1::2]) for each in (frame.left, frame.right)]
         dense = {"SGBM": sgbm(*lumas)} | ({"truth": pictures.truth[number]} if pictures.truth else {})
-        stored = len(left.edges.x_px)
-        for kind, points in (("edges", edge_points(left)), ("lines", line_points(left))):
+        for kind, points_of in (("edges", edge_points), ("lines", line_points)):
             for beside, disparities in dense.items():
-                near, plain = (_errors(points, disparities, reach) for reach in (1, 0))
-                near, plain = near[~np.isnan(near)], plain[~np.isnan(plain)]
-                found.append([
-                    beside, kind, f"{len(near)} of {len(points)}", percent((near <= NEAR_PX).sum(), len(near)),
-                    percent((plain <= NEAR_PX).sum(), len(plain)), percent((near > FAR_PX).sum(), len(near)),
-                    percent(len(points), stored) if kind == "edges" else "",
-                ])  # fmt: skip
-    return found
+                found, all_ = (
+                    _Found.of(
+                        points_of(each.taken["A"]), each.results("A").get("edges_3d_lost", 0), disparities
+                    )
+                    for each in played
+                )
+                rows.append(
+                    [beside, kind, *_cells(found), *(_kept(found, all_) if kind == "edges" else ("", ""))]
+                )
+    return rows
+
+
+def _cells(found: _Found) -> list[str]:
+    near, plain = found.near, found.plain
+    return [
+        f"{len(near)} of {len(found.points)}",
+        percent((near <= NEAR_PX).sum(), len(near)),
+        percent((plain <= NEAR_PX).sum(), len(plain)),
+        percent((near > FAR_PX).sum(), len(near)),
+    ]
+
+
+def _kept(found: _Found, all_: _Found) -> tuple[str, str]:
+    return percent(found.count, all_.count), percent(round(found.right), round(all_.right))
