@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from bfsim.errors import RecordingError
 from bfsim.recording.images import image_paths, load_image
 from bfsim.recording.pairs import pairs_of
-from bfsim.recording.planes import Plane, YuvPlanes
+from bfsim.recording.planes import Plane, YuvPlanes, fit_matrix
 from bfsim.recording.sources import Skipped
 
 Corners = NDArray[np.float32]
@@ -41,7 +41,8 @@ def find_views(
 
     With `mono` every picture is one of the only camera. Without, pictures left* and right* (or those of the folders
     left and right) go together by what follows in their names, or by their order if the names have nothing in common.
-    With `resize`, pictures of other sizes are scaled as an import scales them. Raises RecordingError.
+    With `resize`, corners of pictures of other sizes are found there, where they are sharpest, and are brought to where an
+    import that scales the pictures has them. Raises RecordingError.
     """
     sets, skipped = _together(folder, mono=mono)
     views = []
@@ -49,7 +50,8 @@ def find_views(
         found = []
         for path in paths:
             try:
-                found.append(_corners_in(cv2, _grey(path, size, resize=resize), corners))
+                grey, to_recorded = _grey(path, size, resize=resize)
+                found.append(_brought(_corners_in(cv2, grey, corners), to_recorded))
             except RecordingError as error:
                 skipped.append(Skipped(path.name, str(error).removeprefix(f"{path}: ")))
         if len(found) == len(paths):
@@ -72,17 +74,20 @@ def _pictures_of(folder: Path, side: str) -> list[Path]:
     return image_paths(str(folder / side if (folder / side).is_dir() else folder / f"{side}*"))
 
 
-def _grey(path: Path, size: tuple[int, int], *, resize: bool) -> Plane:
+def _grey(path: Path, size: tuple[int, int], *, resize: bool) -> tuple[Plane, NDArray[np.float64]]:
+    """Return a picture, and the matrix (3, 3) that leads from its pixels to those of the recording."""
     image = load_image(path)
-    planes = YuvPlanes.from_image(image)
-    if image.size != size:
-        if not resize:
-            raise RecordingError(
-                f"picture must be {size[0]}x{size[1]} like the recording, not {image.width}x{image.height}; `--resize` "
-                "scales it as `bfsim record import --resize` does"
-            )
-        planes = planes.resized(*size)
-    return np.ascontiguousarray(planes.y)
+    if image.size != size and not resize:
+        raise RecordingError(
+            f"picture must be {size[0]}x{size[1]} like the recording, not {image.width}x{image.height}; `--resize` "
+            "scales it as `bfsim record import --resize` does"
+        )
+    return np.ascontiguousarray(YuvPlanes.from_image(image).y), fit_matrix(image.size, size, None)
+
+
+def _brought(points: Corners, to_recorded: NDArray[np.float64]) -> Corners:
+    scale, start = to_recorded.diagonal()[:2], to_recorded[:2, 2]
+    return (points * scale + start).astype(np.float32)
 
 
 def _corners_in(cv2: Any, grey: Plane, corners: tuple[int, int]) -> Corners:

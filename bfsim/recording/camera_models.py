@@ -20,6 +20,9 @@ from bfsim.errors import RecordingError
 
 Floats = NDArray[np.float64]
 
+FARTHEST_CORNER_RAD = np.radians(80)
+"""Where the fit of a fisheye begins to seek the corner farthest off the axis. At 90 and more there is no way back from it."""
+
 
 @dataclass(frozen=True, slots=True)
 class FittedCamera:
@@ -173,17 +176,20 @@ class Fisheye(CameraModel):
     """Lenses of 100° and more."""
 
     @property
-    def _flags(self) -> Any:
-        """Return where OpenCV has the flags of this model: 4 beside it, 5 among all others."""
-        return self.cv2.fisheye if hasattr(self.cv2.fisheye, "CALIB_FIX_SKEW") else self.cv2
+    def _refine(self) -> int:
+        """Flags of a fit that begins with given cameras. OpenCV 4 has them beside this model, 5 among all others."""
+        flags = self.cv2.fisheye if hasattr(self.cv2.fisheye, "CALIB_FIX_SKEW") else self.cv2
+        return int(flags.CALIB_USE_INTRINSIC_GUESS | flags.CALIB_RECOMPUTE_EXTRINSIC | flags.CALIB_FIX_SKEW)
 
     def fit_one(
         self, board: Floats, side: Sequence[Floats], size: tuple[int, int]
     ) -> tuple[FittedCamera, list[Any]]:
-        """Fit one camera."""
-        flags = self._flags.CALIB_RECOMPUTE_EXTRINSIC | self._flags.CALIB_FIX_SKEW
+        """Fit one camera, from one that sees all corners before it: OpenCV's own start fails on most wide lenses."""
+        middle = (np.array(size) - 1) / 2
+        focal_px = max(np.linalg.norm(points - middle, axis=1).max() for points in side) / FARTHEST_CORNER_RAD
+        start = np.array([[focal_px, 0, middle[0]], [0, focal_px, middle[1]], [0, 0, 1]])
         _, matrix, distortion, turns, shifts = self.cv2.fisheye.calibrate(
-            _rows([board] * len(side)), _rows(side), size, np.eye(3), np.zeros((4, 1)), flags=flags
+            _rows([board] * len(side)), _rows(side), size, start, np.zeros((4, 1)), flags=self._refine
         )
         return FittedCamera(matrix, distortion), list(zip(turns, shifts, strict=True))
 
@@ -196,13 +202,8 @@ class Fisheye(CameraModel):
     ) -> tuple[tuple[FittedCamera, ...], Floats, Floats, list[Any]]:
         """Fit both cameras."""
         start = [part for camera in alone for part in (camera.matrix, camera.distortion)]
-        flags = (
-            self._flags.CALIB_USE_INTRINSIC_GUESS
-            | self._flags.CALIB_RECOMPUTE_EXTRINSIC
-            | self._flags.CALIB_FIX_SKEW
-        )
         _, *fitted, rotation, shift, turns, shifts = self.cv2.fisheye.stereoCalibrate(
-            _rows([board] * len(sides[0])), *(_rows(side) for side in sides), *start, size, flags=flags
+            _rows([board] * len(sides[0])), *(_rows(side) for side in sides), *start, size, flags=self._refine
         )
         cameras = (FittedCamera(fitted[0], fitted[1]), FittedCamera(fitted[2], fitted[3]))
         return cameras, rotation, shift.ravel(), list(zip(turns, shifts, strict=True))

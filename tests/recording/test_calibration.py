@@ -298,6 +298,20 @@ def test_larger_chessboards_are_scaled_like_the_recording(chessboards: Path, tmp
     assert report.focal_px == pytest.approx(386, rel=0.02)
 
 
+def test_boards_that_an_import_cuts_off_count_too(chessboards: Path, tmp_path: Path) -> None:
+    """Corners are found in the pictures as they are: a board need not be whole in the shape of the recording."""
+    pytest.importorskip("cv2")
+    for path in chessboards.glob("left_*.png"):
+        shutil.copy(path, tmp_path)
+    whole = calibrate(tmp_path, SIZE, corners=CORNERS, square_mm=SQUARE_MM, mono=True).report
+    square = calibrate(
+        tmp_path, (160, 160), corners=CORNERS, square_mm=SQUARE_MM, mono=True, resize=True
+    ).report
+    assert len(square.used) == len(whole.used) == 27
+    assert square.focal_px == pytest.approx(whole.focal_px * 160 / 240, rel=1e-3)
+    assert square.reprojection_px == pytest.approx(whole.reprojection_px * 160 / 240, rel=0.02)
+
+
 def test_single_camera(chessboards: Path, tmp_path: Path) -> None:
     """The pictures of one camera make a geometry without a baseline, and the same tables for both sides."""
     pytest.importorskip("cv2")

@@ -91,3 +91,25 @@ def test_corners_that_no_camera_shows_are_refused() -> None:
     pytest.importorskip("cv2", reason="calibration needs OpenCV")
     with pytest.raises(RecordingError, match="nothing fits these; take them at other angles"):
         Fisheye().fit(BOARD, [[np.full((54, 2), 100.0)] * 5], SIZE)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_fisheye_is_found_from_boards_at_the_rim(seed: int) -> None:
+    """Boards held near, up to 72 degrees off the axis: OpenCV's own start failed on all of these."""
+    pytest.importorskip("cv2", reason="calibration needs OpenCV")
+    model, rng = Fisheye(), np.random.default_rng(seed)
+    lens = FittedCamera(
+        np.array([[91.0, 0, 157], [0, 91, 122], [0, 0, 1]]), np.array([[0.02, -0.02, 0.015, -0.005]]).T
+    )
+    views: list[np.ndarray] = []
+    while len(views) < 24:
+        turn = rng.uniform(-0.7, 0.7, 3)
+        matrix, _ = model.cv2.Rodrigues(turn)
+        place = np.array([rng.uniform(-300, 300), rng.uniform(-200, 200), rng.uniform(120, 400)])
+        seen = (BOARD - BOARD.mean(axis=0)) @ matrix.T + place
+        if np.arctan2(np.hypot(seen[:, 0], seen[:, 1]), seen[:, 2]).max() < np.radians(72):
+            views.append(model.project(BOARD, turn, place - matrix @ BOARD.mean(axis=0), lens))
+    noisy = [points + rng.normal(0, 0.1, points.shape) for points in views]
+    fit = model.fit(BOARD, [noisy], (320, 240))
+    np.testing.assert_allclose(fit.cameras[0].matrix, lens.matrix, atol=0.5)
+    assert fit.errors_px.max() < 0.25
