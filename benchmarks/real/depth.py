@@ -19,6 +19,7 @@ from benchmarks.real.sets import Disparities, PictureSet
 from bfsim.api import Seen
 from bfsim.report.tables import percent
 from tinyphoon.stages.stereo_lines import Correspondence
+from tinyphoon.strategy.modes import INDOOR_FIELD
 
 TITLE = "3-D edges and lines beside dense disparities"
 COLUMNS = (
@@ -29,11 +30,12 @@ COLUMNS = (
     "plain %",
     "over 5 px off %",
     "kept %",
-    "right kept %",
+    "wanted %",
+    "right %",
 )
 NOTE = (
     "In % of those judged: where the dense disparity is known. Kept: how many 3-D edges there are of those that the thesis "
-    "matches on the same edges, right or wrong; right kept: how many are within 1 px, of those of the thesis that are."
+    "matches on the same edges, right or wrong; wanted: of those of both that are not too far away; right: of those within 1 px."
 )
 
 ALONE = {"send": [{"mode": {"stereo_edges": {"correspondence": int(Correspondence.NEAREST)}}}]}
@@ -94,16 +96,25 @@ def _on_picture(
     return principal_px[0] + focal_px * x / z, principal_px[1] + focal_px * y / z
 
 
-def _errors(points: Points, dense: Disparities, reach: int) -> NDArray[np.float64]:
-    """Return how far each point's disparity is from the nearest dense one within `reach` pixels; NaN where there is none."""
+def _around(points: Points, dense: Disparities, reach: int) -> NDArray[np.float64]:
+    """Return the dense disparities within `reach` pixels of each point (count, pixels); NaN where they are not known."""
     height, width = dense.shape
-    best = np.full(len(points), np.nan)
-    columns, rows = np.rint(points[:, 0]).astype(int), np.rint(points[:, 1]).astype(int)
-    for down in range(-reach, reach + 1):
-        for across in range(-reach, reach + 1):
-            at = dense[np.clip(rows + down, 0, height - 1), np.clip(columns + across, 0, width - 1)]
-            best = np.fmin(best, np.abs(points[:, 2] - at))
-    return best
+    columns, rows = np.rint(points[:, :2].T).astype(int)
+    steps = range(-reach, reach + 1)
+    return np.stack(
+        [
+            dense[np.clip(rows + down, 0, height - 1), np.clip(columns + across, 0, width - 1)]
+            for down in steps
+            for across in steps
+        ],
+        axis=1,
+    )
+
+
+def _errors(points: Points, dense: Disparities, reach: int) -> NDArray[np.float64]:
+    """Return how far each point's disparity is from the nearest dense one around; without those that have none."""
+    errors = np.abs(points[:, 2:] - _around(points, dense, reach))
+    return np.nanmin(errors[~np.isnan(errors).all(axis=1)], axis=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,17 +125,21 @@ class _Found:
     count: int
     near: NDArray[np.float64]
     plain: NDArray[np.float64]
+    wanted: int
 
     @classmethod
-    def of(cls, points: Points, lost: int, dense: Disparities) -> _Found:
-        near, plain = (_errors(points, dense, reach) for reach in (1, 0))
-        return cls(points, len(points) + lost, near[~np.isnan(near)], plain[~np.isnan(plain)])
+    def of(cls, played: Played[Seen], points: Points, dense: Disparities) -> _Found:
+        """Judge the points of a frame. `wanted`: how many are, by the dense disparities, nearer than the farthest depth."""
+        geometry = played.taken["A"].geometry
+        assert geometry
+        least_px = geometry.focal_px * geometry.baseline_mm / INDOOR_FIELD.stereo_edges.farthest_mm
+        wanted = int((np.nan_to_num(_around(points, dense, 1)) >= least_px).any(axis=1).sum())
+        count = len(points) + played.results("A").get("edges_3d_lost", 0)
+        return cls(points, count, *(_errors(points, dense, reach) for reach in (1, 0)), wanted)
 
-    @property
-    def right(self) -> float:
-        """How many of all that were found are right, if those without room are as good as the others."""
-        share = (self.near <= NEAR_PX).mean() if len(self.near) else 0.0
-        return float(share * self.count)
+    def of_all(self, number: int) -> int:
+        """Return how many of all there are if `number` of the judged are, and those without room are like the others."""
+        return round(number * self.count / max(len(self.near), 1))
 
 
 def rows_of(
@@ -137,15 +152,9 @@ def rows_of(
         dense = {"SGBM": sgbm(*lumas)} | ({"truth": pictures.truth[number]} if pictures.truth else {})
         for kind, points_of in (("edges", edge_points), ("lines", line_points)):
             for beside, disparities in dense.items():
-                found, all_ = (
-                    _Found.of(
-                        points_of(each.taken["A"]), each.results("A").get("edges_3d_lost", 0), disparities
-                    )
-                    for each in played
-                )
-                rows.append(
-                    [beside, kind, *_cells(found), *(_kept(found, all_) if kind == "edges" else ("", ""))]
-                )
+                found, all_ = (_Found.of(each, points_of(each.taken["A"]), disparities) for each in played)
+                kept = _kept(found, all_) if kind == "edges" else ("", "", "")
+                rows.append([beside, kind, *_cells(found), *kept])
     return rows
 
 
@@ -159,5 +168,10 @@ def _cells(found: _Found) -> list[str]:
     ]
 
 
-def _kept(found: _Found, all_: _Found) -> tuple[str, str]:
-    return percent(found.count, all_.count), percent(round(found.right), round(all_.right))
+def _kept(found: _Found, all_: _Found) -> tuple[str, str, str]:
+    right, all_right = ((each.near <= NEAR_PX).sum() for each in (found, all_))
+    return (
+        percent(found.count, all_.count),
+        percent(found.of_all(found.wanted), all_.of_all(all_.wanted)),
+        percent(found.of_all(right), all_.of_all(all_right)),
+    )

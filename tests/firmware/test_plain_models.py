@@ -124,7 +124,7 @@ def test_a_known_model_of_another_size_is_as_much_wider() -> None:
         ({"name": "ball", "hue_deg": [20, 400]}, "0 to 360"),
         ({"name": "ball", "diameter_mm": 43, "width_mm": 43}, "m.0.diameter_mm must be the only size, and that of a ball"),
         ({"name": "blue goal", "diameter_mm": 43}, "m.0.diameter_mm must be the only size, and that of a ball"),
-        ({"name": "ball", "diameter_mm": "43"}, "m.0.width_mm must be a whole number of 32 bits, not '43'"),
+        ({"name": "ball", "diameter_mm": "43"}, "m.0.diameter_mm must be a whole number, not '43'"),
         ({"name": "cone", "colour": "red"}, "m.0 must be or have the name of one of ball, .* a shape, a colour and a size"),
         ({"name": "cone", "shape": "round"}, "m.0.shape must be one of ball, goal, marker, box, not 'round'"),
         ({"name": "cone", "shape": "marker"}, "m.0 must have one of colour, hue_deg, colours, not none"),

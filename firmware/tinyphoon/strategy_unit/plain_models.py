@@ -138,6 +138,8 @@ def _size(given: Mapping[str, Any], base: ObjectModel, at: str, *, needed: bool)
             f"{at}.diameter_mm must be the only size, and that of a ball; others have width_mm and height_mm"
         )
     if "diameter_mm" in given:
+        if not isinstance(given["diameter_mm"], int):
+            raise FirmwareError(f"{at}.diameter_mm must be a whole number, not {shown(given['diameter_mm'])}")
         return dict.fromkeys(SIDES, given["diameter_mm"])
     if is_ball and sides:
         return dict.fromkeys(SIDES, next(iter(sides.values()))) | sides
