@@ -151,7 +151,7 @@ def import_command(
             progress=progress,
         )
     click.echo(
-        f"{summary.path}: {summary.frame_count} stereo frames of {summary.width}x{summary.height} "
+        f"{summary.path}: {summary.frame_count} {'mono' if mono else 'stereo'} frames of {summary.width}x{summary.height} "
         f"at {float(summary.fps):g} per second, {summary.size_bytes / 1e6:.1f} MB"
     )
     if resize or crop:

@@ -48,7 +48,7 @@ def test_import_then_info(folder: Path) -> None:
         "lab",
     )
     assert made.exit_code == 0, made.output
-    assert "3 stereo frames of 8x4 at 12.5 per second" in made.output
+    assert "3 mono frames of 8x4 at 12.5 per second" in made.output
     told = json.loads(run("info", out, "--json").stdout)
     assert (told["width"], told["height"], told["frame_count"], told["description"]) == (8, 4, 3, "lab")
     assert told["geometry"] == {"focal_px": 386.0, "baseline_mm": 30.0, "height_mm": 60.5, "tilt_deg": -2.0}
