@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bfsim.api import Core, Frame
@@ -76,6 +76,8 @@ deeds = st.lists(st.tuples(st.sampled_from(DEEDS), st.integers(1, 400)), max_siz
 
 @settings(max_examples=25, deadline=None)
 @given(st.tuples(deeds, deeds))
+@example(([("rings", 1), ("handle", 1)], [("interrupt", 1)])).via("asked for before there was a handler")
+@example(([], [("rings", 1), ("handle", 1)])).via("a frame that ends behind what was done ahead")
 def test_what_is_done_ahead_is_charged_as_if_it_were_not(deeds: tuple[Deeds, Deeds]) -> None:
     """Rings, own and shared memory, stages, semaphores, and handlers that come in between."""
     assert outcome(deeds) == outcome(deeds, Core)

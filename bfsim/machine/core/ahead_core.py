@@ -178,7 +178,9 @@ class AheadCore(Core):
     def on_interrupt(self, source: str, handler: Handler) -> None:
         """Attach a handler as every core does."""
         self._may_run_ahead = False
-        super().on_interrupt(source, handler)
+        self._interrupts.source(source)  # a wrong one is told here
+        self.when_there(partial(super().on_interrupt, source, handler))
+        self._is_full = self._is_behind
 
     def memory_dma(self, name: str) -> MemoryDma:
         """Return a stream as every core does; what it moves may be anybody's."""
@@ -204,7 +206,8 @@ class AheadCore(Core):
         """Have the bus play what was done ahead, and do at each moment what was to be done then."""
         if not self._is_behind:
             return
-        before, self._in_handler = self._in_handler, True  # no handler comes between
+        before, self._in_handler = self._in_handler, True  # no handler comes between,
+        self._is_full = False  # and no second play of the same
         self._note_calls()
         owners, first = list(self._owners), 0
         for end, what in (*self._moments, (self._operations, self._begin)):
