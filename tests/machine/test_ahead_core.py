@@ -43,6 +43,7 @@ def staged(core: Core, cycles: int) -> Play:
 def handled(core: Core) -> Play:
     """From now on every call may be interrupted."""
     core.on_interrupt("SUPPLEMENTAL_0", lambda core: core.remark("was interrupted"))
+    core.request_interrupt("SUPPLEMENTAL_0")
     yield from ()
 
 

@@ -182,6 +182,11 @@ class AheadCore(Core):
         self.when_there(partial(super().on_interrupt, source, handler))
         self._is_full = self._is_behind
 
+    def request_interrupt(self, source: str) -> None:
+        """Ask for an interrupt as every core does."""
+        self._interrupts.source(source)
+        self.when_there(partial(super().request_interrupt, source))
+
     def memory_dma(self, name: str) -> MemoryDma:
         """Return a stream as every core does; what it moves may be anybody's."""
         self._may_run_ahead = False

@@ -27,7 +27,6 @@ class Interrupts:
         self._core = core
         self._sources = sources
         self._handlers: dict[SicInterrupt, Handler] = {}
-        self._unmasked_at: dict[SicInterrupt, int] = {}
         self._waiting: set[SicInterrupt] = set()
         self._raised = env.event()
         self.are_handled = False
@@ -42,18 +41,15 @@ class Interrupts:
             raise FirmwareError(f"an interrupt must be one of {', '.join(known)}, not {name!r}")
         return known[name]
 
-    def attach(self, name: str, handler: Handler, at_ticks: int) -> None:
-        """Unmask an interrupt from `at_ticks` on, which may lie ahead, and have `handler` called for it."""
-        source = self.source(name)
-        if source not in self._handlers:
-            self._unmasked_at[source] = at_ticks
-        self._handlers[source] = handler
+    def attach(self, name: str, handler: Handler) -> None:
+        """Unmask an interrupt and have `handler` called for it."""
+        self._handlers[self.source(name)] = handler
         self.are_handled = True
 
     def request(self, name: str) -> None:
         """Ask for an interrupt now. A source that waits already is not counted twice; one without a handler is masked."""
         source = self.source(name)
-        if source in self._handlers and self._env.tick >= self._unmasked_at[source]:
+        if source in self._handlers:
             self._waiting.add(source)
             event, self._raised = self._raised, self._env.event()
             event.succeed()

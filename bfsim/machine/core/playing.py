@@ -77,7 +77,7 @@ class PlayingCore(CoreClock):
 
         A handler may be a generator function that yields kernels.
         """
-        self._interrupts.attach(source, handler, self.now_ticks)
+        self._interrupts.attach(source, handler)
 
     def request_interrupt(self, source: str) -> None:
         """Ask this core for an interrupt, as a device does."""
