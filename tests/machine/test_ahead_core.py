@@ -72,13 +72,14 @@ def outcome(deeds: tuple[Deeds, Deeds], core: type[Core] | None = None) -> Board
     return replace(board.run(noise(2)), events=0)
 
 
-deeds = st.lists(st.tuples(st.sampled_from(DEEDS), st.integers(1, 400)), max_size=6)
+deeds = st.lists(st.tuples(st.sampled_from(DEEDS), st.integers(1, 400)), max_size=9)
 
 
 @settings(max_examples=25, deadline=None)
 @given(st.tuples(deeds, deeds))
 @example(([("rings", 1), ("handle", 1)], [("interrupt", 1)])).via("asked for before there was a handler")
 @example(([], [("rings", 1), ("handle", 1)])).via("a frame that ends behind what was done ahead")
+@example(([], [("rings", 1), ("handle", 1), ("rings", 1)])).via("a ring meets it when nothing is late")
 def test_what_is_done_ahead_is_charged_as_if_it_were_not(deeds: tuple[Deeds, Deeds]) -> None:
     """Rings, own and shared memory, stages, semaphores, and handlers that come in between."""
     assert outcome(deeds) == outcome(deeds, Core)

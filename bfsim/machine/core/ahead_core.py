@@ -105,7 +105,7 @@ class AheadCore(Core):
     # Kernels
 
     def _goes_ahead(self) -> bool:
-        self._has_traced = self.runs_ahead
+        self._has_traced = self._may_run_ahead
         return self._has_traced
 
     def _charge_call(self, work: Work) -> None:

@@ -54,7 +54,7 @@ class CoreClock:
 
     def sync(self) -> Generator[Any, Any, None]:
         """Wait until the simulated time has reached the core's clock."""
-        if late := CoreClock.catch_up(self):
+        while late := CoreClock.catch_up(self):  # a handler may come in between
             yield late
 
     def when_there(self, what: Callable[[], None]) -> None:

@@ -13,6 +13,7 @@ from bfsim.kernel import Kernel, Work
 from bfsim.kernel.work import UNYIELDED
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.stalls import BUS_STALLS
+from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.calls.call_cache import CallCache, DeferredWork
 from bfsim.machine.core.accounts import Account
 from bfsim.machine.core.clock import CoreClock
@@ -131,18 +132,40 @@ class PlayingCore(CoreClock):
                 value = yield item
             else:
                 raise self._misused(item, line_at(task))
-            if self._is_full or self._interrupts.are_handled:
-                yield from self._meet_others()
+            if self._is_full or self.can_be_interrupted:
+                yield from self.sync()
         self._check_claimed()
         self._check_waits(task)
         self._task = before
 
-    def _meet_others(self) -> Generator[Any, Any, None]:
-        """Let the simulated time come up to the core where that is needed, and take the interrupts that wait then."""
-        if self._is_full or self.can_be_interrupted:
-            yield from self.sync()
-        if self.can_be_interrupted:
+    def sync(self) -> Generator[Any, Any, None]:
+        """Wait until the simulated time has reached the core's clock, and take the interrupts that wait then."""
+        yield from super().sync()
+        while self.can_be_interrupted and self._interrupts.is_waiting:
             yield from self._take_interrupts()
+            yield from super().sync()
+
+    def catch_up(self) -> simpy.Event | None:
+        """Return the event at which the simulated time reaches the core's clock, or now for an interrupt; None when it has."""
+        late = super().catch_up()
+        if late is None and self.can_be_interrupted and self._interrupts.is_waiting:
+            return self._env.after(0)
+        return late
+
+    def wait_transfer(self, transfer: Transfer, reason: StallReason, owner: str) -> Generator[Any, Any, None]:
+        """Wait as the clock does; interrupts that have handlers are taken as they come."""
+        if self.can_be_interrupted:
+            yield from self.sync()
+            self._bus.settle()
+            if not self.has(transfer):
+                yield from self._blocked(iter([self._end_of(transfer)]), "DMA", reason)
+        yield from super().wait_transfer(transfer, reason, owner)
+
+    def _end_of(self, transfer: Transfer) -> simpy.Event:
+        """Return the event at the end of `transfer`, which is still to come."""
+        if transfer.end is None:
+            return self._bus.when_done(transfer)
+        return self._env.after(transfer.end - self._env.tick)
 
     def _goes_ahead(self) -> bool:
         """Whether calls that nobody else can meet run before the simulated time is there."""

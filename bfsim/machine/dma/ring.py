@@ -101,8 +101,10 @@ class OutputRing:
     def row(self) -> Generator[Any, Any, Row]:
         """Wait until a row is free and return it, to be written and then sent."""
         number, depth = len(self._transfers), self._depth
-        if number >= depth and not self._core.has(transfer := self._transfers[number - depth]):
-            yield from self._core.wait_transfer(transfer, StallReason.RING_FULL, self._owner)
+        if number >= depth:
+            transfer = self._transfers[number - depth]
+            if self._core.can_be_interrupted or not self._core.has(transfer):
+                yield from self._core.wait_transfer(transfer, StallReason.RING_FULL, self._owner)
         return self._rows[number % depth]
 
     def send(self) -> None:
