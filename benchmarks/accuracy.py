@@ -3,12 +3,14 @@
     python benchmarks/accuracy.py                 -O2, all kernels
     python benchmarks/accuracy.py --level O0
     python benchmarks/accuracy.py --json
-    python benchmarks/accuracy.py --rules         which kernels need each learnt rule; takes minutes
+    python benchmarks/accuracy.py --rules         which kernels need each rule; takes minutes
+    python benchmarks/accuracy.py --ablate        what each rule is worth; takes minutes
+    python benchmarks/accuracy.py --ablate RULE   only these
 
 Measured: GCC 12.2 and the GNU simulator 13.1 (see `twins/measure.py`). The first figures are what to expect of a kernel
 that is not in the list: by how much the held-out ones were off `at first sight`, when nobody had looked at what GCC makes
 of them, batch by batch. Then come today's errors of all kernels. Rules have been learnt from many of them, held-out ones
-too: `left out` is the error of a kernel without the rules that it alone needs (`bfsim/kernel/learnt.py`). Classes: predicted
+too: `left out` is the error of a kernel without the rules that it alone needs (`bfsim/kernel/rules.py`). Classes: predicted
 minus measured operations, in percent of all operations measured.
 """
 
@@ -28,7 +30,7 @@ from benchmarks.twins.cases import CASES
 from benchmarks.twins.measured import CLASSES, Measured, Role, by_class, measured
 from benchmarks.twins.predicted import predict
 from bfsim.kernel import GCC_O0, GCC_O2, CompilerProfile
-from bfsim.kernel.learnt import LEARNT_FROM, Learnt
+from bfsim.kernel.rules import GCC, LEARNT_FROM, Rule
 
 PROFILES = {"O0": GCC_O0, "O2": GCC_O2}
 NEEDED = 1.0  # a kernel needs a rule that brings it so many percentage points nearer
@@ -82,7 +84,7 @@ def _without(kernel: str, profile: CompilerProfile) -> CompilerProfile:
     return dataclasses.replace(profile, without=rules) if rules and profile.optimises else profile
 
 
-def needing(rule: Learnt) -> dict[str, tuple[float, float]]:
+def needing(rule: Rule) -> dict[str, tuple[float, float]]:
     """Return the kernels that are at least NEEDED further off at -O2 without `rule`, with their errors with and without it."""
     found = {}
     profiles = [dataclasses.replace(GCC_O2, without=each) for each in ((), (rule,))]
@@ -97,7 +99,7 @@ def needing(rule: Learnt) -> dict[str, tuple[float, float]]:
 
 def print_rules(console: Console) -> None:
     """Print each rule with the kernels that it was learnt from and those that need it."""
-    for rule in Learnt:
+    for rule in Rule:
         needed = needing(rule)
         console.print(
             f"{rule.name}: {rule.value}; learnt from {', '.join(LEARNT_FROM[rule])}", highlight=False
@@ -106,6 +108,44 @@ def print_rules(console: Console) -> None:
             console.print(f"    {kernel} {with_it:+.1f} %, without {without:+.1f} %", highlight=False)
         if len(needed) == 1 and tuple(needed) != LEARNT_FROM[rule]:
             console.print("    only this one: it must be what the rule is learnt from", style="bold")
+
+
+@dataclass(frozen=True, slots=True)
+class Worth:
+    """What leaving out a rule makes of the mean error at -O2, in percentage points, and how many held-out kernels it brings nearer or farther off."""
+
+    held_out: float
+    others: float
+    nearer: int
+    farther: int
+
+
+def worth(rule: Rule) -> Worth:
+    """Cost all kernels at -O2 with and without `rule`."""
+    without = dataclasses.replace(GCC_O2, without=(rule,))
+    grows: dict[bool, list[float]] = {True: [], False: []}
+    for case in CASES:
+        truth = measured()[case.name]
+        with_it, left_out = (
+            abs(_error(predict(case, each).cycles, truth, "O2")) for each in (GCC_O2, without)
+        )
+        grows[truth.role is Role.HELD_OUT].append(left_out - with_it)
+    held_out = grows[True]
+    counts = (sum(sign * each >= NEEDED for each in held_out) for sign in (1, -1))
+    return Worth(mean(held_out), mean(grows[False]), *counts)
+
+
+def print_ablation(console: Console, rules: Sequence[Rule]) -> None:
+    """Print what each rule is worth, and where it comes from."""
+    table = _new_table("gcc -O2: by how much the mean error grows without a rule, in points", "rule")
+    for name in ("held-out", "others", "nearer", "farther"):
+        table.add_column(name, justify="right")
+    table.add_column("source")
+    for rule in rules:
+        found = worth(rule)
+        points = f"{found.held_out:+.2f}", f"{found.others:+.2f}"
+        table.add_row(rule.name, *points, str(found.nearer), str(found.farther), GCC.get(rule, "fitted"))
+    console.print(table)
 
 
 def _error(cycles: int, truth: Measured, level: str) -> float:
@@ -224,10 +264,14 @@ def main() -> None:
     )
     parser.add_argument("--level", choices=list(PROFILES), default="O2", help="optimisation level of GCC")
     parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
-    parser.add_argument("--rules", action="store_true", help="print which kernels need each learnt rule")
+    parser.add_argument("--rules", action="store_true", help="print which kernels need each rule")
+    parser.add_argument("--ablate", nargs="*", metavar="RULE", help="print what each rule is worth, or these")
     options = parser.parse_args()
     if options.rules:
         print_rules(Console())
+        return
+    if options.ablate is not None:
+        print_ablation(Console(), [Rule[each] for each in options.ablate] or list(Rule))
         return
     rows = list(compare(options.level))
     if options.json:

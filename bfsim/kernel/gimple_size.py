@@ -16,11 +16,11 @@ from bfsim.kernel import generic, keys, tree
 from bfsim.kernel.emit import emit_alone
 from bfsim.kernel.ir_text import Instruction, read_module
 from bfsim.kernel.loops import ControlFlow, pointee_nbytes
+from bfsim.kernel.lowering.frequencies import frequencies
 from bfsim.kernel.lowering.predict import Likelihood
 
 # [tree-inline.cc] time of a call, of a division by no constant, of a return; everything else takes as long as it is large
 CALL_TIME, DIVISION_TIME, RETURN_TIME = 10, 10, 2
-MOST_ITERATIONS = 100  # [params.opt, max-predicted-iterations] of a loop without a known count
 EARLY_PASSES = (
     "sroa", "simplify_cfg", "instruction_combine", "new_gvn", "simplify_cfg", "instruction_combine", "aggressive_dce",
     "simplify_cfg",
@@ -119,35 +119,8 @@ class _Estimator:
 
     @cached_property
     def frequency(self) -> dict[str, float]:
-        """Runs of each block per run of the routine [Wu and Larus, MICRO 1994; predict.cc]: inner loops first."""
-        taken = Likelihood(self.flow).taken
-        turns: dict[str, float] = {}
-        for loop in self.flow.loops:
-            within = self._passed(loop.header, frozenset(loop.blocks), taken, turns)
-            again = sum(
-                within.get(label, 0.0) * taken[label, loop.header]
-                for label in self.flow.predecessors[loop.header]
-                if label in loop.blocks
-            )
-            turns[loop.header] = min(MOST_ITERATIONS, 1 / max(1e-9, 1 - again))
-        entry = self.flow.routine.blocks[0].label
-        return self._passed(entry, frozenset(self.flow.blocks), taken, turns)
-
-    def _passed(
-        self, start: str, inside: frozenset[str], taken: dict[tuple[str, str], float], turns: dict[str, float]
-    ) -> dict[str, float]:
-        """How often each block of a region runs, entered once at `start` and left for good at a jump back to it."""
-        found = dict.fromkeys(self.flow.blocks, 0.0)
-        for label in self.flow.order:
-            if label not in inside:
-                continue
-            into = sum(
-                found[before] * taken[before, label]
-                for before in self.flow.predecessors[label]
-                if before in inside and label not in self.flow.dominators[before]
-            )
-            found[label] = (1.0 if label == start else into) * turns.get(label, 1.0)
-        return found
+        """Runs of each block per run of the routine."""
+        return frequencies(self.flow, Likelihood(self.flow).taken)
 
 
 def _callee(call: Instruction) -> str:

@@ -289,3 +289,9 @@ def _operands(opcode: str, body: str) -> tuple[str, ...]:
 
 def _is_constant(word: str) -> bool:
     return bool(re.fullmatch(r"-?\d+|true|false|null|poison|-?\d+\.\d+e[+-]\d+|0x[0-9A-F]+", word))
+
+
+def predicate(compare: Instruction) -> str:
+    """Return the relation that an `icmp` or `fcmp` tests: eq, slt, ult, ..."""
+    words = compare.text.split()
+    return words[2] if words[1] in ("samesign", "fast") else words[1]

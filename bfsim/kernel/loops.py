@@ -15,6 +15,7 @@ from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine
 NEAR_OVERFLOW = (1 << 31) - (
     1 << 16
 )  # who compares with so large a number asks whether an i32 is about to wrap
+COPIED = ".copied"  # ending of the label of a loop's second test, where it is made before the loop
 OUTER = ".outer"  # ending of the label that LLVM gives the outer of two loops which it has made of one
 
 
@@ -169,6 +170,8 @@ class ControlFlow:
 
     def ending(self, loop: Loop) -> str:
         """The block whose test ends `loop`."""
+        if f"{loop.latch}{COPIED}" in self.blocks:
+            return self.predecessors[loop.latch][0]
         return loop.header if self.is_split(loop) else loop.latch
 
     def loops_of(self, label: str) -> list[Loop]:

@@ -12,7 +12,7 @@ from enum import StrEnum
 
 from bfsim.errors import ConfigError
 from bfsim.kernel.isa import Op
-from bfsim.kernel.learnt import Learnt
+from bfsim.kernel.rules import Rule
 
 # A plain 32-bit machine with multiply and divide: 32-bit pointers as on the Blackfin, no vectors, and LLVM
 # knows it on every host.
@@ -105,10 +105,10 @@ class CompilerProfile:
     floats: FloatLibrary | None
     """None: kernels with floats are refused."""
     inlines: Inlines
-    without: tuple[Learnt, ...] = ()
+    without: tuple[Rule, ...] = ()
     """Fitted rules that are left out, to see what they are worth."""
 
-    def applies(self, rule: Learnt) -> bool:
+    def applies(self, rule: Rule) -> bool:
         """Whether a fitted rule is followed."""
         return rule not in self.without
 

@@ -14,12 +14,12 @@ from bfsim.kernel import GCC_O2, CompilerProfile, Kernel, profile_named
 from bfsim.kernel.costing import optimised
 from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import COSTS, Op
-from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.multiples import multiple
 from bfsim.kernel.lowering.predict import combined
 from bfsim.kernel.lowering.schedule import issues
+from bfsim.kernel.rules import Rule
 from tests.kernel.modules import import_text
 from tests.kernel.running import CALLING_VDSP
 
@@ -203,7 +203,7 @@ def test_an_independent_operation_hides_a_wait() -> None:
 def test_a_fitted_rule_can_be_left_out(tmp_path: Path) -> None:
     """Without the rule about differences, an absolute difference is one operation: what it is worth can be seen."""
     text = "def f(x: i32, y: i32) -> i32:\n    z = x - y\n    if z < 0:\n        z = -z\n    return z\n"
-    without = dataclasses.replace(GCC_O2, without=(Learnt.DIFFERENCE,))
+    without = dataclasses.replace(GCC_O2, without=(Rule.DIFFERENCE,))
     assert lowered(text, tmp_path, without)[Op.DSP_ALU] == 1
     assert lowered(text, tmp_path, GCC_O2)[Op.DSP_ALU] == 0
 

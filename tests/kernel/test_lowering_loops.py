@@ -7,8 +7,12 @@ from pathlib import Path
 import pytest
 
 from bfsim.kernel import GCC_O2, VDSP_O2, keys
+from bfsim.kernel.costing import optimised
+from bfsim.kernel.ir_text import read_module
 from bfsim.kernel.isa import Op
+from bfsim.kernel.loops import COPIED
 from bfsim.kernel.lowering.moves import _is_circular
+from tests.kernel.modules import import_text
 from tests.kernel.test_lowering import context, lowered
 
 
@@ -177,3 +181,40 @@ def test_a_counter_that_is_wanted_behind_its_loop_is_counted(
         f"    while i < n and a[i] < x:\n        i += 1\n    {behind}\n"
     )
     assert (Op.LOOP_SETUP in lowered(text, tmp_path)) is counted
+
+
+DIGITS = """def f(bits: u32, n: i32) -> i32:
+    k = 0
+    while k < n and {}:
+        k += 1
+    return k
+"""
+
+
+@pytest.mark.parametrize(("test", "copied"), [("(bits >> u32(k)) & 1 == 0", True), ("bits > 7", False)])
+def test_both_tests_of_a_loop_come_to_its_end(test: str, copied: bool, tmp_path: Path) -> None:
+    """`while a and b` ends with both [GCC: ch2], so that no hardware loop ends where its count does; one that never changes goes before it."""
+    (routine,) = read_module(
+        optimised(import_text(f"@kernel\n{DIGITS.format(test)}", tmp_path).f.function, GCC_O2)
+    )
+    assert any(block.label.endswith(COPIED) for block in routine.blocks) is copied
+
+
+def test_a_copied_test_counts_as_the_source_says(tmp_path: Path) -> None:
+    """The rotated loop is what runs, too: the lowest bit that is set, or the limit."""
+    digits = import_text(f"@kernel\n{DIGITS.format('(bits >> u32(k)) & 1 == 0')}", tmp_path).f
+    for bits in (0, 1, 8, 0x8000_0000):
+        expected = min(20, (bits & -bits).bit_length() - 1 if bits else 32)
+        code = digits.compile(GCC_O2)
+        assert digits.prepare(code, [], code.new_totals()).run((bits, 20)).value == expected
+
+
+@pytest.mark.parametrize(("first", "steps"), [("y * n", 0), ("0", 1)])
+def test_a_counter_is_a_difference_to_what_is_prepared(first: str, steps: int, tmp_path: Path) -> None:
+    """Of a row in a picture x is the pointer less the row's start, and nothing is left at the end of the loop [GCC: ivopts]; of an array x is kept."""
+    text = (
+        "def f(a: u8[:], y: i32, n: i32, least: i32) -> i32:\n    s = 0\n    for x in range(n):\n"
+        f"        if a[{first} + x] >= least:\n            s = s ^ x\n    return s\n"
+    )
+    eliminated = context(text, tmp_path).demanded.eliminated
+    assert len(eliminated) == 1 - steps

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from bfsim.kernel import isa
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.isa import Op
-from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import pointee_nbytes
 from bfsim.kernel.lowering.calls import Calls
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.induction_variables import InductionVariable
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
+from bfsim.kernel.rules import Rule
 
 ANY, DATA, POINTER = RegisterBank.ANY, RegisterBank.DATA, RegisterBank.POINTER
 LOADS = {8: Op.LOAD8, 16: Op.LOAD16, 32: Op.LOAD32}
@@ -103,7 +105,7 @@ class Accesses(Calls):
 
     def halved(self, each: Instruction) -> str | None:
         """What the index of an address is half of, if the elements have two bytes."""
-        fitted = self.context.profile.applies(Learnt.CLEARED_BIT)
+        fitted = self.context.profile.applies(Rule.CLEARED_BIT)
         if not fitted or each.opcode != "getelementptr" or pointee_nbytes(each) != 2:
             return None
         shift = self.flow.instruction(each.operands[-1])
@@ -132,11 +134,10 @@ class Accesses(Calls):
                 )
             if label in each.blocks:
                 terms = ((variable.name, POINTER), (self.context.name(variable.root), POINTER))
-                self.code.add(label, MachineInstruction(Op.ALU, variable.line, each.name, POINTER, terms))
-                self.code.add(
-                    label,
-                    MachineInstruction(Op.ALU, variable.line, each.name, POINTER, ((each.name, POINTER),)),
-                )
+                step = MachineInstruction(Op.ALU, variable.line, each.name, POINTER, terms)
+                self.code.add(label, step)
+                if not each.prepared:
+                    self.code.add(label, replace(step, uses=((each.name, POINTER),)))
 
     def pointers(self) -> None:
         """Set up the pointers that walk, and step those for which no post-increment does."""
@@ -169,7 +170,7 @@ class Accesses(Calls):
                     variable.loop.header not in self.context.demanded.counted
                     and len(self.flow.exits(variable.loop)) > 1
                 )
-                if loose and self.context.profile.applies(Learnt.POINTER_COPIES):
+                if loose and self.context.profile.applies(Rule.POINTER_COPIES):
                     # the exits see the pointer before and after its step
                     self.code.add(
                         latch, MachineInstruction(Op.MOVE, line, None, POINTER, ((variable.name, POINTER),))

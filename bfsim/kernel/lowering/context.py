@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import cached_property
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction, Routine
-from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.demanded_values import DemandedValues
 from bfsim.kernel.lowering.idioms import bit_counting_loops, filling_loops
@@ -19,6 +18,7 @@ from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
 from bfsim.kernel.lowering.tail_calls import TailCall, tail_calls
 from bfsim.kernel.lowering.widths import PAIR, widest
 from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.rules import Rule
 
 
 class Context:
@@ -26,22 +26,22 @@ class Context:
 
     def __init__(self, routine: Routine, profile: CompilerProfile) -> None:
         self.routine, self.profile = routine, profile
-        self.flow = ControlFlow(routine, joins_split=profile.applies(Learnt.SPLIT_LOOPS))
+        self.flow = ControlFlow(routine, joins_split=profile.applies(Rule.SPLIT_LOOPS))
         self.jump_threading = JumpThreading(self.flow)
-        for loop in self.flow.loops if profile.applies(Learnt.THREADED_EXITS) else ():
+        for loop in self.flow.loops if profile.applies(Rule.THREADED_EXITS) else ():
             loop.leaving = frozenset(self.jump_threading.leaving(loop))
             loop.blocks -= loop.leaving
         self.code_motion = InvariantCodeMotion(self.flow)
-        evaluates = profile.applies(Learnt.EVALUATED_LOOPS)
+        evaluates = profile.applies(Rule.EVALUATED_LOOPS)
         self.evolution = ScalarEvolution(self.flow, self.code_motion, evaluates=evaluates)
         self.if_conversion = IfConversion(self.flow, profile)
         converted = frozenset({*self.if_conversion.by_label, *self.if_conversion.gone})
-        self.ranges = ranges(self.flow, converted, neighbours=profile.applies(Learnt.NEIGHBOURS))
+        self.ranges = ranges(self.flow, converted, neighbours=profile.applies(Rule.NEIGHBOURS))
         self.second_parts = {each.second: each.inside for each in self.ranges.values()}
         """Blocks whose test is part of the one before, and where they lead if both hold."""
-        self.likelihood = Likelihood(self.flow, self.second_parts)
+        self.likelihood = Likelihood(self.flow, self.second_parts, profile.without)
         self.induction_variables = InductionVariables(self.flow, self.evolution, profile)
-        counts_bits = profile.applies(Learnt.BIT_COUNTS)
+        counts_bits = profile.applies(Rule.BIT_COUNTS)
         self.bit_counts = bit_counting_loops(self.flow, self.evolution) if counts_bits else {}
         self.fills = filling_loops(self.flow, self.evolution) if profile.library.fill else {}
         self.demanded = DemandedValues(
@@ -100,7 +100,7 @@ class Context:
             return any(self._is_clean(operand, depth - 1) for operand in each.operands)
         if each.opcode == "trunc":
             keeps = widest(self.flow, each.operands[0]) <= int(each.text.rsplit("i", 1)[1])
-            return keeps and self.profile.applies(Learnt.KEPT_BITS)
+            return keeps and self.profile.applies(Rule.KEPT_BITS)
         if each.opcode == "call":
             return False
         return all(self._is_clean(operand, depth - 1) for operand in each.operands)

@@ -10,7 +10,6 @@ from functools import cached_property
 
 from bfsim.kernel.divisions import FLOOR, SIGNED
 from bfsim.kernel.ir_text import Instruction
-from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.folding import NARROW, Folding
 from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
@@ -22,6 +21,7 @@ from bfsim.kernel.lowering.redundant import AGAIN
 from bfsim.kernel.lowering.scalar_evolution import Increment, ScalarEvolution
 from bfsim.kernel.lowering.widths import BYTE
 from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.rules import Rule
 
 FEWEST_ITERATIONS = (
     3  # a loop of so few iterations keeps its branch ["too few iterations" in loop-doloop.cc of GCC 12]
@@ -59,9 +59,17 @@ class DemandedValues(Folding):
         )
         self.calling = calling
         self.counted = {loop.header for loop in flow.loops if self._iterations_by_counter(loop)}
-        eliminates = profile.applies(Learnt.ELIMINATED_COUNTERS)
+        eliminates = profile.applies(Rule.ELIMINATED_COUNTERS)
         self.eliminated = (
-            eliminated_counters(flow, evolution, induction_variables, self.counted) if eliminates else {}
+            eliminated_counters(
+                flow,
+                evolution,
+                induction_variables,
+                self.counted,
+                prepares=profile.applies(Rule.PREPARED_DIFFERENCES),
+            )
+            if eliminates
+            else {}
         )
 
     def _iterations_by_counter(self, loop: Loop) -> bool:
@@ -78,7 +86,7 @@ class DemandedValues(Folding):
 
     def _steps_by_power(self, loop: Loop) -> bool:
         """Whether the number of iterations takes a shift to find, not a division ["Costs of niter computation too high" there]."""
-        if not self.profile.applies(Learnt.DIVIDED_COUNTS):
+        if not self.profile.applies(Rule.DIVIDED_COUNTS):
             return True
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")
         gains = (
@@ -106,7 +114,7 @@ class DemandedValues(Folding):
             if variable.loop is loop
         }
         wide = bool(steps) and 1 not in steps
-        fixed = self.profile.applies(Learnt.FIXED_STARTS) and self.evolution.starts_fixed(loop)
+        fixed = self.profile.applies(Rule.FIXED_STARTS) and self.evolution.starts_fixed(loop)
         return wide and not fixed and not self._may_not_start(loop) and not self._is_wanted_behind(loop)
 
     def _is_wanted_behind(self, loop: Loop) -> bool:
@@ -145,7 +153,7 @@ class DemandedValues(Folding):
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")
         bound = self.flow.instruction(test.operands[1]) if test is not None else None
         is_next = bound is not None and bound.opcode == "add" and bound.operands[1] == "1"
-        return is_next and self.profile.applies(Learnt.INCLUSIVE_LOOPS)
+        return is_next and self.profile.applies(Rule.INCLUSIVE_LOOPS)
 
     def _steps_by_one(self, loop: Loop) -> bool:
         test = self.flow.instruction(self.evolution.exit_test(loop) or "")
@@ -296,7 +304,7 @@ class DemandedValues(Folding):
         narrow = dividend is not None and dividend.opcode in ("zext", "load")
         if SIGNED in (each.result or "") or FLOOR in (each.result or "") or each.opcode[0] == "s":
             return not (constant and narrow)
-        known = constant and not narrow and self.profile.applies(Learnt.KNOWN_SIGN)
+        known = constant and not narrow and self.profile.applies(Rule.KNOWN_SIGN)
         return known and self._never_negative(each.operands[0])
 
     def _never_negative(self, value: str, seen: frozenset[str] = frozenset()) -> bool:
@@ -347,7 +355,7 @@ class DemandedValues(Folding):
             return Use.RAW
         if (
             user.opcode == "mul"
-            and self.profile.applies(Learnt.FACTORS)
+            and self.profile.applies(Rule.FACTORS)
             and all(map(self.is_short, user.operands[:2]))
         ):
             return Use.FACTOR if load.bits == BYTE else Use.RAW  # a product takes the low half of a register
@@ -362,9 +370,7 @@ class DemandedValues(Folding):
 
     def _is_raw(self, user: Instruction) -> bool:
         """Whether a use takes the narrow value as it is: a store, its low byte, or arithmetic that is stored as narrow."""
-        low_byte = (
-            user.opcode == "and" and user.operands[1] == "255" and self.profile.applies(Learnt.RAW_BYTE)
-        )
+        low_byte = user.opcode == "and" and user.operands[1] == "255" and self.profile.applies(Rule.RAW_BYTE)
         return user.opcode == "store" or low_byte or self.narrowed(user)
 
     def narrowed(self, each: Instruction) -> bool:
@@ -373,12 +379,12 @@ class DemandedValues(Folding):
         cut = [user for user in users if user.opcode == "trunc"]
         stored = [user for user in cut if all(one.opcode == "store" for one in self.users(user.result or ""))]
         both = bool(stored) and len(stored) < len(users)
-        return each.opcode in ("add", "sub") and both and self.profile.applies(Learnt.NARROW_SUMS)
+        return each.opcode in ("add", "sub") and both and self.profile.applies(Rule.NARROW_SUMS)
 
     def extended_late(self, load: Instruction) -> bool:
         """Whether the load with the post-increment is extended on its own: others through its pointer come before its use."""
         variable = self.induction_variables.of.get(id(load))
-        if not self.profile.applies(Learnt.LATE_EXTENSION):
+        if not self.profile.applies(Rule.LATE_EXTENSION):
             return False
         if (
             load.bits not in NARROW

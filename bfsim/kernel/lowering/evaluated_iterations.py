@@ -9,9 +9,8 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction
+from bfsim.kernel.ir_text import PHI_ARM, Instruction, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
-from bfsim.kernel.lowering.predict import predicate
 
 MOST_ITERATIONS = 1000  # [GCC: max-iterations-to-track]
 DEEPEST = 8  # operations from one iteration's value to the next

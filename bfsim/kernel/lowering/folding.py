@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.ir_text import Instruction, predicate
 from bfsim.kernel.isa import ADDRESS_SHIFTS
-from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering.predict import predicate
 from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.rules import Rule
 
 SHIFTS = ("shl", "lshr", "ashr")
 NARROW = (8, 16)
@@ -123,7 +122,7 @@ class Folding:
 
     def sunk_mask(self, phi: Instruction) -> bool:
         """Whether every arm of a phi ends in a 16-bit mask: as a conversion, it is done once behind them."""
-        several = phi.opcode == "phi" and len(phi.operands) > 1 and self.profile.applies(Learnt.SUNK_MASK)
+        several = phi.opcode == "phi" and len(phi.operands) > 1 and self.profile.applies(Rule.SUNK_MASK)
         return several and all(self._masked(each) for each in phi.operands)
 
     def _masked(self, value: str) -> Instruction | None:
@@ -161,7 +160,7 @@ class Folding:
     def remainder(self, each: Instruction) -> Instruction | None:
         """The division whose remainder x - x / y * y is [match.pd of GCC 12]: where that is a call, it is another one."""
         product = self.flow.instruction(each.operands[1]) if each.opcode == "sub" else None
-        if product is None or product.opcode != "mul" or not self.profile.applies(Learnt.REMAINDERS):
+        if product is None or product.opcode != "mul" or not self.profile.applies(Rule.REMAINDERS):
             return None
         rounded = self.flow.instruction(product.operands[0])
         parts = rounded.operands if rounded is not None and rounded.opcode == "add" else product.operands[:1]
@@ -181,7 +180,7 @@ class Folding:
 
         [partial redundancy elimination, tree-ssa-pre.cc of GCC 12]
         """
-        if each.opcode != "add" or not self.profile.applies(Learnt.ADDED_FLAGS):
+        if each.opcode != "add" or not self.profile.applies(Rule.ADDED_FLAGS):
             return None
         for operand, other in (each.operands[:2], each.operands[1::-1]):
             flag = self.flow.instruction(operand)

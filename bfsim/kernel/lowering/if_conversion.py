@@ -9,12 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction
-from bfsim.kernel.learnt import Learnt
+from bfsim.kernel.ir_text import PHI_ARM, Instruction, predicate
 from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering.predict import predicate
 from bfsim.kernel.lowering.widths import BYTE, WORD
 from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.rules import Rule
 
 RENAMING = ("trunc", "zext", "sext", "freeze")
 
@@ -97,7 +96,7 @@ class IfConversion:
         alone = len(set(self.flow.blocks[way].successors)) == 1 and len(self.flow.predecessors[way]) > 1
         is_header = any(loop.header == way for loop in self.flow.loops)
         hands_on = alone and not is_header and all(each.opcode in ("phi", *RENAMING) for each in rows[:-1])
-        return hands_on and self.profile.applies(Learnt.HANDED_ON)
+        return hands_on and self.profile.applies(Rule.HANDED_ON)
 
     def _clamp(self, label: str) -> ConvertedIf | None:
         """A minimum of a constant and of a maximum, or the other way round [minmax_replacement in tree-ssa-phiopt.cc]."""
@@ -183,7 +182,7 @@ class IfConversion:
         value = work[0].operands[1]
         difference = self.flow.instruction(self._plain(value))
         written_as_if = any(arm.startswith("then") for arm in arms)
-        branches = written_as_if and self.profile.applies(Learnt.DIFFERENCE)
+        branches = written_as_if and self.profile.applies(Rule.DIFFERENCE)
         if branches and difference is not None and difference.opcode == "sub":
             return None  # -(x - y) has become y - x before anyone looks for an absolute value
         tested = self._plain(test.operands[0]) == self._plain(value)

@@ -1,6 +1,8 @@
 """Induction-variable elimination: counters that a pointer stands for. Where only some iterations want `i`, it is the pointer less the array [tree-ssa-loop-ivopts.cc].
 
-So it is where every iteration accesses neighbours, a[i] and a[i + 1]; beside a single access, GCC keeps the counter.
+A counter of its own costs a step in each iteration, and a register. A difference to the array costs two operations where it is wanted,
+which is worth it where every iteration accesses neighbours, a[i] and a[i + 1]; a difference to what is computed before the loop
+anyway, a + y * w, costs one, which always is [get_computation_cost].
 """
 
 from __future__ import annotations
@@ -21,6 +23,8 @@ class EliminatedCounter:
     counter: str
     variable: InductionVariable
     blocks: frozenset[str]
+    prepared: bool
+    """Whether what the pointer differs by is computed before the loop."""
 
     @property
     def name(self) -> str:
@@ -29,26 +33,43 @@ class EliminatedCounter:
 
 
 def eliminated_counters(
-    flow: ControlFlow, evolution: ScalarEvolution, variables: InductionVariables, counted: set[str]
+    flow: ControlFlow,
+    evolution: ScalarEvolution,
+    variables: InductionVariables,
+    counted: set[str],
+    *,
+    prepares: bool,
 ) -> dict[str, EliminatedCounter]:
-    """Return such counters of the `counted` loops (by header): of bytes, so that the distance is the index."""
+    """Return such counters of the `counted` loops (by header): of bytes, so that the distance is the index.
+
+    `prepares`: whether differences to what is computed before the loop count.
+    """
     found: dict[str, EliminatedCounter] = {}
     for variable in variables.all:
         loop = variable.loop
         bytewise = not variable.increment.symbolic and abs(variable.increment.constant) == 1
         steady = {offset for label, _, offset in variable.accesses if flow.every_iteration(label, loop)}
-        if loop.header not in counted or not bytewise or len(steady) < 2:
+        if loop.header not in counted or not bytewise or not steady:
             continue
+        affine = dict(evolution.affine(variable.accesses[0][1].operands[-1]).terms)
         for each in flow.blocks[loop.header].instructions:
             name = each.result or ""
-            affine = dict(evolution.affine(variable.accesses[0][1].operands[-1]).terms)
-            if each.opcode != "phi" or name in found or affine != {name: 1, variable.root: 1}:
+            if each.opcode != "phi" or name in found or affine.get(name) != 1:
                 continue
+            start = evolution.first(name, loop) or ""
+            prepared = prepares and (
+                affine.keys() != {name, variable.root} or not start.lstrip("-").isdigit()
+            )
             blocks = frozenset(_wanted(flow, evolution, loop, name))
-            if blocks and all(
-                flow.innermost(label) is loop and not flow.every_iteration(label, loop) for label in blocks
+            if (
+                (len(steady) > 1 or prepared)
+                and blocks
+                and all(
+                    flow.innermost(label) is loop and not flow.every_iteration(label, loop)
+                    for label in blocks
+                )
             ):
-                found[name] = EliminatedCounter(name, variable, blocks)
+                found[name] = EliminatedCounter(name, variable, blocks, prepared)
     return found
 
 

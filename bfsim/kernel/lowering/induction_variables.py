@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction, SourceLine
-from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.scalar_evolution import Affine, Increment, ScalarEvolution
 from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.rules import Rule
 
 HIDDEN = ".len"  # every array comes with its length, which C code would not pass
 
@@ -91,7 +91,7 @@ class InductionVariables:
     def _pointers(self, label: str, each: Instruction) -> list[tuple[str, str]]:
         """(block, pointer) of an access; LLVM merges the loads of several arms, a compiler for the Blackfin does not."""
         source = self.flow.instruction(each.operands[-1])
-        if source is not None and is_merged_pointer(source) and self.profile.applies(Learnt.MERGED_LOADS):
+        if source is not None and is_merged_pointer(source) and self.profile.applies(Rule.MERGED_LOADS):
             return [(arm_label[1:], value) for value, arm_label in PHI_ARM.findall(source.text)]
         return [(label, each.operands[-1])]
 
@@ -157,7 +157,7 @@ class InductionVariables:
     def _hoisted(self, label: str, variable: InductionVariable) -> str:
         """The block of a test, when both its sides load the same element first thing: it is loaded before the test."""
         before = self.flow.predecessors[label]
-        if len(before) != 1 or not self.profile.applies(Learnt.COMMON_LOADS):
+        if len(before) != 1 or not self.profile.applies(Rule.COMMON_LOADS):
             return label
         sides = set(self.flow.blocks[before[0]].successors)
         alike = {

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction
+from bfsim.kernel.ir_text import PHI_ARM, Instruction, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
-from bfsim.kernel.lowering.predict import predicate
 
 
 class JumpThreading:

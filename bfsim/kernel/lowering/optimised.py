@@ -8,7 +8,6 @@ from dataclasses import replace
 from bfsim.kernel import isa
 from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine
 from bfsim.kernel.isa import COSTS, Op
-from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.block_layout import BlockLayout, edge_of
 from bfsim.kernel.lowering.charges import BlockCost, Charge, Test, charge, instead
@@ -20,6 +19,7 @@ from bfsim.kernel.lowering.registers import Allocation, allocate
 from bfsim.kernel.lowering.schedule import Issue, issues
 from bfsim.kernel.lowering.select import select
 from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.rules import Rule
 
 ALONE = Issue()
 
@@ -47,7 +47,7 @@ class _OptimisedLowering:
             frozenset(empty | self.context.if_conversion.gone | self.context.second_parts.keys()),
             copies,
             self._nbytes,
-            frozenset((self.flow.ending(loop), loop.header) for loop in self._counted()),
+            frozenset(self._way_back(loop) for loop in self._counted()),
             dict(self._threaded()),
         )
         self.hardware = {loop.header for loop in self.flow.loops if self._is_hardware(loop)}
@@ -83,6 +83,13 @@ class _OptimisedLowering:
     def _counted(self) -> Iterator[Loop]:
         return (loop for loop in self.flow.loops if loop.header in self.context.demanded.counted)
 
+    def _way_back(self, loop: Loop) -> tuple[str, str]:
+        """The jump of a counted loop's end, which GCC cannot turn round."""
+        ending = self.flow.ending(loop)
+        if ending == loop.latch or self.flow.is_split(loop):
+            return ending, loop.header
+        return ending, next(way for way in self.flow.blocks[ending].successors if way in loop.blocks)
+
     def _is_empty(self, label: str) -> bool:
         block = self.flow.blocks[label]
         is_latch = any(loop.latch == label for loop in self.flow.loops)
@@ -94,7 +101,11 @@ class _OptimisedLowering:
         """A counted loop, at most two deep, with an operation before its end [GCC: hwloop_optimize in bfin.cc]."""
         if loop.header not in self.context.demanded.counted or self._counted_depth(loop) > isa.HARDWARE_LOOPS:
             return False
-        if self.flow.is_split(loop) or (loop.latch, loop.header) in self.allocation.on_edges:
+        if (
+            self.flow.is_split(loop)
+            or self.flow.ending(loop) != loop.latch
+            or (loop.latch, loop.header) in self.allocation.on_edges
+        ):
             return False  # values move from iteration to iteration in a block of its own: the last one jumps
         before = [
             each
@@ -103,7 +114,7 @@ class _OptimisedLowering:
             and each not in self.context.if_conversion.gone
         ]
         copied = any(self._ends_apart(inner, before) for inner in loop.inner)
-        if copied and self.profile.applies(Learnt.COPIED_END):
+        if copied and self.profile.applies(Rule.COPIED_END):
             return False  # the end of the loop is copied behind each exit of the inner one, so there are two ends
         return bool(self.code.of[loop.latch]) or len(before) == 1
 
@@ -303,7 +314,7 @@ class _OptimisedLowering:
         hoisted = moved and tested is not None and self.context.code_motion.is_invariant(condition, tested)
         return (
             hoisted
-            and self.profile.applies(Learnt.GUARDS)
+            and self.profile.applies(Rule.GUARDS)
             and block.label not in self.context.if_conversion.by_label
         )
 

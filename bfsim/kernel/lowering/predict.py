@@ -7,11 +7,16 @@ sets the (bp) bit of a branch that is more likely taken than not.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import cached_property
 
-from bfsim.kernel.ir_text import BasicBlock, Instruction
+from bfsim.kernel.ir_text import BasicBlock, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
+from bfsim.kernel.lowering.counter_comparisons import CounterComparisons
+from bfsim.kernel.lowering.frequencies import frequencies
+from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
+from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
+from bfsim.kernel.rules import Rule
 
 EVEN = 0.5
 # hit rates [predict.def]
@@ -19,7 +24,6 @@ LOOP_EXIT = 0.89
 LEAST_EXIT = 0.02  # of a loop with many exits, which share the chance that it ends
 POSITIVE, NOT_EQUAL, CALL = 0.59, 0.66, 0.67
 CONTINUE = 0.67  # the surest hint of the source: the side without `continue`
-MOST_ITERATIONS = 100  # a loop is guessed to iterate at most so often where its count is a constant
 
 BELOW_ZERO = {("slt", 0), ("slt", 1), ("sle", 0), ("sle", -1), ("slt", -1), ("sle", 1)}
 ABOVE_ZERO = {("sgt", 0), ("sgt", -1), ("sge", 0), ("sge", 1), ("sgt", 1), ("sge", -1)}
@@ -28,9 +32,14 @@ ABOVE_ZERO = {("sgt", 0), ("sgt", -1), ("sge", 0), ("sge", 1), ("sgt", 1), ("sge
 class Likelihood:
     """Probabilities of the edges, and frequencies of the blocks, of one routine."""
 
-    def __init__(self, flow: ControlFlow, second_parts: Mapping[str, str] | None = None) -> None:
-        """`second_parts`: blocks whose test is made by the one before, and where they lead then."""
+    def __init__(
+        self, flow: ControlFlow, second_parts: Mapping[str, str] | None = None, without: Collection[Rule] = ()
+    ) -> None:
+        """`second_parts`: blocks whose test is made by the one before, and where they lead then; `without`: rules that are left out."""
         self.flow, self.second_parts = flow, second_parts or {}
+        self.evolution = ScalarEvolution(flow, InvariantCodeMotion(flow))
+        compares = Rule.COMPARED_COUNTERS not in without
+        self.comparisons = CounterComparisons(flow, self.evolution).votes if compares else {}
 
     @cached_property
     def taken(self) -> dict[tuple[str, str], float]:
@@ -53,25 +62,8 @@ class Likelihood:
 
     @cached_property
     def frequency(self) -> dict[str, float]:
-        """Executions of each block per call, as guessed: loops iterate as their exits are likely."""
-        found = dict.fromkeys(self.flow.blocks, 0.0)
-        entry = self.flow.routine.blocks[0].label
-        back = {(loop.latch, loop.header) for loop in self.flow.loops}
-        for label in self.flow.order:
-            into = sum(
-                found[before] * self.taken[before, label]
-                for before in self.flow.predecessors[label]
-                if (before, label) not in back
-            )
-            found[label] = (1.0 if label == entry else into) * self._iterations(label)
-        return found
-
-    def _iterations(self, label: str) -> float:
-        iterations = 1.0
-        for loop in self.flow.loops:
-            if loop.header == label:
-                iterations *= min(MOST_ITERATIONS, 1 / max(1e-2, 1 - self.taken[loop.latch, loop.header]))
-        return iterations
+        """Executions of each block per call, as guessed."""
+        return frequencies(self.flow, self.taken)
 
     def _of_true_side(self, block: BasicBlock) -> float:
         yes, no = block.successors
@@ -93,6 +85,7 @@ class Likelihood:
             *self._by_opcode(block),
             *self._by_calls(block),
             *_by_hint(block),
+            *self.comparisons.get(block.label, ()),
         ]
         return combined(votes)
 
@@ -179,9 +172,3 @@ def combined(votes: list[float]) -> float:
         both = probability * vote
         probability = both / (both + (1 - probability) * (1 - vote))
     return probability
-
-
-def predicate(compare: Instruction) -> str:
-    """Return the relation that an `icmp` or `fcmp` tests: eq, slt, ult, ..."""
-    words = compare.text.split()
-    return words[2] if words[1] in ("samesign", "fast") else words[1]

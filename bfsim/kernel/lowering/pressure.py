@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
-from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.loops import Loop
 from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.webs import Webs
+from bfsim.kernel.rules import Rule
 
 POINTERS = isa.POINTER_REGISTERS + 1  # with FP, which -O2 frees
 KEPT = {RegisterBank.DATA: 4, RegisterBank.POINTER: 4}  # R4-R7, P3-P5 and FP survive a call
@@ -67,7 +67,7 @@ class Pressure:
                     busiest = here
         # once something is spilled, one register is taken by the reloads
         reloading = (loop.header, bank) in self.reloading and self.webs.context.profile.applies(
-            Learnt.RELOAD_REGISTER
+            Rule.RELOAD_REGISTER
         )
         if len(busiest) + extra <= room - reloading:
             return None
@@ -110,7 +110,7 @@ class Pressure:
             if self.find(instruction.result or "") == web
             or any(self.find(name) == web for name, _ in instruction.uses)
         ]
-        fitted = self.webs.context.profile.applies(Learnt.ACCUMULATORS)
+        fitted = self.webs.context.profile.applies(Rule.ACCUMULATORS)
         return (
             fitted
             and len(touching) == 1
@@ -144,7 +144,7 @@ class Pressure:
     def _reloading(self, web: str, instruction: MachineInstruction) -> MachineInstruction:
         """What brings a value, or a constant, to where an instruction uses it."""
         constant = web.startswith("#")
-        if constant and not self.webs.context.profile.applies(Learnt.CONSTANT_MOVES):
+        if constant and not self.webs.context.profile.applies(Rule.CONSTANT_MOVES):
             return load_constant(web, instruction.line)
         return MachineInstruction(
             Op.MOVE if constant else Op.LOAD32, instruction.line, None, RegisterBank.ANY

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.ir_text import Instruction, predicate
 from bfsim.kernel.loops import ControlFlow
-from bfsim.kernel.lowering.predict import predicate
 from bfsim.kernel.lowering.widths import WORD
 
 JOINED = ("and", "or", "decided")  # what the blocks of a condition of several parts are called

@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 
 from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
-from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.moves import Moves
 from bfsim.kernel.lowering.pressure import POINTERS, Pressure
 from bfsim.kernel.lowering.webs import Webs
+from bfsim.kernel.rules import Rule
 
 
 @dataclass(slots=True)
@@ -79,7 +79,7 @@ class _Ends:
         self.result.saved_data = min(max(data, 0), 4)
         self.result.saved_pointers = min(max(pointers, 0), 3)
         self.result.saves_frame_pointer = pointers > 3
-        if self.webs.context.profile.applies(Learnt.KEPT_RESULTS):
+        if self.webs.context.profile.applies(Rule.KEPT_RESULTS):
             self._results()
         self._parameters(across)
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from bfsim.kernel.ir_text import Routine, read_module, with_names, write_module
-from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.lowering.carried import carry_over
 from bfsim.kernel.lowering.counted_fills import count_fills
+from bfsim.kernel.lowering.header_copies import copy_headers
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
 from bfsim.kernel.lowering.merged_stores import merge_stores
 from bfsim.kernel.lowering.preheaders import with_preheaders
@@ -18,10 +18,12 @@ from bfsim.kernel.lowering.redundant import without_redundant_loads
 from bfsim.kernel.lowering.sinking import sink
 from bfsim.kernel.lowering.split_loads import split_loads
 from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.rules import Rule
 
 REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     split_loads,
     merge_stores,
+    copy_headers,
     with_preheaders,
     without_redundant_loads,
     carry_over,
@@ -29,12 +31,13 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     hoist_loads,
 )
 """In this order."""
-LEARNT = {
-    split_loads: Learnt.MERGED_LOADS,
-    without_redundant_loads: Learnt.CARRIED_LOADS,
-    sink: Learnt.SINKING,
+SWITCHES = {
+    split_loads: Rule.MERGED_LOADS,
+    without_redundant_loads: Rule.CARRIED_LOADS,
+    sink: Rule.SINKING,
+    copy_headers: Rule.COPIED_HEADERS,
 }
-"""Those that a single measured kernel needs, which can be left out."""
+"""Those that can be left out."""
 
 
 def rewritten(text: str, profile: CompilerProfile) -> str:
@@ -45,6 +48,6 @@ def rewritten(text: str, profile: CompilerProfile) -> str:
 
 def _rewritten(routine: Routine, profile: CompilerProfile) -> Routine:
     for rewrite in REWRITES:
-        if rewrite not in LEARNT or profile.applies(LEARNT[rewrite]):
+        if rewrite not in SWITCHES or profile.applies(SWITCHES[rewrite]):
             routine = rewrite(routine)
     return count_fills(routine) if profile.library.fill else routine

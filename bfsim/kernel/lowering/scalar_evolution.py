@@ -165,6 +165,16 @@ class ScalarEvolution:
         first = next((arm for arm, source in PHI_ARM.findall(each.text) if source[1:] == entering), "")
         return int(first) * times + affine.constant if first.lstrip("-").isdigit() else None
 
+    def first(self, value: str, loop: Loop) -> str | None:
+        """Return what a counter of `loop` starts with: a constant, or a value but for a constant; None if it is no counter."""
+        affine, entering = self.affine(value), self.flow.entering(loop)
+        if [times for _, times in affine.terms] != [1]:
+            return None
+        each = self.flow.instruction(affine.terms[0][0])
+        if each is None or each.opcode != "phi" or self.flow.defined[affine.terms[0][0]][0] != loop.header:
+            return None
+        return next((arm for arm, source in PHI_ARM.findall(each.text) if source[1:] == entering), None)
+
     def starts_fixed(self, loop: Loop) -> bool:
         """Whether every counter of `loop` starts at a constant."""
         entering = self.flow.entering(loop)

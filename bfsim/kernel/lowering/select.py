@@ -9,17 +9,16 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from bfsim.kernel import isa
-from bfsim.kernel.ir_text import Instruction
+from bfsim.kernel.ir_text import Instruction, predicate
 from bfsim.kernel.isa import Op
-from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.lowering.accesses import Accesses
 from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.if_conversion import ConversionKind
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.multiples import multiple
-from bfsim.kernel.lowering.predict import predicate
 from bfsim.kernel.lowering.ranges import Range
+from bfsim.kernel.rules import Rule
 
 ANY, DATA, POINTER = RegisterBank.ANY, RegisterBank.DATA, RegisterBank.POINTER
 EXTENDING_MASKS = {"255": 8, "65535": 16}
@@ -137,7 +136,7 @@ class _Selector(Accesses):
 
     def _is_single_bit(self, opcode: str, right: str) -> bool:
         """Whether BITSET, BITCLR, BITTGL or NOT does it."""
-        if not right.lstrip("-").isdigit() or not self.context.profile.applies(Learnt.SINGLE_BITS):
+        if not right.lstrip("-").isdigit() or not self.context.profile.applies(Rule.SINGLE_BITS):
             return False
         mask = int(right)
         bits = ~mask if opcode == "and" else mask
@@ -206,7 +205,7 @@ class _Selector(Accesses):
         left, right = self.context.demanded.compared(each)
         if right.lstrip("-").isdigit() and _is_near(predicate(each), int(right)):
             self.append(Op.COMPARE, each, None, DATA, (left, ANY))
-        elif right.lstrip("-").isdigit() and self.context.profile.applies(Learnt.COMPARED):
+        elif right.lstrip("-").isdigit() and self.context.profile.applies(Rule.COMPARED):
             self.code.add(self.label, load_constant(f"#{right}", each.line, f"{each.result}.bound"))
             self.append(Op.COMPARE, each, None, DATA, (left, ANY), (f"{each.result}.bound", ANY))
         else:

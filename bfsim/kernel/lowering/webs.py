@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import Counter as Tally
 from collections import defaultdict
 
-from bfsim.kernel.learnt import Learnt
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.induction_variables import is_merged_pointer
 from bfsim.kernel.lowering.liveness import Liveness, liveness
 from bfsim.kernel.lowering.machine_code import MachineCode, RegisterBank
+from bfsim.kernel.rules import Rule
 
 ROUNDS = 3  # in which values settle in the bank of those they are computed with
 
@@ -66,7 +66,7 @@ class Webs:
     def _coalesce(self) -> None:
         """Give a phi and its arms one register, the most frequent copies first, unless both are wanted at once."""
         apart = self._interference()
-        for phi, value in self._stepped() if self.context.profile.applies(Learnt.STEPPED_COUNTERS) else ():
+        for phi, value in self._stepped() if self.context.profile.applies(Rule.STEPPED_COUNTERS) else ():
             apart[phi].discard(value)
             apart[value].discard(phi)
         members = {name: {name} for name in apart}

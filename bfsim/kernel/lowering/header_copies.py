@@ -1,0 +1,220 @@
+"""Loop headers of two tests: `while a and b` is rotated so that both are made once before the loop, and then at its end [tree-ssa-loop-ch.cc of GCC 12].
+
+LLVM copies the first test only. GCC goes on while the next one, too, leaves the loop and is computed from counters and from what does not
+change in the loop, without an access.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine
+from bfsim.kernel.loops import COPIED, ControlFlow, Loop
+from bfsim.kernel.lowering.jump_threading import JumpThreading
+
+MOST_STATEMENTS = 20  # [param_max_loop_header_insns] of both tests
+AGAIN, LEFT = ".turned", ".left"  # endings of values of the header, where both copies of it lead
+NAME = re.compile(r"%[\w.$-]+")
+TYPE = re.compile(r"\b(i\d+|ptr|float)\b")
+
+
+def copy_headers(routine: Routine) -> Routine:
+    """Return `routine` with each loop rotated once more whose header is such a test."""
+    for header in [loop.header for loop in ControlFlow(routine).loops]:
+        flow = ControlFlow(routine)
+        loop = next((each for each in flow.loops if each.header == header), None)
+        if loop is not None and _is_copied(flow, loop):
+            routine = _Rotation(flow, loop).routine()
+    return routine
+
+
+def _is_copied(flow: ControlFlow, loop: Loop) -> bool:
+    header = flow.blocks[loop.header]
+    inside = [way for way in header.successors if way in loop.blocks]
+    ends_below = set(flow.blocks[loop.latch].successors) - loop.blocks and loop.latch != loop.header
+    if (
+        header.terminator.opcode != "br"
+        or len(inside) != 1
+        or len(set(header.successors)) != 2
+        or not ends_below
+    ):
+        return False
+    way_out = next(way for way in header.successors if way not in loop.blocks)
+    back = [each for each in flow.predecessors[loop.header] if each in loop.blocks]
+    alone = flow.predecessors[inside[0]] == [loop.header] and back == [loop.latch] and not flow.is_split(loop)
+    if not alone or len(header.instructions) > MOST_STATEMENTS or _has_phi(flow.blocks[inside[0]]):
+        return False
+    return _counts(flow, loop) and _uses_are_near(flow, header, inside[0], way_out)
+
+
+def _has_phi(block: BasicBlock) -> bool:
+    return any(each.opcode == "phi" for each in block.instructions)
+
+
+def _counts(flow: ControlFlow, loop: Loop) -> bool:
+    """Whether neither side of the header's test is loaded, or computed from what is, without a value that the loop carries."""
+    header = flow.blocks[loop.header]
+    test = flow.instruction(header.terminator.operands[0])
+    if test is None or test.opcode != "icmp" or flow.is_overflow_guard(header):
+        return False
+    if any(each.opcode in ("load", "store", "call") for each in header.instructions):
+        return False
+    if JumpThreading(flow).decides(header.terminator):
+        return False  # gone by then
+    return all(flow.is_invariant(each, loop) or _is_carried(flow, loop, each) for each in test.operands[:2])
+
+
+def _is_carried(flow: ControlFlow, loop: Loop, value: str) -> bool:
+    """Whether a value of the header is a phi of it, or computed from one."""
+    each = flow.instruction(value)
+    if each is None or flow.defined[value][0] != loop.header:
+        return False
+    return each.opcode == "phi" or any(_is_carried(flow, loop, operand) for operand in each.operands)
+
+
+def _uses_are_near(flow: ControlFlow, header: BasicBlock, inside: str, way_out: str) -> bool:
+    """Whether what the header computes is used where one of its sides leads alone, or where the sides meet in a phi."""
+    own = {each.result for each in header.instructions if each.result}
+    for block in flow.routine.blocks:
+        behind = flow.dominators[block.label]
+        for each in block.instructions:
+            if block.label == header.label or each.opcode == "phi" or not own & set(each.operands):
+                continue
+            if inside not in behind and (
+                way_out not in behind or flow.predecessors[way_out] != [header.label]
+            ):
+                return False
+        for each in block.instructions if block.label != header.label else ():
+            for value, source in PHI_ARM.findall(each.text) if each.opcode == "phi" else ():
+                before = flow.dominators[source[1:]]
+                near = source[1:] == header.label or inside in before
+                if value in own and not near:
+                    return False
+    return True
+
+
+class _Rotation:
+    """One loop, whose header becomes its latch; a copy of it stands before the loop."""
+
+    def __init__(self, flow: ControlFlow, loop: Loop) -> None:
+        self.flow, self.loop = flow, loop
+        self.header = flow.blocks[loop.header]
+        self.entering = flow.entering(loop)
+        self.copy = f"{loop.header}{COPIED}"
+        self.inside = next(way for way in self.header.successors if way in loop.blocks)
+        self.way_out = next(way for way in self.header.successors if way not in loop.blocks)
+        phis = [each for each in self.header.instructions if each.opcode == "phi"]
+        arms = {
+            each.result or "": {label[1:]: value for value, label in PHI_ARM.findall(each.text)}
+            for each in phis
+        }
+        self.first = {name: values[self.entering] for name, values in arms.items()}
+        own = {each.result for each in self.header.instructions}
+        carried = {name: values[loop.latch] for name, values in arms.items()}
+        self.last = {name: f"{value}{AGAIN}" if value in own else value for name, value in carried.items()}
+        self.carried = {value for value in carried.values() if value in own}
+        """Values of the header that its next run takes up."""
+        self.rows = [each for each in self.header.instructions if each.opcode != "phi"]
+        for each in self.rows:
+            if each.result:
+                self.first[each.result] = f"{each.result}{COPIED}"
+                self.last[each.result] = each.result
+        self.types = {each.result: _type(each) for each in self.header.instructions if each.result}
+
+    def routine(self) -> Routine:
+        blocks = []
+        for block in self.flow.routine.blocks:
+            if block.label == self.header.label:
+                blocks.append(self._made(self.copy, self.first, own=True))
+                blocks.append(self._made(block.label, self.last, own=False))
+            elif block.label == self.entering:
+                blocks.append(_led(block, self.header.label, self.copy))
+            else:
+                blocks.append(self._behind(block))
+        return replace(self.flow.routine, blocks=tuple(blocks))
+
+    def _made(self, label: str, values: dict[str, str], *, own: bool) -> BasicBlock:
+        """The header, as it is before the loop or at its end."""
+        rows = []
+        for each in self.rows:
+            known = {name: value for name, value in values.items() if name != each.result}
+            row = _renamed(each, known)
+            rows.append(replace(row, result=values[each.result]) if own and each.result else row)
+        return BasicBlock(label, tuple(rows), () if own else self.header.enters)
+
+    def _behind(self, block: BasicBlock) -> BasicBlock:
+        """A block with the header's values as they are there: chosen where both copies of the header lead."""
+        above = self.flow.dominators[block.label]
+        if self.inside in above:
+            names = {name: f"{name}{AGAIN}" for name in self.types}
+        elif self.way_out in above and self.flow.predecessors[self.way_out] == [self.header.label]:
+            names = {name: f"{name}{LEFT}" for name in self.types}
+        else:
+            names = {}
+        rows = [
+            self._phi(each, names) if each.opcode == "phi" else _renamed(each, names)
+            for each in block.instructions
+        ]
+        if names and block.label in (self.inside, self.way_out):
+            chosen = [
+                self._choice(name, names[name]) for name in self.types if self._is_used(name, block.label)
+            ]
+            rows = [*chosen, *rows]
+        return replace(block, instructions=tuple(rows))
+
+    def _is_used(self, name: str, side: str) -> bool:
+        """Whether a value of the header is wanted behind one of its sides."""
+        if side == self.inside and name in self.carried:
+            return True
+        for label, block in self.flow.blocks.items():
+            for each in block.instructions if label != self.header.label else ():
+                if each.opcode == "phi":
+                    sources = [source[1:] for value, source in PHI_ARM.findall(each.text) if value == name]
+                else:
+                    sources = [label] if name in each.operands else []
+                if any(side in self.flow.dominators[source] for source in sources):
+                    return True
+        return False
+
+    def _choice(self, name: str, chosen: str) -> Instruction:
+        here, there = self.first[name], self.last[name]
+        text = f"phi {self.types[name]} [ {here}, %{self.copy} ], [ {there}, %{self.header.label} ]"
+        return Instruction(chosen, "phi", text, (here, there), self.header.terminator.line)
+
+    def _phi(self, phi: Instruction, names: dict[str, str]) -> Instruction:
+        arms = []
+        for value, source in PHI_ARM.findall(phi.text):
+            if source[1:] == self.header.label:
+                arms.append((self.first.get(value, value), self.copy))
+                arms.append((self.last.get(value, value), self.header.label))
+            elif self.inside in self.flow.dominators[source[1:]]:
+                arms.append((f"{value}{AGAIN}" if value in self.types else value, source[1:]))
+            else:
+                arms.append((names.get(value, value), source[1:]))
+        kind = phi.text.split()[1]
+        text = f"phi {kind} " + ", ".join(f"[ {value}, %{label} ]" for value, label in arms)
+        return replace(phi, text=text, operands=tuple(value for value, _ in arms))
+
+
+def _renamed(each: Instruction, names: dict[str, str]) -> Instruction:
+    if not names.keys() & set(each.operands):
+        return each
+    text = NAME.sub(lambda found: names.get(found[0], found[0]), each.text)
+    return replace(each, text=text, operands=tuple(names.get(value, value) for value in each.operands))
+
+
+def _led(block: BasicBlock, old: str, new: str) -> BasicBlock:
+    """A block that goes to another one instead."""
+    *rows, end = block.instructions
+    text = re.sub(rf"label %{re.escape(old)}(?![\w.$-])", f"label %{new}", end.text)
+    return replace(block, instructions=(*rows, replace(end, text=text)))
+
+
+def _type(each: Instruction) -> str:
+    if each.opcode in ("icmp", "fcmp"):
+        return "i1"
+    if each.opcode == "getelementptr":
+        return "ptr"
+    found = TYPE.findall(each.text)
+    return str(found[-1] if each.opcode in ("zext", "sext", "trunc") else found[0])

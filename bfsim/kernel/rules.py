@@ -1,0 +1,121 @@
+"""Rules of the estimate that can be left out, by name: what each says, whose behaviour it is, and what it was learnt from.
+
+`python benchmarks/accuracy.py --ablate` prints what each is worth. Two kinds were put in because of what GCC made of certain kernels:
+[fitted] ones, found by looking at GCC's code, and those that follow from GCC's own source or from the instruction set but that a
+single one of the measured kernels needs: without that kernel, nobody would have looked for them. The accuracy benchmark costs each
+kernel once more without the rules that it alone needs: `python benchmarks/accuracy.py --rules` finds again which kernels need each.
+Rules that are no switch name their source where they stand.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class Rule(StrEnum):
+    """A rule that a profile may leave out."""
+
+    LATE_EXTENSION = (
+        "a narrow load with a post-increment is extended on its own if others follow before its use"
+    )
+    RELOAD_REGISTER = "where values do not fit in registers, one register serves the reloads"
+    POINTER_COPIES = "a loop with two exits that are not counted keeps a pointer before and after its step"
+    COPIED_END = "the end of a loop is copied behind each exit of the loop inside it"
+    SUNK_MASK = "16-bit masks that end both sides of a test are done once behind them"
+    NARROW_SUMS = "a sum that is stored as narrow and used as wide is computed twice"
+    RAW_BYTE = "the low byte of a half-word is extended from the half-word as it was loaded"
+    FACTORS = "a byte that is a factor of a 16-bit product and used in another way is extended for each"
+    COMPARED = "a constant that is compared with is loaded where it is, not before the loop"
+    GUARDS = "a condition that does not change in a loop is kept in a register, and moved to CC and back"
+    ACCUMULATORS = "what a loop only adds to may live in another bank, for one move"
+    DIFFERENCE = "the absolute value of a difference, written as an `if`, is a branch"
+    COMMON_LOADS = "what both sides of a test load first is loaded before it"
+    CLEARED_BIT = "half of a number that is the index of half-words is the number with its last bit cleared"
+    KNOWN_SIGN = "a value known to be positive is divided by a constant with the signed routine"
+    DIVIDED_COUNTS = "a loop whose number of iterations takes a division to find is not counted"
+    INCLUSIVE_LOOPS = "a loop up to and with its bound is not counted if it has another exit"
+    FIXED_STARTS = (
+        "a loop with several exits whose counters start at constants is counted, wide as its steps are"
+    )
+    SPLIT_LOOPS = "a loop that a `continue` splits is guessed as one, and counted by its first test"
+    EVALUATED_LOOPS = "the number of iterations of a loop may be found by playing it through"
+    THREADED_EXITS = "a block that sets the flag which ends its loop is outside of the loop"
+    ELIMINATED_COUNTERS = "beside neighbours, a pointer stands for a counter that only some iterations want"
+    CARRIED_LOADS = "a load that the choice of an index in a loop makes redundant goes along in a register"
+    SINKING = "what only the rarer side of a test needs is computed there"
+    HANDED_ON = "a minimum is one, too, where another way leads to what only hands its result on"
+    MERGED_LOADS = "a load from an address that several ways choose is a load on each of them"
+    NEIGHBOURS = "a test for one of two neighbouring numbers is one test"
+    ADDED_FLAGS = "a flag that is added is added where it is set"
+    REMAINDERS = "x - x / y * y is the remainder"
+    KEPT_BITS = "a conversion that keeps every bit that may be set is none"
+    STEPPED_COUNTERS = "a counter that only the next iteration wants is stepped in place, last"
+    CONSTANT_MOVES = "constants that do not fit in the registers of a loop come from others, by a move"
+    KEPT_RESULTS = "a result that is wanted behind the next call moves out of R0"
+    SINGLE_BITS = "a single bit is set, cleared or toggled by its number, without a mask"
+    BIT_COUNTS = "a loop that clears the lowest bit until none is left is an instruction"
+    COPIED_HEADERS = "a loop of two tests is rotated until both are at its end"
+    PREPARED_DIFFERENCES = "a counter is its pointer less what is computed before the loop"
+    COMPARED_COUNTERS = "a counter of a loop is guessed to be within what bounds it"
+
+
+GCC: dict[Rule, str] = {
+    Rule.COPIED_HEADERS: "should_duplicate_loop_header_p in tree-ssa-loop-ch.cc",
+    Rule.PREPARED_DIFFERENCES: "get_computation_cost in tree-ssa-loop-ivopts.cc",
+    Rule.COMPARED_COUNTERS: "predict_iv_comparison in predict.cc",
+    Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
+    Rule.KNOWN_SIGN: "expand_divmod in expmed.cc",
+    Rule.DIVIDED_COUNTS: '"Costs of niter computation too high" in loop-doloop.cc',
+    Rule.INCLUSIVE_LOOPS: '"possible infinite iteration case" in loop-doloop.cc',
+    Rule.FIXED_STARTS: '"possible infinite iteration case" in loop-doloop.cc',
+    Rule.EVALUATED_LOOPS: "loop_niter_by_eval in tree-ssa-loop-niter.cc",
+    Rule.THREADED_EXITS: "tree-ssa-threadbackward.cc",
+    Rule.ELIMINATED_COUNTERS: "may_eliminate_iv in tree-ssa-loop-ivopts.cc",
+    Rule.SINKING: "tree-ssa-sink.cc",
+    Rule.NEIGHBOURS: "fold_range_test in fold-const.cc",
+    Rule.SINGLE_BITS: "BITSET, BITCLR and BITTGL in bfin.md",
+    Rule.CLEARED_BIT: "andsi3 in bfin.md",
+}
+"""Where GCC 12 does so; the others are fitted to its code."""
+
+# The kernels that each rule was learnt from; of a rule that one kernel alone needs, that one.
+LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
+    Rule.LATE_EXTENSION: ("gauss3_row",),
+    Rule.RELOAD_REGISTER: ("match_lines",),
+    Rule.POINTER_COPIES: ("insertion_sort_u16", "shell_sort"),
+    Rule.COPIED_END: ("shell_sort",),
+    Rule.SUNK_MASK: ("crc16_bits",),
+    Rule.NARROW_SUMS: ("counting_sort", "fill_xy", "flood_fill"),
+    Rule.RAW_BYTE: ("bilinear_row",),
+    Rule.FACTORS: ("alpha_blend", "variance_blocks"),
+    Rule.COMPARED: ("match_lines", "alpha_blend", "conv3x3"),
+    Rule.GUARDS: ("circle_vote", "cordic_atan"),
+    Rule.ACCUMULATORS: ("moments",),
+    Rule.DIFFERENCE: ("sad_search",),
+    Rule.COMMON_LOADS: ("cordic_atan",),
+    Rule.CLEARED_BIT: ("lower_bound", "table_search", "quick_sort"),
+    Rule.KNOWN_SIGN: ("digits",),
+    Rule.DIVIDED_COUNTS: ("base64_encode",),
+    Rule.INCLUSIVE_LOOPS: ("find_words",),
+    Rule.FIXED_STARTS: ("grow_segments",),
+    Rule.SPLIT_LOOPS: ("fill_stack",),
+    Rule.EVALUATED_LOOPS: ("gray_decode",),
+    Rule.THREADED_EXITS: ("grow_segments",),
+    Rule.ELIMINATED_COUNTERS: ("cocktail_sort",),
+    Rule.CARRIED_LOADS: ("selection_sort",),
+    Rule.SINKING: ("fill_xy",),
+    Rule.HANDED_ON: ("fir_decimate",),
+    Rule.MERGED_LOADS: ("nms_row",),
+    Rule.NEIGHBOURS: ("contrast_lut",),
+    Rule.ADDED_FLAGS: ("count_words",),
+    Rule.REMAINDERS: ("count_islands",),
+    Rule.KEPT_BITS: ("crc16_table",),
+    Rule.STEPPED_COUNTERS: ("percentiles",),
+    Rule.CONSTANT_MOVES: ("hamming_pairs",),
+    Rule.KEPT_RESULTS: ("morton",),
+    Rule.SINGLE_BITS: ("heap_sort",),
+    Rule.BIT_COUNTS: ("popcount_words",),
+    Rule.COPIED_HEADERS: ("run_tasks", "mu_law_block"),
+    Rule.PREPARED_DIFFERENCES: ("centre_of_mass", "moved_boxes"),
+    Rule.COMPARED_COUNTERS: ("label_regions", "largest_first"),
+}
