@@ -1,7 +1,7 @@
 """How fast the simulator is. Run with `pytest benchmarks/test_speed.py --benchmark-columns=median,min,max`.
 
-Compare within one run only: `simulated` against `floor` (the same kernels on the same pixels, without counters, checks
-and SimPy), and cold against warm start. Timings are not asserted; the number of events is.
+Compare within one run only: `simulated` against `native` (what its kernels' machine code takes of it) and `floor` (the same
+kernels called from Python on the same pixels, without counters, checks and SimPy), and cold against warm start. Timings are not asserted; the number of events is.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from benchmarks.bare import run_bare
+from benchmarks.native_time import Stopwatch, native_time
 from bfsim.api import FrameSize
 from bfsim.chip.boards import CM_BF561
 from bfsim.kernel import Kernel
@@ -29,6 +30,7 @@ from bfsim.trace import BoardRecord
 from tinyphoon import tinyphoon
 
 STEREO_FRAMES = 40
+KERNELS = Stopwatch()
 MOST_EVENTS_PER_FRAME = 50_000  # issue: at most so many SimPy events per stereo frame
 
 
@@ -68,6 +70,13 @@ def test_unchecked(
 def test_floor(benchmark: BenchmarkFixture, frames: list[StereoFrame]) -> None:
     """The same kernels on the same pixels without counters, checks and SimPy."""
     benchmark.pedantic(run_bare, (tinyphoon, frames), warmup_rounds=1, rounds=7)
+
+
+@pytest.mark.benchmark(group=f"{STEREO_FRAMES} stereo frames", timer=lambda: KERNELS.seconds)
+def test_native(benchmark: BenchmarkFixture, frames: list[StereoFrame]) -> None:
+    """The machine code of the kernels alone, with counters and checks, in a run on the simulated board."""
+    with native_time(KERNELS, Stopwatch()):
+        benchmark.pedantic(run_simulated, (frames,), warmup_rounds=1, rounds=3)
 
 
 def start(cache: Path) -> None:

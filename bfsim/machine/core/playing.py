@@ -132,7 +132,7 @@ class PlayingCore(CoreClock):
                 value = yield item
             else:
                 raise self._misused(item, line_at(task))
-            if self._is_full or self.can_be_interrupted:
+            if self._is_full or (self._interrupts.are_handled and not self._in_handler):
                 yield from self.sync()
         self._check_claimed()
         self._check_waits(task)

@@ -1,0 +1,122 @@
+"""Where the time of a frame goes: the simulator's own, in µs by part, as docs/architecture.md has it.
+
+    python benchmarks/frame_time.py [--frames 48]
+
+Compiled code is timed at each call; what Python does between is sampled each millisecond of processor time, in a run of its
+own. Compare the parts with each other: all of them are as fast as the machine is just then.
+"""
+
+from __future__ import annotations
+
+import argparse
+import signal
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import cache
+from itertools import cycle, islice
+from pathlib import Path
+from time import process_time
+from types import FrameType
+
+import simpy
+
+import bfsim
+import tinyphoon
+from benchmarks.native_time import Stopwatch, native_time
+from bfsim.api import FrameSize
+from bfsim.chip.boards import CM_BF561
+from bfsim.linker import link, parse_ldf
+from bfsim.machine.board import Board
+from bfsim.machine.symbols import symbols_of
+from bfsim.recording import RecordingReader, StereoFrame
+from bfsim.run import BUILT_IN_RECORDING, DEFAULT_LDF
+
+INTERVAL_S = 0.001
+SIMULATOR = Path(bfsim.__file__).parent
+KERNELS, WEAVE = "calls of kernels", "buses"
+PARTS = {
+    Path(tinyphoon.__file__).parent: "main loops and stages of the firmware",
+    SIMULATOR / "kernel": KERNELS,
+    SIMULATOR / "machine" / "calls": KERNELS,
+    SIMULATOR / "machine" / "bus": WEAVE,
+    SIMULATOR / "machine" / "dma": "rings and DMA",
+    SIMULATOR / "machine" / "core": "clocks of the cores, and what runs ahead",
+    SIMULATOR / "machine": "the rest of the machine",
+    Path(simpy.__file__).parent: "SimPy",
+}
+"""What the Python in a folder is a part of, the first that fits."""
+REST = "everything else"
+
+
+def frames_of(number: int) -> list[StereoFrame]:
+    """The built-in recording over and over."""
+    with RecordingReader(BUILT_IN_RECORDING) as reader:
+        return list(islice(cycle(list(reader.frames())), number))
+
+
+def run(frames: Sequence[StereoFrame]) -> float:
+    """Run the built-in firmware on the simulated board; return the processor time, in seconds."""
+    size = FrameSize(320, 240)
+    board = Board(
+        CM_BF561,
+        tinyphoon.tinyphoon,
+        size,
+        link(parse_ldf(DEFAULT_LDF), symbols_of(tinyphoon.tinyphoon, size)),
+    )
+    begin = process_time()
+    board.run(iter(frames))
+    return process_time() - begin
+
+
+@contextmanager
+def sampled(parts: Counter[str]) -> Iterator[None]:
+    """Count each millisecond of processor time for the part whose Python is at work, or has called compiled code."""
+
+    @cache
+    def part_of(file: str) -> str:
+        return next((part for folder, part in PARTS.items() if Path(file).is_relative_to(folder)), REST)
+
+    def sample(_: int, frame: FrameType | None) -> None:
+        parts[part_of(frame.f_code.co_filename) if frame else REST] += 1
+
+    before = signal.signal(signal.SIGPROF, sample)
+    signal.setitimer(signal.ITIMER_PROF, INTERVAL_S, INTERVAL_S)
+    yield
+    signal.setitimer(signal.ITIMER_PROF, 0)
+    signal.signal(signal.SIGPROF, before)
+
+
+def measure(number: int) -> dict[str, float]:
+    """Return the time of each part, in µs a frame: Python's by its share of the samples, without the compiled code it calls."""
+    frames = frames_of(number)
+    run(frames)  # compiles
+    kernels, weave = Stopwatch(), Stopwatch()
+    with native_time(kernels, weave):
+        run(frames)
+    samples = Counter[str]()
+    with sampled(samples):
+        whole = run(frames)
+    native = {KERNELS: kernels.seconds, WEAVE: weave.seconds}
+    parts = {
+        part: whole * count / samples.total() - native.get(part, 0) for part, count in samples.most_common()
+    }
+    named = {f"{KERNELS}, machine code": kernels.seconds, f"{WEAVE}, machine code": weave.seconds} | parts
+    return {part: seconds * 1e6 / number for part, seconds in named.items()} | {
+        "a frame": whole * 1e6 / number
+    }
+
+
+def main() -> None:
+    """Print the table, as Markdown."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--frames", type=int, default=48, help="how many (default: 48)")
+    print("| part | µs |\n|---|---|")
+    for part, us in measure(parser.parse_args().frames).items():
+        print(f"| {part} | {us:,.0f} |")
+
+
+if __name__ == "__main__":
+    main()
