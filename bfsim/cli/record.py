@@ -150,11 +150,12 @@ def import_command(
             force=force,
             progress=progress,
         )
+    frames = f"{'mono' if mono else 'stereo'} frame{'s' if summary.frame_count != 1 else ''}"
     click.echo(
-        f"{summary.path}: {summary.frame_count} {'mono' if mono else 'stereo'} frames of {summary.width}x{summary.height} "
+        f"{summary.path}: {summary.frame_count} {frames} of {summary.width}x{summary.height} "
         f"at {float(summary.fps):g} per second, {summary.size_bytes / 1e6:.1f} MB"
     )
-    if resize or crop:
+    if (resize or crop) and set(summary.source_sizes) != {(summary.width, summary.height)}:
         sizes = ", ".join(f"{width}x{height}" for width, height in summary.source_sizes)
         click.echo(f"{'Scaled by a triangle filter, and cut to shape,' if resize else 'Cut'} from {sizes}")
     for note in summary.notes:

@@ -22,7 +22,10 @@ def check_call(
 ) -> None:
     """Raise RecordingError unless the options fit each other and the number of sources, and `output` may be written."""
     if output.suffix.lower() != ".mcap" and guess_format(os.fspath(output)):
-        raise RecordingError(f"{output}: recording must have a name like run.mcap, not one of pictures")
+        raise RecordingError(
+            f"{output}: recording must have a name like run.mcap, not one of pictures; it comes first, and what it is made of "
+            "behind it: `bfsim record import run.mcap left/ right/`"
+        )
     if output.exists() and not force:
         raise RecordingError(f"{output}: recording must not exist yet; `--force` overwrites it")
     if side_by_side and mono:
