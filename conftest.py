@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import gc
 import os
-import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from bfsim.__main__ import COLLECT_AFTER
+from tests.cold_start import keep, start_cold
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
@@ -32,14 +32,13 @@ def pytest_configure() -> None:
 def pytest_cmdline_main(config: pytest.Config) -> Iterator[None]:
     """Keep compiled kernels where BFSIM_CACHE_DIR says; without it in a folder of this run, which its workers share.
 
-    It starts empty. Before all of the tests a command fills it, on two cores, with what each worker would compile first.
+    It starts empty. Before all of the tests a cold start fills it, on two cores, with what each worker would compile first.
     """
     if hasattr(config, "workerinput") or "BFSIM_CACHE_DIR" in os.environ:
         return (yield)
     with tempfile.TemporaryDirectory(prefix="bfsim-tests-", ignore_cleanup_errors=True) as folder:
-        os.environ["BFSIM_CACHE_DIR"] = folder
+        cache = Path(folder) / "kernels"
         if config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.collectonly:
-            command = [sys.executable, "-m", "bfsim", "run", "--frames", "1"]
-            nothing = subprocess.DEVNULL
-            subprocess.run(command, stdout=nothing, stderr=nothing, check=False)  # noqa: S603 - this Python; tests say what is wrong
+            keep(start_cold(cache, Path(folder)), Path(folder) / "cold_start.json")  # tests say what is wrong
+        os.environ["BFSIM_CACHE_DIR"] = str(cache)
         return (yield)

@@ -23,6 +23,7 @@ from click.testing import CliRunner, Result
 from bfsim.cli.main import main
 from bfsim.recording import RecordingWriter
 from bfsim.run import BUILT_IN_RECORDING
+from tests.cold_start import WORDS, kept_or_made
 from tests.test_run import FIRMWARE, record
 
 
@@ -131,43 +132,15 @@ def test_at_most_50_000_events_per_stereo_frame(report: dict[str, Any]) -> None:
     assert 0 < report["events"] <= 50_000 * len(report["frames"])
 
 
-COLD = """
-from bfsim.kernel.native import NativeEntry
-
-compile_here = NativeEntry.compile
-
-def compile_all_but_the_weave(entry):
-    assert entry.symbol != "bfsim_advance", "the other process compiles it"
-    return compile_here(entry)
-
-NativeEntry.compile = compile_all_but_the_weave
-
-from bfsim.__main__ import main
-main()
-"""
-LATER = """
-import sys
-from bfsim.kernel.traced_access import trace_access
-from bfsim.machine.bus.weave import advance
-print(all(each.is_kept() and each.address() for each in (trace_access, advance)), "numba" in sys.modules)
-"""
-
-
 def test_the_same_command_gives_the_same_cycles_everywhere(tmp_path: Path) -> None:
     """Another process, hash seed, folder and an empty kernel cache change no cycle.
 
-    A cold start is long and therefore made once: what the process beside it leaves is all that a later one needs, which does
-    not even import numba.
+    What the process beside a cold start leaves is all that a later one needs, which does not even import numba.
     """
-    words = ["run", "--frames", "2", "--json", "-"]
-    first = started(*words, PYTHONHASHSEED="1")
-    cold = {**os.environ, "BFSIM_CACHE_DIR": str(tmp_path / "empty"), "PYTHONHASHSEED": "2"}
-    how: dict[str, Any] = {"cwd": tmp_path, "env": cold, "capture_output": True, "text": True}
-    second = subprocess.run([sys.executable, "-c", COLD, *words], **how, check=False)
-    assert first.returncode == second.returncode == 0, second.stderr
-    assert first.stdout == second.stdout
-    later = subprocess.run([sys.executable, "-c", LATER], **how, check=True)
-    assert later.stdout == "True False\n"
+    first, cold = started(*WORDS, PYTHONHASHSEED="1"), kept_or_made(tmp_path)
+    assert first.returncode == cold.exit_code == 0, cold.stderr
+    assert first.stdout == cold.stdout
+    assert cold.later == "True False\n"
 
 
 def test_both_boards_and_both_feeds_run(report: dict[str, Any]) -> None:
