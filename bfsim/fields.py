@@ -9,9 +9,10 @@ from __future__ import annotations
 import difflib
 import re
 import types
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from fractions import Fraction
+from functools import cache
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from bfsim.errors import ConfigError, cut, shown
@@ -45,9 +46,13 @@ class Leaf:
         return self.hint in (int, Fraction, bool)
 
 
+_hints: Callable[[Any], Mapping[str, Any]] = cache(get_type_hints)
+"""The types of a record's fields, by its class. Annotations are text, which Python would compile each time that it is asked."""
+
+
 def leaves(record: Any, path: str = "") -> Iterator[Leaf]:
     """Yield all fields of a tree that hold no record, in order; those that follow from others are left out."""
-    hints = get_type_hints(type(record))
+    hints = _hints(type(record))
     for field in fields(record):
         if not field.init:
             continue
@@ -66,7 +71,7 @@ def require_types(record: Any, what: str) -> None:
 
     `what` is the tree's name in the message. Numbers with a fraction must be of the type Fraction: floats are not exact.
     """
-    hints = get_type_hints(type(record))
+    hints = _hints(type(record))
     for field in fields(record):
         value, hint = getattr(record, field.name), hints[field.name]
         if not _fits(value, hint):
@@ -112,7 +117,7 @@ def leaf_at(record: Any, path: str, also: Mapping[str, str]) -> Leaf:
         if found is None:
             raise ConfigError(f"{_nearest(name, known)}{_of(where)} has {_listed(known)}")
         where = f"{where}.{found}" if where else found
-        hint = get_type_hints(type(at))[found] if is_dataclass(at) else type(at[int(found)])
+        hint = _hints(type(at))[found] if is_dataclass(at) else type(at[int(found)])
         at = getattr(at, found) if is_dataclass(at) else at[int(found)]
         if not _names_below(at) and depth < len(names) - 1:
             what = "none" if at is None else "a single value"

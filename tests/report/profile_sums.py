@@ -6,7 +6,7 @@ import pytest
 
 from bfsim.report.profile.buffers import buffers_of
 from bfsim.report.profile.callers import callers_of
-from bfsim.report.profile.costs import profile_of, stages_in
+from bfsim.report.profile.costs import stages_in
 from bfsim.report.profile.frames import worst_frames
 from bfsim.report.profile.reason_tables import reasons_of
 from bfsim.report.profile.tables import VIEWS
@@ -23,15 +23,15 @@ def assert_profile_adds_up(run: RunRecord) -> None:
     stages = [None, *stages_in(run, None)]
     for core in (None, *(each.core for each in run.frames[0].cores)):
         for stage in stages:
-            assert_cycles_add_up(run, core, stage)
             view = View.of(run, core, stage, 3)
+            assert_cycles_add_up(view)
             for by in VIEWS:
                 assert_rows_add_up(view, by)
 
 
-def assert_cycles_add_up(run: RunRecord, core: str | None, stage: str | None) -> None:
+def assert_cycles_add_up(view: View) -> None:
     """Stages are what the frames were; owners, lines, callers, buffers, reasons and frames are what the stages are."""
-    profile = profile_of(run, core, stage)
+    run, core, stage, profile = view.run, view.core, view.stage, view.profile
     frames = [
         each for frame in without_start_up(run).frames for each in frame.cores if core in (None, each.core)
     ]
@@ -50,12 +50,12 @@ def assert_cycles_add_up(run: RunRecord, core: str | None, stage: str | None) ->
     assert sum(each.inclusive_cclk for each in callers_of(run, core, stage)) == kernels_cclk
     operations_cclk = profile.cost.issue_cclk + profile.cost.stall_cclk[StallReason.INTERLOCK]
     waited_cclk = sum(each.stalled_cclk for each in buffers_of(run, core, stage))
-    no_kernel = View.of(run, core, stage, 0).of_no_kernel()
+    no_kernel = view.of_no_kernel()
     assert (
         waited_cclk + operations_cclk + no_kernel.elapsed_cclk - no_kernel.issue_cclk
         == profile.cost.elapsed_cclk
     )
-    reasons = reasons_of(View.of(run, core, stage, 0))
+    reasons = reasons_of(view)
     assert sum(each.total() for each in reasons.values()) == profile.cost.elapsed_cclk
     for frame in worst_frames(run, core, stage)[1]:
         assert sum(cclk for _, cclk in frame.stages) == frame.difference_cclk

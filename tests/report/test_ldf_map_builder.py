@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from hypothesis import given
+from hypothesis import given, reject
 from hypothesis import strategies as st
 
 from bfsim.chip.memory_map import CM_BF561_REGIONS
-from bfsim.linker import Symbol, link, parse_ldf
+from bfsim.errors import LinkError
+from bfsim.linker import LinkerScript, Symbol, link, parse_ldf
 from bfsim.report.ldf.map import SHARED, Kind, MemoryMap
 from bfsim.report.ldf.map_builder import BoardMemories, memory_map
 
@@ -43,6 +45,15 @@ PROCESSOR p1 { SECTIONS { other { INPUT_SECTIONS($OBJECTS(program slow)) } > L2 
 MEMORIES = BoardMemories(board="test-board", regions=CM_BF561_REGIONS, bank_bytes=8 * 1024**2)
 
 
+@cache
+def parsed(text: str) -> LinkerScript:
+    """The LDF `text`, read once."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "test.ldf"
+        path.write_text(text)
+        return parse_ldf(path)
+
+
 def mapped(
     symbols: list[Symbol],
     kinds: dict[tuple[str | None, str], Kind],
@@ -51,10 +62,7 @@ def mapped(
     text: str = TEXT,
 ) -> MemoryMap:
     """The map of symbols placed by the LDF `text`."""
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "test.ldf"
-        path.write_text(text)
-        script = parse_ldf(path)
+    script = parsed(text)
     return memory_map(
         script, link(script, symbols) if linked else None, MEMORIES, kinds,
         firmware="test:firmware", width_px=320, height_px=240,
@@ -71,7 +79,11 @@ def test_pieces_fill_each_segment(sizes: list[tuple[str, int]]) -> None:
         Symbol(f"s{number}", section, nbytes, 1 << number % 6, "p0")
         for number, (section, nbytes) in enumerate(sizes)
     ]
-    for segment in mapped(symbols, {}).segments:
+    try:
+        segments = mapped(symbols, {}).segments
+    except LinkError:  # by chance a few bytes short of the stack
+        reject()
+    for segment in segments:
         here = segment.start
         for piece in segment.pieces:
             assert piece.start == here

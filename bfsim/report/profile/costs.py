@@ -74,7 +74,7 @@ def core_frames(run: RunRecord, cores: Sequence[str]) -> Iterator[CoreFrame]:
 
 def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None) -> Profile:
     """Break a run of at least one frame down, for one core or for all together, and for one stage or all of them."""
-    cores = cores_of(run, core)
+    cores, stages = cores_of(run, core), stages_in(run, stage)
     owners: dict[str, dict[tuple[str, str], OwnerProfile]] = {}
     costs: dict[str, Cost] = {}
     whole = Cost()
@@ -83,7 +83,8 @@ def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None
             whole.add(each.issue_cclk, each.stall_cclk, each.idle_cclk)
             costs.setdefault(each.stage, Cost()).add(each.issue_cclk, each.stall_cclk, each.idle_cclk)
         for owner in frame.owners:
-            _add_owner(owners.setdefault(owner.stage, {}), owner)
+            if owner.stage in stages:
+                _add_owner(owners.setdefault(owner.stage, {}), owner)
     for (name, kernel, symbol), records in kernel_records(run, cores).items():
         found = owners.get(name, {}).get((kernel, symbol))
         if found:
@@ -97,7 +98,7 @@ def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None
         whole=whole,
         stages=tuple(
             StageProfile(stage=each, cost=costs[each], owners=_dearest(owners.get(each, {}).values()))
-            for each in stages_in(run, stage)
+            for each in stages
             if each in costs and costs[each].elapsed_cclk
         ),
     )
