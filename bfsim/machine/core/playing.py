@@ -157,15 +157,15 @@ class PlayingCore(CoreClock):
         if self.can_be_interrupted:
             yield from self.sync()
             self._bus.settle()
-            if not self.has(transfer):
+            if not super().has(transfer):  # as the clock has it: a recording has every wait asked for
                 yield from self._blocked(iter([self._end_of(transfer)]), "DMA", reason)
         yield from super().wait_transfer(transfer, reason, owner)
 
     def _end_of(self, transfer: Transfer) -> simpy.Event:
-        """Return the event at the end of `transfer`, which is still to come."""
+        """Return the event at the end of `transfer`, which is behind the core's clock."""
         if transfer.end is None:
             return self._bus.when_done(transfer)
-        return self._env.after(transfer.end - self._env.tick)
+        return self._env.after(max(0, transfer.end - self._env.tick))
 
     def _goes_ahead(self) -> bool:
         """Whether calls that nobody else can meet run before the simulated time is there."""
