@@ -6,7 +6,7 @@ import numpy as np
 
 from benchmarks.twins.case import Case, Run, word
 from benchmarks.twins.lcg import Array, Lcg
-from bfsim.kernel import i16, i32, kernel, u8, u16
+from bfsim.kernel import i16, i32, kernel, u16
 
 
 @kernel
@@ -96,12 +96,12 @@ def mix_channels(a: i16[:], b: i16[:], n: i32, left: i16[:], right: i16[:], fade
     for i in range(n):
         x = (a[i] * gain) >> 15
         y = (b[i] * (0x7FFF - gain)) >> 15
-        l = x + (y >> 1)
-        r = y + (x >> 1)
-        if l > 32767 or l < -32768 or r > 32767 or r < -32768:
+        middle = x + (y >> 1)
+        side = y + (x >> 1)
+        if middle > 32767 or middle < -32768 or side > 32767 or side < -32768:
             clipped += 1
-        left[i] = min(max(l, -32768), 32767)
-        right[i] = min(max(r, -32768), 32767)
+        left[i] = min(max(middle, -32768), 32767)
+        right[i] = min(max(side, -32768), 32767)
         if (i & 15) == 15 and gain > fade:
             gain -= fade
     return clipped

@@ -6,7 +6,7 @@ import numpy as np
 
 from benchmarks.twins.case import Case, Run, word
 from benchmarks.twins.lcg import Array, Lcg
-from bfsim.kernel import i16, i32, kernel, u8, u16, u32
+from bfsim.kernel import i32, kernel, u8, u16, u32
 
 
 @kernel
