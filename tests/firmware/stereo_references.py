@@ -201,28 +201,28 @@ class EdgeLimits:
     def settled(
         self, matched: Sequence[dict[Edge, Edge]], left: Rows, right: Rows, most: int
     ) -> list[Partners]:
-        """The partners that rows around believe, and of edges that follow these: from the bottom row on."""
+        """The partners that two rows around believe, and of edges that follow these: from the bottom row on."""
         found = [dict(each) for each in matched]
 
-        def around(y: int, edge: Edge) -> list[int]:
-            """The disparities of the edges beside."""
-            return [
-                beside[0] - partner[0]
-                for row in (y - 2, y - 1, y + 1, y + 2)
-                if 0 <= row < len(found)
-                for beside, partner in found[row].items()
-                if abs(beside[0] - edge[0]) <= abs(row - y)
-            ]
+        def beside(row: int, edge: Edge, reach: int) -> list[int]:
+            """The disparities of the edges of a row that are near a column."""
+            pairs = found[row].items() if 0 <= row < len(found) else ()
+            return [one[0] - partner[0] for one, partner in pairs if abs(one[0] - edge[0]) <= reach]
 
         for y in reversed(range(len(found))):
             found[y] = {
                 edge: other
                 for edge, other in found[y].items()
-                if any(abs(each - edge[0] + other[0]) <= 1 for each in around(y, edge))
+                if sum(
+                    any(abs(each - edge[0] + other[0]) <= 1 for each in beside(y + step, edge, abs(step)))
+                    for step in (-2, -1, 1, 2)
+                )
+                >= 2
             }
             for edge in left[y]:
                 if edge not in found[y]:
-                    near = {each + step for each in around(y, edge) for step in (-1, 0, 1)}
+                    known = [each for row in (y, y + 1, y + 2) for each in beside(row, edge, 12)]
+                    near = {each + step for each in known for step in (-1, 0, 1)}
                     offers = [
                         (off, edge[0] - other[0], other)
                         for other in right[y]

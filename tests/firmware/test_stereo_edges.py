@@ -137,9 +137,9 @@ BOTH = pytest.mark.parametrize("mode", [NEAR, LIKE])
 @BOTH
 def test_edge_in_closed_form(mode: StereoEdgeThresholds) -> None:
     """20 pixels are 588 mm; the points lie where T Eq. 3.17 says, and the first edge of the store has none."""
-    left = [[(30, 0, 9), (200, 5, 9)], [(200, 5, 9)]]
-    right = [[(180, 0, 20)], [(180, 0, 20)]]
-    assert found(left, right, mode) == ([(62, 1, 588, 2), (62, -1, 588, 1)], 2)
+    left = [[(30, 0, 9), (200, 5, 9)], [(200, 5, 9)], [(200, 5, 9)]]
+    right = [[(180, 0, 20)]] * 3
+    assert found(left, right, mode) == ([(62, 2, 588, 3), (62, 0, 588, 2), (62, -2, 588, 1)], 3)
 
 
 @pytest.mark.parametrize(
@@ -155,23 +155,23 @@ def test_edge_in_closed_form(mode: StereoEdgeThresholds) -> None:
 @BOTH
 def test_pairs_that_must_not_match(mode: StereoEdgeThresholds, other: Row) -> None:
     """In the same row, and yet not the same edge."""
-    assert found([[(200, 0, 9)]] * 2, [other] * 2, mode) == ([], 0)
+    assert found([[(200, 0, 9)]] * 3, [other] * 3, mode) == ([], 0)
     assert found([[(200, 0, 9)], []], [[], [(180, 0, 9)]], mode) == ([], 0)
 
 
 def test_the_nearest_or_the_most_similar_is_taken() -> None:
     """Of several that fit, the thesis takes the one with the least disparity, ours the one whose gradient is alike."""
-    left = [[(200, 250, 80)]] * 2
-    right = [[(150, 252, 81), (170, 252, 40), (180, 100, 80)]] * 2
-    ((nearest, _), _), ((likest, _), _) = found(left, right, NEAR), found(left, right, LIKE)
+    left = [[(200, 250, 80)]] * 3
+    right = [[(150, 252, 81), (170, 252, 40), (180, 100, 80)]] * 3
+    ((nearest, *_), _), ((likest, *_), _) = found(left, right, NEAR), found(left, right, LIKE)
     assert (nearest[2], likest[2]) == (392, 235)
 
 
 def test_an_edge_whose_partner_is_farther_than_is_wanted_gets_no_other() -> None:
     """The partner is 2 m away; ours finds it and drops it, the thesis takes what is within its limits."""
-    left, right = [[(200, 250, 80)]] * 2, [[(170, 252, 40), (194, 250, 80)]] * 2
+    left, right = [[(200, 250, 80)]] * 3, [[(170, 252, 40), (194, 250, 80)]] * 3
     assert found(left, right, LIKE) == ([], 0)
-    assert [each[2] for each in found(left, right, NEAR)[0]] == [392, 392]
+    assert [each[2] for each in found(left, right, NEAR)[0]] == [392] * 3
 
 
 def test_an_edge_that_is_as_like_two_has_no_depth() -> None:
@@ -184,67 +184,79 @@ def test_an_edge_that_is_as_like_two_has_no_depth() -> None:
 @pytest.mark.parametrize(
     ("columns", "disparities", "number"),
     [
-        ([200], [30], 0),
-        ([200, 201], [30, 30], 2),  # it leans by 45 degrees
-        ([200, 202], [30, 30], 0),  # another edge
-        ([200, 200], [30, 31], 0),  # another depth
-        ([200, None, 202], [30, None, 30], 2),  # a row is missing
+        ([200, 200], [30, 30], 0),
+        ([200, 200, 200], [30, 30, 30], 3),
+        ([200, 201, 202], [30, 30, 30], 3),  # it leans by 45 degrees
+        ([200, 202, 204], [30, 30, 30], 0),  # other edges
+        ([200, 200, 200], [30, 30, 31], 0),  # two depths, of which one has no support
+        ([200, 200, None, 200], [30, 30, None, 30], 0),
+        ([200, None, 200, 200, 200], [30, None, 30, 30, 30], 4),  # the top one follows the others
     ],
 )
 def test_an_edge_needs_support(columns: list[int | None], disparities: list[int | None], number: int) -> None:
-    """In one row at least of the two above and the two below, the same disparity must be beside it."""
+    """In two rows of the two above and the two below, the same disparity must be beside it."""
     pairs = list(zip(columns, disparities, strict=True))
     left = [[] if x is None else [(x, 0, 80)] for x, _ in pairs]
     right = [[] if x is None or d is None else [(x - d, 0, 80)] for x, d in pairs]
     assert found(left, right, LIKE)[1] == number
 
 
-def test_a_pair_needs_another_to_be_believed() -> None:
-    """Two rows below there is a pair like it, but its right edge belongs to another edge: nobody has that disparity."""
-    edge, other, owner = (200, 0, 80), (170, 0, 80), (190, 0, 80)
-    left, right = [[edge], [], [edge], [], []], [[other], [], [other], [], []]
-    assert found(left, right, LIKE)[1] == 2
-    left[2:], right[2:] = [[owner, edge], [owner], [owner]], [[other]] * 3
-    assert [each[3] for each in found(left, right, LIKE)[0]] == [4, 3, 1]
+def test_a_pair_needs_others_to_be_believed() -> None:
+    """Three rows agree, or would if the right edge of the lowest did not belong to another edge, which is more like it."""
+    edge, other, owner = (200, 0, 50), (170, 0, 80), (190, 0, 80)
+    assert found([[edge]] * 3, [[other]] * 3, LIKE)[1] == 3
+    left = [[edge], [edge], [owner, edge], [owner], [owner]]
+    assert [each[3] for each in found(left, [[other]] * 5, LIKE)[0]] == [5, 4, 2]
 
 
 @pytest.mark.parametrize(
     ("x", "other", "direction", "number"),
     [
-        (200, 170, 0, 3),
-        (200, 169, 0, 3),  # a pixel more disparity
-        (200, 168, 0, 2),
-        (201, 172, 0, 3),  # it leans
-        (201, 173, 0, 2),
-        (202, 172, 0, 3),  # beside that two rows below
-        (203, 173, 0, 2),
-        (200, 170, 16, 3),  # turned by as much as those that follow may be
-        (200, 170, 17, 2),
-        (200, 170, -16, 3),
+        (200, 170, 0, 4),
+        (200, 169, 0, 4),  # a pixel more disparity
+        (200, 168, 0, 3),
+        (212, 182, 0, 4),  # as far beside them as it may be
+        (213, 183, 0, 3),
+        (200, 170, 16, 4),  # turned by as much as those that follow may be
+        (200, 170, 17, 3),
+        (200, 170, -16, 4),
     ],
 )
-def test_an_edge_follows_those_around(x: int, other: int, direction: int, number: int) -> None:
-    """Two rows agree; the third is too unlike to match by itself, or has a rival, and takes their disparity."""
+def test_an_edge_follows_those_below(x: int, other: int, direction: int, number: int) -> None:
+    """Three rows agree; the one above is too unlike to match by itself, or has a rival, and takes their disparity."""
     pair, rival = (other, direction % 256, 80), (100, 0, 80)
     left, right = [[(x, 0, 80)]], [sorted([rival, pair])]
-    assert found([*left, *[[(200, 0, 80)]] * 2], [*right, *[[(170, 0, 80)]] * 2], LIKE)[1] == number
+    assert found([*left, *[[(200, 0, 80)]] * 3], [*right, *[[(170, 0, 80)]] * 3], LIKE)[1] == number
 
 
-def test_a_chain_is_followed_to_its_ends() -> None:
-    """From the only two rows that are certain upwards row by row, and downwards as far as two rows."""
+@pytest.mark.parametrize("x", [190, 210])
+def test_an_edge_follows_those_of_its_row(x: int) -> None:
+    """To the left and to the right of one that is believed."""
+    left, right = [[(200, 0, 80)]] * 3, [[(170, 0, 80)]] * 3
+    left[2], right[2] = sorted([*left[2], (x, 0, 80)]), sorted([*right[2], (x - 30, 16, 80)])
+    assert found(left, right, LIKE)[1] == 4
+
+
+def test_an_edge_does_not_follow_those_above() -> None:
+    """They are not settled when it is."""
+    left, right = [[(200, 0, 80)]] * 4, [*[[(170, 0, 80)]] * 3, [(170, 16, 80)]]
+    assert [found(left[::step], right[::step], LIKE)[1] for step in (1, -1)] == [3, 4]
+
+
+def test_a_chain_is_followed_to_its_top() -> None:
+    """Two rows make the two above and below certain; from these on row by row upwards, not downwards."""
     unsure = [[(100, 0, 80), (170, 0, 80)]]
-    left = [[(200, 0, 80)]] * 9
-    right = [*unsure * 3, *[[(170, 0, 80)]] * 2, *unsure * 4]
-    limits = replace(LIKE, lack=0)
-    assert found(left, right, limits)[1] == 0  # without support nothing is certain
-    assert found(left, right, LIKE)[1] == 9
+    left = [[(200, 0, 80)]] * 11
+    right = [*unsure * 5, *[[(170, 0, 80)]] * 2, *unsure * 4]
+    assert found(left, right, replace(LIKE, lack=0))[1] == 0  # without support nothing is certain
+    assert [each[3] for each in found(left, right, LIKE)[0]] == [8, 7, 6, 5, 4, 3, 2, 1, 0]
 
 
 def test_an_edge_belongs_to_one_edge_only() -> None:
     """Two left edges, one right edge: it belongs to the one that is more like it."""
-    left, right = [[(190, 0, 60), (200, 0, 90)]] * 2, [[(170, 0, 85)]] * 2
-    assert [each[3] for each in found(left, right, LIKE)[0]] == [3, 1]
-    assert [each[3] for each in found(left, right, NEAR)[0]] == [2, 3, 0, 1]
+    left, right = [[(190, 0, 60), (200, 0, 90)]] * 3, [[(170, 0, 85)]] * 3
+    assert [each[3] for each in found(left, right, LIKE)[0]] == [5, 3, 1]
+    assert [each[3] for each in found(left, right, NEAR)[0]] == [4, 5, 2, 3, 0, 1]
 
 
 def test_level_edges_are_left_out() -> None:

@@ -1,8 +1,11 @@
 """What the disparities around say of an edge's: most things go on in the next rows, at nearly the depth that they have here.
 
-A pair that matched by itself (`edge_correspondence.py`) is believed if some pair in the rows around has its disparity, to a
-pixel. An edge without a pair then follows those around: it takes the most similar of the right edges at their disparities.
-There are few of these, so its gradient may be turned farther than that of a pair which had the whole row to choose from.
+A pair that matched by itself (`edge_correspondence.py`) is believed if pairs in two of the four rows around have its disparity,
+to a pixel. An edge without a pair then follows those that are believed, in its row and the two below: it takes the most similar
+of the right edges at their disparities. The rows above it must not follow: whether they are believed is not known yet, and what
+is wrong there would be followed here and then believed for it. There are few disparities to choose from, so its gradient may be
+turned farther than that of a pair which had the whole row, and they may lie farther beside it: contours lean, and many things
+are as deep a little farther on.
 
 A row of disparities holds by the column of each left edge its disparity in pixels and 1, or 0 where there is none.
 """
@@ -16,6 +19,12 @@ OFFER_BITS = 12
 """More than the disparities of any picture need."""
 
 NO_OFFER = WORST << OFFER_BITS
+
+LEAST_SUPPORT = 2
+"""Rows around that must have a disparity: chance gives one of the four easily, but seldom two."""
+
+FOLLOW_REACH = 12
+"""Columns to both sides of an edge in which it finds disparities to follow."""
 
 
 @kernel
@@ -57,7 +66,7 @@ def believe_edges(
     below2: u16[:],
     right_edges: u16[:],
 ) -> None:
-    """Take the disparities of a row away that no row around believes, and from `right_edges` the edges of the others.
+    """Take the disparities of a row away that the rows around do not believe, and from `right_edges` the edges of the others.
 
     `right_edges` has the row's gradients and directions by column, or 0, as a window of `spread_edges`.
     """
@@ -65,12 +74,9 @@ def believe_edges(
         x = i32(left_row[left] >> 16)
         disparity = i32(here[x])
         if disparity != 0:
-            if (
-                has_like(below, x, 1, disparity) != 0
-                or has_like(above, x, 1, disparity) != 0
-                or has_like(below2, x, 2, disparity) != 0
-                or has_like(above2, x, 2, disparity) != 0
-            ):
+            support = has_like(below, x, 1, disparity) + has_like(above, x, 1, disparity)
+            support = support + has_like(below2, x, 2, disparity) + has_like(above2, x, 2, disparity)
+            if support >= LEAST_SUPPORT:
                 right_edges[x - disparity + 1] = 0
             else:
                 here[x] = 0
@@ -78,35 +84,56 @@ def believe_edges(
 
 @kernel
 def best_offer(
-    edge: u32, disparities: u16[:], away: i32, right_edges: u16[:], follow_range: i32, max_disparity: i32
+    edge: u32,
+    row: u32[:],
+    first: i32,
+    count: i32,
+    disparities: u16[:],
+    right_edges: u16[:],
+    follow_range: i32,
+    max_disparity: i32,
 ) -> i32:
-    """Return how unlike `edge` the right edge is that is most like it of those that a row around offers.
+    """Return how unlike `edge` the right edge is that is most like it of those that a row offers.
 
-    These are those at the disparities of the edges `away` from its column at most, and a pixel beside. The lower OFFER_BITS
-    are the disparity and 1; without an offer it is NO_OFFER or more.
+    These are those at the disparities of the edges FOLLOW_REACH from its column at most, and a pixel beside; `row` has the
+    row's `count` edges, of which those before place `first` are farther away. The lower OFFER_BITS are the disparity and 1;
+    without an offer it is NO_OFFER or more.
     """
     x = i32(edge >> 16)
     most = min(x, max_disparity) + 1
     best = NO_OFFER
     before = 0
-    for column in range(max(x - away, 0), min(x + away, len(disparities) - 1) + 1):
+    for place in range(first, count):
+        column = i32(row[place] >> 16)
+        if column > x + FOLLOW_REACH:
+            break
         known = i32(disparities[column])
-        if known != before and known > 0:
+        if known > 0 and known != before:
             for disparity in range(max(known - 1, 1), min(known + 1, most) + 1):
                 other = i32(right_edges[x - disparity + 1])
                 if other != 0:
                     off = unlike(i32(edge & 0xFFFF), other, follow_range)
                     best = min(best, off << OFFER_BITS | disparity)
-        before = known
+            before = known
     return best
+
+
+@kernel
+def first_in_reach(row: u32[:], first: i32, count: i32, x: i32) -> i32:
+    """Return the place, from `first` on, of the first edge of a row that is not too far to the left of column `x`."""
+    while first < count and i32(row[first] >> 16) < x - FOLLOW_REACH:
+        first = first + 1
+    return first
 
 
 @kernel
 def follow_edges(
     left_row: u32[:],
     left_count: i32,
-    above2: u16[:],
-    above: u16[:],
+    below_row: u32[:],
+    below_count: i32,
+    below2_row: u32[:],
+    below2_count: i32,
     here: u16[:],
     below: u16[:],
     below2: u16[:],
@@ -115,14 +142,27 @@ def follow_edges(
     max_disparity: i32,
 ) -> None:
     """Give the left edges of a row that have no disparity one of those around; a right edge belongs to one only."""
+    first = 0
+    first_below = 0
+    first_below2 = 0
     for left in range(left_count):
         edge = left_row[left]
         x = i32(edge >> 16)
         if here[x] == 0:
-            best = best_offer(edge, below, 1, right_edges, follow_range, max_disparity)
-            best = min(best, best_offer(edge, above, 1, right_edges, follow_range, max_disparity))
-            best = min(best, best_offer(edge, below2, 2, right_edges, follow_range, max_disparity))
-            best = min(best, best_offer(edge, above2, 2, right_edges, follow_range, max_disparity))
+            first = first_in_reach(left_row, first, left_count, x)
+            first_below = first_in_reach(below_row, first_below, below_count, x)
+            first_below2 = first_in_reach(below2_row, first_below2, below2_count, x)
+            best = best_offer(
+                edge, left_row, first, left_count, here, right_edges, follow_range, max_disparity
+            )
+            offer = best_offer(
+                edge, below_row, first_below, below_count, below, right_edges, follow_range, max_disparity
+            )
+            best = min(best, offer)
+            offer = best_offer(
+                edge, below2_row, first_below2, below2_count, below2, right_edges, follow_range, max_disparity
+            )
+            best = min(best, offer)
             if best < NO_OFFER:
                 disparity = best & (1 << OFFER_BITS) - 1
                 here[x] = disparity

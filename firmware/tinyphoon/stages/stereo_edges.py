@@ -82,6 +82,7 @@ class _Rows:
     right_row: Row
     windows: tuple[Row, Row]
     right_window_rows: tuple[Row, ...]
+    below_rows: tuple[Row, ...]
     level_range: int
 
     @classmethod
@@ -91,12 +92,23 @@ class _Rows:
         left_window, right_window = (core.overlay(each, u16, WINDOW_ROWS * width)[0] for each in _WINDOWS)
         right_window_rows = core.overlay(_WINDOWS[1], u16, width)[:WINDOW_ROWS]
         windows = (left_window, right_window), right_window_rows
-        return cls(core, edge_store(core), right, *lists, *windows, level_range)
+        below_rows = core.overlay(_SCORES, u32, width)[:REACH]
+        return cls(core, edge_store(core), right, *lists, *windows, tuple(below_rows), level_range)
 
     def take_left(self, y: int) -> Generator[Any, Any, tuple[Row, int]]:
         """Return the edges of the left picture in row `y`, and how many."""
         count: int = yield self.core.run(take_left_row, *self.left, y, self.left_row, self.level_range)
         return self.left_row, count
+
+    def take_below(self, y: int, height: int) -> Generator[Any, Any, list[Row | int]]:
+        """Return the edges of the left picture in the REACH rows below row `y` of `height`, each with how many."""
+        found: list[Row | int] = []
+        for beside, room in enumerate(self.below_rows, y + 1):
+            count = 0
+            if beside < height:
+                count = yield self.core.run(take_left_row, *self.left, beside, room, self.level_range)
+            found += room, count
+        return found
 
     def take_right(self, y: int) -> Generator[Any, Any, tuple[Row, int]]:
         """Return the edges of the right picture in row `y`, and how many."""
@@ -113,6 +125,9 @@ class _Rows:
 
 _WINDOWS = "colour_ring", "eroded_ring"
 """Where the windows of both pictures lie."""
+
+_SCORES = "opened_ring"
+"""Where matching a row has its scores, and settling one the edges of the rows below."""
 
 
 def _disparity_rows(core: Core, element: Any, columns: int) -> tuple[Row, ...]:
@@ -142,7 +157,7 @@ class _Search:
 
     @classmethod
     def of(cls, core: Core, frame: Frame, thresholds: StereoEdgeThresholds, least: int, most: int) -> _Search:
-        partners, *scores = core.overlay("opened_ring", u16, frame.width)
+        partners, *scores = core.overlay(_SCORES, u16, frame.width)
         return cls(
             core=core, rows=_Rows.of(core, frame.width, thresholds.level_range), thresholds=thresholds,
             height=frame.height, least=least, most=most, partners=partners, scores=tuple(scores),
@@ -193,9 +208,11 @@ class _Search:
         slot = y % WINDOW_ROWS
         if self.is_mutual:
             around = [self.disparities[(y + step) % WINDOW_ROWS] for step in range(-REACH, REACH + 1)]
-            row = *left, *around, self.rows.right_window_rows[slot]
-            yield self.core.run(believe_edges, *row)
-            yield self.core.run(follow_edges, *row, self.thresholds.follow_range, self.most)
+            right = self.rows.right_window_rows[slot]
+            yield self.core.run(believe_edges, *left, *around, right)
+            below = yield from self.rows.take_below(y, self.height)
+            limits = self.thresholds.follow_range, self.most
+            yield self.core.run(follow_edges, *left, *below, *around[REACH:], right, *limits)
         return *left, self.disparities[slot]
 
 
