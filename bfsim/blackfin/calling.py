@@ -19,7 +19,7 @@ from bfsim.blackfin.effects import Event
 from bfsim.blackfin.guard import runner
 from bfsim.blackfin.processor import OUTSIDE
 from bfsim.blackfin.registers import SLOTS
-from bfsim.blackfin.subroutines import REGISTERS, STACK, STACK_BYTES, WORD_BYTES, Placed, Subroutine
+from bfsim.blackfin.subroutines import REGISTERS, RESULT, STACK, STACK_BYTES, WORD_BYTES, Placed, Subroutine
 
 (
     CODE, MEMORY, STATE, COUNTS, COUNTED,  # the native code, its memory, registers and counts, and how many these are
@@ -214,7 +214,7 @@ class BoundCall:
         self._block = (ctypes.c_int64 * len(values))(*values)
         self._at = ctypes.addressof(self._block)
         self.arguments: Any = (ctypes.c_int64 * room).from_buffer(self._block, 8 * HEAD)
-        self._result = ctypes.c_uint32.from_address(state.slots.ctypes.data + 8 * SLOTS["R0"])
+        self._result = ctypes.c_uint32.from_address(state.slots.ctypes.data + 8 * SLOTS[RESULT])
         self._entry, self._run = _entry(), runner().address
 
     def run(self) -> tuple[int, int]:

@@ -12,7 +12,7 @@ from llvmlite import ir
 
 from bfsim.blackfin.decode import Instruction
 from bfsim.blackfin.effects import I32, Effects
-from bfsim.blackfin.registers import FLAGS, STATE
+from bfsim.blackfin.registers import FLAGS, STATE, width
 from bfsim.blackfin.semantics import SEMANTICS
 from bfsim.blackfin.value import Value
 
@@ -60,13 +60,13 @@ def _noted(instruction: Instruction) -> Registers:
     builder = ir.IRBuilder(function.append_basic_block())
     reads: set[str] = set()
 
-    def slot(register: str) -> ir.Value:
+    def fetch(register: str) -> ir.Value:
         reads.add(register)
-        return function.args[0]
+        return builder.load(function.args[0], typ=ir.IntType(width(register)))
 
     following = Value(builder, I32(instruction.end))
     clock = Value(builder, ir.Constant(ir.IntType(64), 0))
-    effects = _Noting(builder, slot, function.args[0], lambda: clock, instruction.address, lambda: following)
+    effects = _Noting(builder, fetch, function.args[0], lambda: clock, instruction.address, lambda: following)
     for each in instruction.operations:
         SEMANTICS[each.form.does](effects, **each.operands, **each.form.given)
     loaded = {

@@ -65,12 +65,12 @@ class Report(Protocol):
 class Effects:
     """The effects of the instruction at `address`.
 
-    `slots`: where on the stack native code has a register. `memory`: the host's address of the Blackfin's address 0. `clock`: adds up
+    `fetch`: returns what a register is before it. `memory`: the host's address of the Blackfin's address 0. `clock`: adds up
     the cycles of all that was executed before this block. `following`: the address of what is executed next if nothing jumps.
     """
 
     builder: ir.IRBuilder
-    slots: Callable[[str], ir.Value]
+    fetch: Callable[[str], ir.Value]
     memory: ir.Value
     clock: Callable[[], Value]
     address: int
@@ -196,14 +196,8 @@ class Effects:
         counts = _counts(self._newest("SYSCFG"))
         self.pending["CYCLES_OFFSET"] = counts.choose(now - self.clock(), now)
 
-    def commit(self) -> None:
-        """Make the writes."""
-        for name, value in self.pending.items():
-            self.builder.store(value.ir, self.slots(name))
-
     def _fetched(self, register: str) -> Value:
-        slot = self.slots(register)
-        return Value(self.builder, self.builder.load(slot, typ=ir.IntType(width(register))))
+        return Value(self.builder, self.fetch(register))
 
     def _newest(self, register: str) -> Value:
         return self.pending.get(register) or self.read(register)

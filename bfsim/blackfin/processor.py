@@ -93,6 +93,7 @@ class Processor:
     code is translated anew with them. `fuel`: with it, at most so many blocks are run by a call of `run`. `effort`: of LLVM, if
     not by the code's size. `name`: under which the first native code is kept, so that it need not be made of the instructions again.
     `tracing`: how accesses to memory are reported. `explored`: adds to the entries what is found by looking at the code, before it is translated for the first time.
+    `results`: registers that are read when it has run, if not all; others are not kept.
     """
 
     space: AddressSpace
@@ -105,6 +106,7 @@ class Processor:
     name: str = ""
     tracing: Tracing | None = None
     explored: Callable[[set[int]], set[int]] | None = None
+    results: frozenset[str] | None = None
 
     def prepared(self) -> Translated:
         """Return the native code of all that can be reached from the entries."""
@@ -166,7 +168,9 @@ class Processor:
     def _compiled(self) -> bytes:
         """Make the machine code; return how many counters it has, and it."""
         code = self.code()
-        text = translate(code, self.timing, fuel=self.fuel is not None, tracing=self.tracing)
+        text = translate(
+            code, self.timing, fuel=self.fuel is not None, tracing=self.tracing, results=self.results
+        )
         machine = native_code(text, self.effort if self.effort is not None else effort_for(code))
         return len(counters(code, self.timing)).to_bytes(COUNT_BYTES, "little") + machine
 

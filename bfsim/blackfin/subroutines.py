@@ -35,6 +35,7 @@ ARRAY_ALIGN = 16
 """As numpy's own arrays are aligned on the host, so that where they lie there does not matter."""
 WORD_BYTES = 4
 REGISTERS = ("R0", "R1", "R2")
+RESULT = "R0"
 
 
 @dataclass
@@ -56,7 +57,9 @@ class LoadedImage:
     def subroutine(self, symbol: str, timing: Timing = GNU, name: str = "") -> Subroutine:
         """Return the function called `symbol`; its native code is kept under `name`. Raises KernelError if there is none."""
         address = self.image.address_of(symbol)
-        processor = Processor(self.space, timing, {address}, name=name, explored=self._entries)
+        processor = Processor(
+            self.space, timing, {address}, name=name, explored=self._entries, results=frozenset({RESULT})
+        )
         return Subroutine(symbol, address, processor)
 
     def _entries(self, first: set[int]) -> set[int]:

@@ -2,7 +2,7 @@
 
 The function is `int(memory, state, counts)`: it goes on from the address in the PC of the state until it meets an event
 (`effects.Event`), which it returns; registers are in the state again then, and the counts are added to.
-Registers are slots on its stack, which LLVM turns into its own. Jumps whose target is computed go through one switch over all
+Registers are slots on its stack, which LLVM turns into its own; within a block they are values, and slots are written at its end. Jumps whose target is computed go through one switch over all
 addresses that they may lead to; another address is an event as well, and whoever runs the code may translate it anew with that
 address among its entries. The hardware's loops are checked for behind each instruction with which one ends, as the hardware does:
 by the registers LC, LT and LB, so that code may also leave, save and restore them.
@@ -29,6 +29,7 @@ from bfsim.blackfin.value import Value
 POINTER = ir.PointerType()
 REPORT = ir.FunctionType(ir.VoidType(), (POINTER, I64, I64, I64, I64))
 NAME = "blackfin"
+ALWAYS_READ = frozenset({"PC", "CLOCK", "WAITED"})
 LARGE_PROGRAM_BLOCKS = 500
 """[ours] LLVM's time to optimise one function of more blocks grows with their square: minutes for a program with newlib's printf."""
 
@@ -77,19 +78,36 @@ def counters(code: Code, timing: Timing) -> list[Counter]:
     return found
 
 
-def translate(code: Code, timing: Timing, *, fuel: bool = False, tracing: Tracing | None = None) -> str:
+def translate(
+    code: Code,
+    timing: Timing,
+    *,
+    fuel: bool = False,
+    tracing: Tracing | None = None,
+    results: frozenset[str] | None = None,
+) -> str:
     """Return the LLVM module of code; its function is called `NAME`. With `fuel`, the FUEL of the state is how many blocks it may run.
 
     With `tracing`, accesses to memory are reported, each with the cycle of this call of the function at which its instruction is issued.
+    `results`: registers that somebody reads when it is left, if not all.
     """
-    return str(_Translation(code, timing, fuel=fuel, tracing=tracing).module())
+    return str(_Translation(code, timing, fuel=fuel, tracing=tracing, results=results).module())
 
 
 class _Translation:
     """The function while it is made."""
 
-    def __init__(self, code: Code, timing: Timing, *, fuel: bool, tracing: Tracing | None) -> None:
+    def __init__(
+        self,
+        code: Code,
+        timing: Timing,
+        *,
+        fuel: bool,
+        tracing: Tracing | None,
+        results: frozenset[str] | None,
+    ) -> None:
         self.code, self.timing, self.fuel, self.tracing = code, timing, fuel, tracing
+        self.results = None if results is None else results | ALWAYS_READ
         counted = self.counted = counters(code, timing)
         self.made = ir.Module(NAME)
         self.function = ir.Function(self.made, ir.FunctionType(I32, (POINTER, POINTER, POINTER)), NAME)
@@ -101,6 +119,7 @@ class _Translation:
         self.at = {start: self._new(f"at_{start:08x}") for start in code.blocks}
         self.is_large = is_large(code)
         self.slots: dict[str, ir.Instruction] = {}
+        self.values: dict[str, ir.Value] = {}
         self.clock = _sum(self.made, "clock", [each.cclk + each.stall_cclk for each in counted])
         self.waited = _sum(self.made, "waited", [each.stall_cclk for each in counted])
         self.numbers = {
@@ -137,6 +156,8 @@ class _Translation:
 
     def _block(self, block: Block) -> None:
         builder = ir.IRBuilder(self.at[block.start])
+        self.values.clear()
+        written: dict[str, None] = {}
         if self.fuel:
             self._burn(builder, block.start)
         flow: Flow | None = None
@@ -144,8 +165,14 @@ class _Translation:
         number = self.numbers[block.start, False, None]
         for instruction, wait in zip(block.instructions, self.counted[number].waits, strict=True):
             cclk += wait.cclk
-            flow = self._instruction(builder, instruction, cclk)
+            effects = self._instruction(builder, instruction, cclk)
+            for register, value in effects.pending.items():
+                self.values[register] = value.ir
+                written[register] = None
+            flow = effects.flow
             cclk += self.timing.of(instruction)
+        for register in written:
+            builder.store(self.values[register], self.slot(register))
         self._add(builder, number, I64(1))
         self._pass(builder, I64(cclk))
         if flow and flow.condition and block.branches:
@@ -161,11 +188,17 @@ class _Translation:
             self._loops(builder, block)
             self._fall(builder, block)
 
-    def _instruction(self, builder: ir.IRBuilder, instruction: Instruction, cclk: int) -> Flow | None:
+    def _value(self, builder: ir.IRBuilder, register: str) -> ir.Value:
+        """Return what a register is behind the instructions of the block so far."""
+        if register not in self.values:
+            self.values[register] = self._read(builder, register)
+        return self.values[register]
+
+    def _instruction(self, builder: ir.IRBuilder, instruction: Instruction, cclk: int) -> Effects:
         """Add an instruction that is issued `cclk` cycles after its block has begun."""
         effects = Effects(
             builder,
-            self.slot,
+            partial(self._value, builder),
             self.memory,
             lambda: self._clock(builder),
             instruction.address,
@@ -174,8 +207,7 @@ class _Translation:
         )
         for each in instruction.operations:
             SEMANTICS[each.form.does](effects, **each.operands, **each.form.given)
-        effects.commit()
-        return effects.flow
+        return effects
 
     def _report(
         self,
@@ -273,7 +305,7 @@ class _Translation:
         for counter in (0, 1):
             if (instruction.address, counter) in self.code.loop_starts:
                 left, end, start = (
-                    Value(builder, self._read(builder, f"{each}{counter}")) for each in ("LC", "LB", "LT")
+                    Value(builder, self._value(builder, f"{each}{counter}")) for each in ("LC", "LB", "LT")
                 )
                 again = found.constant(1).below(left) & end.equals(instruction.address)
                 found = again.choose(start, found)
@@ -313,11 +345,13 @@ class _Translation:
         builder.branch(self.leave)
 
     def _leave(self) -> None:
-        """Give back the registers."""
+        """Give back the registers that are read: LLVM need not keep what others hold, which is most of the flags."""
         builder = ir.IRBuilder(self.leave)
         builder.store(self._clock(builder).ir, self.slot("CLOCK"))
         builder.store(builder.call(self.waited, [self.counts]), self.slot("WAITED"))
         for name, slot in self._copied():
+            if self.results is not None and name not in self.results:
+                continue
             value = builder.load(slot)
             whole = value if width(name) == 64 else builder.zext(value, I64)
             builder.store(whole, self._place(builder, name), align=8)
