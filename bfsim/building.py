@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from functools import partial
 
 from bfsim.kernel import CompilerProfile
 from bfsim.kernel.build import Build
@@ -36,7 +35,7 @@ def build_for(loaded: LoadedFirmware, profile: CompilerProfile) -> Build:
     there = LoadedCode(code, timing_of(profile))
     return Build(
         profile,
-        {each: partial(there.compiled, each) for each in code.names if there.has(each)},
+        {each: there for each in code.names if there.has(each)},
         f"GCC {code.compiler} {level_of(profile)}, timing {there.timing.name}",
         hashlib.sha256(code.octets).hexdigest(),
     )

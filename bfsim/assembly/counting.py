@@ -41,7 +41,7 @@ class _Caller:
 
     def events(self) -> Tally[Event]:
         """Return how often each event was counted."""
-        counters = self.compiled.subroutine.translated.counters
+        counters = self.compiled.subroutine.translated.counted.counters
         found: Tally[Event] = Tally()
         for number, count in zip(self.compiled.order.tolist(), self.totals.tolist(), strict=False):
             counter = counters[number]

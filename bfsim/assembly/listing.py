@@ -59,7 +59,7 @@ class _Listing:
 
     @property
     def timing(self) -> Timing:
-        return self.kernel_code.compiled.subroutine.translated.timing
+        return self.kernel_code.compiled.subroutine.translated.counted.timing
 
     @cached_property
     def blocks(self) -> list[Block]:

@@ -33,6 +33,8 @@ class Pointer:
 
     def joined(self, other: Pointer) -> Pointer:
         """Return what is known of a value that is one or the other."""
+        if self is other:
+            return self
         frame = self.frame if self.frame == other.frame else None
         return Pointer(self.arrays | other.arrays, self.less | other.less, frame)
 
@@ -108,7 +110,11 @@ class _State:
 
 
 def _of(origin: Origin, known: Mapping[str, Pointer]) -> Pointer:
-    added, subtracted = ([known.get(each, NUMBER) for each in part] for part in (origin.of, origin.less))
+    added, subtracted = ([known[each] for each in part if each in known] for part in (origin.of, origin.less))
+    if not subtracted and all(each is NUMBER for each in added):
+        return NUMBER
+    if not subtracted and not origin.offset and [origin.base] == [*origin.of]:
+        return added[0]
     plus = _union((each.arrays for each in added), (each.less for each in subtracted))
     minus = _union((each.less for each in added), (each.arrays for each in subtracted))
     base = known.get(origin.base, NUMBER).frame if origin.base else None

@@ -20,7 +20,7 @@ from bfsim.blackfin.guard import runner
 from bfsim.blackfin.registers import ACCUMULATOR_PARTS, ACCUMULATORS, ASTAT_UNUSED, FLAGS, SLOTS
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.blackfin.tracing import Tracing
-from bfsim.blackfin.translate import NAME, Counter, counters, is_large, translate
+from bfsim.blackfin.translate import NAME, Counted, is_large, translate
 from bfsim.errors import BfsimError
 from bfsim.machine_code import Effort
 
@@ -66,23 +66,22 @@ class State:
 
 @dataclass
 class Translated:
-    """Code in this process. `counts`: how often each of `counters` has counted since it was translated. `explore`: finds the code."""
+    """Code in this process. `counts`: how often each of its counters has counted since it was translated. `explore`: finds the code."""
 
     entry: int
     native: llvm.ExecutionEngine
     counts: NDArray[np.int64]
-    timing: Timing
-    explore: Callable[[], Code]
+    explore: Callable[[], Counted]
 
     @cached_property
-    def code(self) -> Code:
-        """The code that it was made of."""
+    def counted(self) -> Counted:
+        """The code that it was made of, and what is counted, in the order of the counts."""
         return self.explore()
 
-    @cached_property
-    def counters(self) -> list[Counter]:
-        """What is counted, in the order of the counts."""
-        return counters(self.code, self.timing)
+    @property
+    def code(self) -> Code:
+        """The code that it was made of."""
+        return self.counted.code
 
 
 @dataclass(slots=True)
@@ -92,7 +91,7 @@ class Processor:
     `entries`: addresses at which it can be started or that its code computes; others are found when control comes there, and the
     code is translated anew with them. `fuel`: with it, at most so many blocks are run by a call of `run`. `effort`: of LLVM, if
     not by the code's size. `name`: under which the first native code is kept, so that it need not be made of the instructions again.
-    `tracing`: how accesses to memory are reported. `explored`: adds to the entries what is found by looking at the code, before it is translated for the first time.
+    `tracing`: how accesses to memory are reported. `explore`: finds the code that can be reached from entries, if not from them alone.
     `results`: registers that are read when it has run, if not all; others are not kept.
     """
 
@@ -105,7 +104,7 @@ class Processor:
     translated: Translated | None = None
     name: str = ""
     tracing: Tracing | None = None
-    explored: Callable[[set[int]], set[int]] | None = None
+    explore: Callable[[frozenset[int]], Counted] | None = None
     results: frozenset[str] | None = None
 
     def prepared(self) -> Translated:
@@ -163,22 +162,21 @@ class Processor:
         count, machine = int.from_bytes(kept[:COUNT_BYTES], "little"), kept[COUNT_BYTES:]
         native = machine_code.loaded(machine)
         counts = np.zeros(count, np.int64)
-        return Translated(native.get_function_address(NAME), native, counts, self.timing, self.code)
+        return Translated(native.get_function_address(NAME), native, counts, self.counted)
 
     def _compiled(self) -> bytes:
         """Make the machine code; return how many counters it has, and it."""
-        code = self.code()
-        text = translate(
-            code, self.timing, fuel=self.fuel is not None, tracing=self.tracing, results=self.results
-        )
-        machine = native_code(text, self.effort if self.effort is not None else effort_for(code))
-        return len(counters(code, self.timing)).to_bytes(COUNT_BYTES, "little") + machine
+        found = self.counted()
+        text = translate(found, fuel=self.fuel is not None, tracing=self.tracing, results=self.results)
+        machine = native_code(text, self.effort if self.effort is not None else effort_for(found.code))
+        return len(found.counters).to_bytes(COUNT_BYTES, "little") + machine
 
-    def code(self) -> Code:
+    def counted(self) -> Counted:
         """Return all that can be reached from the entries."""
-        if self.explored:
-            self.entries, self.explored = self.explored(self.entries), None
-        return Code(self.space.fetch, frozenset(self.entries))
+        entries = frozenset(self.entries)
+        if self.explore:
+            return self.explore(entries)
+        return Counted(Code(self.space.fetch, entries), self.timing)
 
     def _refusal(self, address: int) -> str:
         assert self.translated

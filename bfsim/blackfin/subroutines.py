@@ -11,6 +11,7 @@ import mmap
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, NoReturn
 
 import numpy as np
@@ -23,6 +24,7 @@ from bfsim.blackfin.guard import runner
 from bfsim.blackfin.linking import Image
 from bfsim.blackfin.processor import Processor, Translated
 from bfsim.blackfin.timing import GNU, Timing
+from bfsim.blackfin.translate import Counted
 from bfsim.errors import KernelError
 
 Octets = NDArray[np.uint8]
@@ -44,6 +46,8 @@ class LoadedImage:
 
     image: Image
     space: AddressSpace = field(default_factory=AddressSpace)
+    _codes: dict[frozenset[int], Code] = field(default_factory=dict)
+    _counted: dict[tuple[frozenset[int], str], Counted] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         used = [(each.address, each.end) for each in self.image.segments]
@@ -58,9 +62,28 @@ class LoadedImage:
         """Return the function called `symbol`; its native code is kept under `name`. Raises KernelError if there is none."""
         address = self.image.address_of(symbol)
         processor = Processor(
-            self.space, timing, {address}, name=name, explored=self._entries, results=frozenset({RESULT})
+            self.space,
+            timing,
+            {address},
+            name=name,
+            explore=partial(self._counted_from, timing),
+            results=frozenset({RESULT}),
         )
         return Subroutine(symbol, address, processor)
+
+    def explored(self, *first: int) -> Code:
+        """Return the code that is entered at `first`; it is looked for once."""
+        key = frozenset(first)
+        if key not in self._codes:
+            self._codes[key] = Code(self.space.fetch, frozenset(self._entries(set(first))))
+        return self._codes[key]
+
+    def _counted_from(self, timing: Timing, first: frozenset[int]) -> Counted:
+        """Return that with its counters, which are the same with and without reports of accesses."""
+        key = first, timing.digest
+        if key not in self._counted:
+            self._counted[key] = Counted(self.explored(*first), timing)
+        return self._counted[key]
 
     def _entries(self, first: set[int]) -> set[int]:
         """Where code can be entered that starts at `first`: there, and where the switches of its functions lead to."""

@@ -11,6 +11,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property
 from typing import NamedTuple
 
 from bfsim.blackfin.decode import Instruction, Operation
@@ -31,7 +32,7 @@ class Whole(NamedTuple):
     cclk: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Timing:
     """Core clock cycles of instructions. `cclk`: by what they do, where it is not 1; of a branch, if it is not taken.
 
@@ -72,7 +73,7 @@ class Timing:
             return self.of(instruction)
         return self.taken_cclk[instruction.operations[0].form.does]
 
-    @property
+    @cached_property
     def digest(self) -> str:
         """SHA-256 of all that it says."""
         return hashlib.sha256(json.dumps(asdict(self), default=sorted, sort_keys=True).encode()).hexdigest()

@@ -11,7 +11,7 @@ by the registers LC, LT and LB, so that code may also leave, save and restore th
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 
 from llvmlite import ir
 
@@ -60,8 +60,20 @@ def is_large(code: Code) -> bool:
     return len(code.blocks) > LARGE_PROGRAM_BLOCKS
 
 
-def counters(code: Code, timing: Timing) -> list[Counter]:
-    """Return the counters of code, in the order of the counts."""
+@dataclass(frozen=True)
+class Counted:
+    """Code, and what is counted of it with a timing."""
+
+    code: Code
+    timing: Timing
+
+    @cached_property
+    def counters(self) -> list[Counter]:
+        """What is counted, in the order of the counts."""
+        return _counters(self.code, self.timing)
+
+
+def _counters(code: Code, timing: Timing) -> list[Counter]:
     waits = stalls(code, timing)
     found = [
         Counter(each, sum(map(timing.of, each.instructions)), waits=waits.jumped[start])
@@ -79,8 +91,7 @@ def counters(code: Code, timing: Timing) -> list[Counter]:
 
 
 def translate(
-    code: Code,
-    timing: Timing,
+    of: Counted,
     *,
     fuel: bool = False,
     tracing: Tracing | None = None,
@@ -91,7 +102,7 @@ def translate(
     With `tracing`, accesses to memory are reported, each with the cycle of this call of the function at which its instruction is issued.
     `results`: registers that somebody reads when it is left, if not all.
     """
-    return str(_Translation(code, timing, fuel=fuel, tracing=tracing, results=results).module())
+    return str(_Translation(of, fuel=fuel, tracing=tracing, results=results).module())
 
 
 class _Translation:
@@ -99,16 +110,15 @@ class _Translation:
 
     def __init__(
         self,
-        code: Code,
-        timing: Timing,
+        of: Counted,
         *,
         fuel: bool,
         tracing: Tracing | None,
         results: frozenset[str] | None,
     ) -> None:
-        self.code, self.timing, self.fuel, self.tracing = code, timing, fuel, tracing
+        self.code, self.timing, self.fuel, self.tracing = of.code, of.timing, fuel, tracing
         self.results = None if results is None else results | ALWAYS_READ
-        counted = self.counted = counters(code, timing)
+        counted = self.counted = of.counters
         self.made = ir.Module(NAME)
         self.function = ir.Function(self.made, ir.FunctionType(I32, (POINTER, POINTER, POINTER)), NAME)
         self.memory, self.state, self.counts = self.function.args
@@ -116,8 +126,8 @@ class _Translation:
             each.add_attribute("noalias")
         self.entry = self._new("entry")
         self.dispatch, self.leave = self._new("dispatch"), self._new("leave")
-        self.at = {start: self._new(f"at_{start:08x}") for start in code.blocks}
-        self.is_large = is_large(code)
+        self.at = {start: self._new(f"at_{start:08x}") for start in of.code.blocks}
+        self.is_large = is_large(of.code)
         self.slots: dict[str, ir.Instruction] = {}
         self.values: dict[str, ir.Value] = {}
         self.clock = _sum(self.made, "clock", [each.cclk + each.stall_cclk for each in counted])

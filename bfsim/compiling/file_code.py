@@ -41,7 +41,7 @@ class FileCode:
 
     def compiled(self, profile: CompilerProfile, *, traced: bool = False) -> CompiledObject:
         """Return it ready to run, timed as `profile` has it; it is translated once. `traced`: its accesses to memory are reported."""
-        timing = timing_of(profile)
+        timing = timing_of(profile).placed(self.loaded.image)
         key = timing.digest, traced
         if key not in self._compiled:
             self._compiled[key] = compiled_object(

@@ -10,7 +10,7 @@ from bfsim.blackfin.subroutines import LoadedImage
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.compiling.object_code import ObjectCode
 from bfsim.kernel import tree
-from bfsim.kernel.objects.compiled import CompiledObject, compiled_object
+from bfsim.kernel.objects.compiled import CompiledObject, code_bytes, compiled_object
 from bfsim.kernel.objects.places import Places
 
 
@@ -27,10 +27,15 @@ class LoadedCode:
         kernels = {self.code.symbol_of(each): each for each in self.code.names}
         of_file = {each.symbol: each for each in self.code.names}
         self._loaded, self._places = LoadedImage(image), Places(image, kernels, of_file)
+        self._placed = self.timing.placed(image)
 
     def has(self, function: tree.Function) -> bool:
         """Whether a kernel is a function of the code: helpers may be inlined in all that call them."""
         return self.code.symbol_of(function) in self._places.image.symbols
+
+    def code_bytes(self, function: tree.Function) -> dict[str, int]:
+        """Return the size of a kernel's code, and of each function that it calls."""
+        return code_bytes(self.code.symbol_of(function), self._loaded, self._places)
 
     def compiled(self, function: tree.Function, *, traced: bool = False) -> CompiledObject:
         """Return a kernel ready to run; `traced`: its accesses to memory are reported.
@@ -40,6 +45,6 @@ class LoadedCode:
         if (function, traced) not in self._compiled:
             symbol = self.code.symbol_of(function)
             self._compiled[function, traced] = compiled_object(
-                function, symbol, self._loaded, self._places, self.timing, traced=traced
+                function, symbol, self._loaded, self._places, self._placed, traced=traced
             )
         return self._compiled[function, traced]

@@ -17,9 +17,13 @@ if TYPE_CHECKING:
 
 
 class Ready(Protocol):
-    """Returns the object code of a kernel ready to run; `traced`: its accesses to memory are reported."""
+    """The object code of kernels."""
 
-    def __call__(self, *, traced: bool = False) -> CompiledObject: ...
+    def compiled(self, function: tree.Function, *, traced: bool = False) -> CompiledObject:
+        """Return that of a kernel ready to run; `traced`: its accesses to memory are reported."""
+
+    def code_bytes(self, function: tree.Function) -> dict[str, int]:
+        """Return its size, and that of each function that it calls, by the names of kernels."""
 
 
 @dataclass(frozen=True)
@@ -43,21 +47,20 @@ class Build:
     def compiled(self, kernel: Kernel, *, traced: bool = False) -> CompiledKernel | CompiledObject:
         """Return a kernel ready to run; `traced`: its accesses outside L1 are reported. Raises KernelError as `Kernel.compile`."""
         if kernel.function in self.objects:
-            return self.objects[kernel.function](traced=traced)
+            return self.objects[kernel.function].compiled(kernel.function, traced=traced)
         return kernel.compile(self.profile, traced=traced)
 
     def counters(self, kernel: Kernel) -> tuple[Counter, ...]:
         """Return what is counted in a run and what it costs, callees included. Raises KernelError as `Kernel.counters`."""
         if kernel.function in self.objects:
-            return self.objects[kernel.function]().program.costs.counters
+            return self.objects[kernel.function].compiled(kernel.function).program.costs.counters
         return kernel.counters(self.profile)
 
     def code_bytes(self, kernel: Kernel) -> dict[str, int]:
         """Return the size of a kernel's code, and of each kernel that it calls, by the names in the machine code."""
-        nbytes: dict[str, int] = {}
-        for each in self.counters(kernel):
-            nbytes[each.routine] = nbytes.get(each.routine, 0) + each.nbytes
-        return nbytes
+        if kernel.function in self.objects:
+            return self.objects[kernel.function].code_bytes(kernel.function)
+        return kernel.code_bytes(self.profile)
 
 
 ESTIMATED = Build(VDSP_O2)

@@ -50,22 +50,20 @@ def _define(module: ir.Module, intrinsic: Intrinsic) -> None:
     function.linkage = "internal"
     function.attributes.add("alwaysinline")
     builder = ir.IRBuilder(function.append_basic_block("entry"))
-    slots: dict[str, ir.Value] = {}
+    values = {
+        register: Value(builder, argument).zero_extended().ir
+        for register, argument in zip(intrinsic.inputs, function.args, strict=True)
+    }
 
-    def slot(register: str) -> ir.Value:
-        if register not in slots:
-            with builder.goto_entry_block():
-                slots[register] = builder.alloca(ir.IntType(width(register)))
-                builder.store(ir.IntType(width(register))(0), slots[register])
-        return slots[register]
+    def fetch(register: str) -> ir.Value:
+        return values.get(register, ir.IntType(width(register))(0))
 
-    for register, argument in zip(intrinsic.inputs, function.args, strict=True):
-        builder.store(Value(builder, argument).zero_extended().ir, slot(register))
+    memory = ir.PointerType()(None)
     for step in intrinsic.steps:
-        effects = Effects(builder, slot, slot("R0"), _no_clock, 0, _no_clock)
+        effects = Effects(builder, fetch, memory, _no_clock, 0, _no_clock)
         SEMANTICS[step.does](effects, **step.operands)
-        effects.commit()
-    results = [Value(builder, builder.load(slot(each), typ=I32)) for each in intrinsic.outputs]
+        values |= {register: value.ir for register, value in effects.pending.items()}
+    results = [Value(builder, fetch(each)) for each in intrinsic.outputs]
     if intrinsic.gives is PAIR:
         upper, lower = (each.zero_extended(64) for each in results)
         builder.ret((upper.shift_left(32) | lower).ir)

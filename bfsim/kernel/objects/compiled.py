@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.blackfin import translate
+from bfsim import store
 from bfsim.blackfin.pointers import arrays_accessed
 from bfsim.blackfin.subroutines import LoadedImage, Subroutine
 from bfsim.blackfin.timing import Timing
@@ -60,19 +61,18 @@ def compiled_object(
 ) -> CompiledObject:
     """Return the function that `symbol` names in an image, translated or from the cache on disk. Raises KernelError where there is none.
 
-    With `traced` its accesses to memory are reported.
+    `timing`: that of the image's code (`Timing.placed`). With `traced` its accesses to memory are reported.
     """
-    timing = timing.placed(loaded.image)
     about = loaded.image.digest, symbol, f"{timing.digest} {traced}"
     subroutine = loaded.subroutine(symbol, timing, keys.object_key(*about, "native code"))
     words = [each.name if isinstance(each.type, ArrayType) else "" for each in function.parameters]
     arrays = (*function.array_names, NO_ARRAY) if traced else ()
 
     def made() -> Costs:
-        code = subroutine.processor.code()
-        accessed = arrays_accessed(code, subroutine.address, words)
-        found = counters(translate.counters(code, timing), places, timing, accessed, arrays)
-        return Costs(tuple(found), calls(code, places, subroutine.address, function.array_names))
+        counted = subroutine.processor.counted()
+        accessed = arrays_accessed(counted.code, subroutine.address, words)
+        found = counters(counted.counters, places, timing, accessed, arrays)
+        return Costs(tuple(found), calls(counted.code, places, subroutine.address, function.array_names))
 
     key = keys.object_key(*about, f"costs of {function.symbol}")
     costs = (
@@ -86,6 +86,20 @@ def compiled_object(
     lines = {line.routine for each in costs.counters for line, _, _ in each.line_cclk} - set(costs.calls)
     functions = tuple(places.function_called(each) for each in (*costs.calls, *sorted(lines)))
     return CompiledObject(function, subroutine, program, functions, places, order)
+
+
+def code_bytes(symbol: str, loaded: LoadedImage, places: Places) -> dict[str, int]:
+    """Return the size of the code of a function in an image, and of each function that it calls, by the names of kernels."""
+    key = keys.object_key(loaded.image.digest, symbol, "", "bytes of code")
+    if (kept := store.load(key)) is not None:
+        found: dict[str, int] = json.loads(kept)
+        return found
+    found = {}
+    for each in loaded.explored(loaded.image.address_of(symbol)).blocks.values():
+        name = places.function_at(each.start).symbol
+        found[name] = found.get(name, 0) + each.end - each.start
+    store.save(key, json.dumps(found).encode())
+    return found
 
 
 def _site_of(program: Program, places: Places) -> Callable[[int], int]:
