@@ -11,6 +11,7 @@ from bfsim.api import Firmware, FrameSize, Readout, Script
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link, parse_ldf
 from bfsim.machine.board import Board
+from bfsim.machine.peripherals.table import devices_of
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import StereoFrame
 from bfsim.run import DEFAULT_LDF
@@ -58,7 +59,7 @@ def play(
     size = FrameSize(double_width // 2, height)
     firmware = replace(firmware, view=view)
     places = link(parse_ldf(DEFAULT_LDF), symbols_of(firmware, size), CM_BF561.chip.regions)
-    board = Board(CM_BF561, firmware, size, places, device=firmware.device(script))
+    board = Board(CM_BF561, firmware, size, places, devices=devices_of(firmware, script))
     outcome = board.run(iter(frames), on_frame, on_seen=lambda _index, _seen: None)
     return [
         Played(record, {each.core: taken[record.index, each.core] for each in record.cores})

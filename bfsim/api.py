@@ -82,8 +82,9 @@ from bfsim.machine.dma.descriptors import write_descriptor
 from bfsim.machine.dma.memory_dma import MemoryDma
 from bfsim.machine.dma.ring import InputRing, OutputRing
 from bfsim.machine.memories import Row
+from bfsim.machine.peripherals.device import Script
+from bfsim.machine.peripherals.spi import SpiDevice, SpiMessage
 from bfsim.machine.program import Buffer, Buffers, Calibration, Firmware, FrameSize, Geometry, SourcePixels
-from bfsim.machine.spi.device import Script, SpiDevice, SpiMessage
 from bfsim.seen import (
     Colour,
     NamedColour,

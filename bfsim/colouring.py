@@ -12,7 +12,7 @@ from bfsim.device_script import read_script
 from bfsim.errors import BfsimError, ConfigError, FirmwareError
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.firmware_lines import line_of
-from bfsim.machine.spi.device import Script
+from bfsim.machine.peripherals.device import Script
 from bfsim.recording import RecordingReader
 from bfsim.recording.images import picture_of_file
 from bfsim.seen import PictureColours

@@ -23,6 +23,7 @@ from bfsim.importing import ImportedFile, OwnModules, Root, relative_name
 from bfsim.kernel import Kernel
 from bfsim.loading import SHIPPED, LoadedFirmware
 from bfsim.locating import located
+from bfsim.machine.peripherals.table import makers_of
 from bfsim.machine.program import Firmware
 
 CELL = "(cell)"
@@ -48,7 +49,8 @@ def given_firmware(firmware: Firmware) -> LoadedFirmware:
 
 def _parts(firmware: Firmware) -> Iterator[Any]:
     """Yield the functions and classes that the firmware is made of."""
-    parts = (*firmware.mains.values(), firmware.buffers, firmware.calibration, firmware.spi, firmware.view)
+    devices = makers_of(firmware).values()
+    parts = (*firmware.mains.values(), firmware.buffers, firmware.calibration, *devices, firmware.view)
     yield from (_unbound(part) for part in parts if part is not None)
 
 

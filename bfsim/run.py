@@ -27,8 +27,9 @@ from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.bus.ahead import compiled_ahead
 from bfsim.machine.calls.call_cache import BeforeCall, sanitized
 from bfsim.machine.cameras.capture import Feed
+from bfsim.machine.peripherals.device import Device
+from bfsim.machine.peripherals.table import devices_of, makers_of
 from bfsim.machine.program import Firmware, FrameSize
-from bfsim.machine.spi.device import SpiDevice
 from bfsim.machine.symbols import require_cores
 from bfsim.recording import RecordingReader
 from bfsim.result import Run
@@ -108,7 +109,7 @@ def simulate(
     compiler would leave it out. `before` is called with what will run and how many frames of it, before the first one does,
     and may raise; the digest of the recording is not known then. `progress` is called with
     (frames done, frames in all); `script` is a JSON or TOML file
-    that tells the firmware's device on the SPI what to do; `record_work` is a file to record what the cores do in, and `work` such a
+    that tells the firmware's devices what to do; `record_work` is a file to record what the cores do in, and `work` such a
     file, which is then played in place of the firmware: the same records on another board or LDF, sooner; `on_seen` is called with what was seen in each frame, if
     the firmware has a view, which changes nothing in the records; `on_time` is called now and then with the simulated
     time in seconds; `on_spans` with what the cores and devices did since the last time; `on_call`
@@ -125,7 +126,7 @@ def simulate(
     loaded = given_firmware(firmware) if isinstance(firmware, Firmware) else load_firmware(firmware)
     require_cores(loaded.firmware, spec)
     with loaded.own.named():
-        device, script_digest = _device(script, loaded)
+        devices, script_digest = _devices(script, loaded)
     placement = read_placement(ldf, spec, defines, include_dirs)
     with (
         loaded.own.named(),
@@ -145,7 +146,7 @@ def simulate(
             feed=feed,
             before_call=(*((sanitized,) if sanitize else ()), *((on_call,) if on_call else ())),
             build=build,
-            device=device,
+            devices=devices,
             fidelity=fidelity,
             weave=weave,
         )
@@ -250,17 +251,17 @@ def rows_of(firmware: str) -> tuple[BudgetRow, ...]:
     return load_firmware(firmware).firmware.rows
 
 
-def _device(path: Path | None, loaded: LoadedFirmware) -> tuple[SpiDevice, str]:
-    """Return the device of the firmware, told by the script if there is one, and the digest of the script."""
+def _devices(path: Path | None, loaded: LoadedFirmware) -> tuple[dict[str, Device], str]:
+    """Return the devices of the firmware, told by the script if there is one, and the digest of the script."""
     if path is None:
-        return loaded.firmware.device({}), ""
-    if loaded.firmware.spi is None:
+        return devices_of(loaded.firmware, {}), ""
+    if not makers_of(loaded.firmware):
         raise ConfigError(
             f"--script must go with firmware that has a device to tell, and {loaded.name} has none"
         )
     script, digest = read_script(path)
     try:
-        return loaded.firmware.device(script), digest
+        return devices_of(loaded.firmware, script), digest
     except FirmwareError as error:
         raise ConfigError(f"{path}: {error}") from error
 

@@ -35,7 +35,7 @@ from bfsim.machine.retiming.work import (
 )
 from bfsim.report.save import writing
 
-FORMAT = 3
+FORMAT = 4
 WIDTHS = tuple(np.dtype(each) for each in ("<i1", "<i2", "<i4", "<i8"))
 TABLES = {
     "operations": OPERATION_COLUMNS, "accesses": ACCESS_COLUMNS, "events": EVENT_COLUMNS, "copies": COPY_COLUMNS,

@@ -197,7 +197,10 @@ MACHINE = {
     "firmware_lines": set(),
     "timeline": set(),
     "simulation": {"timeline"},
-    "program": {"core", "spi"},  # the types of what a main loop gets, and of the device that firmware brings
+    "program": {
+        "core",
+        "peripherals",
+    },  # the types of what a main loop gets, and of the devices that firmware brings
     "memories": {"program"},
     "named_kernels": set(),
     "code": {"memories", "named_kernels", "program"},
@@ -207,7 +210,7 @@ MACHINE = {
     "calls": {"bus", "memories", "owner_costs"},
     "detailed": {"bus", "memories", "simulation"},
     "cameras": {"bus", "memories", "program", "simulation", "timeline"},
-    "spi": {"bus", "firmware_lines", "memories", "simulation"},
+    "peripherals": {"bus", "firmware_lines", "memories", "program", "simulation"},
     "dma": {
         "bus",
         "firmware_lines",
@@ -224,9 +227,9 @@ MACHINE = {
         "firmware_lines",
         "memories",
         "owner_costs",
+        "peripherals",
         "program",
         "simulation",
-        "spi",
         "timeline",
     },
     "symbols": {"code", "firmware_lines", "program"},
@@ -293,6 +296,23 @@ def test_a_block_of_the_machine_imports_only_what_it_is_wired_to(path: Path) -> 
         if module.startswith("bfsim.machine."):
             other = module.split(".")[2]
             assert other == block or other in MACHINE[block], f"{path} imports {module}"
+
+
+def test_a_peripheral_is_known_to_the_table_alone() -> None:
+    """Its file, and the line that wires it: whoever else needs peripherals takes them from there."""
+    folder = ROOT / "bfsim/machine/peripherals"
+    common = {"__init__", "device", "peripheral", "table", "wire"}
+    own = {
+        f"bfsim.machine.peripherals.{each.stem}" for each in folder.glob("*.py") if each.stem not in common
+    }
+    importing = {
+        path.relative_to(ROOT / "bfsim").as_posix() for path in SOURCES if own & {*imported_modules(path)}
+    }
+    assert own
+    assert importing == {
+        "machine/peripherals/table.py",
+        "api.py",
+    }  # the API has what firmware derives its devices from
 
 
 def test_a_command_imports_no_other() -> None:

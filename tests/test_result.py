@@ -38,7 +38,7 @@ def test_a_run_prints_as_one_line() -> None:
 def test_a_notebook_shows_the_screen() -> None:
     """As HTML that inherits the page's colours, with its own for the bars; nothing of the run is markup."""
     run = run_from(edge_run(100, 100))
-    html = replace(run, device_notes=("<b>late</b>",))._repr_html_()
+    html = replace(run, device_notes={"SPI": ("<b>late</b>",)})._repr_html_()
     text = re.sub(r"<[^>]*>", "", html)
     assert "bound by core A&#x27;s Edge detection" in text
     assert "█" in text

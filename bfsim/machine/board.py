@@ -40,10 +40,11 @@ from bfsim.machine.listeners import Announcer, OnFrame, OnSeen, OnSpans, OnTime
 from bfsim.machine.loader import LoadedBuffers
 from bfsim.machine.main_loops import MainLoops
 from bfsim.machine.memories import Memories
+from bfsim.machine.peripherals.device import Device
+from bfsim.machine.peripherals.table import OUTSIDE_NBYTES, wired
+from bfsim.machine.peripherals.wire import Surroundings
 from bfsim.machine.program import Firmware, FrameSize, View
 from bfsim.machine.simulation import Simulation
-from bfsim.machine.spi.device import LARGEST_MESSAGE_BYTES, SpiDevice, notes_of
-from bfsim.machine.spi.spi import Spi
 from bfsim.machine.stack import stack_outside_l1
 from bfsim.machine.symbols import PROCESSORS
 from bfsim.trace import BoardRecord, FrameRecord
@@ -58,7 +59,10 @@ class Fidelity(StrEnum):
 
 @dataclass
 class Board:
-    """A board with firmware in it, and `device` on its SPI, ready to run once. `core`: makes its cores, where they need not be detailed."""
+    """A board with firmware in it, ready to run once. `devices`: at the other ends of peripherals, by the names of these.
+
+    `core`: makes its cores, where they need not be detailed.
+    """
 
     spec: BoardSpec
     firmware: Firmware
@@ -67,7 +71,7 @@ class Board:
     feed: Feed = Feed.DEMAND
     build: Build = ESTIMATED
     before_call: tuple[BeforeCall, ...] = ()
-    device: SpiDevice = field(default_factory=SpiDevice)
+    devices: Mapping[str, Device] = field(default_factory=dict)
     fidelity: Fidelity = Fidelity.FAST
     weave: Weave = compiled_weave
     core: Callable[..., Core] = AheadCore
@@ -77,9 +81,7 @@ class Board:
         chip, env = self.spec.chip, Simulation()
         self._env = env
         pictures_nbytes = 2 * 2 * self.size.width_px * self.size.height_px  # two at a time
-        self._memories = Memories(
-            self.spec, outside_nbytes=chip.ppis * pictures_nbytes + LARGEST_MESSAGE_BYTES
-        )
+        self._memories = Memories(self.spec, outside_nbytes=chip.ppis * pictures_nbytes + OUTSIDE_NBYTES)
         self._outside = [self._memories.outside + number * pictures_nbytes for number in range(chip.ppis + 1)]
         self._bus = (
             DetailedBus(env, self.spec, self._memories)
@@ -97,15 +99,14 @@ class Board:
             part for core, caches in self._caches.items() for part in cached_parts(core, caches, chip.regions)
         ]
         self._dma = Dma(env, self.spec, self._bus, self._memories, DmaSpace(chip.regions, tuple(cached)))
-        self._spi = Spi(
-            env,
-            self.spec,
-            self._bus,
-            self._memories,
-            self.device,
-            partial(self._shared.interrupt, "SPI_DMA"),
-            self._outside[-1],
+        around = Surroundings(
+            env=env,
+            board=self.spec,
+            bus=self._bus,
+            memories=self._memories,
+            interrupt=self._shared.interrupt,
         )
+        self._peripherals = wired(around, self.devices, self._outside[-1])
 
     @property
     def owners_of_memory(self) -> list[tuple[str, int]]:
@@ -148,8 +149,9 @@ class Board:
         try:
             loops.play()
             loops.check_end(len(frames.records), has_more=capture.has_more)
-            if self._spi.busy is not None:  # the last message
-                loops.play_until(self._spi.busy)
+            for each in self._peripherals.values():
+                for last in each.busy:
+                    loops.play_until(last)
         except KeyboardInterrupt:
             interrupted = True
             announcer.tell_seen()
@@ -231,7 +233,7 @@ class Board:
             capture=capture,
             streams=(inward, outward),
             dma=self._dma,
-            spi=self._spi,
+            peripherals=self._peripherals,
             shared=self._shared,
             stages=tuple(each.stage for each in self.firmware.rows),
             on_finished=on_finished,
@@ -259,8 +261,8 @@ class Board:
             buffers=self._buffers.records,
             traffic=self._bus.traffic(),
             code=code_records(self.link_map, PROCESSORS, self.spec.chip.regions),
-            messages=tuple(self._spi.records),
-            device_notes=notes_of(self.device),
+            messages=tuple(each for used in self._peripherals.values() for each in used.records),
+            device_notes={name: notes for name, each in self._peripherals.items() if (notes := each.notes)},
             interrupts={
                 f"{core} {source}": count
                 for core, each in self._shared.interrupts.items()

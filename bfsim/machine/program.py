@@ -1,4 +1,4 @@
-"""What firmware hands to the machine: its buffers, its main loops, its device and the rows of its budget."""
+"""What firmware hands to the machine: its buffers, its main loops, its devices and the rows of its budget."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.errors import FirmwareError, shown
+from bfsim.errors import FirmwareError
 from bfsim.kernel.types import FloatType, Number
-from bfsim.machine.spi.device import Script, SpiDevice, device_at_work
+from bfsim.machine.peripherals.device import MakeDevice, Script
 from bfsim.seen import PictureColours, Seen
 from bfsim.trace import BudgetRow, Reference
 
@@ -160,7 +160,7 @@ class Firmware:
     rows: tuple[BudgetRow, ...]
     reference: Reference | None = None
     calibration: Callable[[Calibration], Buffers] | None = None
-    spi: Callable[[Script], SpiDevice] | None = None
+    spi: MakeDevice | None = None
     view: View | None = None
     colours: Callable[[NDArray[np.uint8], Script, int], PictureColours] | None = None
     losses: Mapping[str, str] = field(default_factory=dict)
@@ -173,16 +173,6 @@ class Firmware:
             raise FirmwareError(
                 f"reference must say what the reference_ms of {known[0]} is, but there is none"
             )
-
-    def device(self, script: Script) -> SpiDevice:
-        """Return a new device for the other end of the SPI, which does as the script says."""
-        if self.spi is None:
-            return SpiDevice()
-        with device_at_work():
-            device = self.spi(script)
-        if not isinstance(device, SpiDevice):
-            raise FirmwareError(f"spi must make a bfsim.api.SpiDevice, not {shown(device)}")
-        return device
 
     def calibrated(self, calibration: Calibration) -> Firmware:
         """Return this firmware for the cameras of a recording."""

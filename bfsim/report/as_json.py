@@ -16,7 +16,7 @@ from bfsim.report.owners import owner_frames
 from bfsim.report.warnings import warnings_of
 from bfsim.trace import RunRecord, RunWarning
 
-SCHEMA = "bfsim.run/3"
+SCHEMA = "bfsim.run/4"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
 
 
@@ -61,7 +61,7 @@ def _plain(value: Any) -> Any:
 def _flat(warning: RunWarning) -> dict[str, Any]:
     """Return a warning with its numbers beside kind and text."""
     results = {"results": list(warning.results)} if warning.results else {}
-    return {"kind": warning.kind.value, "text": warning.text, **results, **warning.numbers}
+    return {"kind": str(warning.kind), "text": warning.text, **results, **warning.numbers}
 
 
 def json_chunks(run: RunRecord, seen: Seen | None = None) -> Iterator[str]:

@@ -27,8 +27,8 @@ def configuration_of(run: RunRecord) -> Iterator[tuple[str, str]]:
         yield f"Code of {each.core}", _code(each)
     yield "Feed", identity.feed
     yield "Fidelity", identity.fidelity
-    if run.messages:
-        yield "SPI messages", _messages(run)
+    for peripheral in dict.fromkeys(each.over for each in run.messages):
+        yield f"{peripheral} messages", _messages(run, peripheral)
     if run.interrupts:
         yield "Interrupts", ", ".join(f"{source} {count:,}" for source, count in run.interrupts.items())
     yield "bfsim", f"{identity.bfsim_version}, {run.events:,} events simulated"
@@ -42,11 +42,11 @@ def _firmware(run: RunRecord) -> str:
     return f"{run.identity.firmware} ({run.firmware_place}, {files} {'file' if files == 1 else 'files'})"
 
 
-def _messages(run: RunRecord) -> str:
-    """Say what went over SPI in each direction, and how long the longest message took."""
+def _messages(run: RunRecord, over: str) -> str:
+    """Say what went over a peripheral in each direction, and how long the longest message took."""
     parts = []
     for direction in ("out", "in"):
-        mine = [each for each in run.messages if each.direction == direction]
+        mine = [each for each in run.messages if (each.over, each.direction) == (over, direction)]
         if mine:
             longest = max(each.end_cclk - each.begin_cclk for each in mine)
             nbytes = sum(each.nbytes for each in mine)

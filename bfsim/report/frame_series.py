@@ -103,4 +103,5 @@ def notes_of(run: RunRecord) -> Iterator[Note]:
         yield Note(
             last, f"missed frames: {', '.join(late)} came while the firmware was busy", is_warning=True
         )
-    yield from (Note(last, f"SPI device: {each}", is_warning=True) for each in run.device_notes)
+    for peripheral, said in run.device_notes.items():
+        yield from (Note(last, f"{peripheral} device: {each}", is_warning=True) for each in said)

@@ -15,8 +15,12 @@ MACHINE_LOSSES = {"ppi_words_lost": "words of the camera that the DMA was too la
 
 def warnings_of(run: RunRecord) -> tuple[RunWarning, ...]:
     """Return the warnings about a run of at least one frame, those about all of it first."""
-    device = (RunWarning(kind=WarningKind.DEVICE, text=each) for each in run.device_notes)
-    return (*run.assumptions, *_missed(run), *device, *_lost(run))
+    return (*run.assumptions, *_missed(run), *_devices(run), *_lost(run))
+
+
+def _devices(run: RunRecord) -> Iterator[RunWarning]:
+    for peripheral, notes in run.device_notes.items():
+        yield from (RunWarning(kind=f"{peripheral} device", text=each) for each in notes)
 
 
 def _missed(run: RunRecord) -> Iterator[RunWarning]:

@@ -1,4 +1,4 @@
-"""What lay where, and what moved: buffers, code and memories, traffic on the buses, messages over SPI."""
+"""What lay where, and what moved: buffers, code and memories, traffic on the buses, messages of peripherals."""
 
 from __future__ import annotations
 
@@ -65,11 +65,12 @@ class MemoryRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MessageRecord:
-    """One message over SPI: `direction` is out or in, seen from the board; the cycles are of core A's clock.
+    """One message over a peripheral, such as SPI: `direction` is out or in, seen from the board; the cycles are of core A's clock.
 
     `type` is what the device calls it. Where the firmware's buffer had no room for all of it, "(cut short)" follows.
     """
 
+    over: str
     direction: str
     type: str
     nbytes: int

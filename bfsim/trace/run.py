@@ -73,20 +73,22 @@ class Identity:
 
 
 class WarningKind(StrEnum):
-    """What a warning is about."""
+    """What a warning is about, where that is no device; of the one on the SPI it is "SPI device"."""
 
     GEOMETRY = "geometry"
     CLOCKS = "clocks"
     MISSED = "missed frames"
-    DEVICE = "SPI device"
     LOST = "lost"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunWarning:
-    """Something about a run that must not be overlooked, and the numbers in its text. `results` are the published numbers that it is of."""
+    """Something about a run that must not be overlooked, and the numbers in its text. `results` are the published numbers that it is of.
 
-    kind: WarningKind
+    `kind`: a `WarningKind`, or whose device had it to say.
+    """
+
+    kind: str
     text: str
     numbers: Mapping[str, int] = field(default_factory=dict)
     results: tuple[str, ...] = ()
@@ -96,7 +98,8 @@ class RunWarning:
 class BoardRecord:
     """What a board leaves behind when the recording is over, or the user stopped it. `missed` are the recording's frames that came while the firmware was busy.
 
-    `messages` went over SPI; `device_notes` are what the device there had to say at the end. `interrupts` were taken, by core and source.
+    `messages` went over peripherals; `device_notes` are what the devices there had to say at the end, by peripheral. `interrupts` were
+    taken, by core and source.
     When `interrupted` by Ctrl-C, `traffic` also holds what was moved of the frame that was not finished.
     """
 
@@ -110,7 +113,7 @@ class BoardRecord:
     traffic: tuple[TrafficRecord, ...]
     code: tuple[CodeRecord, ...]
     messages: tuple[MessageRecord, ...]
-    device_notes: tuple[str, ...]
+    device_notes: Mapping[str, tuple[str, ...]]
     interrupts: Mapping[str, int]
     events: int
 

@@ -40,7 +40,7 @@ def run(
     size = FrameSize(double_width // 2, height)
     link_map = link(shipped(ldf), symbols_of(firmware, size), CM_BF561.chip.regions)
     send = [{"after_frames": number, "mode": each} for number, each in enumerate(names)]
-    board = Board(CM_BF561, firmware, size, link_map, device=StrategyUnit({"send": send}))
+    board = Board(CM_BF561, firmware, size, link_map, devices={"SPI": StrategyUnit({"send": send})})
     return board, board.run(iter(frames))
 
 

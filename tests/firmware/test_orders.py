@@ -30,7 +30,7 @@ def run(script: Sequence[Entry], frames: int) -> tuple[StrategyUnit, Board, Boar
     size = FrameSize(64, 48)
     link_map = link(thesis_ldf(), symbols_of(tinyphoon, size), CM_BF561.chip.regions)
     unit = StrategyUnit({"send": list(script)})
-    board = Board(CM_BF561, tinyphoon, size, link_map, device=unit)
+    board = Board(CM_BF561, tinyphoon, size, link_map, devices={"SPI": unit})
     return unit, board, board.run(iter(random_frames(64, 48, frames)))
 
 

@@ -81,7 +81,7 @@ def run(
     """Run firmware; return the outcome and what the device received. `script`: what it sends, after how many messages."""
     mains = (main_a,) if main_b is None else (main_a, main_b)
     device = Talker(*script)
-    board = made_board(*mains, more=MORE, device=device, **made)
+    board = made_board(*mains, more=MORE, devices={"SPI": device}, **made)
     outcome = board.run(noise(frames, board.size))
     assert_accounted(outcome)
     return outcome, device.received
@@ -106,6 +106,7 @@ def test_words_and_gaps_make_the_time_on_the_wire(nbytes: int, board: BoardSpec,
     end_cclk = ceil(Fraction(edge_ticks, clocks.cclk_ticks) + wire_cclk(nbytes, spec))
     assert outcome.messages == (
         MessageRecord(
+            over="SPI",
             direction="out",
             type="report",
             nbytes=nbytes,
@@ -122,8 +123,8 @@ def test_every_message_arrives_as_it_was_sent(sent: list[bytes], buffer: str) ->
 
     def work(core: Core, frame: Frame) -> Play:
         for each in sent:
-            if core._spi.busy is not None:
-                yield core._spi.busy  # the buffer is in use
+            if (sending := core._peripherals["SPI"].sending) is not None:
+                yield sending  # the buffer is in use
             yield from core.send(core.array(buffer), put(core, each, buffer))
 
     _, received = run(every_frame(work))
@@ -218,7 +219,7 @@ def test_what_the_device_has_to_say_comes_in_when_it_asks_to() -> None:
     assert got == [(0, b"first!"), (2, b"second"), (2, b"another one!")]
     incoming = [each for each in outcome.messages if each.direction == "in"]
     assert [each.type for each in incoming] == ["first!", "second", "another one!"]
-    assert outcome.device_notes == ()
+    assert outcome.device_notes == {}
 
 
 @pytest.mark.parametrize(
@@ -234,7 +235,8 @@ def test_the_device_has_the_last_word(frames: int, left: list[str]) -> None:
         yield from core.send(row, put(core, REPORT))
 
     outcome, _ = run(every_frame(work), frames=frames, script=SCRIPT)
-    assert outcome.device_notes == tuple(f"{each} was not taken" for each in left)
+    said = tuple(f"{each} was not taken" for each in left)
+    assert outcome.device_notes == ({"SPI": said} if said else {})
 
 
 def test_a_message_in_is_waited_for_and_an_empty_wire_is_not() -> None:
@@ -304,7 +306,7 @@ def test_without_a_device_nobody_listens_and_nobody_speaks() -> None:
     assert [(each.direction, each.type, each.nbytes) for each in outcome.messages] == [
         ("out", "words", len(REPORT))
     ]
-    assert outcome.device_notes == ()
+    assert outcome.device_notes == {}
 
 
 # ---- what is refused
@@ -324,4 +326,17 @@ def test_wrong_sizes_are_refused(buffer: str, nbytes: int, most: int) -> None:
         FirmwareError,
         match=f"a message must have 2 to {most} bytes of {buffer}, whole words, not {nbytes} .*test_spi.py:",
     ):
+        run(every_frame(work))
+
+
+@pytest.mark.parametrize(
+    "call", [lambda core, row: core.send(row, 2, "CAN"), lambda core, row: core.receive(row, "CAN")]
+)
+def test_peripherals_are_known_by_name(call: Any) -> None:
+    """The message names those that the chip has."""
+
+    def work(core: Core, frame: Frame) -> Play:
+        yield from call(core, core.array("words"))
+
+    with pytest.raises(FirmwareError, match="messages must go over SPI.*, not 'CAN' .*test_spi.py:"):
         run(every_frame(work))

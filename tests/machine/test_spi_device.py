@@ -45,7 +45,7 @@ class Echo(SpiDevice):
 
 def run(work: Any, device: SpiDevice) -> BoardRecord:
     """Play one frame to firmware that talks to a device."""
-    return made_board(every_frame(work), more=(MESSAGE,), device=device).run(noise(1))
+    return made_board(every_frame(work), more=(MESSAGE,), devices={"SPI": device}).run(noise(1))
 
 
 def test_an_echo_answers_in_its_own_time() -> None:
@@ -82,7 +82,7 @@ def test_messages_are_whole_words_that_fit(octets: bytes) -> None:
 
 def test_messages_have_a_name_and_bytes() -> None:
     """Not the other way round."""
-    with pytest.raises(FirmwareError, match="an SpiMessage must have a str and bytes, not bytes and str"):
+    with pytest.raises(FirmwareError, match="SpiMessage must have a str and bytes, not bytes and str"):
         SpiMessage(b"any", "words")  # type: ignore[arg-type]
 
 
@@ -113,7 +113,7 @@ def failing(*_: object) -> Any:
         ),
         (
             device_with(requests=lambda *_: True, send=lambda *_: b"xx"),
-            "send of the device on the SPI must return an SpiMessage, not b'xx'",
+            "send of the device on the SPI must return SpiMessage, not b'xx'",
         ),
         (
             device_with(requests=lambda *_: True),
@@ -138,8 +138,8 @@ def test_mistakes_of_a_device_are_told_as_such(device: SpiDevice, message: str) 
 
     def work(core: Core, frame: Frame) -> Play:
         yield from core.send(core.array("message"), 2)
-        while core._spi.busy is not None:
-            yield core._spi.busy
+        while (sending := core._peripherals["SPI"].sending) is not None:
+            yield sending
         yield from core.receive(core.array("message"))
 
     with pytest.raises(FirmwareError, match=message):

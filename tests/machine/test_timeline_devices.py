@@ -106,7 +106,7 @@ def test_messages_are_the_records() -> None:
     def work(core: Core, frame: Frame) -> Play:
         yield from core.send(core.array("message"), 24)
 
-    outcome, spans = told(made_board(in_work(work), more=MESSAGES, device=Talker()), frames=2)
+    outcome, spans = told(made_board(in_work(work), more=MESSAGES, devices={"SPI": Talker()}), frames=2)
     messages = by_track(spans)["SPI", "messages"]
     assert [(each.name, each.value, each.end_cclk) for each in messages] == [
         ("report out", each.nbytes, each.end_cclk) for each in outcome.messages

@@ -69,7 +69,9 @@ def test_warnings_stand_at_their_frames() -> None:
         replace(second, index=4, results={"edges_lost_A": 1_005, "edges_lost_B": 0}, remarks=("refused",)),
     )
     assumed = RunWarning(kind=WarningKind.GEOMETRY, text="there was none")
-    run = replace(run, frames=frames, missed=(0, 2, 3, 5), assumptions=(assumed,), device_notes=("late",))
+    run = replace(
+        run, frames=frames, missed=(0, 2, 3, 5), assumptions=(assumed,), device_notes={"SPI": ("late",)}
+    )
     assert [tuple(each) for each in notes_of(run)] == [
         (1, "geometry: there was none", True),
         (1, "missed frames: 0 came while the firmware was busy", True),

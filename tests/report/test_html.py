@@ -239,7 +239,7 @@ def evil_run() -> RunRecord:
         firmware_place=EVIL,
         ldf_place=EVIL,
         geometry=EVIL,
-        device_notes=(EVIL,),
+        device_notes={"SPI": (EVIL,)},
         assumptions=(RunWarning(kind=WarningKind.GEOMETRY, text=EVIL),),
         reference=replace(run.reference, name=EVIL, about=EVIL),
         kernels=(kernel(EVIL, EVIL, LineCost(line=10, executions=1, issue_cclk=1, stall_cclk={}), text=(EVIL,), file=EVIL),),

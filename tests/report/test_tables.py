@@ -222,7 +222,7 @@ def test_warnings_end_every_report(tmp_path: Path) -> None:
 def test_what_the_device_says_at_the_end_is_in_the_report() -> None:
     """As it says it."""
     run = edge_run(100, 100)
-    lines = printed(run_report(replace(run, device_notes=("2 answers were not fetched",))))
+    lines = printed(run_report(replace(run, device_notes={"SPI": ("2 answers were not fetched",)})))
     assert "SPI device 2 answers were not fetched" in map(squeezed, lines)
     assert not any("SPI device" in each for each in printed(run_report(run)))
 

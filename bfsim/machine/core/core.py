@@ -10,8 +10,7 @@ from operator import index
 from typing import Any
 
 from bfsim.chip.spec import BoardSpec
-from bfsim.chip.spi_registers import TRANSFER_WRITES
-from bfsim.errors import FirmwareError
+from bfsim.errors import FirmwareError, shown
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.types import Number
 from bfsim.machine.bus.bus import Bus
@@ -30,15 +29,17 @@ from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.memory_dma import Dma, MemoryDma
 from bfsim.machine.dma.ring import InputRing, OutputRing
 from bfsim.machine.memories import Row
+from bfsim.machine.peripherals.peripheral import Peripheral
 from bfsim.machine.program import FrameSize, Main
 from bfsim.machine.simulation import Simulation
-from bfsim.machine.spi.spi import Spi
 from bfsim.seen import Seen
 from bfsim.spans import Place
 from bfsim.trace import REST, CoreFrame, StallReason
 
-CAMERAS, SPI = "cameras", "SPI"
-"""Owners of cycles."""
+CAMERAS = "cameras"
+"""Owner of cycles."""
+SPI = "SPI"
+"""The peripheral that is meant where firmware names none."""
 
 
 Pixels = Callable[[], Iterable[tuple[int, int]]]
@@ -103,7 +104,7 @@ class Core(SynchronisedCore):
         capture: Capture,
         streams: tuple[MdmaStream, MdmaStream],
         dma: Dma,
-        spi: Spi,
+        peripherals: Mapping[str, Peripheral],
         shared: SharedObjects,
         stages: tuple[str, ...],
         on_finished: Callable[[], None],
@@ -134,7 +135,7 @@ class Core(SynchronisedCore):
         self._capture = capture
         self._streams = streams
         self._dma = dma
-        self._spi = spi
+        self._peripherals = peripherals
         self._shared = shared
         self._frame: Frame | None = None
         self._is_over = False
@@ -278,29 +279,36 @@ class Core(SynchronisedCore):
         return self._dma.stream(name, self)
 
     @awaited
-    def send(self, row: Row, nbytes: int) -> Generator[Any, Any, None]:
-        """Send the first `nbytes` of `row` to the device on the SPI, by DMA, once the message before is out."""
+    def send(self, row: Row, nbytes: int, over: str = SPI) -> Generator[Any, Any, None]:
+        """Send the first `nbytes` of `row` to the device on the peripheral `over`, by DMA, once the message before is out."""
+        peripheral = self._peripheral(over)
         yield from self.sync()
-        if self._spi.busy is not None:
-            yield from self._blocked(iter([self._spi.busy]), "the SPI", StallReason.RING_FULL)
-            self._wake(StallReason.RING_FULL, SPI)
-        self.program_device(SPI, writes=TRANSFER_WRITES)
+        if peripheral.sending is not None:
+            yield from self._blocked(iter([peripheral.sending]), f"the {over}", StallReason.RING_FULL)
+            self._wake(StallReason.RING_FULL, over)
+        self.program_device(over, writes=peripheral.transfer_writes)
         yield from self.sync()
-        self._spi.send(row, nbytes)
+        peripheral.send(row, nbytes)
 
     @awaited
-    def receive(self, row: Row) -> Generator[Any, Any, int]:
-        """Take the next message of the device on the SPI into `row`, if it has one; return its bytes, 0 without one."""
+    def receive(self, row: Row, over: str = SPI) -> Generator[Any, Any, int]:
+        """Take the next message of the device on the peripheral `over` into `row`, if it has one; return its bytes, 0 without one."""
+        peripheral = self._peripheral(over)
         yield from self.sync()
-        if not self._spi.has_message:
+        if not peripheral.has_message:
             return 0
-        self.program_device(SPI, writes=TRANSFER_WRITES)
+        self.program_device(over, writes=peripheral.transfer_writes)
         yield from self.sync()
-        if not self._spi.has_message:  # the other core was faster
+        if not peripheral.has_message:  # the other core was faster
             return 0
-        transfer, nbytes = self._spi.receive(row)
-        yield from self.wait_transfer(transfer, StallReason.RING_EMPTY, SPI)
+        transfer, nbytes = peripheral.receive(row)
+        yield from self.wait_transfer(transfer, StallReason.RING_EMPTY, over)
         return nbytes
+
+    def _peripheral(self, name: str) -> Peripheral:
+        if name not in self._peripherals:
+            raise FirmwareError(f"messages must go over {' or '.join(self._peripherals)}, not {shown(name)}")
+        return self._peripherals[name]
 
     def _is_cached(self, image: Sequence[Row]) -> bool:
         return bool(image) and self._access_trace.caches(image[0].offset)

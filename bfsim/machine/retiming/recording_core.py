@@ -19,7 +19,7 @@ from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.accounts import Account
-from bfsim.machine.core.core import Core, Frame
+from bfsim.machine.core.core import SPI, Core, Frame
 from bfsim.machine.core.interrupts import Handler
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.memory_dma import MemoryDma
@@ -245,15 +245,15 @@ class RecordingCore(Core):
         """Interrupt another core as every core does."""
         return self._called(super().interrupt_core(other), "interrupt_core", other)
 
-    def send(self, row: Row, nbytes: int) -> Wait:
+    def send(self, row: Row, nbytes: int, over: str = SPI) -> Wait:
         """Send as every core does."""
-        return self._called(
-            super().send(row, nbytes), "send", self._place(row), row.octets[:nbytes].tobytes().hex()
-        )
+        octets = row.octets[:nbytes].tobytes().hex()
+        return self._called(super().send(row, nbytes, over), "send", self._place(row), octets, over)
 
-    def receive(self, row: Row) -> Generator[Any, Any, int]:
+    def receive(self, row: Row, over: str = SPI) -> Generator[Any, Any, int]:
         """Receive as every core does."""
-        return self._called(super().receive(row), "receive", self._place(row), lambda: self._received(row))
+        wait = super().receive(row, over)
+        return self._called(wait, "receive", self._place(row), lambda: self._received(row), over)
 
     def _received(self, row: Row) -> str:
         return row.octets[: self._result].tobytes().hex()

@@ -157,17 +157,17 @@ class ReplayedCore(Core):
                 f"the cores take {shared.name!r} in another order than when the run was recorded: {NOT_THE_SAME}"
             )
 
-    def _send(self, place: Place, octets: str) -> Wait:
+    def _send(self, place: Place, octets: str, over: str) -> Wait:
         row, sent = self._row(place), bytes.fromhex(octets)
         row.octets[: len(sent)] = sent
-        yield from self.send(row, len(sent))
+        yield from self.send(row, len(sent), over)
 
-    def _receive(self, place: Place, octets: str) -> Wait:
+    def _receive(self, place: Place, octets: str, over: str) -> Wait:
         row = self._row(place)
-        nbytes = yield from self.receive(row)
+        nbytes = yield from self.receive(row, over)
         if row.octets[:nbytes].tobytes().hex() != octets:
             raise WorkError(
-                f"a message of the device on the SPI comes earlier or later than when the run was recorded: {NOT_THE_SAME}"
+                f"a message of the device on the {over} comes earlier or later than when the run was recorded: {NOT_THE_SAME}"
             )
 
     def _read_status(self, before: int) -> Wait:

@@ -1,7 +1,6 @@
-"""The other end of the SPI: how firmware brings the device that its board talks to.
+"""The other end of a peripheral: how firmware brings a device that its board talks to.
 
-The board is the master of the SPI and moves 16-bit words in one direction at a time, by DMA. A device is a class that
-says what happens at the far end of the wire:
+A device is a class that says what happens at the far end of the wire, such as that of the SPI:
 
     class Echo(SpiDevice):
         '''Sends everything back, a millisecond after it came.'''
@@ -29,22 +28,21 @@ and talks to it from a main loop:
     yield from core.send(row, nbytes)          # to `receive`, as soon as the last word is out
     nbytes = yield from core.receive(row)      # from `send`, if `requests`; 0 bytes if not
 
-What is simulated is the board's side: registers, DMA, the time of each word on the wire, the interrupt SPI_DMA. A device
+What is simulated is the board's side: registers, DMA, the time of each word on the wire, the interrupt of the DMA. A device
 itself takes no time of the board; when something of its own takes time, it says so in `requests`, by `now_ns`. Equal
 runs must be equal: a device may depend on its script, on what it received and on `now_ns`, and on nothing else.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from bfsim.errors import BfsimError, FirmwareError, shown
 from bfsim.machine.firmware_lines import line_of
 
-WORD_BYTES = 2  # SPI_CTL with SIZE
 LARGEST_MESSAGE_BYTES = 4096
 """Room for a message on its way. [ours]"""
 
@@ -53,28 +51,33 @@ Script = Mapping[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
-class SpiMessage:
+class Message:
     """What a device sends in one transfer: what the report calls it, and its words as bytes, low byte first."""
 
     type: str
     octets: bytes
 
+    over: ClassVar[str]
+    """Name of the peripheral."""
+    word_bytes: ClassVar[int]
+
     def __post_init__(self) -> None:
         if not isinstance(self.type, str) or not isinstance(self.octets, bytes):
+            kinds = f"{type(self.type).__name__} and {type(self.octets).__name__}"
+            raise FirmwareError(f"{type(self).__name__} must have a str and bytes, not {kinds}")
+        if not 0 < len(self.octets) <= LARGEST_MESSAGE_BYTES or len(self.octets) % self.word_bytes:
             raise FirmwareError(
-                f"an SpiMessage must have a str and bytes, not {type(self.type).__name__} and {type(self.octets).__name__}"
-            )
-        if not 0 < len(self.octets) <= LARGEST_MESSAGE_BYTES or len(self.octets) % WORD_BYTES:
-            raise FirmwareError(
-                f"a message over SPI must have 2 to {LARGEST_MESSAGE_BYTES} bytes, whole 16-bit words, not {len(self.octets)}"
+                f"a message over {self.over} must have {self.word_bytes} to {LARGEST_MESSAGE_BYTES} bytes, "
+                f"whole {8 * self.word_bytes}-bit words, not {len(self.octets)}"
             )
 
 
-class SpiDevice:
-    """A device at the other end of the SPI. As it stands it takes everything and never has anything to say.
+class Device:
+    """A device at the other end of a peripheral. As it stands it takes everything and never has anything to say.
 
-    Derive from it and override what your device does. One object serves one run. Raise FirmwareError to end the run, for
-    instance in `receive` when what came is nothing that the device understands: the message is shown to the user.
+    Derive from that of the peripheral and override what your device does. One object serves one run. Raise FirmwareError to
+    end the run, for instance in `receive` when what came is nothing that the device understands: the message is shown to the
+    user.
     """
 
     def receive(self, octets: bytes, now_ns: int) -> str:
@@ -88,10 +91,10 @@ class SpiDevice:
         """Whether the request line is asserted at `now_ns`: there is something to send. Asked whenever firmware looks."""
         return False
 
-    def send(self, now_ns: int) -> SpiMessage:
+    def send(self, now_ns: int) -> Message:
         """Return the next message, for firmware begins to take it at `now_ns`. Called only where `requests` is true.
 
-        What has no room in the firmware's buffer is lost, as on a wire that is no longer clocked.
+        What has no room in the firmware's buffer is lost, as on a wire that nobody listens to.
         """
         raise NotImplementedError("a device that requests must send")
 
@@ -100,22 +103,28 @@ class SpiDevice:
         return ()
 
 
+MakeDevice = Callable[[Script], Device]
+"""The script of the user, empty without one → a new device; raises a FirmwareError that names the key and what it must be."""
+
+
 @contextmanager
-def device_at_work() -> Iterator[None]:
-    """Turn what goes wrong inside a device into a FirmwareError that names the device's line."""
+def device_at_work(peripheral: str) -> Iterator[None]:
+    """Turn what goes wrong inside the device on a peripheral into a FirmwareError that names the device's line."""
     try:
         yield
     except BfsimError:
         raise
     except (Exception, SystemExit) as error:
         what = f"{type(error).__name__}: {error}{line_of(error)}"
-        raise FirmwareError(f"the device on the SPI failed with {what}") from error
+        raise FirmwareError(f"the device on the {peripheral} failed with {what}") from error
 
 
-def notes_of(device: SpiDevice) -> tuple[str, ...]:
-    """Return what a device has the user warned of, now that the run is over."""
-    with device_at_work():
+def notes_of(device: Device, peripheral: str) -> tuple[str, ...]:
+    """Return what the device on a peripheral has the user warned of, now that the run is over."""
+    with device_at_work(peripheral):
         notes = device.finish()
     if isinstance(notes, str) or not all(isinstance(each, str) for each in notes):
-        raise FirmwareError(f"finish of the device on the SPI must return a list of str, not {shown(notes)}")
+        raise FirmwareError(
+            f"finish of the device on the {peripheral} must return a list of str, not {shown(notes)}"
+        )
     return tuple(notes)

@@ -1,0 +1,1 @@
+"""The peripherals of the chip beside the cameras, and what devices at their other ends are."""
