@@ -20,8 +20,8 @@ from bfsim.kernel.costs import costs_of
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import FIRST_ARGUMENT
 from bfsim.kernel.jit import CompiledKernel, compile_kernel
-from bfsim.kernel.language import read_kernel
 from bfsim.kernel.profile import GCC_O0, GCC_O2, RUN_AS_COMPILED, VDSP_O2, CompilerProfile, profile_named
+from bfsim.kernel.reading import read_kernel
 from bfsim.kernel.types import ArrayType, FloatType, IntType
 from bfsim.kernel.work import PreparedCall, Work, is_single
 
@@ -204,10 +204,6 @@ class Kernel:
                     f"{name} must be a float of 32 bits, not {arguments[position]!r} ({self.name}, {self.place})"
                 )
 
-    @cached_property
-    def _written(self) -> frozenset[str]:
-        return tree.written_arrays(self.function)
-
     def check_array(self, position: int, array: object) -> None:
         """Raise KernelError unless `array` is what parameter number `position` takes."""
         parameter = self.function.parameters[position]
@@ -225,7 +221,7 @@ class Kernel:
             )
         if not array.flags.aligned:
             raise KernelError(f"{parameter.name} must lie at a multiple of {wanted.itemsize} bytes {where}")
-        if parameter.name in self._written and not array.flags.writeable:
+        if parameter.name in self.function.written and not array.flags.writeable:
             raise KernelError(
                 f"{parameter.name} must be writeable, because the kernel stores into it {where}"
             )
@@ -240,7 +236,7 @@ class Kernel:
             names = [self.function.parameters[each].name for each in (position, behind)]
             if one.itemsize == other.itemsize or 1 in (one.itemsize, other.itemsize):
                 continue
-            if not self._written.isdisjoint(names) and np.may_share_memory(one, other):
+            if not self.function.written.isdisjoint(names) and np.may_share_memory(one, other):
                 raise KernelError(
                     f"{names[0]} ({one.dtype}) and {names[1]} ({other.dtype}) must not share memory, for the kernel stores "
                     f"into it: C compilers take it that elements of different widths do not ({self.name}, {self.place})"

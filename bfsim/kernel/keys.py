@@ -7,6 +7,7 @@ never meets a stale one.
 from __future__ import annotations
 
 import hashlib
+import sys
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
@@ -18,36 +19,40 @@ from bfsim.kernel.profile import CompilerProfile, Inlines
 
 def key(function: tree.Function, profile: CompilerProfile, variant: str) -> str:
     """Digest of all that an entry about `function` depends on; `variant` says what it is."""
-    return hashlib.sha256(f"{variant}\0{_source(function, profile)}".encode()).hexdigest()
+    return _digest(variant, _source(function, profile))
+
+
+def file_key(text: str) -> str:
+    """Digest of all that is found in a file on which the kernels in it depend."""
+    return _digest("file", reader(), text)
+
+
+def reading_key(*parts: str) -> str:
+    """Digest of all that decides how a kernel is read."""
+    return _digest("kernel", reader(), *parts)
 
 
 def estimate_key(function: tree.Function) -> str:
     """Digest of all that the estimate of `function` by itself depends on, in whatever profile and program."""
-    parts = ("estimate", tools(), *map(_text, (function, *function.callees())))
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+    return _digest("estimate", tools(), *(each.digest for each in (function, *function.callees())))
 
 
 def program_key(functions: Iterable[tree.Function], entries: Iterable[str]) -> str:
     """Digest of all that the C of kernels depends on; `entries`: symbols of those that something else than kernels calls."""
-    rows = sorted((each.file, each.first_line, each.source, each.text) for each in functions)
-    parts = ("C", compiler(), repr(rows), repr(sorted(entries)))
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+    rows = sorted((each.file, each.first_line, each.source, each.digest) for each in functions)
+    return _digest("C", compiler(), repr(rows), repr(sorted(entries)))
 
 
 def object_key(image_digest: str, symbol: str, timing: str, variant: str) -> str:
     """Digest of all that an entry about the function `symbol` of object code depends on; `variant` says what it is."""
-    parts = ("object code", variant, image_digest, symbol, timing, tools())
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+    return _digest("object code", variant, image_digest, symbol, timing, tools())
 
 
 @cache
 def _source(function: tree.Function, profile: CompilerProfile) -> str:
     """Digest of what every entry about a kernel depends on."""
-    digest = hashlib.sha256()
-    for part in (tools(), repr(profile), *map(_text, (function, *compiled_with(function, profile)))):
-        digest.update(part.encode())
-        digest.update(b"\0")
-    return digest.hexdigest()
+    program = (function, *compiled_with(function, profile))
+    return _digest(tools(), repr(profile), *(each.digest for each in program))
 
 
 def compiled_with(function: tree.Function, profile: CompilerProfile) -> tuple[tree.Function, ...]:
@@ -68,11 +73,6 @@ def compiled_with(function: tree.Function, profile: CompilerProfile) -> tuple[tr
     return tuple(dict.fromkeys((*program, *(part for each in more for part in (*each.callees(), each)))))
 
 
-@cache
-def _text(function: tree.Function) -> str:
-    return function.text
-
-
 def sources() -> list[Path]:
     """Files that decide what a kernel becomes: all of this package, what instructions do, and what makes its IR machine code."""
     packages = (Path(__file__).parent, Path(blackfin.__file__).parent)
@@ -89,3 +89,13 @@ def compiler() -> str:
 def tools() -> str:
     """The compiler's own sources, LLVM and the host's processor."""
     return f"{compiler()} {machine_code.host()}"
+
+
+@cache
+def reader() -> str:
+    """The compiler's own sources, and the Python whose grammar it reads."""
+    return f"{compiler()} {sys.version}"
+
+
+def _digest(*parts: str) -> str:
+    return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogatepass")).hexdigest()

@@ -8,38 +8,42 @@ else is refused when the function is decorated, before it ever runs.
 from __future__ import annotations
 
 import ast
-import builtins
-import inspect
-import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import count
-from typing import Any
+from types import CodeType, FunctionType
+from typing import NamedTuple
 
-from bfsim.errors import KernelError
 from bfsim.kernel import tree
 from bfsim.kernel.operators import BINARY
 from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.scope import KernelScope
-from bfsim.kernel.source_files import file_of, marks_of, names_by_use
 from bfsim.kernel.types import PAIR, ArrayType, FloatType, IntType, Number, f32, i32, u32
 
 SCALARS = (i32, u32, f32)
 STATEMENTS = {"try": "tests with if", "with": "plain statements"}
 
 
-def read_kernel(python: Callable[..., Any]) -> tree.Function:
-    """Read the source of `python` as a kernel. Raises KernelError where it leaves the language."""
-    source, definition = _definition(python)
-    _check_names(source, definition, python)
-    scope = KernelScope(
-        source, {**vars(builtins), **python.__globals__}, definition.name, python.__code__.co_varnames
-    )
+class Read(NamedTuple):
+    """What is read of a `def`."""
+
+    parameters: tuple[tree.Parameter, ...]
+    result: Number | None
+    body: tree.Body
+
+
+def read_definition(source: KernelSource, outer: Mapping[str, object], python: FunctionType) -> Read:
+    """Read the `def` that Python has made `python` of; `outer` is what its names mean but its own. Raises KernelError."""
+    definition = parsed(source.text)
+    if not isinstance(definition, ast.FunctionDef) or definition.name != python.__name__:
+        source.refuse(definition, "a kernel must be a plain `def`", "write def, not lambda or async def")
+    _check_names(source, definition, python.__code__)
+    scope = KernelScope(source, outer, definition.name, python.__code__.co_varnames)
     parameters = _parameters(scope, definition)
     reader = _Reader(scope, _result_type(scope, definition))
     try:
-        body = reader.block(_without_docstring(definition.body))
+        block = reader.block(_without_docstring(definition.body))
     except RecursionError:
         source.refuse(
             definition, "this kernel is nested too deeply", "split its longest expression or `elif` chain"
@@ -50,43 +54,10 @@ def read_kernel(python: Callable[..., Any]) -> tree.Function:
             f"{definition.name} can end without a value",
             f"return an {reader.result} on every way",
         )
-    function = tree.Function(
-        name=definition.name,
-        symbol=re.sub(r"\W", "_", f"{python.__module__}.{python.__qualname__}", flags=re.ASCII),
-        file=source.file,
-        first_line=source.first_line,
-        source=source.text,
-        names=python.__globals__,
-        is_static=_is_static(python, definition),
-        parameters=parameters,
-        result=reader.result,
-        locals=tuple(scope.locals.items()),
-        body=body,
-    )
-    _check_callees(source, definition, function)
-    return function
+    return Read(parameters, reader.result, tree.Body(tuple(scope.locals.items()), block))
 
 
-def _is_static(python: Callable[..., Any], definition: ast.FunctionDef) -> bool:
-    """Whether other kernels of the file name this one, and nothing else there does."""
-    by_kernels, by_others = names_by_use(file_of(python), marks_of(definition))
-    return by_kernels[definition.name] > 0 and definition.name not in by_others
-
-
-def _definition(python: Callable[..., Any]) -> tuple[KernelSource, ast.FunctionDef]:
-    if not inspect.isfunction(python) or hasattr(python, "__wrapped__"):
-        raise KernelError(f"@kernel must stand directly above a plain `def`, not on {python!r}")
-    code = python.__code__
-    text = file_of(python).text_from(code.co_firstlineno)
-    if not text:
-        raise KernelError(f"{python!r} must be a function in a file, so that its source can be read")
-    source = KernelSource(code.co_filename, code.co_firstlineno, text)
-    if not isinstance(node := _parsed(source.text), ast.FunctionDef) or node.name != python.__name__:
-        source.refuse(node, "a kernel must be a plain `def`", "write def, not lambda or async def")
-    return source, node
-
-
-def _parsed(text: str) -> ast.AST:
+def parsed(text: str) -> ast.AST:
     """Parse one definition, which may be indented. What cannot be parsed alone, as a lambda's line, is no node."""
     try:
         if not text[0].isspace():
@@ -97,9 +68,8 @@ def _parsed(text: str) -> ast.AST:
     return within.body[0] if isinstance(within, ast.If) else within
 
 
-def _check_names(source: KernelSource, definition: ast.FunctionDef, python: Callable[..., Any]) -> None:
+def _check_names(source: KernelSource, definition: ast.FunctionDef, code: CodeType) -> None:
     """Refuse names that the machine code cannot have: those of an outer function, and non-ASCII ones."""
-    code = python.__code__
     if code.co_freevars:
         names = ", ".join(code.co_freevars)
         source.refuse(
@@ -113,19 +83,6 @@ def _check_names(source: KernelSource, definition: ast.FunctionDef, python: Call
                 definition,
                 f"the name {name} is not ASCII",
                 "use the letters a to z, as a C compiler wants them",
-            )
-
-
-def _check_callees(source: KernelSource, definition: ast.FunctionDef, function: tree.Function) -> None:
-    """Refuse two kernels of one name in one program: their machine code could not be told apart."""
-    known = {function.symbol: function}
-    for each in function.callees():
-        if known.setdefault(each.symbol, each) is not each:
-            source.refuse(
-                definition,
-                f"it needs two different kernels named {each.name}, {each.file}:{each.first_line} "
-                f"and {known[each.symbol].file}:{known[each.symbol].first_line}",
-                "rename one",
             )
 
 

@@ -13,6 +13,8 @@ from bfsim.kernel.intrinsics.fract import high_of_fr2x16, low_of_fr2x16
 from bfsim.kernel.operators import BUILT_IN, OF_TWO, instead_of
 from bfsim.kernel.types import PAIR, FloatType, IntType, Number, f32, i16, i32, promoted, sqrt
 
+HALVES = (high_of_fr2x16, low_of_fr2x16)
+
 
 class KernelScope(Expressions):
     """What a kernel's expressions are read in, calls among them."""
@@ -34,7 +36,7 @@ class KernelScope(Expressions):
         if (to_left := TO_THE_RIGHT.get(target)) is not None:
             call = self._intrinsic(node, to_left)
             return replace(call, arguments=(call.arguments[0], self._minus(node.args[1], call.arguments[1])))
-        if target in (high_of_fr2x16, low_of_fr2x16) and len(node.args) == 1:
+        if target in HALVES and len(node.args) == 1:
             return self._half(node, upper=target is high_of_fr2x16)
         known = OF_TWO.get(target) if callable(target) else None
         if known is not None and len(node.args) == 2:

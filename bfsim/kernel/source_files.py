@@ -1,32 +1,57 @@
-"""The files that kernels stand in, each read once: the text of every definition, and which names are used by whom."""
+"""The files that kernels stand in, each read once: the text of every definition, and which names are used by whom.
+
+What is found in a file is kept in the cache, for to walk over its statements takes long.
+"""
 
 from __future__ import annotations
 
 import ast
 import io
+import json
 import linecache
 from collections import Counter as Tally
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
+
+from bfsim import store
+from bfsim.kernel import keys
+
+
+class Statement(NamedTuple):
+    """A statement of a file: its decorators, if it is a `def`, and the names in it."""
+
+    marks: Sequence[str]
+    names: Sequence[str]
+
+
+class Extent(NamedTuple):
+    """Where a definition ends, and its decorators."""
+
+    last_line: int
+    marks: Sequence[str]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SourceFile:
-    """A file, or a cell of a notebook: its lines, its statements, and where its definitions end.
-
-    `statements`: of each one its decorators, if it is a `def`, and the names in it. `ends`: the last line of each
-    definition by its first one, that of a decorator if it has any.
-    """
+    """A file, or a cell of a notebook: its lines, its statements, and its definitions by their first lines, those of a decorator if they have any."""
 
     lines: Sequence[str]
-    statements: Sequence[tuple[frozenset[str], frozenset[str]]]
-    ends: Mapping[int, int]
+    statements: Sequence[Statement]
+    extents: Mapping[int, Extent]
 
     def text_from(self, first_line: int) -> str:
         """Return the definition that begins in a line, or the line alone if none does."""
-        return "".join(self.lines[first_line - 1 : self.ends.get(first_line, first_line)])
+        return "".join(self.lines[first_line - 1 : self._extent(first_line).last_line])
+
+    def is_static(self, name: str, first_line: int) -> bool:
+        """Whether other kernels of the file name the one that begins in a line, and nothing else there does."""
+        by_kernels, by_others = _names_by_use(self, frozenset(self._extent(first_line).marks))
+        return by_kernels[name] > 0 and name not in by_others
+
+    def _extent(self, first_line: int) -> Extent:
+        return self.extents.get(first_line, Extent(first_line, ()))
 
 
 def file_of(python: Callable[..., Any]) -> SourceFile:
@@ -36,26 +61,35 @@ def file_of(python: Callable[..., Any]) -> SourceFile:
     return _read("".join(linecache.getlines(name, python.__globals__)))
 
 
-def marks_of(definition: ast.FunctionDef) -> frozenset[str]:
-    """Return the decorators of a definition."""
-    return frozenset(map(ast.unparse, definition.decorator_list))
-
-
 @cache
-def names_by_use(file: SourceFile, marks: frozenset[str]) -> tuple[Tally[str], frozenset[str]]:
+def _names_by_use(file: SourceFile, marks: frozenset[str]) -> tuple[Tally[str], frozenset[str]]:
     """Return the names that the kernels of a file use, and those that the rest of it uses; a kernel has one of `marks`."""
     by_kernels, by_others = Tally[str](), set[str]()
-    for its_marks, names in file.statements:
-        if its_marks.isdisjoint(marks):
-            by_others |= names
+    for each in file.statements:
+        if marks.isdisjoint(each.marks):
+            by_others.update(each.names)
         else:
-            by_kernels.update(names)
+            by_kernels.update(each.names)
     return by_kernels, frozenset(by_others)
 
 
 @cache
 def _read(text: str) -> SourceFile:
-    statements, ends = [], {}
+    lines, key = io.StringIO(text).readlines(), keys.file_key(text)
+    kept = store.load(key)
+    if kept is None:
+        statements, extents = _walked(text)
+        store.save(key, json.dumps([statements, list(extents.items())]).encode())
+    else:
+        rows, definitions = json.loads(kept)
+        statements = [Statement(*row) for row in rows]
+        extents = {first_line: Extent(*row) for first_line, row in definitions}
+    return SourceFile(lines, statements, extents)
+
+
+def _walked(text: str) -> tuple[list[Statement], dict[int, Extent]]:
+    """Return the statements of a file and its definitions."""
+    statements, extents = [], {}
     for statement in ast.parse(text).body:
         names = set()
         for each in _parts(statement):
@@ -63,10 +97,15 @@ def _read(text: str) -> SourceFile:
                 names.add(each.id)
             elif isinstance(each, (ast.FunctionDef, ast.AsyncFunctionDef)):
                 first_line = min(part.lineno for part in (each, *each.decorator_list))
-                ends[first_line] = each.end_lineno or each.lineno
-        marks = marks_of(statement) if isinstance(statement, ast.FunctionDef) else frozenset()
-        statements.append((marks, frozenset(names)))
-    return SourceFile(io.StringIO(text).readlines(), statements, ends)
+                extents[first_line] = Extent(each.end_lineno or each.lineno, _marks_of(each))
+        marks = _marks_of(statement) if isinstance(statement, ast.FunctionDef) else ()
+        statements.append(Statement(marks, sorted(names)))
+    return statements, extents
+
+
+def _marks_of(definition: ast.FunctionDef | ast.AsyncFunctionDef) -> Sequence[str]:
+    """Return the decorators of a definition."""
+    return [ast.unparse(each) for each in definition.decorator_list]
 
 
 def _parts(node: ast.AST) -> Iterator[ast.AST]:

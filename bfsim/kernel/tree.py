@@ -5,9 +5,9 @@ Every node carries `line`, counted from the first line of the kernel's source (i
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
 
 from bfsim.kernel.intrinsics import Intrinsic
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, Value
@@ -229,13 +229,23 @@ class Parameter:
     type: Number | ArrayType
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
+class Body:
+    """What a kernel does. `locals` gives the type of every local name."""
+
+    locals: tuple[tuple[str, Value], ...]
+    block: tuple[Stmt, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class Function:
-    """A whole kernel. `locals` gives the type of every local name; `symbol` is its name in the machine code.
+    """A whole kernel. `symbol` is its name in the machine code.
 
     `file`, `first_line` and `source` say where it stands, `names` what the names of its file mean.
     A kernel `is_static`, as C calls it, if other kernels of its file name it and nothing else there does: the file's main loops
     do not run it. Whether another file imports it is not looked at.
+    `calls`: the kernels that it calls itself, each once, in source order. `written`: array parameters that it, or a kernel called
+    by it, stores into. `digest`: of all that its code depends on but its callees. `read`: reads its body, which few runs need.
     """
 
     name: str
@@ -247,18 +257,28 @@ class Function:
     is_static: bool
     parameters: tuple[Parameter, ...]
     result: Number | None
-    locals: tuple[tuple[str, Value], ...]
-    body: tuple[Stmt, ...]
+    calls: tuple[Function, ...]
+    written: frozenset[str]
+    digest: str
+    read: Callable[[], Body]
 
     def __repr__(self) -> str:
         """Return the symbol alone, which stands for it in the text of a call."""
         return self.symbol
 
+    @cached_property
+    def _body(self) -> Body:
+        return self.read()
+
     @property
-    def text(self) -> str:
-        """All that its code depends on but its callees, as text."""
-        parts = (self.name, self.symbol, self.is_static, self.parameters, self.result, self.locals, self.body)
-        return repr(parts)
+    def locals(self) -> tuple[tuple[str, Value], ...]:
+        """Every local name with its type."""
+        return self._body.locals
+
+    @property
+    def body(self) -> tuple[Stmt, ...]:
+        """Its statements."""
+        return self._body.block
 
     @property
     def array_names(self) -> tuple[str, ...]:
@@ -295,8 +315,8 @@ class Function:
 @cache
 def _callees(function: Function) -> tuple[Function, ...]:
     found: dict[Function, None] = {}
-    for call in calls_in(function.body):
-        found.update(dict.fromkeys((*call.callee.callees(), call.callee)))
+    for each in function.calls:
+        found.update(dict.fromkeys((*each.callees(), each)))
     return tuple(found)
 
 
@@ -318,17 +338,17 @@ def measured_arrays(function: Function) -> frozenset[str]:
     return frozenset(found)
 
 
-@cache
-def written_arrays(function: Function) -> frozenset[str]:
-    """Array parameters that `function` or a kernel called by it stores into."""
-    nodes = list(parts(function.body))
+def written_arrays(body: Body) -> frozenset[str]:
+    """Array parameters that a body, or a kernel called by it, stores into."""
+    nodes = list(parts(body.block))
     written = {each.array for each in nodes if isinstance(each, Store)}
     for call in nodes:
         if isinstance(call, KernelCall):
-            inner = written_arrays(call.callee)
             pairs = zip(call.callee.parameters, call.arguments, strict=True)
             written |= {
-                each for parameter, each in pairs if isinstance(each, str) and parameter.name in inner
+                each
+                for parameter, each in pairs
+                if isinstance(each, str) and parameter.name in call.callee.written
             }
     return frozenset(written)
 

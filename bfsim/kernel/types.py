@@ -118,6 +118,15 @@ Number = IntType | FloatType
 Value = Number | BoolType | PairType
 
 
+NUMBERS: dict[str, Number] = {each.name: each for each in (i8, u8, i16, u16, i32, u32, f32)}
+
+
+def type_named(name: str) -> Number | ArrayType:
+    """Return the type of a parameter that is written so: "i32", "u8[:]"."""
+    element = NUMBERS[name.removesuffix("[:]")]
+    return ArrayType(element) if name.endswith("[:]") else element
+
+
 def promoted(element: Number) -> Number:
     """Type of `element` once loaded into a register: 32 bits wide, unsigned only for u32 (C's promotion)."""
     return element if element is u32 or isinstance(element, FloatType) else i32

@@ -71,9 +71,14 @@ def _noted(
 
 
 def entries(folder: Path) -> list[Path]:
-    """Return the files of the cache: those with counters first, then those with machine code."""
-    files = [each for each in folder.rglob("*") if each.is_file()]
-    return sorted(files, key=lambda each: b"[{" not in each.read_bytes()[:64])
+    """Return the files of the cache about compiled kernels: those with counters first, then those with machine code."""
+    files = [each for each in folder.rglob("*") if each.is_file() and not is_of_source(each)]
+    return sorted(files, key=lambda each: b'{"counters"' not in each.read_bytes()[:64])
+
+
+def is_of_source(entry: Path) -> bool:
+    """Whether an entry says what was read in a source: a list."""
+    return entry.read_bytes()[store.CHECKSUM_BYTES :].startswith(b"[")
 
 
 def cost_of(kernel: Kernel) -> int:

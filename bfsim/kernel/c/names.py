@@ -127,11 +127,10 @@ def _declared(function: tree.Function) -> Iterator[str]:
 
 def parameter_list(function: tree.Function, names: LocalNames) -> list[str]:
     """Return the parameters in C: those of the kernel, then the length of every array that is asked for one."""
-    written = tree.written_arrays(function)
     parts = []
     for each in function.parameters:
         if isinstance(each.type, ArrayType):
-            const = "" if each.name in written else "const "
+            const = "" if each.name in function.written else "const "
             parts.append(f"{const}{c_type(each.type.element)} {names.of[each.name]}[]")
         else:
             parts.append(f"{c_type(each.type)} {names.of[each.name]}")

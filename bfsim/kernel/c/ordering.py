@@ -16,10 +16,11 @@ from bfsim.kernel.types import BOOL, Value, i32
 def ordered(function: tree.Function) -> tree.Function:
     """Return `function` with no expression in which the order of evaluation matters."""
     rewriter = _Rewriter({name for name, _ in function.locals})
-    body = rewriter.block(function.body)
-    return (
-        replace(function, body=body, locals=(*function.locals, *rewriter.new)) if rewriter.new else function
-    )
+    block = rewriter.block(function.body)
+    if not rewriter.new:
+        return function
+    body = tree.Body((*function.locals, *rewriter.new), block)
+    return replace(function, read=lambda: body)
 
 
 @dataclass(slots=True)
@@ -156,7 +157,7 @@ class _Rewriter:
 
 
 def _writes(node: tree.Expr) -> bool:
-    return any(tree.written_arrays(each.callee) for each in tree.calls_in(node))
+    return any(each.callee.written for each in tree.calls_in(node))
 
 
 def _reads(node: tree.Expr) -> bool:

@@ -101,6 +101,8 @@ def object_function(
         is_static=False,
         parameters=parameters,
         result=result,
-        locals=(),
-        body=(),
+        calls=(),
+        written=frozenset(),
+        digest="",
+        read=lambda: tree.Body((), ()),
     )

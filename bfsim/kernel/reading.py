@@ -1,0 +1,142 @@
+"""From a Python function to a kernel: its text and what the names in it mean → what the language makes of it.
+
+What was read once, and not refused, is kept in the cache under a digest of all that decided how it was understood. Most starts
+find every kernel there, and read the bodies only of those that must be compiled.
+"""
+
+from __future__ import annotations
+
+import builtins
+import hashlib
+import inspect
+import json
+import re
+import unicodedata
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+from bfsim import store
+from bfsim.errors import KernelError
+from bfsim.kernel import keys, tree
+from bfsim.kernel.intrinsics import INTRINSICS, TO_THE_RIGHT
+from bfsim.kernel.language import Read, parsed, read_definition
+from bfsim.kernel.operators import OF_TWO
+from bfsim.kernel.refusal import KernelSource
+from bfsim.kernel.scope import HALVES
+from bfsim.kernel.source_files import file_of
+from bfsim.kernel.types import NUMBERS, FloatType, IntType, sqrt, type_named
+
+WORD = re.compile(r"[\w\x80-\U0010ffff]+")
+"""All names of a text and more, such as the words of comments."""
+FUNCTIONS: tuple[Any, ...] = (*INTRINSICS, *TO_THE_RIGHT, *OF_TWO, *HALVES, abs, len, range, sqrt)
+MEANINGS = {id(each): f"{each.__module__}.{each.__qualname__}" for each in FUNCTIONS}
+"""Of the functions that the language knows."""
+
+
+class _Known(NamedTuple):
+    """What the cache keeps of a kernel, as text: parameters with their types, names of kernels that it calls, ... See `tree.Function`."""
+
+    parameters: list[tuple[str, str]]
+    result: str | None
+    calls: list[str]
+    written: list[str]
+    digest: str
+
+
+def read_kernel(python: Callable[..., Any]) -> tree.Function:
+    """Read the source of `python` as a kernel. Raises KernelError where it leaves the language."""
+    if not inspect.isfunction(python) or hasattr(python, "__wrapped__"):
+        raise KernelError(f"@kernel must stand directly above a plain `def`, not on {python!r}")
+    code, file = python.__code__, file_of(python)
+    source = KernelSource(code.co_filename, code.co_firstlineno, file.text_from(code.co_firstlineno))
+    if not source.text:
+        raise KernelError(f"{python!r} must be a function in a file, so that its source can be read")
+    symbol = re.sub(r"\W", "_", f"{python.__module__}.{python.__qualname__}", flags=re.ASCII)
+    is_static = file.is_static(python.__name__, code.co_firstlineno)
+    outer = _meant(source.text, {**vars(builtins), **python.__globals__})
+
+    @cache
+    def read() -> Read:
+        return read_definition(source, outer, python)
+
+    def known() -> _Known:
+        return _known(read(), outer, (python.__name__, symbol, is_static))
+
+    meanings = (f"{name} {_meaning(value)}" for name, value in outer.items())
+    own = repr((source.text, symbol, python.__name__, code.co_freevars, is_static))
+    found = _kept(keys.reading_key(own, *meanings), known)
+    function = tree.Function(
+        name=python.__name__,
+        symbol=symbol,
+        file=source.file,
+        first_line=source.first_line,
+        source=source.text,
+        names=python.__globals__,
+        is_static=is_static,
+        parameters=tuple(tree.Parameter(name, type_named(kind)) for name, kind in found.parameters),
+        result=NUMBERS[found.result] if found.result else None,
+        calls=tuple(outer[name].function for name in found.calls),
+        written=frozenset(found.written),
+        digest=found.digest,
+        read=lambda: read().body,
+    )
+    _check_callees(source, function)
+    return function
+
+
+def _meant(text: str, names: Mapping[str, Any]) -> dict[str, Any]:
+    """Return those of `names` that a text may use, in the order in which it does."""
+    words = dict.fromkeys(WORD.findall(unicodedata.normalize("NFKC", text)))
+    return {each: names[each] for each in words if each in names}
+
+
+def _meaning(value: object) -> str:
+    """Return what decides how a name is understood that stands for `value`; nothing for what no kernel can use."""
+    if type(value) is int:
+        return hex(value)
+    if type(value) is float:
+        return value.hex()
+    if isinstance(value, (IntType, FloatType)):
+        return str(value)
+    if isinstance(function := getattr(value, "function", None), tree.Function):
+        kinds = [(each.name, str(each.type)) for each in function.parameters]
+        return repr((function.symbol, kinds, str(function.result), sorted(function.written)))
+    return MEANINGS.get(id(value), "")
+
+
+def _kept(key: str, read: Callable[[], _Known]) -> _Known:
+    """Return what the cache keeps under a key, or what is read now, which it keeps."""
+    kept = store.load(key)
+    if kept is not None:
+        return _Known(*json.loads(kept))
+    known = read()
+    store.save(key, json.dumps(known).encode())
+    return known
+
+
+def _known(read: Read, outer: Mapping[str, Any], head: tuple[str, str, bool]) -> _Known:
+    body = read.body
+    names = {id(getattr(value, "function", None)): name for name, value in outer.items()}
+    calls = dict.fromkeys(names[id(each.callee)] for each in tree.calls_in(body.block))
+    text = repr((*head, read.parameters, read.result, body.locals, body.block))
+    return _Known(
+        parameters=[(each.name, str(each.type)) for each in read.parameters],
+        result=str(read.result) if read.result else None,
+        calls=list(calls),
+        written=sorted(tree.written_arrays(body)),
+        digest=hashlib.sha256(text.encode()).hexdigest(),
+    )
+
+
+def _check_callees(source: KernelSource, function: tree.Function) -> None:
+    """Refuse two kernels of one name in one program: their machine code could not be told apart."""
+    known = {function.symbol: function}
+    for each in function.callees():
+        if known.setdefault(each.symbol, each) is not each:
+            source.refuse(
+                parsed(source.text),
+                f"it needs two different kernels named {each.name}, {each.file}:{each.first_line} "
+                f"and {known[each.symbol].file}:{known[each.symbol].first_line}",
+                "rename one",
+            )
