@@ -12,6 +12,7 @@ import importlib
 import importlib.util
 import io
 import linecache
+import marshal
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -20,6 +21,8 @@ from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from pathlib import Path
 from types import CodeType, ModuleType
+
+from bfsim import store
 
 NEVER_OWN = {*sys.stdlib_module_names, "__main__", "bfsim"}
 
@@ -155,7 +158,7 @@ def relative_name(module: str, path: Path) -> str:
 
 
 class _FromSource(SourceFileLoader):
-    """Compiles the source each time: the time stamp of a .pyc is too coarse to tell an edit."""
+    """Compiles the source, or finds what was compiled of these very bytes: the time stamp of a .pyc is too coarse to tell an edit."""
 
     def __init__(self, fullname: str, path: str, own: OwnModules) -> None:
         super().__init__(fullname, path)
@@ -170,10 +173,23 @@ class _FromSource(SourceFileLoader):
         stat, written = path.stat(), path.read_bytes()
         relative = relative_name(fullname, path)
         self._own.sources[fullname] = ImportedFile(path, relative, hashlib.sha256(written).hexdigest())
-        code: CodeType = self.source_to_code(written, self.path)
+        code = self._compiled(written)
         # Kernels read their source there, which must be what was compiled.
         lines = io.StringIO(importlib.util.decode_source(written)).readlines()
         linecache.cache[self.path] = (stat.st_size, stat.st_mtime, lines, self.path)
+        return code
+
+    def _compiled(self, written: bytes) -> CodeType:
+        python = f"{importlib.util.MAGIC_NUMBER.hex()} {sys.flags.optimize}"
+        key = hashlib.sha256(
+            f"Python {python} {self.path}\0".encode(errors="surrogateescape") + written
+        ).hexdigest()
+        kept = store.load(key)
+        if kept is not None:
+            known: CodeType = marshal.loads(kept)  # noqa: S302  # the cache is private, as Python's own
+            return known
+        code: CodeType = self.source_to_code(written, self.path)
+        store.save(key, marshal.dumps(code))
         return code
 
 

@@ -48,7 +48,7 @@ MAY_IMPORT = {
         "verified",
     },  # the last three hold data: memories, a link, a comparison
     "shipped": set(),
-    "importing": set(),
+    "importing": {"store"},
     "locating": {"errors", "importing"},
     "loading": {"errors", "importing", "kernel", "locating", "machine", "shipped"},
     "building": {"compiling", "kernel", "loading"},

@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterator
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, ModuleType
 
 import pytest
 
-from bfsim import shipped
+from bfsim import loading, shipped
 from bfsim.errors import FirmwareError, KernelError
 from bfsim.loading import load_firmware, load_kernel
 
@@ -151,6 +152,22 @@ def test_an_edit_is_loaded_in_the_same_process(write: Write, tmp_path: Path, edi
     second = load_firmware("fw_robot:fw")
     assert sorted(first.firmware.camera + second.firmware.camera) == list("xxxxxy")
     assert first.digest != second.digest
+
+
+def test_what_was_not_edited_is_not_compiled_again(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another process finds what Python made of the same bytes of the same file, and only of these."""
+    compiled, real = list[bytes](), SourceFileLoader.source_to_code
+
+    def noted(self: SourceFileLoader, data: bytes, path: str) -> CodeType:
+        compiled.append(data)
+        return real(self, data, path)
+
+    monkeypatch.setattr(SourceFileLoader, "source_to_code", noted)
+    for text in ("one", "one", "two"):
+        monkeypatch.setattr(loading, "_imported", {})  # as another process would begin
+        write("fw_again.py", named(text))
+        assert load_firmware("fw_again:fw").firmware.camera == text
+    assert compiled == [named(text).encode() for text in ("one", "two")]
 
 
 def test_an_edited_kernel_is_the_one_that_is_compiled(write: Write, tmp_path: Path) -> None:
