@@ -1,8 +1,8 @@
-"""What a run takes from nowhere but bfsim: a geometry of cameras that nobody gave, clocks that no PLL makes."""
+"""What a run takes from nowhere but bfsim, or doubts: a geometry that nobody gave, cameras that seem exchanged, clocks that no PLL makes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.machine.program import Calibration, Firmware
@@ -38,6 +38,11 @@ def assumed_geometry(program: Firmware, calibration: Calibration) -> Iterator[Ru
             "recording"
         )
         yield RunWarning(kind=WarningKind.GEOMETRY, text=text)
+
+
+def doubted_cameras(doubts: Iterable[str]) -> Iterator[RunWarning]:
+    """Yield a warning for each reason to doubt where the cameras are, by what their pictures show."""
+    yield from (RunWarning(kind=WarningKind.GEOMETRY, text=each) for each in doubts)
 
 
 def assumed_clocks(spec: BoardSpec) -> Iterator[RunWarning]:

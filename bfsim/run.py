@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Any, ParamSpec, TypeVar
 
 from bfsim import shipped
-from bfsim.assumptions import assumed_clocks, assumed_geometry, geometry_in_words
+from bfsim.assumptions import assumed_clocks, assumed_geometry, doubted_cameras, geometry_in_words
 from bfsim.building import build_for
 from bfsim.chip.spec import BoardSpec
 from bfsim.device_script import read_script
@@ -32,6 +32,7 @@ from bfsim.machine.peripherals.table import devices_of, makers_of
 from bfsim.machine.program import Firmware, FrameSize
 from bfsim.machine.symbols import require_cores
 from bfsim.recording import RecordingReader
+from bfsim.recording.exchange import ExchangeCheck
 from bfsim.result import Run
 from bfsim.retiming import retimed
 from bfsim.room import place
@@ -154,6 +155,7 @@ def simulate(
         if not total:
             raise RecordingError(f"{reader.path}: a recording must have at least one stereo frame, not none")
         source = DigestedFrames(reader, total)
+        exchange = ExchangeCheck(reader.rectification)
         identity = identity_of(
             found_board,
             loaded,
@@ -185,11 +187,15 @@ def simulate(
         with retimed(
             machine, identity, source, loaded, record_work=record_work, work=work, is_watched=watched
         ):
-            left = machine.run(iter(source), count, show if on_seen else None, on_time, on_spans)
+            left = machine.run(exchange.watch(source), count, show if on_seen else None, on_time, on_spans)
     identity = replace(
         identity, recording_digest=source.digest, firmware_digest=loaded.digest, firmware_files=loaded.files
     )
-    assumptions = (*assumed_geometry(program, calibration), *assumed_clocks(spec))
+    assumptions = (
+        *assumed_geometry(program, calibration),
+        *doubted_cameras(exchange.warnings),
+        *assumed_clocks(spec),
+    )
     geometry = geometry_in_words(program, calibration)
     memories = tuple(_memories(link_map, spec))
     return _record(left, identity, geometry, assumptions, loaded, placement, memories)

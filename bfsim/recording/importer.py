@@ -12,6 +12,7 @@ import numpy as np
 
 from bfsim.errors import RecordingError
 from bfsim.recording.camera_info import Rig, rig_of
+from bfsim.recording.exchange import ExchangeCheck
 from bfsim.recording.frames import RectificationTables, StereoGeometry
 from bfsim.recording.images import open_image_pair, open_images
 from bfsim.recording.import_checks import camera_size, check_call, check_halves, check_pair
@@ -108,6 +109,7 @@ def import_recording(
         rig = _rig(bag, rig, picture_size, resize, crop, side_by_side=side_by_side)
     skipped = [each for source in opened for each in source.skipped]
     sizes = set()
+    exchange = ExchangeCheck(rig.tables)
     with RecordingWriter(
         output,
         width=picture_size[0],
@@ -127,7 +129,9 @@ def import_recording(
             left_ns, right_ns = (
                 even_ns if each.times_ns is None else each.times_ns[index] for each in (opened[0], opened[-1])
             )
-            writer.add(left.to_uyvy(), right.to_uyvy(), left_ns, right_ns)
+            coded = left.to_uyvy(), right.to_uyvy()
+            exchange.look_at(*coded)
+            writer.add(*coded, left_ns, right_ns)
             if progress is not None:
                 progress(index + 1, count)
         if not writer.frame_count and skipped:
@@ -143,7 +147,7 @@ def import_recording(
         size_bytes=writer.path.stat().st_size,
         source_sizes=tuple(sorted(sizes)),
         skipped=tuple(skipped),
-        notes=(*(bag.notes if bag else ()), *rig.notes),
+        notes=(*(bag.notes if bag else ()), *rig.notes, *(f"Warning: {each}" for each in exchange.warnings)),
     )
 
 

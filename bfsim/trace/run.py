@@ -124,7 +124,7 @@ class RunRecord(BoardRecord):
 
     `reference` says what the `reference_ms` of `rows` are, None where the firmware has no reference.
     `geometry` says where the firmware takes the cameras to be, and whether the recording said so; it is empty for firmware
-    that does not ask. `assumptions` are warnings of what was not given and had to be assumed; `losses` say in words what those published
+    that does not ask. `assumptions` are warnings of what was not given and had to be assumed, or was given and seems wrong; `losses` say in words what those published
     numbers count that the firmware lost.
     """
 
