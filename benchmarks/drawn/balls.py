@@ -1,12 +1,14 @@
-"""Balls drawn by formulas: discs of known centre and radius under known light, on a known floor, through a known lens.
+"""Balls drawn by formulas: spheres of known image under known light, on a known floor, through a known lens.
 
-Every ball is painted `SAMPLES` by `SAMPLES` times finer than the picture, blurred there, and only then sampled, so that centre
+The camera is the thesis's, and the image of a sphere an ellipse, longer along the way to the middle of the picture. Every ball is
+painted `SAMPLES` by `SAMPLES` times finer than the picture, blurred there, and only then sampled, so that centre
 and radius are true to a hundredth of a pixel. Light is Lambert's: ambient light, and some that falls off with the cosine to
 the sun. The firmware's thresholds were set on other pictures. Needs OpenCV.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -25,6 +27,9 @@ Canvas = NDArray[np.float64]
 
 SAMPLES = 5
 SIZE = (320, 240)
+FOCAL_PX = 386.0  # what the firmware assumes of a recording that does not say it
+PRINCIPAL = (np.array(SIZE) - 1) / 2
+ROUNDS = 12
 CELLS = (3, 2)
 """Balls side by side and one above the other in a picture."""
 
@@ -58,11 +63,35 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Ball:
-    """Where a ball is, in px of its picture."""
+    """Where the image of a ball is, in px: the middle of the ellipse, and the mean of its half axes."""
 
     x: float
     y: float
     radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class Sphere:
+    """A ball at a distance of 1 from the camera: where its middle is, (right, down, forwards), and its radius."""
+
+    middle: NDArray[np.float64]
+    radius: float
+
+    @classmethod
+    def of(cls, ball: Ball) -> Sphere:
+        """Return the sphere with this image."""
+        off = np.array([ball.x, ball.y]) - PRINCIPAL
+        far = float(np.hypot(*off))
+        # how far the middle is off the axis, and how wide the ball is, as angles; the ellipse says how wrong they are
+        aside, wide = math.atan(far / FOCAL_PX), math.atan(ball.radius / FOCAL_PX)
+        for _ in range(ROUNDS):
+            both = math.cos(2 * aside) + math.cos(2 * wide)
+            along = FOCAL_PX * math.sin(2 * wide) / both
+            across = FOCAL_PX * math.sin(wide) * math.sqrt(2 / both)
+            wide *= 2 * ball.radius / (along + across)
+            aside *= far / (FOCAL_PX * math.sin(2 * aside) / both) if far else 1
+        forwards = np.array([0, 0, math.cos(aside)])
+        return cls(forwards + np.append(off, 0) * (math.sin(aside) / far if far else 0), math.sin(wide))
 
 
 def blurred(canvas: Canvas, px: float) -> Canvas:
@@ -72,12 +101,17 @@ def blurred(canvas: Canvas, px: float) -> Canvas:
 
 def lit(ball: Ball, x: Canvas, y: Canvas, condition: Condition) -> tuple[NDArray[np.bool_], Canvas]:
     """Return which points a ball covers, and how bright they are, of 1."""
-    off_x, off_y = (x - ball.x) / ball.radius, (y - ball.y) / ball.radius
-    square = off_x**2 + off_y**2
-    towards = np.sqrt(np.maximum(1 - square, 0))
-    sun = np.array(condition.sun) / np.linalg.norm(condition.sun)
-    cosine = np.maximum(off_x * sun[0] + off_y * sun[1] + towards * sun[2], 0)
-    return square <= 1, condition.ambient + (1 - condition.ambient) * cosine
+    sphere = Sphere.of(ball)
+    across, down = np.broadcast_arrays((x - PRINCIPAL[0]) / FOCAL_PX, (y - PRINCIPAL[1]) / FOCAL_PX)
+    rays = np.stack([across, down, np.ones_like(across)], axis=-1)
+    length = (rays**2).sum(axis=-1)
+    nearest = rays @ sphere.middle
+    inside = nearest**2 - length * (1 - sphere.radius**2)
+    reach = (nearest - np.sqrt(np.maximum(inside, 0))) / length
+    normals = (reach[..., None] * rays - sphere.middle) / sphere.radius
+    sun = np.array(condition.sun) * (1, 1, -1) / np.linalg.norm(condition.sun)
+    cosine = np.maximum(normals @ sun, 0)
+    return inside >= 0, condition.ambient + (1 - condition.ambient) * cosine
 
 
 def shade_of(ball: Ball, x: Canvas, y: Canvas, condition: Condition) -> Canvas:

@@ -143,6 +143,8 @@ def _facts(run: RunRecord, budget: Budget, bound: Bound) -> Iterator[tuple[str, 
     if run.reference is not None:
         yield run.reference.name, run.reference.about
     yield from _remarks(run)
+    if run.geometry:
+        yield "Cameras", run.geometry
     yield from what_ran(run)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -11,6 +13,7 @@ from bfsim.api import FirmwareError
 from tests.firmware.order_messages import GOOD, framed, model, refusal_of_models
 from tinyphoon.fields import to_words
 from tinyphoon.strategy import order_checks as checks
+from tinyphoon.strategy.colour_names import colours_between, colours_named
 from tinyphoon.strategy.models import MODEL_CAPACITY, MODEL_WORDS, MODELS, ObjectModel, Shape, check_models
 from tinyphoon.strategy.order_checks import WHICH_BIT
 from tinyphoon.strategy.orders import mode_in, store_order
@@ -28,6 +31,19 @@ def test_models_there_and_back() -> None:
         mode = mode_in(np.array(GOOD), stored)
         assert mode.models == models
         assert mode.blobs.colour_groups == tuple(sorted({each.colours for each in models}))
+
+
+def test_a_new_model_is_called_by_what_it_is() -> None:
+    """Its name does not go over the SPI; those of the indoor field are known by their numbers."""
+    models = (
+        MODELS[0],
+        replace(MODELS[0], number=7, colours=colours_named("purple")),
+        replace(MODELS[-1], number=9, colours=colours_named("green") | colours_between(150, 165)),
+    )
+    stored = np.zeros((MODEL_CAPACITY, MODEL_WORDS), np.int32)
+    stored[: len(models)] = [to_words(each) for each in models]
+    names = [each.name for each in mode_in(np.array(GOOD), stored.ravel()).models]
+    assert names == ["ball", "purple ball 7", "green or cyan marker 9"]
 
 
 @pytest.mark.parametrize(

@@ -188,6 +188,15 @@ def test_what_must_not_be_overlooked_stands_below_the_table() -> None:
     assert "Warning" not in words_of(run)
 
 
+def test_it_says_where_the_cameras_are() -> None:
+    """Of firmware that asks for it."""
+    run = edge_run(100, 100)
+    assert "Cameras focal length 9 px (of the recording)" in words_of(
+        replace(run, geometry="focal length 9 px (of the recording)")
+    )
+    assert "Cameras" not in words_of(replace(run, geometry=""))
+
+
 def test_where_to_look_next_depends_on_the_stalls() -> None:
     """With a tenth of the frame stalled, at the placement too."""
     core = core_frame("A", 0, cost("Edge detection", 90, {StallReason.L2_LATENCY: 10}))

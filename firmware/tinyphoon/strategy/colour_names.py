@@ -55,3 +55,8 @@ def colours_between(first: float, last: float) -> int:
 def colours_named(name: str) -> int:
     """Return the colours of one of `COLOUR_NAMES`, as bits."""
     return WITHOUT_HUE[name] if name in WITHOUT_HUE else colours_between(*NAMED_DEG[name])
+
+
+def names_of(colours: int) -> list[str]:
+    """Return the names of which there is a colour among bits."""
+    return [name for name in COLOUR_NAMES if colours & colours_named(name)]

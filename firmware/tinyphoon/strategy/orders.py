@@ -18,6 +18,7 @@ from bfsim.api import Buffer, Core, Frame, FrameSize, Row, i32, kernel, u16
 from tinyphoon.areas import LEAST_AREA_PX, Area, principal_shift, see
 from tinyphoon.fields import Word, from_words, to_words, words_of
 from tinyphoon.geometry import look_at
+from tinyphoon.strategy.colour_names import names_of
 from tinyphoon.strategy.framing import FRAME_BYTES, MODE, message_type
 from tinyphoon.strategy.models import (
     MODEL_CAPACITY,
@@ -174,7 +175,11 @@ def mode_in(mode: NDArray[np.int32], models: NDArray[np.int32]) -> Mode:
 
 
 def _model(words: NDArray[np.int32]) -> ObjectModel:
-    number = int(words[MODEL_NUMBER])
+    model = from_words(MODELS[0], words.tolist())
     names = {each.number: each.name for each in MODELS}
-    named = replace(MODELS[0], name=names.get(number, f"model {number}"))
-    return from_words(named, words.tolist())
+    return replace(model, name=names.get(model.number) or _what_it_is(model))
+
+
+def _what_it_is(model: ObjectModel) -> str:
+    """Return what a model of another number is called: names do not go over the SPI."""
+    return f"{' or '.join(names_of(model.colours))} {model.shape.name.lower()} {model.number}"

@@ -8,7 +8,7 @@
 A name of the indoor field stands for its model, and what is given besides changes that. Any other name is a new model: it
 must have a shape, a colour and a size; its number is the first free one, and the rest is as in the first model of that
 shape, boxes after one of 100 mm. The limits of a blob's width by height follow the size unless they are given. A name does not go over the SPI: the
-report calls a new model by its number.
+report calls a new model by what it is, "green box 5".
 """
 
 from __future__ import annotations
