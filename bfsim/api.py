@@ -84,6 +84,7 @@ from bfsim.machine.dma.ring import InputRing, OutputRing
 from bfsim.machine.memories import Row
 from bfsim.machine.peripherals.device import Script
 from bfsim.machine.peripherals.spi import SpiDevice, SpiMessage
+from bfsim.machine.peripherals.uart import UartDevice, UartMessage
 from bfsim.machine.program import Buffer, Buffers, Calibration, Firmware, FrameSize, Geometry, SourcePixels
 from bfsim.seen import (
     Colour,
@@ -152,6 +153,8 @@ __all__ = [
     "SourcePixels",
     "SpiDevice",
     "SpiMessage",
+    "UartDevice",
+    "UartMessage",
     "WdSize",
     "Work",
     "abs_fr1x16",

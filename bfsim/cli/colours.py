@@ -46,7 +46,7 @@ class _Area(click.ParamType[tuple[int, int, int, int]]):
     "--script",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="What the firmware's device on the SPI is told, as for `bfsim run`: thresholds of colours that hold in that frame.",
+    help="What the firmware's devices are told, as for `bfsim run`: thresholds of colours that hold in that frame.",
 )
 @click.option(
     "--grey",

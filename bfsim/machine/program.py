@@ -140,7 +140,7 @@ class Firmware:
     that the PPI fills, a whole number of frames. `rows`: the stages in the order of the budget. `reference`: what the
     `reference_ms` of the rows are, which must be said where a row has some. `calibration`: what a recording knows of its cameras → the buffers that it takes, beside the others or in place of those of the same name.
     `spi`: the script of the user, empty without one → the device at the other end of the SPI; raises a FirmwareError
-    that names the key of the script and what it must be. Without it nobody listens there.
+    that names the key of the script and what it must be. Without it nobody listens there. `uart`: the same for the UART.
     `view`: what a core has in memory at the end of a frame → what it saw, for people and files, if there is anything to
     show; it is not simulated. Without it, pictures show what the camera saw and the numbers that were published.
     `colours`: a UYVY picture of shape (height, 2 · width), the user's script and the number of a frame → what the firmware
@@ -161,6 +161,7 @@ class Firmware:
     reference: Reference | None = None
     calibration: Callable[[Calibration], Buffers] | None = None
     spi: MakeDevice | None = None
+    uart: MakeDevice | None = None
     view: View | None = None
     colours: Callable[[NDArray[np.uint8], Script, int], PictureColours] | None = None
     losses: Mapping[str, str] = field(default_factory=dict)

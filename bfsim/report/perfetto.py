@@ -36,8 +36,8 @@ _MOST_KNOWN = 1 << 14
 _NS = 1_000_000_000
 _TOP = "board"
 """The track that all others lie below."""
-_ORDER = ("core", "SDRAM", "L2", "MDMA", "IMDMA", "PPI", "SPI", "semaphore", "lock")
-"""Devices from top to bottom, by how their names begin."""
+_ORDER = ("core", "SDRAM", "L2", "MDMA", "IMDMA", "PPI", "semaphore", "lock")
+"""Devices from top to bottom, by how their names begin; the peripherals follow."""
 _TRACKS = ("frames", "stages", "work", "interrupts")
 """Tracks of a core from top to bottom; the others follow by name."""
 

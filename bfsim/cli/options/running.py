@@ -52,7 +52,7 @@ _RUN_PARAMETERS = (
         "--script",
         metavar="FILE",
         type=click.Path(path_type=Path),
-        help="What the firmware's device on the SPI is told, JSON or TOML; the firmware says what it understands.",
+        help="What the firmware's devices are told, JSON or TOML; the firmware says what it understands.",
     ),
     click.option(
         "--fidelity",

@@ -27,6 +27,8 @@ DMA_MASTERS = (
     DmaMaster(w.PPI0, "PPI0", 0),
     DmaMaster(w.PPI1, "PPI1", 1),
     DmaMaster(w.SPI, "SPI", 40),
+    DmaMaster(w.UART_RX, "UART RX", 41),
+    DmaMaster(w.UART_TX, "UART TX", 42),
     DmaMaster(w.MDMA1_0, "MDMA1 stream 0", 20, "MDMA1_0", w.MDMA1_1),
     DmaMaster(w.MDMA1_1, "MDMA1 stream 1", 21, "MDMA1_1", w.MDMA1_0),
     DmaMaster(w.MDMA2_0, "MDMA2 stream 0", 44, "MDMA2_0", w.MDMA2_1),

@@ -40,7 +40,7 @@ def preferred_until(state: State, number: int, until: int) -> int:
         ready = state[at + w.READY]
         if other != number and ready < limit:
             waits = ready <= state[w.BEGAN] and state[at + w.USES] == w.SDRAM and state[at + w.RANK] > rank
-            waits = waits and other > w.SPI  # a device that waits gets urgent
+            waits = waits and other >= w.MDMA1_0  # a device that waits gets urgent
             if not waits:
                 limit = ready
     return limit

@@ -56,10 +56,12 @@ BUS_AT = SDRAM_WORDS
 BUS_WORDS = 25
 
 # The masters in the order of their rows. Cores have one for what they wait for and one for their store buffer.
-PPI0, PPI1, SPI, MDMA1_0, MDMA1_1, MDMA2_0, MDMA2_1, IMDMA_0, IMDMA_1, STORES_A, STORES_B, CORE_A, CORE_B = (
-    range(13)
-)
-MASTERS = 13
+(
+    PPI0, PPI1, SPI, UART_RX, UART_TX,
+    MDMA1_0, MDMA1_1, MDMA2_0, MDMA2_1, IMDMA_0, IMDMA_1,
+    STORES_A, STORES_B, CORE_A, CORE_B,
+) = range(15)  # fmt: skip
+MASTERS = 15
 
 # ---- A master: who can ask for the bus. Word n of all masters stands together, since all are looked at in every step.
 (

@@ -98,7 +98,7 @@ def serve_cameras(state: State, memory: Memory, number: int, at: int, until: int
     """
     woken = serve_dma(state, memory, number, at, until)
     limit = min(until, state[w.NEXT_REFRESH])
-    for other in range(w.SPI, w.MASTERS):
+    for other in range(w.PPI1 + 1, w.MASTERS):
         limit = min(limit, state[w.MASTERS_AT + other + w.READY])
     while woken == w.NONE:
         take_hits(state, memory, limit)

@@ -60,8 +60,10 @@ class Peripheral:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the user must be warned of, now that the run is over."""
-        return notes_of(self._device, self.name)
+        """What the user must be warned of, now that the run is over: what was lost, and what the device has to say."""
+        lost = self._in.lost
+        loss = (f"{lost} words came while the FIFO of the DMA was full, and were lost",) if lost else ()
+        return (*loss, *notes_of(self._device, self.name))
 
     def send(self, row: Row, nbytes: int) -> None:
         """Begin to send the first `nbytes` of `row`."""

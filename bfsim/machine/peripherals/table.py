@@ -8,10 +8,11 @@ from bfsim.errors import FirmwareError, shown
 from bfsim.machine.peripherals.device import LARGEST_MESSAGE_BYTES, Device, MakeDevice, Script, device_at_work
 from bfsim.machine.peripherals.peripheral import Peripheral
 from bfsim.machine.peripherals.spi import Spi
+from bfsim.machine.peripherals.uart import Uart
 from bfsim.machine.peripherals.wire import Surroundings
 from bfsim.machine.program import Firmware
 
-PERIPHERALS = (Spi,)
+PERIPHERALS = (Spi, Uart)
 
 OUTSIDE_NBYTES = sum(each.wires for each in PERIPHERALS) * LARGEST_MESSAGE_BYTES
 """Room for the messages of all of them on their way."""

@@ -50,6 +50,11 @@ class Wire:
         self._outside = outside
         self.busy: simpy.Event | None = None
 
+    @property
+    def lost(self) -> int:
+        """How many words found the FIFO of the DMA full."""
+        return self._bus.lost_by(self._spec.master)
+
     def send(self, row: Row, nbytes: int, on_out: Callable[[bytes, int], None]) -> None:
         """Begin to send the first `nbytes` of `row`; when they are out, `on_out` is called with them and the tick of the first."""
         self.busy = self._env.process(self._send(row, nbytes, on_out, self.busy))
