@@ -32,7 +32,7 @@ def pytest_configure() -> None:
 def pytest_cmdline_main(config: pytest.Config) -> Iterator[None]:
     """Keep compiled kernels where BFSIM_CACHE_DIR says; without it in a folder of this run, which its workers share.
 
-    It starts empty. Before all of the tests a cold start fills it, on two cores, with what each worker would compile first.
+    It starts empty. Before all of the tests a cold start fills it with what each worker would compile first.
     """
     if hasattr(config, "workerinput") or "BFSIM_CACHE_DIR" in os.environ:
         return (yield)

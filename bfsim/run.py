@@ -24,7 +24,6 @@ from bfsim.kernel import VDSP_O2
 from bfsim.linker import LinkerScript, LinkMap
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Fidelity
-from bfsim.machine.bus.ahead import compiled_ahead
 from bfsim.machine.calls.call_cache import BeforeCall, sanitized
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.peripherals.device import Device
@@ -132,7 +131,6 @@ def simulate(
     with (
         loaded.own.named(),
         RecordingReader(recording or BUILT_IN_RECORDING) as reader,
-        compiled_ahead() as weave,
     ):
         size = FrameSize(reader.width, reader.height)
         calibration = calibration_of(reader)
@@ -149,7 +147,6 @@ def simulate(
             build=build,
             devices=devices,
             fidelity=fidelity,
-            weave=weave,
         )
         total = min(frames or reader.frame_count, reader.frame_count)
         if not total:

@@ -5,6 +5,8 @@ once.
 
 Entries are run as they are, so nobody else may write them: the folder and each entry belong to the user alone, and an
 entry's checksum is that of its name and its contents.
+
+Some of what takes long comes with bfsim, under such names too.
 """
 
 from __future__ import annotations
@@ -14,8 +16,10 @@ import os
 import stat
 import tempfile
 import warnings
+import zlib
 from contextlib import suppress
 from functools import cache
+from importlib.resources import files
 from pathlib import Path
 
 import platformdirs
@@ -24,6 +28,8 @@ from bfsim.errors import BfsimWarning, shown
 
 CHECKSUM_BYTES = 32
 PRIVATE = 0o700
+KEPT = "kept"
+"""Folder of a package with what comes with bfsim."""
 
 
 def folder() -> Path:
@@ -70,6 +76,12 @@ def save(name: str, body: bytes) -> None:
         except BaseException:
             Path(aside).unlink()
             raise
+
+
+def shipped(package: str, name: str) -> bytes | None:
+    """Return what comes with bfsim in a package, under a digest of what it was made of; None if nothing was made of that."""
+    kept = files(package) / KEPT / name
+    return zlib.decompress(kept.read_bytes()) if kept.is_file() else None
 
 
 def _checksum(name: str, body: bytes) -> bytes:

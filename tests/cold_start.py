@@ -1,4 +1,4 @@
-"""A command that finds no compiled kernels, which takes half a minute of both cores.
+"""A command that finds no compiled kernels, which takes half a minute.
 
 Before all of the tests it is made once: what it compiles is there for all of them, what it said for the test that asks for it.
 """
@@ -11,51 +11,34 @@ import subprocess
 import sys
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 SAID = "BFSIM_TESTS_COLD_START"
 """Variable of the environment: the file that says how it went; workers inherit it."""
 WORDS = ("run", "--frames", "2", "--json", "-")
 
 COMMAND = """
-from bfsim.kernel.native import NativeEntry
-
-compile_here = NativeEntry.compile
-
-def compile_all_but_the_weave(entry):
-    assert entry.symbol != "bfsim_advance", "the other process compiles it"
-    return compile_here(entry)
-
-NativeEntry.compile = compile_all_but_the_weave
-
+import sys
+sys.modules["numba"] = None  # which cannot be imported then
 from bfsim.__main__ import main
 main()
-"""
-LATER = """
-import sys
-from bfsim.kernel.traced_access import trace_access
-from bfsim.machine.bus.weave import advance
-print(all(each.is_kept() and each.address() for each in (trace_access, advance)), "numba" in sys.modules)
 """
 
 
 @dataclass(frozen=True, slots=True)
 class ColdStart:
-    """What the command printed, and what a later process found."""
+    """What the command printed."""
 
     exit_code: int
     stdout: str
     stderr: str
-    later: str
 
 
 def start_cold(cache: Path, folder: Path) -> ColdStart:
     """Run a command in `folder` whose compiled kernels go to `cache`, where nothing is yet."""
     environment = {**os.environ, "BFSIM_CACHE_DIR": str(cache), "PYTHONHASHSEED": "2"}
-    how: dict[str, Any] = {"cwd": folder, "env": environment, "capture_output": True, "text": True}
-    run = subprocess.run([sys.executable, "-c", COMMAND, *WORDS], **how, check=False)
-    later = subprocess.run([sys.executable, "-c", LATER], **how, check=False)
-    return ColdStart(run.returncode, run.stdout, run.stderr, later.stdout + later.stderr)
+    command = [sys.executable, "-c", COMMAND, *WORDS]
+    run = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    return ColdStart(run.returncode, run.stdout, run.stderr)
 
 
 def keep(start: ColdStart, file: Path) -> None:

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from benchmarks.toolchain.keep import FOLDER, recipes
+from bfsim import compiling, store
 from bfsim.blackfin.objects import read_object
 from bfsim.compiling.object_code import object_code
-from bfsim.compiling.recipes import KEPT_COMPILER, shipped
+from bfsim.compiling.recipes import KEPT_COMPILER
 from bfsim.compiling.toolchain import Toolchain, blackfin_compiler, prefer
 from bfsim.errors import ConfigError
 from bfsim.kernel import GCC_O0, GCC_O2
@@ -72,4 +73,4 @@ def test_what_comes_with_bfsim_is_the_code_of_what_it_is_now() -> None:
     wanted = {each.digest(KEPT_COMPILER) for each in recipes()}
     assert {each.name for each in FOLDER.iterdir()} == wanted
     for each in wanted:
-        assert read_object(shipped(each) or b"", each).symbols
+        assert read_object(store.shipped(compiling.__name__, each) or b"", each).symbols

@@ -13,11 +13,12 @@ from collections.abc import Iterator
 
 from bfsim.compiling.file_code import SOURCES, recipe_of_source
 from bfsim.compiling.object_code import LEVELS, recipe_of
-from bfsim.compiling.recipes import KEPT, KEPT_COMPILER, Recipe
+from bfsim.compiling.recipes import KEPT_COMPILER, Recipe
 from bfsim.compiling.toolchain import blackfin_toolchain
 from bfsim.kernel import profile_named
 from bfsim.loading import entries_of, kernels_of, load_firmware
 from bfsim.shipped import FIRMWARE
+from bfsim.store import KEPT
 from tests.pages import PAGES, ROOT, blocks_of
 
 FOLDER = ROOT / "bfsim" / "compiling" / KEPT

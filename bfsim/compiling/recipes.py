@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import hashlib
 import tempfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 
 from bfsim import store
@@ -22,7 +20,6 @@ OPTIONS = ("-std=gnu99", "-g1")
 """-g1: lines, but no word of variables. It changes no code."""
 KEPT_COMPILER = Compiler("bfin-elf", "12.2.0", CPU)
 """Whose code comes with bfsim, and is looked for where no compiler is at hand."""
-KEPT = "kept"
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,16 +64,10 @@ def code_at_hand(recipe: Recipe, toolchain: Toolchain | None) -> tuple[bytes, st
     """Return what `code_of` does, or None where there is neither kept code nor a compiler."""
     compiler = toolchain.identity if toolchain else KEPT_COMPILER
     name = recipe.digest(compiler)
-    octets = store.load(name) or shipped(name)
+    octets = store.load(name) or store.shipped(__package__, name)
     if octets is None:
         if toolchain is None:
             return None
         octets = recipe.made(toolchain)
         store.save(name, octets)
     return octets, compiler.version
-
-
-def shipped(name: str) -> bytes | None:
-    """Return the object file that comes with bfsim under a digest, or None."""
-    kept = files(__package__) / KEPT / name
-    return zlib.decompress(kept.read_bytes()) if kept.is_file() else None

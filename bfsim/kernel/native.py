@@ -1,22 +1,18 @@
-"""Compiled Python: what looks at every access to a memory or at every word on a bus, through numba.
+"""Compiled Python: what looks at every access to a memory or at every word on a bus.
 
-Numba makes LLVM IR of it; the machine code is made, kept and loaded as that of kernels. Its name in the cache is a digest of
-all sources that hold such parts: a change in one file never meets code that was compiled against another one. Numba takes its
-time already to be imported, so it is imported only to compile.
+Numba makes LLVM IR of it (`native_ir`). That of the present sources comes with bfsim (`benchmarks/keep_native.py` makes it), so numba is
+needed only after a change of them. The machine code is made, kept and loaded as that of kernels. Its name in the cache is a digest
+of all files that hold such parts: a change in one file never meets code that was compiled against another one.
 """
 
 from __future__ import annotations
 
 import hashlib
-import importlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, TypeVar
-
-import llvmlite.binding as llvm
 
 from bfsim import machine_code, store
 from bfsim.kernel.keys import tools
@@ -25,12 +21,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 ROOMS = ("kernel", "machine")
 """Folders of bfsim with compiled parts; those of one use numbers and functions of the other."""
-OPTIONS = {"error_model": "numpy"}
-SETTINGS = {"BOUNDSCHECK": 0, "DISABLE_JIT": 0}
-"""What a user's environment may tell numba for code of its own: `words_at` does not know the length that would be checked."""
 
 _parts: list[Callable[..., Any]] = []
-"""What numba has still to be told of."""
+"""What entries may call."""
 
 
 def native(function: Function) -> Function:
@@ -61,15 +54,19 @@ class NativeEntry:
         """Return the host address of its machine code, which is compiled or taken from the cache; once per process."""
         return _loaded(self)
 
-    def is_kept(self) -> bool:
-        """Return whether the cache has its machine code."""
-        return store.load(_key(self.symbol)) is not None
+    def digest(self) -> str:
+        """Return the name under which its IR is kept: a digest of what that is made of."""
+        from bfsim.kernel.native_sources import source_of  # most starts find all machine code
 
-    def compile(self) -> bytes:
-        """Compile it, and keep it in the cache; return the object file."""
-        code = machine_code.host_code(_ir(self))
-        store.save(_key(self.symbol), code)
-        return code
+        made_by = Path(__file__).with_name("native_ir.py").read_text(encoding="utf-8")
+        parts = (self.symbol, self.result, *self.arguments, made_by, source_of(self.python))
+        return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+    def ir(self) -> str:
+        """Make a module of LLVM IR with it and all that it calls."""
+        from bfsim.kernel.native_ir import made_ir  # as above
+
+        return made_ir(self.python, self.symbol, (self.result, *self.arguments), _parts, words_at)
 
 
 def native_entry(result: str, *arguments: str) -> Callable[[Callable[..., Any]], NativeEntry]:
@@ -79,7 +76,11 @@ def native_entry(result: str, *arguments: str) -> Callable[[Callable[..., Any]],
 
 @cache
 def _loaded(each: NativeEntry) -> int:
-    code = store.load(_key(each.symbol)) or each.compile()
+    code = store.load(_key(each.symbol))
+    if code is None:
+        kept = store.shipped(__package__, each.digest())
+        code = machine_code.host_code(each.ir() if kept is None else kept.decode())
+        store.save(_key(each.symbol), code)
     machine_code.add(code)
     return machine_code.address_of(each.symbol)
 
@@ -87,37 +88,7 @@ def _loaded(each: NativeEntry) -> int:
 @cache
 def _key(symbol: str) -> str:
     package = Path(__file__).parent.parent
-    digest = hashlib.sha256(f"{symbol} {version('numba')} {tools()}".encode())
+    digest = hashlib.sha256(f"{symbol} {tools()}".encode())
     for path in sorted(path for room in ROOMS for path in (package / room).rglob("*.py")):
         digest.update(path.read_bytes())
     return digest.hexdigest()
-
-
-def _ir(each: NativeEntry) -> str:
-    """Return a module of LLVM IR with an entry and all that it calls, of which only the entry can be called from outside."""
-    numba: Any = importlib.import_module("numba")  # its own types do not know all of its options
-    for name, value in SETTINGS.items():
-        setattr(numba.config, name, value)
-    while _parts:
-        numba.extending.register_jitable(no_cfunc_wrapper=True, **OPTIONS)(_parts.pop())
-    _extend(numba)
-    kinds = [_kind(numba.types, name) for name in each.arguments]
-    made = numba.cfunc(_kind(numba.types, each.result)(*kinds), **OPTIONS)(each.python)
-    module = llvm.parse_assembly(made.inspect_llvm())
-    for function in module.functions:
-        if function.name.startswith("cfunc."):
-            function.name = each.symbol
-        elif not function.is_declaration:
-            function.linkage = "internal"  # LLVM then sees that nothing in it can fail, and leaves out what Python would do then
-    return str(module)
-
-
-@cache
-def _extend(numba: Any) -> None:
-    """Tell numba of `words_at`: nothing asks for the length, which is not known."""
-    numba.extending.overload(words_at)(lambda address: lambda address: numba.carray(address, 1))
-
-
-def _kind(types: Any, name: str) -> Any:
-    """Return numba's type of that name."""
-    return types.CPointer(_kind(types, name[:-1])) if name.endswith("*") else getattr(types, name)

@@ -16,7 +16,6 @@ from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.linker import LinkMap
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.masters import RING_STREAMS
-from bfsim.machine.bus.weave import Weave, compiled_weave
 from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches, written_through
 from bfsim.machine.calls.call_cache import BeforeCall, CallCache
 from bfsim.machine.calls.conflicts import SubBanks
@@ -73,7 +72,6 @@ class Board:
     before_call: tuple[BeforeCall, ...] = ()
     devices: Mapping[str, Device] = field(default_factory=dict)
     fidelity: Fidelity = Fidelity.FAST
-    weave: Weave = compiled_weave
     core: Callable[..., Core] = AheadCore
     cores: dict[str, Core] = field(init=False, default_factory=dict)
 
@@ -86,7 +84,7 @@ class Board:
         self._bus = (
             DetailedBus(env, self.spec, self._memories)
             if self.fidelity is Fidelity.DETAILED
-            else Bus(env, self.spec, self._memories, self.weave)
+            else Bus(env, self.spec, self._memories)
         )
         self._caches = {core: caches_of(self.link_map, PROCESSORS[core]) for core in chip.cores}
         for core, caches in self._caches.items():

@@ -223,10 +223,12 @@ print(follow.address() > 0)
 
 def follow_in(folder: Path, *, limit_bytes: int = resource.RLIM_INFINITY) -> None:
     """Compile a part as the tracing of accesses is one, in a process that can write files of a limited size, or take it from the cache."""
-    limit = f"import resource as r; r.setrlimit(r.RLIMIT_FSIZE, ({limit_bytes}, {limit_bytes})); "
+    program = folder.with_name("follow.py")
+    limit = f"import resource as r; r.setrlimit(r.RLIMIT_FSIZE, ({limit_bytes}, {limit_bytes}))"
+    program.write_text(limit + FOLLOW)
     surroundings = {**os.environ, "BFSIM_CACHE_DIR": str(folder)}
     done = subprocess.run(
-        [sys.executable, "-c", limit + FOLLOW],
+        [sys.executable, str(program)],
         capture_output=True,
         check=False,
         env=surroundings,

@@ -1,0 +1,37 @@
+"""Make the IR of the native entries anew: it comes with bfsim, so that nobody else needs numba.
+
+    python -m benchmarks.keep_native
+
+It takes half a minute, and writes to `bfsim/kernel/kept`; what is there and no longer used is removed. After a change of a function with
+`@native` or `@native_entry`, or of a number that one uses, it must be run again, or every cold start takes that half minute.
+"""
+
+from __future__ import annotations
+
+import zlib
+from pathlib import Path
+
+from bfsim import kernel
+from bfsim.kernel.traced_access import trace_access
+from bfsim.machine.bus.weave import advance
+from bfsim.machine.retiming.translated import write_log
+from bfsim.store import KEPT
+
+FOLDER = Path(kernel.__file__).parent / KEPT
+ENTRIES = (trace_access, advance, write_log)
+
+
+def main() -> None:
+    """Make and write what is not there."""
+    FOLDER.mkdir(exist_ok=True)
+    wanted = {each.digest(): each for each in ENTRIES}
+    for old in {each.name for each in FOLDER.iterdir()} - wanted.keys():
+        (FOLDER / old).unlink()
+    for name, each in wanted.items():
+        if not (FOLDER / name).exists():
+            (FOLDER / name).write_bytes(zlib.compress(each.ir().encode(), 9))
+        print(f"{name[:12]}  {(FOLDER / name).stat().st_size:7,} bytes  {each.symbol}")
+
+
+if __name__ == "__main__":
+    main()
