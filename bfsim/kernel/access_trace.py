@@ -120,9 +120,11 @@ class AccessTrace:
 
     def take_count(self) -> int:
         """Return how many accesses the last call logged, and begin the log anew behind what is kept."""
-        count = int(self._words[ENTRIES]) - self._kept
-        self._words[ENTRIES] = self._kept
-        self._check_room(count)
+        words, kept = self._words, self._kept
+        count: int = words[ENTRIES] - kept
+        words[ENTRIES] = kept
+        if count > words[ROOM] - kept:
+            self._check_room(count)
         return count
 
     def keep(self, count: int) -> int:

@@ -89,9 +89,9 @@ class PreparedCall:
         "_floats",
         "_integers",
         "_is_float",
-        "_is_plain",
         "_kept",
         "_value_word",
+        "_work",
     )  # fmt: skip
 
     def __init__(
@@ -131,7 +131,7 @@ class PreparedCall:
         self._floats = tuple(floats)
         self._check = check
         self._access_trace = access_trace
-        self._is_plain = result is None and access_trace is None
+        self._work = Work(0, 0)
 
     @property
     def stays_in_l1(self) -> bool:
@@ -139,7 +139,7 @@ class PreparedCall:
         return self._access_trace is None
 
     def run(self, arguments: Sequence[Any]) -> Work:
-        """Run the kernel now and say what it cost. Of `arguments`, only the integers are read."""
+        """Run the kernel now and say what it cost, until the next run. Of `arguments`, only the numbers are read."""
         if self._integers:
             self._put(arguments)
         if self._floats:
@@ -149,17 +149,15 @@ class PreparedCall:
         if cycles < 0 or len(arguments) != self._count:
             self._check(arguments)
             raise self._failure()
-        if self._is_plain:
-            return Work(cycles & ISSUE_MASK, cycles >> STALL_SHIFT)
-        value: float | None = self._block[self._value_word] if self._value_word else None
-        if self._is_float and value is not None:
-            value = FLOAT.unpack(BITS.pack(value))[0]
-        return Work(
-            cycles & ISSUE_MASK,
-            cycles >> STALL_SHIFT,
-            value,
-            self._access_trace.take_count() if self._access_trace else 0,
-        )
+        work = self._work  # one for all runs: to make it takes Python longer than to run a short kernel
+        work.issue_cclk = cycles & ISSUE_MASK
+        work.stall_cclk = cycles >> STALL_SHIFT
+        work.accesses = self._access_trace.take_count() if self._access_trace else 0
+        if self._value_word:
+            work.value = self._block[self._value_word]
+            if self._is_float:
+                work.value = FLOAT.unpack(BITS.pack(work.value))[0]
+        return work
 
     def _put_floats(self, arguments: Sequence[Any]) -> None:
         """Put the bits of the floats where the kernel finds them; what is no number is refused."""

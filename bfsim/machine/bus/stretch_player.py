@@ -29,34 +29,34 @@ class StretchPlayer:
         self._plans = 0
 
     def play(
-        self, core: int, clock_cclk: int, operations: NDArray[np.int64], accesses: NDArray[np.int64]
+        self, core: int, clock_cclk: int, operations: NDArray[np.int64], accesses: NDArray[np.int64] | None = None
     ) -> simpy.Event:
         """Let a core do `operations` by itself from now on, its clock being at a cycle; return the end.
 
-        `operations`: rows of OPERATION_WORDS as in `bus.state`, at most MAX_OPERATIONS of them. `accesses`: the log that those
-        of their calls refer to, a row of entries and one of sites.
+        `operations`: rows of OPERATION_WORDS as in `bus.state`, or all in one, at most MAX_OPERATIONS of them. `accesses`: the log that
+        those of their calls refer to, a row of entries and one of sites, unless the core's log has it.
         """
         first = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS
         self._state[first : first + operations.size] = operations.reshape(-1)
-        self._logs.replace(core, accesses)
-        return self.start(core, clock_cclk, 0, len(operations))
-
-    def start(self, core: int, clock_cclk: int, first: int, end: int) -> simpy.Event:
-        """Let a core do the operations from `first` to before `end` of those that stand in the state; else as `play`."""
-        play = w.PLAYS_AT + core * w.PLAY_WORDS
-        copies = self._words[play + w.COPIES]
+        if accesses is not None:
+            self._logs.replace(core, accesses)
+        play, words = w.PLAYS_AT + core * w.PLAY_WORDS, self._words
+        copies = words[play + w.COPIES]
         self._state[play : play + w.PLAY_WORDS] = 0
-        for word, value in (
-            (w.OPERATION, first), (w.OPERATIONS_END, end), (w.CLOCK, clock_cclk), (w.ACTS_AT, self._env.tick),
-            (w.AWAITED, w.NONE), (w.COPIES, copies),
-        ):  # fmt: skip
-            self._words[play + word] = value
+        words[play + w.OPERATIONS_END] = operations.size // w.OPERATION_WORDS
+        words[play + w.CLOCK] = clock_cclk
+        words[play + w.ACTS_AT] = self._env.tick
+        words[play + w.AWAITED] = w.NONE
+        words[play + w.COPIES] = copies
         return self._ends.of_stretch(core)
 
-    def played(self, core: int) -> Played:
-        """Return what the last stretch of a core took. Raises FirmwareError if DMA had no room for all of its copies."""
+    def played(self, core: int, accounts: int) -> Played:
+        """Return what the last stretch of a core took, with its first so many `accounts`.
+
+        Raises FirmwareError if DMA had no room for all of its copies.
+        """
         play = w.PLAYS_AT + core * w.PLAY_WORDS
-        words: list[int] = self._words[play : play + w.PLAY_WORDS].tolist()
+        words: list[int] = self._words[play : play + w.ACCOUNTS + accounts * w.ACCOUNT_WORDS].tolist()
         if words[w.OPERATION] < words[w.OPERATIONS_END]:
             raise FirmwareError(f"DMA must have at most {w.MAX_TRANSFERS} transfers to do at a time")
         touches = words[w.ACCOUNTS + w.TOUCH :: w.ACCOUNT_WORDS] if words[w.TOUCHED] else ()

@@ -7,10 +7,11 @@ Before the core waits for a picture, for the other core or for a device, the bus
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable, Generator
 from functools import partial
 from typing import Any
+
+import numpy as np
 
 from bfsim.errors import FirmwareError
 from bfsim.kernel import Work
@@ -25,20 +26,14 @@ from bfsim.machine.dma.memory_dma import MemoryDma
 from bfsim.machine.memories import Row
 from bfsim.trace import StallReason
 
-OPERATION = struct.Struct(f"@{w.OPERATION_WORDS}q")
-MOST_OPERATIONS, MOST_ACCESSES = w.MAX_OPERATIONS // 2, 1 << 16
+MOST_WORDS, MOST_ACCESSES = w.MAX_OPERATIONS // 2 * w.OPERATION_WORDS, 1 << 16
 """What is done ahead, at most, before a core meets the others: its room is larger, for it cannot do so at every operation."""
 
 Wait = Generator[Any, Any, Any]
 
 
-class Copy:
-    """A copy that a core has made ahead: the how-manieth of all of its own."""
-
-    __slots__ = ("number",)
-
-    def __init__(self, number: int) -> None:
-        self.number = number
+Copy = int
+"""A copy that a core has made ahead: the how-manieth of all of its own."""
 
 
 class AheadStream(MdmaStream):
@@ -77,17 +72,15 @@ class AheadCore(Core):
         inward, outward = (AheadStream(each, self) for each in streams)
         super().__init__(*arguments, bus=bus, number=number, streams=(inward, outward), **named)
         self._may_run_ahead = self._timeline is None
-        self._words = bus.words
-        self._operations_at = 8 * (w.OPERATIONS_AT + number * w.MAX_OPERATIONS * w.OPERATION_WORDS)
-        self._copies = 0
+        self._copies: Copy = 0
         self._has_traced = False  # whether the call that was made last has a log
         self._begin()
 
     def _begin(self) -> None:
         """Begin anew: the clock is where the firmware is."""
-        self._operations = 0  # how many there are,
+        self._noted: list[int] = []  # operations, word by word,
         self._issued = self._interlocked = 0  # and what the calls behind the last of them took
-        self._moments: list[tuple[int, Callable[[], None]]] = []  # what to do, and behind how many operations
+        self._moments: list[tuple[int, Callable[[], None]]] = []  # what to do, and behind how many words
         self._owners: dict[str, int] = {}  # of their accounts
         self._is_full = False
         self._access_trace.drop()
@@ -100,7 +93,7 @@ class AheadCore(Core):
     @property
     def _is_behind(self) -> bool:
         """Whether the core's clock is behind its firmware."""
-        return self._operations > 0
+        return bool(self._noted)
 
     # Kernels
 
@@ -115,7 +108,7 @@ class AheadCore(Core):
             last = first + work.accesses
             self._note(w.ACCESS, work.issue_cclk, work.stall_cclk, first, last)
             self._is_full |= last > MOST_ACCESSES
-        elif self._operations:
+        elif self._noted:
             self._issued += work.issue_cclk
             self._interlocked += work.stall_cclk
         else:
@@ -132,25 +125,25 @@ class AheadCore(Core):
 
     def settle(self) -> None:
         """Let everything on the bus happen that is due; what is done ahead does not depend on it."""
-        if not self.runs_ahead:
+        if not (self._may_run_ahead or self._noted):
             super().settle()
 
     def has(self, transfer: Any) -> bool:
         """Whether a transfer is done by the core's clock: nobody knows that of one made ahead before it is waited for."""
-        return not self.runs_ahead and super().has(self._posted(transfer))
+        return not (self._may_run_ahead or self._noted) and super().has(self._posted(transfer))
 
     def wait_transfer(self, transfer: Any, reason: StallReason, owner: str) -> Wait:
         """Wait as every core does."""
         if self._may_run_ahead and isinstance(transfer, Copy):
-            self._note(w.AWAIT, self._copies - transfer.number, COUNTER_OF[reason], self._account_of(owner))
-            self._is_full |= self._operations > MOST_OPERATIONS
+            self._note(w.AWAIT, self._copies - transfer, COUNTER_OF[reason], self._account_of(owner))
+            self._is_full |= len(self._noted) > MOST_WORDS
         else:
             yield from self.play_stretches()
             yield from super().wait_transfer(self._posted(transfer), reason, owner)
 
     def program_device(self, owner: str, *, writes: int, reads: int = 0) -> None:
         """Write and read registers as every core does."""
-        if not self.runs_ahead:
+        if not (self._may_run_ahead or self._noted):
             super().program_device(owner, writes=writes, reads=reads)
             return
         events = self._board.chip.events
@@ -164,9 +157,8 @@ class AheadCore(Core):
     def copied(self, plan: int, source: int, destination: int) -> Copy:
         """Note a copy that was made; return it."""
         self._note(w.COPY, plan, source, destination)
-        copy = Copy(self._copies)
         self._copies += 1
-        return copy
+        return self._copies - 1
 
     def keep_plan(self, words: tuple[int, ...]) -> int:
         """Keep the words of a plan for copies of its kind; return its number."""
@@ -200,7 +192,7 @@ class AheadCore(Core):
             what()
             return
         self._note_calls()
-        self._moments.append((self._operations, what))
+        self._moments.append((len(self._noted), what))
 
     def sync(self) -> Wait:
         """Find the clock out, and wait until the simulated time has reached it."""
@@ -214,11 +206,11 @@ class AheadCore(Core):
         before, self._in_handler = self._in_handler, True  # no handler comes between,
         self._is_full = False  # and no second play of the same
         self._note_calls()
-        owners, first = list(self._owners), 0
-        for end, what in (*self._moments, (self._operations, self._begin)):
+        owners, operations, first = list(self._owners), np.array(self._noted, np.int64), 0
+        for end, what in (*self._moments, (len(operations), self._begin)):
             if end > first:
-                yield self._bus.stretches.start(self._number, self._cclk, first, end)
-                self._charge_stretch(self._bus.stretches.played(self._number), owners)
+                yield self._bus.stretches.play(self._number, self._cclk, operations[first:end])
+                self._charge_stretch(self._bus.stretches.played(self._number, len(owners)), owners)
                 first = end
             what()
         self._in_handler = before
@@ -229,19 +221,20 @@ class AheadCore(Core):
         """Note an operation and its numbers, as in `bus.state`, behind the calls before it."""
         if self._issued:
             self._note_calls()
-        at = self._operations_at + OPERATION.size * self._operations
-        OPERATION.pack_into(self._words, at, kind, one, two, three, four)
-        self._operations += 1
+        self._noted += (kind, one, two, three, four)
 
     def _note_calls(self) -> None:
         """Note the calls that have met nobody since the last operation, as one."""
         issued, interlocked = self._issued, self._interlocked
         if issued or interlocked:
             self._issued = self._interlocked = 0
-            self._note(w.RUN, issued, interlocked)
+            self._noted += (w.RUN, issued, interlocked, 0, 0)
 
     def _account_of(self, owner: str) -> int:
-        number = self._owners.setdefault(owner, len(self._owners))
+        owners = self._owners
+        if owner in owners:
+            return owners[owner]
+        number = owners[owner] = len(owners)
         if number == w.MAX_ACCOUNTS:
             raise FirmwareError(
                 f"core {self.name} must use at most {w.MAX_ACCOUNTS} rings before it waits for a picture or another core"
@@ -253,4 +246,4 @@ class AheadCore(Core):
         """Return a transfer of the bus for one that was made ahead and has been played."""
         if not isinstance(transfer, Copy):
             return transfer  # type: ignore[no-any-return]
-        return Transfer(self._bus, *self._bus.stretches.copy_of(self._number, transfer.number))
+        return Transfer(self._bus, *self._bus.stretches.copy_of(self._number, transfer))

@@ -110,7 +110,8 @@ class ReplayedCore(Core):
         if len(runs_at):
             stretch.operations[runs_at, 0] = np.array(self._kinds_of_calls)[kernels]
         yield self._bus.stretches.play(self._number, self._cclk, stretch.operations, stretch.accesses)
-        self._charge_stretch(self._bus.stretches.played(self._number), self._account_names)
+        played = self._bus.stretches.played(self._number, len(self._account_names))
+        self._charge_stretch(played, self._account_names)
 
     def _planned(self, copies: Table) -> Table:
         """Plan copies; return the numbers of their plans, and where they go from and to: rows of what is behind COPY.
