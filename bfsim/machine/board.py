@@ -197,6 +197,7 @@ class Board:
             Ledger(partial(self._bus.logs.stalls_at_sites, number)),
             stack=self._stack_outside_l1(name),
             own=self._buffers.only_of(name),
+            handed_over=self._buffers.handed_over,
             before_call=self.before_call,
         )
 

@@ -45,6 +45,10 @@ class LoadedBuffers:
         self.records = tuple(_own(placed, owners))
         shared = placed.get("shared", {})
         self._own_names = {core: set(placed.get(core, {})) for core in self._cores}
+        self.handed_over = frozenset(
+            each.name for each in firmware.buffers(size).get("shared", ()) if each.handed_over
+        ) - {firmware.camera}
+        """The shared buffers that one core works on at a time."""
         self.of: dict[str, dict[str, Rows]] = {core: shared | placed.get(core, {}) for core in self._cores}
 
     def only_of(self, core: str) -> frozenset[str]:

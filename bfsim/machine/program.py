@@ -80,7 +80,9 @@ class Calibration:
 class Buffer:
     """A variable of the firmware: `rows` rows of `columns` elements, placed by the LDF through its `section`.
 
-    `values` are its contents at the start (a table); without them it starts as zeros.
+    `values` are its contents at the start (a table); without them it starts as zeros. `handed_over`: of a buffer that both cores share,
+    that only one of them works on it at a time, and that a semaphore, a lock or an interrupt says when the other one may. The simulator
+    holds them to it, and is faster: it need not wait for the cycle of each access.
     """
 
     name: str
@@ -89,6 +91,7 @@ class Buffer:
     section: str
     rows: int = 1
     values: NDArray[Any] | None = field(default=None, compare=False)
+    handed_over: bool = False
 
     def __post_init__(self) -> None:
         if not isinstance(self.element, Number):

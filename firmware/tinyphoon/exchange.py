@@ -21,13 +21,12 @@ SHARED = "l2_shared"
 def exchange_buffers(size: FrameSize) -> Sequence[Buffer]:
     """Return the shared buffers: lines and edges of the right picture, and how many there are."""
     return (
-        Buffer("right_lines", i16, LINE_WORDS * SEGMENT_CAPACITY, SHARED),
-        Buffer("right_line_count", u32, 1, SHARED),
-        Buffer("right_edge_data", u32, EDGE_CAPACITY, SHARED),
-        Buffer(
-            "right_edge_rows", u32, size.height_px, SHARED
-        ),  # first edge of a row in bits 0..15, count in 16..31
-        Buffer("right_edges", u32, 1, SHARED),
+        Buffer("right_lines", i16, LINE_WORDS * SEGMENT_CAPACITY, SHARED, handed_over=True),
+        Buffer("right_line_count", u32, 1, SHARED, handed_over=True),
+        Buffer("right_edge_data", u32, EDGE_CAPACITY, SHARED, handed_over=True),
+        # first edge of a row in bits 0..15, count in 16..31
+        Buffer("right_edge_rows", u32, size.height_px, SHARED, handed_over=True),
+        Buffer("right_edges", u32, 1, SHARED, handed_over=True),
     )
 
 

@@ -44,13 +44,14 @@ def sanitized(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
 class KnownCall:
     """A kernel bound to its rows, ready to run.
 
-    `stays_in_l1`: whether neither its accesses nor its code can leave L1; `is_own`: whether they reach nothing but buffers that
-    belong to its core alone.
+    `stays_in_l1`: whether neither its accesses nor its code can leave L1; `is_alone`: whether they reach nothing there but buffers that
+    belong to its core alone, and those that are `handed_over`, at the time.
     """
 
     run: Callable[[tuple[Row | int, ...]], Work]
     stays_in_l1: bool
-    is_own: bool
+    is_alone: bool
+    handed_over: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,15 +100,20 @@ class CallCache:
         *,
         stack: NDArray[np.uint8] | None = None,
         own: Collection[str],
+        handed_over: Collection[str],
         before_call: tuple[BeforeCall, ...],
     ) -> None:
-        """`stack`: the memory of the core's stack if it is outside of L1. `own`: the buffers that only this core works on."""
+        """`stack`: the memory of the core's stack if it is outside of L1. `own`: the buffers that only this core works on.
+
+        `handed_over`: those of which that holds at a time.
+        """
         self._core = core
         self._build = build
         self._access_trace = access_trace
         self._code = code
         self._subbanks = subbanks
         self._own = own
+        self._handed_over = handed_over
         self._before_call = before_call
         self._owners = owners
         self._ledger = ledger
@@ -198,7 +204,9 @@ class CallCache:
         return KnownCall(
             call.run,
             stays_in_l1=not (traced or group.fetched),
-            is_own=not group.fetched and all(each.buffer in self._own for each in outside),
+            is_alone=not group.fetched
+            and all(each.buffer in self._own or each.buffer in self._handed_over for each in outside),
+            handed_over=tuple(dict.fromkeys(each.buffer for each in rows if each.buffer in self._handed_over)),
         )
 
     def _is_traced(self, row: Row) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from typing import Any
 
 import simpy
@@ -67,9 +67,11 @@ class PlayingCore(CoreClock):
             call = self._calls.known[kernel, kernel.arrays_of(arguments)]
         except (LookupError, TypeError, AttributeError):  # the first time, or something is wrong
             call = self._calls.prepare(kernel, arguments)
+        if call.handed_over:
+            self._use(call.handed_over)
         # what reaches outside L1 may meet what others do: it runs when the simulated time is there
         self._unclaimed_kernel = kernel
-        is_now = call.stays_in_l1 or (call.is_own and self._goes_ahead())
+        is_now = call.stays_in_l1 or (call.is_alone and self._goes_ahead())
         work = self._unclaimed = call.run(arguments) if is_now else DeferredWork(call, arguments)
         return work
 
@@ -166,6 +168,14 @@ class PlayingCore(CoreClock):
         if transfer.end is None:
             return self._bus.when_done(transfer)
         return self._env.after(max(0, transfer.end - self._env.tick))
+
+    def _use(self, buffers: Sequence[str]) -> None:
+        """Note that the next call works on `buffers`, which the cores hand over. Raises FirmwareError if another core has one."""
+        raise NotImplementedError
+
+    def _taken(self, source: str) -> None:
+        """Note that an interrupt of `source` was taken."""
+        raise NotImplementedError
 
     def _goes_ahead(self) -> bool:
         """Whether calls that nobody else can meet run before the simulated time is there."""
@@ -291,6 +301,7 @@ class PlayingCore(CoreClock):
         before, self._in_handler = self._in_handler, True
         while self._interrupts.is_waiting:
             source, handler = self._interrupts.take()
+            self._taken(source)
             begin_cclk = self._cclk
             with self._elsewhere():
                 self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk, f"interrupt {source}")

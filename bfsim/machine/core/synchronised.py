@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Mapping, Sequence
 from typing import Any
 
 import simpy
@@ -10,6 +10,7 @@ import simpy
 from bfsim.errors import FirmwareError
 from bfsim.kernel import access_trace as log
 from bfsim.machine.calls.call_cache import DeferredWork
+from bfsim.machine.core.handovers import Handovers
 from bfsim.machine.core.interrupts import Interrupts
 from bfsim.machine.core.playing import PlayingCore
 from bfsim.machine.core.semaphore import Semaphore
@@ -32,6 +33,7 @@ class SharedObjects:
         self.semaphores: dict[str, Semaphore] = {}
         self.locks: dict[str, SpinLock] = {}
         self.interrupts = interrupts
+        self.handovers = Handovers(interrupts)
         self.turns: dict[str, simpy.Event] = {}
         """Of each core that no device can let go on: the event at which its turn at a semaphore or lock comes."""
 
@@ -55,6 +57,7 @@ class SynchronisedCore(PlayingCore):
     def post(self, name: str) -> Generator[Any, Any, None]:
         """Add one to the semaphore `name`, in L2."""
         yield from self._test_and_set(f"semaphore {name}")
+        self._shared.handovers.give(self.name, f"semaphore {name}")
         self._semaphore(name).post()
         self._tell_count(name)
 
@@ -65,6 +68,7 @@ class SynchronisedCore(PlayingCore):
         turn = self._semaphore(name).take()
         if turn is not None:
             yield from self._take_turn(turn, f"semaphore {name!r}", f"semaphore {name}")
+        self._shared.handovers.take(self.name, f"semaphore {name}")
         self._tell_count(name)
 
     @awaited
@@ -79,6 +83,7 @@ class SynchronisedCore(PlayingCore):
             yield from self._take_turn(turn, f"lock {name!r}, held by {lock.holder}", f"lock {name}")
             lock.holder = self._described()
         lock.since_cclk = self._cclk
+        self._shared.handovers.take(self.name, f"lock {name}")
 
     @awaited
     def unlock(self, name: str) -> Generator[Any, Any, None]:
@@ -92,6 +97,7 @@ class SynchronisedCore(PlayingCore):
             )
         if timeline := self._env.timeline:
             timeline.span(SpanKind.LOCK, f"lock {name}", f"core {self.name}", lock.since_cclk, self._cclk)
+        self._shared.handovers.give(self.name, f"lock {name}")
         lock.release()
 
     def _take_turn(self, turn: simpy.Event, what: str, owner: str) -> Generator[Any, Any, None]:
@@ -147,4 +153,13 @@ class SynchronisedCore(PlayingCore):
             raise FirmwareError(f"core {self.name} can interrupt another core of the chip, not {other!r}")
         self.issue(self._board.chip.events.mmr_write_cclk, f"interrupt {OTHER_CORE}")
         yield from self.sync()
+        self._shared.handovers.give(self.name, f"interrupt of core {other}")
         others[other].request(OTHER_CORE)
+
+    def _taken(self, source: str) -> None:
+        if source == OTHER_CORE:
+            self._shared.handovers.take(self.name, f"interrupt of core {self.name}")
+
+    def _use(self, buffers: Sequence[str]) -> None:
+        for each in buffers:
+            self._shared.handovers.use(self.name, each)

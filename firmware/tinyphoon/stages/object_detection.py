@@ -113,7 +113,7 @@ def left_object_buffers() -> Sequence[Buffer]:
 
 def shared_object_buffers() -> Sequence[Buffer]:
     """Return the buffers of the stage that both cores reach."""
-    return (Buffer("right_seen", i16, SEEN_CAPACITY * OBJECT_WORDS, "l2_shared"),)
+    return (Buffer("right_seen", i16, SEEN_CAPACITY * OBJECT_WORDS, "l2_shared", handed_over=True),)
 
 
 @kernel

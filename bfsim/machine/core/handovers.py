@@ -1,0 +1,52 @@
+"""Buffers that the cores hand over to each other: one of them works on such a buffer at a time, until it gives it away.
+
+A core gives away what it has whenever it posts a semaphore, gives a lock back or interrupts the other core; who takes that
+semaphore or lock, or the interrupt, may work on it from then on. So it does not matter at which cycle each access is, and calls on
+such buffers can be done ahead. A core that works on one out of turn, whose cycles would decide what it finds, ends the run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from bfsim.errors import FirmwareError
+
+Gifts = dict[str, int]
+"""Of each core, how often it had given away what it has."""
+
+
+class Handovers:
+    """Who has given what away, and who knows of it: a vector clock [Mattern] for each core and each thing that they wait for."""
+
+    def __init__(self, cores: Iterable[str]) -> None:
+        self._known: dict[str, Gifts] = {core: dict.fromkeys(cores, 0) for core in cores}
+        """Of each core: the gifts that it knows of, and its own."""
+        self._carried: dict[str, Gifts] = {}
+        self._users: dict[str, tuple[str, int]] = {}  # of a buffer: who worked on it last, before which of its gifts
+
+    def give(self, core: str, by: str) -> None:
+        """Note that a core gives away what it has, by a semaphore, a lock or an interrupt."""
+        known = self._known[core]
+        known[core] += 1
+        self._carried[by] = _latest(self._carried.get(by, {}), known)
+
+    def take(self, core: str, by: str) -> None:
+        """Note that a core has waited for a semaphore or a lock, or has been interrupted."""
+        self._known[core] = _latest(self._known[core], self._carried.get(by, {}))
+
+    def use(self, core: str, buffer: str) -> None:
+        """Note that a core works on a buffer. Raises FirmwareError if another one may do so, too."""
+        known = self._known[core]
+        user, gifts = self._users.get(buffer, (core, 0))
+        if user != core and known[user] <= gifts:
+            raise FirmwareError(
+                f"core {core} must not work on {buffer} while core {user} has it: the buffer is handed over (handed_over=True), "
+                f"but core {user} worked on it last, and core {core} has waited for nothing that core {user} has posted since. Wait "
+                f"for a semaphore first that core {user} posts when it is done, or declare {buffer} without handed_over"
+            )
+        self._users[buffer] = core, known[core]
+
+
+def _latest(one: Gifts, other: Gifts) -> Gifts:
+    """Return what is known by whoever knows both."""
+    return {core: max(one.get(core, 0), other.get(core, 0)) for core in {**one, **other}}
