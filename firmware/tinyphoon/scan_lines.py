@@ -23,4 +23,6 @@ def line_ring(rows: Sequence[Row], height: int) -> Lines:
 
 def window(lines: Lines, y: int, height: int, reach: int = 1) -> tuple[Row, ...]:
     """Return line `y` and `reach` lines on both sides, from above; the first and the last line of the picture repeat."""
+    if reach == 1 and 0 < y < height - 1:  # nearly all
+        return lines[y - 1], lines[y], lines[y + 1]
     return tuple(lines[min(max(each, 0), height - 1)] for each in range(y - reach, y + reach + 1))

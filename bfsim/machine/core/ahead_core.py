@@ -42,7 +42,7 @@ class AheadStream(MdmaStream):
     def __init__(self, stream: MdmaStream, core: AheadCore) -> None:
         self._stream = stream
         self._core = core
-        self._copies: dict[tuple[Row, Row], tuple[int, int, int]] = {}
+        self._copies: dict[tuple[Row, Row], tuple[int, int, int, int, int]] = {}
         self._kinds: dict[tuple[object, ...], int] = {}
 
     def copy(self, source: Row, destination: Row, at: int) -> Any:
@@ -53,14 +53,14 @@ class AheadStream(MdmaStream):
         if copy is None:
             copy = self._copies[source, destination] = self._planned(source, destination)
         destination.octets[:] = source.octets
-        return self._core.copied(*copy)
+        return self._core.copied(copy)
 
-    def _planned(self, source: Row, destination: Row) -> tuple[int, int, int]:
-        """Return the number of the plan of a copy, which those of its kind share, and where it begins to read and to write."""
+    def _planned(self, source: Row, destination: Row) -> tuple[int, int, int, int, int]:
+        """Return a copy as an operation: the number of its plan, which those of its kind share, and where it begins to read and to write."""
         kind = self._stream.kind_of(source, destination)
         if kind not in self._kinds:
             self._kinds[kind] = self._core.keep_plan(self._stream.plan(source, destination).words)
-        return self._kinds[kind], source.offset, destination.offset
+        return w.COPY, self._kinds[kind], source.offset, destination.offset, 0
 
 
 class AheadCore(Core):
@@ -72,6 +72,8 @@ class AheadCore(Core):
         inward, outward = (AheadStream(each, self) for each in streams)
         super().__init__(*arguments, bus=bus, number=number, streams=(inward, outward), **named)
         self._may_run_ahead = self._timeline is None
+        events = self._board.chip.events
+        self._write_cclk, self._read_cclk = events.mmr_write_cclk, events.mmr_read_cclk
         self._copies: Copy = 0
         self._has_traced = False  # whether the call that was made last has a log
         self._begin()
@@ -120,7 +122,9 @@ class AheadCore(Core):
         """Catch up with the clock, when that is known."""
         if not self._may_run_ahead:
             return self._env.process(self.sync()) if self._is_behind else super().catch_up()
-        self._note(w.CATCH_UP)
+        if self._issued:
+            self._note_calls()
+        self._noted += (w.CATCH_UP, 0, 0, 0, 0)
         return None
 
     def settle(self) -> None:
@@ -132,31 +136,36 @@ class AheadCore(Core):
         """Whether a transfer is done by the core's clock: nobody knows that of one made ahead before it is waited for."""
         return not (self._may_run_ahead or self._noted) and super().has(self._posted(transfer))
 
+    def goes_on(self, transfer: Any, reason: StallReason, owner: str) -> bool:
+        """Note the wait for a copy that was made ahead, and go on; else ask as every core does."""
+        if not (self._may_run_ahead and isinstance(transfer, Copy)):
+            return super().goes_on(transfer, reason, owner)
+        self._note(w.AWAIT, self._copies - transfer, COUNTER_OF[reason], self._account_of(owner))
+        self._is_full |= len(self._noted) > MOST_WORDS
+        return True
+
     def wait_transfer(self, transfer: Any, reason: StallReason, owner: str) -> Wait:
         """Wait as every core does."""
-        if self._may_run_ahead and isinstance(transfer, Copy):
-            self._note(w.AWAIT, self._copies - transfer, COUNTER_OF[reason], self._account_of(owner))
-            self._is_full |= len(self._noted) > MOST_WORDS
-        else:
+        if not self._may_run_ahead or not self.goes_on(transfer, reason, owner):
             yield from self.play_stretches()
             yield from super().wait_transfer(self._posted(transfer), reason, owner)
 
     def program_device(self, owner: str, *, writes: int, reads: int = 0) -> None:
         """Write and read registers as every core does."""
-        if not (self._may_run_ahead or self._noted):
+        if self._may_run_ahead or self._noted:
+            self._note(w.SET_UP, writes * self._write_cclk + reads * self._read_cclk, self._account_of(owner))
+        else:
             super().program_device(owner, writes=writes, reads=reads)
-            return
-        events = self._board.chip.events
-        cclk = writes * events.mmr_write_cclk + reads * events.mmr_read_cclk
-        self._note(w.SET_UP, cclk, self._account_of(owner))
 
     def issue(self, cclk: int, owner: str) -> None:
         """Let cycles pass as every core does."""
         self.when_there(partial(super().issue, cclk, owner))
 
-    def copied(self, plan: int, source: int, destination: int) -> Copy:
+    def copied(self, copy: tuple[int, int, int, int, int]) -> Copy:
         """Note a copy that was made; return it."""
-        self._note(w.COPY, plan, source, destination)
+        if self._issued:
+            self._note_calls()
+        self._noted += copy
         self._copies += 1
         return self._copies - 1
 

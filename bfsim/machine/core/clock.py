@@ -70,6 +70,10 @@ class CoreClock:
         end = transfer.end
         return end is not None and end <= self._cclk * self._cclk_ticks
 
+    def goes_on(self, transfer: Transfer, reason: StallReason, owner: str) -> bool:  # noqa: ARG002  # of a wait, as below
+        """Whether a core that needs `transfer` done can go on at once; else it must wait for it."""
+        return self.has(transfer)
+
     def wait_transfer(self, transfer: Transfer, reason: StallReason, owner: str) -> Generator[Any, Any, None]:
         """Stall for `reason` until `transfer` is done; `owner`: whom these cycles belong to, as everywhere here."""
         if transfer.end is None:

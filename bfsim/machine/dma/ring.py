@@ -66,7 +66,7 @@ class InputRing:
         # one line ahead: its row is the one that the core gave up with this call
         self._coming = self._fetch(number + 1) if number + 1 < self._height else None
         core.settle()
-        is_there = core.has(transfer)
+        is_there = core.goes_on(transfer, StallReason.RING_EMPTY, self._owner)
         core.tell_level(self._owner, int(is_there))
         if not is_there:
             yield from core.wait_transfer(transfer, StallReason.RING_EMPTY, self._owner)
@@ -102,9 +102,9 @@ class OutputRing:
         """Wait until a row is free and return it, to be written and then sent."""
         number, depth = len(self._transfers), self._depth
         if number >= depth:
-            transfer = self._transfers[number - depth]
-            if self._core.can_be_interrupted or not self._core.has(transfer):
-                yield from self._core.wait_transfer(transfer, StallReason.RING_FULL, self._owner)
+            transfer, why = self._transfers[number - depth], (StallReason.RING_FULL, self._owner)
+            if self._core.can_be_interrupted or not self._core.goes_on(transfer, *why):
+                yield from self._core.wait_transfer(transfer, *why)
         return self._rows[number % depth]
 
     def send(self) -> None:
