@@ -29,7 +29,11 @@ class StretchPlayer:
         self._plans = 0
 
     def play(
-        self, core: int, clock_cclk: int, operations: NDArray[np.int64], accesses: NDArray[np.int64] | None = None
+        self,
+        core: int,
+        clock_cclk: int,
+        operations: NDArray[np.int64],
+        accesses: NDArray[np.int64] | None = None,
     ) -> simpy.Event:
         """Let a core do `operations` by itself from now on, its clock being at a cycle; return the end.
 

@@ -206,7 +206,9 @@ class CallCache:
             stays_in_l1=not (traced or group.fetched),
             is_alone=not group.fetched
             and all(each.buffer in self._own or each.buffer in self._handed_over for each in outside),
-            handed_over=tuple(dict.fromkeys(each.buffer for each in rows if each.buffer in self._handed_over)),
+            handed_over=tuple(
+                dict.fromkeys(each.buffer for each in rows if each.buffer in self._handed_over)
+            ),
         )
 
     def _is_traced(self, row: Row) -> bool:

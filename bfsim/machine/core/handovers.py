@@ -22,7 +22,9 @@ class Handovers:
         self._known: dict[str, Gifts] = {core: dict.fromkeys(cores, 0) for core in cores}
         """Of each core: the gifts that it knows of, and its own."""
         self._carried: dict[str, Gifts] = {}
-        self._users: dict[str, tuple[str, int]] = {}  # of a buffer: who worked on it last, before which of its gifts
+        self._users: dict[
+            str, tuple[str, int]
+        ] = {}  # of a buffer: who worked on it last, before which of its gifts
 
     def give(self, core: str, by: str) -> None:
         """Note that a core gives away what it has, by a semaphore, a lock or an interrupt."""

@@ -173,7 +173,7 @@ class PlayingCore(CoreClock):
         """Note that the next call works on `buffers`, which the cores hand over. Raises FirmwareError if another core has one."""
         raise NotImplementedError
 
-    def _taken(self, source: str) -> None:
+    def _was_interrupted(self, source: str) -> None:
         """Note that an interrupt of `source` was taken."""
         raise NotImplementedError
 
@@ -301,7 +301,7 @@ class PlayingCore(CoreClock):
         before, self._in_handler = self._in_handler, True
         while self._interrupts.is_waiting:
             source, handler = self._interrupts.take()
-            self._taken(source)
+            self._was_interrupted(source)
             begin_cclk = self._cclk
             with self._elsewhere():
                 self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk, f"interrupt {source}")

@@ -156,10 +156,12 @@ class SynchronisedCore(PlayingCore):
         self._shared.handovers.give(self.name, f"interrupt of core {other}")
         others[other].request(OTHER_CORE)
 
-    def _taken(self, source: str) -> None:
+    def _was_interrupted(self, source: str) -> None:
+        """Take what the other core has given away, if it was that which interrupted this one."""
         if source == OTHER_CORE:
             self._shared.handovers.take(self.name, f"interrupt of core {self.name}")
 
     def _use(self, buffers: Sequence[str]) -> None:
+        """Note that the next call works on buffers that are handed over."""
         for each in buffers:
             self._shared.handovers.use(self.name, each)
