@@ -1,8 +1,9 @@
 """What the firmware makes of real pictures: edges by band of rows, blobs, depth beside a dense matcher, balls by size.
 
-`python -m benchmarks.real_pictures FOLDER... [--size 320x240] [--pictures OUT]`: each FOLDER is a set of pictures, or holds
-folders that are. A folder with one stereo pair is seen as such (`benchmarks/real/sets.py` says by which names), pictures
-with YOLO boxes beside them are searched for balls, all others are seen by both cameras at once. `--pictures` keeps what was
+`python -m benchmarks.real_pictures SET... [--size 320x240] [--pictures OUT]`: each SET is a folder of pictures, or holds
+folders that are, or is a recording (whatever `bfsim record import` reads, calibrated or not). A folder with one stereo pair is
+seen as such (`benchmarks/real/sets.py` says by which names), pictures with YOLO boxes beside them are searched for balls, all
+others are seen by both cameras at once. `--pictures` keeps what was
 seen as overlays. Defaults of the firmware are set by reasoning and on several sources, never by search on these pictures:
 new folders are the judges. Needs OpenCV.
 """
@@ -19,7 +20,7 @@ from rich.table import Table
 
 from benchmarks.playing import Played, play
 from benchmarks.real import balls, depth, edges
-from benchmarks.real.sets import PICTURES, VIDEOS, PictureSet, read_set
+from benchmarks.real.sets import PICTURES, VIDEOS, PictureSet, read_recording, read_set
 from bfsim.api import Seen
 from bfsim.report.overlay.files import OverlayWriter
 from bfsim.report.tables import new_table, stacked
@@ -46,20 +47,23 @@ class SeenSet:
         return every if self.pictures.is_stereo else [each[:1] for each in every]
 
 
-def folders_in(folder: Path) -> list[Path]:
-    """Return the folders with pictures or videos: this one, or those in it."""
+def sets_in(folder: Path) -> list[Path]:
+    """Return the folders with pictures or videos, this one or those in it; of a recording, itself."""
+    if folder.is_file():
+        return [folder]
     wanted = PICTURES | VIDEOS
     every = (folder, *sorted(each for each in folder.iterdir() if each.is_dir()))
     return [each for each in every if any(file.suffix.lower() in wanted for file in each.iterdir())]
 
 
-def see(folder: Path, size: tuple[int, int]) -> SeenSet:
-    """Play the pictures of a folder."""
-    pictures = read_set(folder, size)
+def see(path: Path, size: tuple[int, int]) -> SeenSet:
+    """Play a recording, or the pictures of a folder."""
+    pictures = read_set(path, size) if path.is_dir() else read_recording(path)
+    firmware = tinyphoon.calibrated(pictures.calibration)
     with progress_bar(f"Simulating {pictures.name}") as progress:
         done = iter(range(1, len(pictures.frames) + 1))
-        played = play(pictures.frames, tinyphoon, view, lambda _: progress(next(done), len(pictures.frames)))
-        alone = play(pictures.frames, tinyphoon, view, script=depth.ALONE) if pictures.is_stereo else ()
+        played = play(pictures.frames, firmware, view, lambda _: progress(next(done), len(pictures.frames)))
+        alone = play(pictures.frames, firmware, view, script=depth.ALONE) if pictures.is_stereo else ()
     return SeenSet(pictures, played, alone)
 
 
@@ -115,25 +119,23 @@ def draw(seen: SeenSet, folder: Path) -> None:
 
 
 @click.command()
-@click.argument(
-    "folders", nargs=-1, required=True, type=click.Path(exists=True, file_okay=False, path_type=Path)
-)
+@click.argument("sets", nargs=-1, required=True, type=click.Path(exists=True, path_type=Path))
 @click.option("--size", default="320x240", show_default=True, help="Size of the recorded frames.")
 @click.option("--pictures", type=click.Path(path_type=Path), help="Keep overlays in this folder.")
-def main(folders: tuple[Path, ...], size: str, pictures: Path | None) -> None:
-    """Print what the firmware makes of the pictures in FOLDERS."""
+def main(sets: tuple[Path, ...], size: str, pictures: Path | None) -> None:
+    """Print what the firmware makes of the pictures in SETS."""
     width, height = (int(each) for each in size.split("x"))
-    found = [one for folder in folders for one in folders_in(folder)]
-    sets = [see(each, (width, height)) for each in found]
-    tables = [edge_table(sets), cost_table(sets)]
-    if any(each.pictures.is_stereo for each in sets):
-        tables.append(depth_table(sets))
+    found = [one for each in sets for one in sets_in(each)]
+    seen = [see(each, (width, height)) for each in found]
+    tables = [edge_table(seen), cost_table(seen)]
+    if any(each.pictures.is_stereo for each in seen):
+        tables.append(depth_table(seen))
     tables += [ball_table(each) for each in found if any(each.glob("*.txt"))]
     print_report(stacked(*tables))
     if pictures:
         pictures.mkdir(parents=True, exist_ok=True)
-        for each in sets:
-            draw(each, pictures)
+        for one in seen:
+            draw(one, pictures)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ dense ones round it is near its own. `plain` is without that, the pixel's own al
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -117,25 +117,41 @@ def _errors(points: Points, dense: Disparities, reach: int) -> NDArray[np.float6
     return np.nanmin(errors[~np.isnan(errors).all(axis=1)], axis=1)
 
 
+def _wanted(left: Seen, points: Points, dense: Disparities) -> int:
+    """Return how many points are nearer than the farthest depth."""
+    assert left.geometry
+    least_px = left.geometry.focal_px * left.geometry.baseline_mm / INDOOR_FIELD.stereo_edges.farthest_mm
+    return int((np.nan_to_num(_around(points, dense, 1)) >= least_px).any(axis=1).sum())
+
+
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """3-D edges or lines of a frame: points, how many were found with those that had no room, and the errors known."""
+    """3-D edges or lines of a set: points, how many were found with those that had no room, and the errors known.
 
-    points: Points
+    `wanted`: how many are, by the dense disparities, nearer than the farthest depth.
+    """
+
+    points: int
     count: int
     near: NDArray[np.float64]
     plain: NDArray[np.float64]
     wanted: int
 
     @classmethod
-    def of(cls, played: Played[Seen], points: Points, dense: Disparities) -> _Found:
-        """Judge the points of a frame. `wanted`: how many are, by the dense disparities, nearer than the farthest depth."""
-        geometry = played.taken["A"].geometry
-        assert geometry
-        least_px = geometry.focal_px * geometry.baseline_mm / INDOOR_FIELD.stereo_edges.farthest_mm
-        wanted = int((np.nan_to_num(_around(points, dense, 1)) >= least_px).any(axis=1).sum())
-        count = len(points) + played.results("A").get("edges_3d_lost", 0)
-        return cls(points, count, *(_errors(points, dense, reach) for reach in (1, 0)), wanted)
+    def of(
+        cls,
+        played: Sequence[Played[Seen]],
+        points_of: Callable[[Seen], Points],
+        dense: Sequence[Disparities],
+    ) -> _Found:
+        """Judge the points of all frames."""
+        frames = [(each, points_of(each.taken["A"]), own) for each, own in zip(played, dense, strict=True)]
+        near, plain = (
+            np.concatenate([_errors(points, own, reach) for _, points, own in frames]) for reach in (1, 0)
+        )
+        count = sum(len(points) + each.results("A").get("edges_3d_lost", 0) for each, points, _ in frames)
+        wanted = sum(_wanted(each.taken["A"], points, own) for each, points, own in frames)
+        return cls(sum(len(points) for _, points, _ in frames), count, near, plain, wanted)
 
     def of_all(self, number: int) -> int:
         """Return how many of all there are if `number` of the judged are, and those without room are like the others."""
@@ -146,22 +162,22 @@ def rows_of(
     pictures: PictureSet, ours: Sequence[Played[Seen]], alone: Sequence[Played[Seen]]
 ) -> list[list[str]]:
     """Return the rows of the table for a set of stereo pairs, played our way and with each edge matched alone."""
+    dense = {"SGBM": [sgbm(*pictures.lumas(frame)) for frame in pictures.frames]}
+    if pictures.truth:
+        dense["truth"] = list(pictures.truth)
     rows = []
-    for number, (frame, *played) in enumerate(zip(pictures.frames, ours, alone, strict=True)):
-        lumas = [np.ascontiguousarray(each[:, 1::2]) for each in (frame.left, frame.right)]
-        dense = {"SGBM": sgbm(*lumas)} | ({"truth": pictures.truth[number]} if pictures.truth else {})
-        for kind, points_of in (("edges", edge_points), ("lines", line_points)):
-            for beside, disparities in dense.items():
-                found, all_ = (_Found.of(each, points_of(each.taken["A"]), disparities) for each in played)
-                kept = _kept(found, all_) if kind == "edges" else ("", "", "")
-                rows.append([beside, kind, *_cells(found), *kept])
+    for kind, points_of in (("edges", edge_points), ("lines", line_points)):
+        for beside, disparities in dense.items():
+            found, all_ = (_Found.of(played, points_of, disparities) for played in (ours, alone))
+            kept = _kept(found, all_) if kind == "edges" else ("", "", "")
+            rows.append([beside, kind, *_cells(found), *kept])
     return rows
 
 
 def _cells(found: _Found) -> list[str]:
     near, plain = found.near, found.plain
     return [
-        f"{len(near)} of {len(found.points)}",
+        f"{len(near)} of {found.points}",
         percent((near <= NEAR_PX).sum(), len(near)),
         percent((plain <= NEAR_PX).sum(), len(plain)),
         percent((near > FAR_PX).sum(), len(near)),

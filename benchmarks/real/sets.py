@@ -1,9 +1,9 @@
-"""Sets of real pictures as stereo frames: those of a folder with known names, and any other folder of pictures.
+"""Sets of real pictures as stereo frames: those of a folder with known names, any other folder of pictures, and recordings.
 
 A folder is a *pair* if it holds a left and a right picture whose names say so (`aloeL` and `aloeR`, `imL2l` and `imL2`,
 `motorcycle_left` and `_right`), with true disparities beside them or without; else every picture in it is seen by both
 cameras. Pictures are scaled to the width that the recording shall have, their middle cut to 4:3, as `record import
---resize` does.
+--resize` does. A recording is seen as it is, with its rectification tables and geometry.
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from bfsim.recording import StereoFrame
+from bfsim.machine.program import Calibration
+from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.recording.planes import YuvPlanes
+from bfsim.run_inputs import calibration_of
 
 Disparities = NDArray[np.float64]
 """Of each pixel of the left picture, in pixels of that picture; NaN where unknown."""
@@ -27,16 +29,41 @@ PICTURES = {".png", ".jpg", ".jpeg", ".bmp", ".ppm", ".tif", ".tiff"}
 VIDEOS = {".avi", ".mp4", ".mkv", ".mov"}
 SIZE = (320, 240)
 FRAMES_OF_VIDEO = 8
+UNKNOWN = Calibration()
 
 
 @dataclass(frozen=True, slots=True)
 class PictureSet:
-    """Pictures of one kind. `frames`: stereo frames of equal size. `truth`: disparities of each frame, where they are known."""
+    """Pictures of one kind. `frames`: stereo frames of equal size. `truth`: disparities of each frame, where they are known.
+
+    `calibration`: what is known of their cameras.
+    """
 
     name: str
     frames: tuple[StereoFrame, ...]
     is_stereo: bool
     truth: tuple[Disparities, ...] = ()
+    calibration: Calibration = UNKNOWN
+
+    def lumas(self, frame: StereoFrame) -> list[NDArray[np.uint8]]:
+        """Return the grey pictures of a frame, rectified; black where a camera saw nothing."""
+        sources = self.calibration.sources
+        recorded = {"A": frame.left[:, 1::2], "B": frame.right[:, 1::2]}
+        return [
+            np.where(sources[core].rows < 0, 0, luma[sources[core].rows, sources[core].columns])
+            if core in sources
+            else np.ascontiguousarray(luma)
+            for core, luma in recorded.items()
+        ]
+
+
+def read_recording(path: Path) -> PictureSet:
+    """Return the frames of a recording."""
+    with RecordingReader(path) as reader:
+        frames = tuple(reader.frames())
+        calibration = calibration_of(reader)
+    is_stereo = any((each.left != each.right).any() for each in frames)
+    return PictureSet(path.stem, frames, is_stereo, calibration=calibration)
 
 
 def read_set(folder: Path, size: tuple[int, int] = SIZE) -> PictureSet:
