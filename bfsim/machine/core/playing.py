@@ -67,12 +67,14 @@ class PlayingCore(CoreClock):
             call = self._calls.known[kernel, kernel.arrays_of(arguments)]
         except (LookupError, TypeError, AttributeError):  # the first time, or something is wrong
             call = self._calls.prepare(kernel, arguments)
+        self._unclaimed_kernel = kernel
         if call.handed_over:
             self._use(call.handed_over)
-        # what reaches outside L1 may meet what others do: it runs when the simulated time is there
-        self._unclaimed_kernel = kernel
-        is_now = call.stays_in_l1 or (call.is_alone and self._goes_ahead())
-        work = self._unclaimed = call.run(arguments) if is_now else DeferredWork(call, arguments)
+        if call.stays_in_l1 or (call.is_alone and self._goes_ahead()):
+            work = call.run(arguments)
+        else:  # it may meet what others do, and runs when the simulated time is there
+            work = DeferredWork(call, arguments)
+        self._unclaimed = work
         return work
 
     def on_interrupt(self, source: str, handler: Handler) -> None:
