@@ -74,8 +74,10 @@ from bfsim.kernel.intrinsics.video import (
     saa,
     sub_i4x8,
 )
+from bfsim.machine.buffers import Buffer, Buffers, FrameSize
 from bfsim.machine.cameras.settling import CameraSettings
-from bfsim.machine.core.core import Core, Frame
+from bfsim.machine.core.core import Core
+from bfsim.machine.core.frames import Frame
 from bfsim.machine.core.readout import Readout
 from bfsim.machine.dma.config import DmaConfig
 from bfsim.machine.dma.descriptors import write_descriptor
@@ -85,7 +87,7 @@ from bfsim.machine.memories import Row
 from bfsim.machine.peripherals.device import Script
 from bfsim.machine.peripherals.spi import SpiDevice, SpiMessage
 from bfsim.machine.peripherals.uart import UartDevice, UartMessage
-from bfsim.machine.program import Buffer, Buffers, Calibration, Firmware, FrameSize, Geometry, SourcePixels
+from bfsim.machine.program import Calibration, Firmware, Geometry, SourcePixels
 from bfsim.seen import (
     Colour,
     NamedColour,

@@ -18,8 +18,8 @@ from bfsim.kernel.build import Build
 from bfsim.linker import LinkerScript
 from bfsim.loading import LoadedFirmware
 from bfsim.machine.board import Fidelity
+from bfsim.machine.buffers import FrameSize
 from bfsim.machine.cameras.capture import Feed
-from bfsim.machine.program import FrameSize
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.trace import Identity
 

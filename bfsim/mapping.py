@@ -12,7 +12,8 @@ from bfsim.given import given_firmware
 from bfsim.hardware import find_board, find_profile
 from bfsim.linker import LinkerScript, link
 from bfsim.loading import load_firmware
-from bfsim.machine.program import Buffer, Calibration, Firmware, FrameSize
+from bfsim.machine.buffers import Buffer, FrameSize
+from bfsim.machine.program import Calibration, Firmware
 from bfsim.machine.symbols import PROCESSORS, symbols_of
 from bfsim.report.ldf.map import Kind, MemoryMap
 from bfsim.report.ldf.map_builder import BoardMemories, memory_map

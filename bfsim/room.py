@@ -10,7 +10,8 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, LinkError
 from bfsim.kernel.build import Build
 from bfsim.linker import LinkerScript, LinkMap, link
-from bfsim.machine.program import Calibration, Firmware, FrameSize, SourcePixels
+from bfsim.machine.buffers import FrameSize
+from bfsim.machine.program import Calibration, Firmware, SourcePixels
 from bfsim.machine.symbols import symbols_of
 
 _STEPS = 64

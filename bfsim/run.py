@@ -24,11 +24,12 @@ from bfsim.kernel import VDSP_O2
 from bfsim.linker import LinkerScript, LinkMap
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Fidelity
+from bfsim.machine.buffers import FrameSize
 from bfsim.machine.calls.call_cache import BeforeCall, sanitized
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.peripherals.device import Device
 from bfsim.machine.peripherals.table import devices_of, makers_of
-from bfsim.machine.program import Firmware, FrameSize
+from bfsim.machine.program import Firmware
 from bfsim.machine.symbols import require_cores
 from bfsim.recording import RecordingReader
 from bfsim.recording.exchange import ExchangeCheck

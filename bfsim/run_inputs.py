@@ -9,7 +9,8 @@ from bfsim import shipped
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import LinkError, shown
 from bfsim.linker import LinkerScript, parse_ldf
-from bfsim.machine.program import Calibration, FrameSize, SourcePixels
+from bfsim.machine.buffers import FrameSize
+from bfsim.machine.program import Calibration, SourcePixels
 from bfsim.recording import RecordingReader
 
 

@@ -197,11 +197,9 @@ MACHINE = {
     "firmware_lines": set(),
     "timeline": set(),
     "simulation": {"timeline"},
-    "program": {
-        "core",
-        "peripherals",
-    },  # the types of what a main loop gets, and of the devices that firmware brings
-    "memories": {"program"},
+    "buffers": set(),
+    "program": {"buffers", "core", "peripherals"},  # the types of what a main loop gets, and of the devices
+    "memories": {"buffers"},
     "named_kernels": set(),
     "code": {"memories", "named_kernels", "program"},
     "stack": {"memories"},
@@ -209,7 +207,7 @@ MACHINE = {
     "owner_costs": set(),
     "calls": {"bus", "memories", "owner_costs"},
     "detailed": {"bus", "memories", "simulation"},
-    "cameras": {"bus", "memories", "program", "simulation", "timeline"},
+    "cameras": {"buffers", "bus", "memories", "simulation", "timeline"},
     "peripherals": {"bus", "firmware_lines", "memories", "program", "simulation"},
     "dma": {
         "bus",
@@ -218,8 +216,9 @@ MACHINE = {
         "simulation",
         "core",
     },  # core: the type of what a ring waits for
-    "retiming": {"bus", "calls", "cameras", "core", "dma", "memories", "program"},
+    "retiming": {"buffers", "bus", "calls", "cameras", "core", "dma", "memories"},
     "core": {
+        "buffers",
         "bus",
         "calls",
         "cameras",
@@ -228,12 +227,11 @@ MACHINE = {
         "memories",
         "owner_costs",
         "peripherals",
-        "program",
         "simulation",
         "timeline",
     },
-    "symbols": {"code", "firmware_lines", "program"},
-    "loader": {"bus", "cameras", "memories", "program", "symbols"},
+    "symbols": {"buffers", "code", "firmware_lines", "program"},
+    "loader": {"buffers", "bus", "cameras", "memories", "program", "symbols"},
     "finished_frames": {"calls", "core"},
     "listeners": {"bus", "finished_frames", "simulation", "timeline"},
     "main_loops": {"core", "firmware_lines", "listeners", "program", "simulation"},
@@ -254,6 +252,8 @@ def imported_modules(path: Path) -> Iterator[str]:
                 yield from (f"bfsim.{each.name}" for each in node.names)
             else:
                 yield node.module
+                names = (f"{node.module}.{each.name}" for each in node.names)
+                yield from (each for each in names if (ROOT / f"{each.replace('.', '/')}.py").exists())
 
 
 def room_of(path: Path) -> str:
@@ -331,6 +331,18 @@ def test_the_uart_is_named_where_the_recipe_says() -> None:
         "machine/peripherals/uart.py",
         "machine/program.py",
     }
+
+
+def test_no_files_of_the_machine_import_each_other_in_a_circle() -> None:
+    """Not for their types either: each can be read with what stands below it alone."""
+    files = {
+        ".".join(each.relative_to(ROOT).with_suffix("").parts): each
+        for each in (ROOT / "bfsim/machine").rglob("*.py")
+    }
+    left = {name: {*imported_modules(path)} & files.keys() for name, path in files.items()}
+    while lowest := {name for name, imports in left.items() if not imports & left.keys()}:
+        left = {name: imports for name, imports in left.items() if name not in lowest}
+    assert not left
 
 
 def test_a_command_imports_no_other() -> None:

@@ -14,6 +14,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.linker import LinkMap
+from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.masters import RING_STREAMS
 from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches, written_through
@@ -42,7 +43,7 @@ from bfsim.machine.memories import Memories
 from bfsim.machine.peripherals.device import Device
 from bfsim.machine.peripherals.table import OUTSIDE_NBYTES, wired
 from bfsim.machine.peripherals.wire import Surroundings
-from bfsim.machine.program import Firmware, FrameSize, View
+from bfsim.machine.program import Firmware, View
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.stack import stack_outside_l1
 from bfsim.machine.symbols import PROCESSORS

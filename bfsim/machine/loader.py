@@ -8,10 +8,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError
 from bfsim.linker import LinkMap
+from bfsim.machine.buffers import Buffer, FrameSize
 from bfsim.machine.bus.memory_owners import MemoryOwner, MemoryOwners
 from bfsim.machine.cameras.capture import Pair
 from bfsim.machine.memories import Memories, Row
-from bfsim.machine.program import Buffer, Firmware, FrameSize
+from bfsim.machine.program import Firmware
 from bfsim.machine.symbols import PROCESSORS, require_cores
 from bfsim.trace import BufferRecord
 

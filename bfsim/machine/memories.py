@@ -13,7 +13,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError, LinkError
 from bfsim.kernel.types import Number
 from bfsim.linker import Placement
-from bfsim.machine.program import Buffer
+from bfsim.machine.buffers import Buffer
 
 ARENA_ALIGN = 4096
 REGISTERS_NBYTES = 64  # room for the longest descriptor

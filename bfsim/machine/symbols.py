@@ -8,9 +8,10 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, FirmwareError
 from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.linker import Symbol
+from bfsim.machine.buffers import Buffer, Buffers, FrameSize
 from bfsim.machine.code import code_symbols, object_file
 from bfsim.machine.firmware_lines import line_of
-from bfsim.machine.program import Buffer, Buffers, Firmware, FrameSize
+from bfsim.machine.program import Firmware
 
 PROCESSORS: dict[str, str | None] = {"A": "p0", "B": "p1", "shared": None}  # names of the cores in an LDF
 

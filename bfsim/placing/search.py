@@ -13,7 +13,7 @@ from typing import Any
 from bfsim.building import build_for
 from bfsim.hardware import find_board, find_profile
 from bfsim.loading import load_firmware
-from bfsim.machine.program import FrameSize
+from bfsim.machine.buffers import FrameSize
 from bfsim.machine.symbols import require_cores, symbols_of
 from bfsim.placing.ldf import LdfWriter
 from bfsim.placing.measured import Measured, busy_of, frame_cclk

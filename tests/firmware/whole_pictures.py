@@ -12,7 +12,7 @@ from bfsim.api import Firmware
 from bfsim.chip.boards import CM_BF561
 from bfsim.linker import link
 from bfsim.machine.board import Board
-from bfsim.machine.program import FrameSize
+from bfsim.machine.buffers import FrameSize
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import StereoFrame
 from bfsim.trace import BoardRecord

@@ -16,9 +16,9 @@ from bfsim.chip.boards import CM_BF561
 from bfsim.errors import FirmwareError, LinkError, MmrError
 from bfsim.linker import LinkerScript, link
 from bfsim.machine.board import Board
+from bfsim.machine.buffers import FrameSize
 from bfsim.machine.calls.caches import caches_of
 from bfsim.machine.dma.config import DmaConfig
-from bfsim.machine.program import FrameSize
 from bfsim.machine.symbols import symbols_of
 from bfsim.trace import BoardRecord, StallReason
 from tests.machine.kernels import copy, fill, first, spin, total

@@ -18,9 +18,9 @@ from hypothesis import strategies as st
 
 from bfsim.chip.spec import SensorMode, SensorSpec
 from bfsim.clocks import Clocks
+from bfsim.machine.buffers import FrameSize
 from bfsim.machine.cameras.capture import Capture, Feed, Pair
 from bfsim.machine.cameras.ppi import Ppi
-from bfsim.machine.program import FrameSize
 from tests.machine.rig import STEADY, Bench, Picture
 
 GHZ = 10**9

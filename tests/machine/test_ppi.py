@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bfsim.chip.boards import BOARDS
+from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.transfer_plans import Pace, Transfer, Walk
 from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.memories import Row
-from bfsim.machine.program import FrameSize
 from tests.machine.rig import STEADY, Bench
 
 HEIGHT, WIDTH = 8, 16

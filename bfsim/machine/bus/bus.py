@@ -106,7 +106,7 @@ class Bus:
         words[w.POSTED] = posted + 1
         if self._told:
             self._told.post(plan.master, number, plan.name, max(at, now), plan.nbytes, now)
-        return Transfer(self, number, place)
+        return Transfer(self.words, number, place)
 
     def when_done(self, transfer: Transfer) -> simpy.Event:
         """Return the event at a transfer's end, which must not be known yet."""

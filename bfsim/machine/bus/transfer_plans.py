@@ -6,13 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import lcm
-from typing import TYPE_CHECKING
+from typing import Any
 
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
-
-if TYPE_CHECKING:
-    from bfsim.machine.bus.bus import Bus
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,15 +98,16 @@ class Played:
 class Transfer:
     """One transfer of a DMA on its way. `end` is the tick at which it is done, or None as long as nobody can know."""
 
-    __slots__ = ("_bus", "number", "place")
+    __slots__ = ("_words", "number", "place")
 
-    def __init__(self, bus: Bus, number: int, place: int) -> None:
-        self._bus = bus
+    def __init__(self, words: Any, number: int, place: int) -> None:
+        """`words`: the state of the bus that it is on."""
+        self._words = words
         self.number = number
         self.place = place
 
     @property
     def end(self) -> int | None:
         """Tick at which it is done."""
-        tick = self._bus.words[w.ENDS_AT + self.number % w.ENDS]
+        tick = self._words[w.ENDS_AT + self.number % w.ENDS]
         return None if tick == w.NONE else tick

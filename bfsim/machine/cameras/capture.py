@@ -17,11 +17,11 @@ import simpy
 from numpy.typing import NDArray
 
 from bfsim.clocks import Clocks
+from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.memories import Row
-from bfsim.machine.program import FrameSize
 from bfsim.machine.simulation import Simulation
 
 

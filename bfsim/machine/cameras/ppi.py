@@ -14,6 +14,7 @@ from bfsim.chip.spec import BoardSpec, CameraSpec
 from bfsim.clocks import PeriodicEdges
 from bfsim.errors import FirmwareError
 from bfsim.kernel.types import u8
+from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.transfer_plans import Pace, Transfer, Walk
@@ -22,7 +23,6 @@ from bfsim.machine.cameras.ppi_status import PpiStatus
 from bfsim.machine.cameras.settling import CameraSettings, Settling
 from bfsim.machine.cameras.skipping import SKIPS, skipped
 from bfsim.machine.memories import Memories, Row
-from bfsim.machine.program import FrameSize
 from bfsim.machine.timeline import Timeline
 from bfsim.spans import SpanKind
 

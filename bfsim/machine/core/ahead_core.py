@@ -255,4 +255,4 @@ class AheadCore(Core):
         """Return a transfer of the bus for one that was made ahead and has been played."""
         if not isinstance(transfer, Copy):
             return transfer  # type: ignore[no-any-return]
-        return Transfer(self._bus, *self._bus.stretches.copy_of(self._number, transfer))
+        return Transfer(self._bus.words, *self._bus.stretches.copy_of(self._number, transfer))

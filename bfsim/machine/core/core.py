@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from operator import index
 from typing import Any
@@ -13,14 +12,15 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.errors import FirmwareError, shown
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.types import Number
+from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.calls.conflicts import Accesses
-from bfsim.machine.calls.ledger import Snapshot
 from bfsim.machine.cameras.capture import Capture
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.accounts import KERNELS
+from bfsim.machine.core.frames import FinishedFrame, Frame
 from bfsim.machine.core.layouts import Layouts
 from bfsim.machine.core.readout import Readout, seen_by
 from bfsim.machine.core.synchronised import SharedObjects, SynchronisedCore
@@ -30,11 +30,10 @@ from bfsim.machine.dma.memory_dma import Dma, MemoryDma
 from bfsim.machine.dma.ring import InputRing, OutputRing
 from bfsim.machine.memories import Row
 from bfsim.machine.peripherals.peripheral import Peripheral
-from bfsim.machine.program import FrameSize, Main
 from bfsim.machine.simulation import Simulation
 from bfsim.seen import Seen
 from bfsim.spans import Place
-from bfsim.trace import REST, CoreFrame, StallReason
+from bfsim.trace import REST, StallReason
 
 CAMERAS = "cameras"
 """Owner of cycles."""
@@ -62,29 +61,6 @@ def _place(rows: int | range | Pixels, columns: Columns | None) -> Place | None:
     if callable(columns):
         return Place(_range(rows), tuple(sorted(set(columns()))) or None)
     return Place(_range(rows), _range(columns))
-
-
-@dataclass(frozen=True, slots=True)
-class Frame:
-    """One picture of this core's camera. `rows`: its lines in memory, 2 · `width` bytes of UYVY each."""
-
-    index: int
-    rows: Sequence[Row]
-    width: int
-    height: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FinishedFrame:
-    """What one core reports at the end of a frame. `counted`: what its kernels have counted since the run began."""
-
-    index: int
-    full_at_cclk: int
-    cycles: CoreFrame
-    counted: Snapshot
-    results: Mapping[str, int]
-    remarks: tuple[str, ...]
-    seen: Seen | None
 
 
 class Core(SynchronisedCore):
@@ -186,7 +162,7 @@ class Core(SynchronisedCore):
 
     def window_ring(self, image: Sequence[Row], rows: Sequence[Row]) -> InputRing:
         """Return a ring that fetches the lines of `image` into `rows`, where kernels need them, even if it is cached."""
-        return InputRing(self, self._streams[0], image, rows)
+        return InputRing(self, self._streams[0], image, rows, self.take_line)
 
     def output_ring(self, ring: str, image: Sequence[Row]) -> OutputRing | CachedOutput:
         """Return a ring that takes finished lines from the rows of buffer `ring` to `image`, which may be cached as above."""
@@ -347,7 +323,7 @@ class Core(SynchronisedCore):
             if place is None or place.columns is None:
                 self.at(number)
 
-    def play(self, main: Main) -> Generator[Any, Any, None]:
+    def play(self, main: Callable[[Core], Generator[Any, Any, None]]) -> Generator[Any, Any, None]:
         """Run the firmware's main loop: the process of this core."""
         try:
             task = main(self)

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from bfsim.errors import FirmwareError
 from bfsim.kernel.types import Number
+from bfsim.machine.buffers import Buffer, FrameSize
 from bfsim.machine.memories import Memories, Row
-from bfsim.machine.program import Buffer, FrameSize
 
 Rows = tuple[Row, ...]
 

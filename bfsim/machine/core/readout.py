@@ -3,23 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError, shown
+from bfsim.machine.core.frames import Frame
 from bfsim.machine.memories import Row
 from bfsim.seen import CAMERAS, Seen, SeenText
 
-if TYPE_CHECKING:
-    from bfsim.machine.core.core import Core, Frame
+
+class HasBuffers(Protocol):
+    """What has a name, and buffers by their names: a core."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+    def has_buffer(self, name: str) -> bool:
+        """Whether there is a buffer called `name`."""
+
+    def rows(self, name: str) -> Sequence[Row]:
+        """Return the rows of the buffer called `name`."""
 
 
 class Readout:
     """What a core has in memory at the end of a frame, before anything of the next one is in it."""
 
-    def __init__(self, core: Core, frame: Frame, results: Mapping[str, int]) -> None:
+    def __init__(self, core: HasBuffers, frame: Frame, results: Mapping[str, int]) -> None:
         """`results`: the numbers published for the frame."""
         self._core = core
         self._frame = frame

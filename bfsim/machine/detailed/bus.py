@@ -68,7 +68,7 @@ class DetailedBus(Bus):
         self._channels[plan.master].post(transfer)
         if self._told:
             self._told.post(plan.master, number, plan.name, transfer.at, plan.nbytes, self._env.tick)
-        return Transfer(self, number, w.NONE)
+        return Transfer(self.words, number, w.NONE)
 
     def _forget(self, number: int) -> None:
         del self._on_their_way[number]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import simpy
 
@@ -14,6 +14,7 @@ from bfsim.errors import FirmwareError
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.masters import STREAMS
 from bfsim.machine.bus.transfer_plans import Transfer, Walk
+from bfsim.machine.core.playing import PlayingCore
 from bfsim.machine.core.waits import Waits, awaited
 from bfsim.machine.dma.channel import ChannelStep, DmaChannel, check_pair
 from bfsim.machine.dma.checks import DmaSpace
@@ -22,9 +23,6 @@ from bfsim.machine.dma.unit import WorkUnit
 from bfsim.machine.firmware_lines import running_line
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import Simulation
-
-if TYPE_CHECKING:
-    from bfsim.machine.core.core import Core
 
 
 class Dma:
@@ -40,7 +38,7 @@ class Dma:
         self._space = space
         self._streams: dict[str, MemoryDma] = {}
 
-    def stream(self, name: str, core: Core) -> MemoryDma:
+    def stream(self, name: str, core: PlayingCore) -> MemoryDma:
         """Return the stream `name`, whose registers `core` programs from now on."""
         known = [each for each in STREAMS if each in self._board.chip.interrupts.__members__]
         if name not in known:
@@ -59,7 +57,7 @@ class MemoryDma:
     Firmware sets the registers by `program` and starts both with `start`; the words move while the core goes on.
     """
 
-    core: Core
+    core: PlayingCore
 
     def __init__(
         self, env: Simulation, board: BoardSpec, bus: Bus, memories: Memories, space: DmaSpace, name: str

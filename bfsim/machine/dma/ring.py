@@ -5,19 +5,17 @@ A ring of n rows holds n - 1 lines that the core may use and one that the DMA is
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Generator, Sequence
+from typing import Any
 
 from bfsim.chip.dma_registers import COPY_READS, COPY_WRITES
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus.transfer_plans import Transfer
+from bfsim.machine.core.playing import PlayingCore
 from bfsim.machine.core.waits import Waits, awaited
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.trace import StallReason
-
-if TYPE_CHECKING:
-    from bfsim.machine.core.core import Core
 
 
 def _check(rows: Sequence[Row], image: Sequence[Row]) -> None:
@@ -38,12 +36,17 @@ def _check(rows: Sequence[Row], image: Sequence[Row]) -> None:
 class InputRing:
     """Lines of a picture, first to last, one line ahead of the core."""
 
-    def __init__(self, core: Core, stream: MdmaStream, image: Sequence[Row], rows: Sequence[Row]) -> None:
+    def __init__(
+        self, core: PlayingCore, stream: MdmaStream, image: Sequence[Row], rows: Sequence[Row],
+        on_line: Callable[[int, int], None],
+    ) -> None:  # fmt: skip
+        """`on_line`: called with the number of each line that is taken, and with how many there are."""
         _check(rows, image)
         self._core = core
         self._stream = stream
         self._image = image
         self._rows = rows
+        self._on_line = on_line
         self._owner = f"ring {rows[0].buffer}"
         self._height, self._depth = len(image), len(rows)
         self._taken = 0
@@ -60,7 +63,7 @@ class InputRing:
                 f"the ring of {self._rows[0].buffer} has no line {number}: the picture has {self._height}"
             )
         self._taken = number + 1
-        core.take_line(number, self._height)
+        self._on_line(number, self._height)
         core.program_device(self._owner, writes=COPY_WRITES, reads=COPY_READS)
         transfer = self._coming or self._fetch(number)
         # one line ahead: its row is the one that the core gave up with this call
@@ -88,7 +91,9 @@ class InputRing:
 class OutputRing:
     """Finished lines on their way to a picture in memory."""
 
-    def __init__(self, core: Core, stream: MdmaStream, rows: Sequence[Row], image: Sequence[Row]) -> None:
+    def __init__(
+        self, core: PlayingCore, stream: MdmaStream, rows: Sequence[Row], image: Sequence[Row]
+    ) -> None:
         _check(rows, image)
         self._core = core
         self._stream = stream

@@ -12,6 +12,7 @@ import simpy
 
 from bfsim.kernel import Kernel, Work
 from bfsim.kernel import access_trace as log
+from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.stalls import COUNTER_OF
@@ -19,12 +20,12 @@ from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.accounts import Account
-from bfsim.machine.core.core import SPI, Core, Frame
+from bfsim.machine.core.core import SPI, Core
+from bfsim.machine.core.frames import Frame
 from bfsim.machine.core.interrupts import Handler
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.memory_dma import MemoryDma
 from bfsim.machine.memories import Row
-from bfsim.machine.program import FrameSize
 from bfsim.machine.retiming.work import ACCESS_COLUMNS, CALL, COPY_COLUMNS, FrameWork, Place
 from bfsim.trace import StallReason
 

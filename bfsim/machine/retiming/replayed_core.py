@@ -10,6 +10,7 @@ import numpy as np
 from bfsim.errors import BfsimError, WorkError, shown
 from bfsim.kernel import Kernel
 from bfsim.kernel.types import ArrayType, IntType, Number, u8
+from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.cameras.settling import CameraSettings
@@ -18,7 +19,6 @@ from bfsim.machine.core.semaphore import Semaphore
 from bfsim.machine.core.spin_lock import SpinLock
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
-from bfsim.machine.program import FrameSize
 from bfsim.machine.retiming.translated import Stretch, translated
 from bfsim.machine.retiming.work import (
     DESTINATION,

@@ -1,0 +1,34 @@
+"""A frame as firmware gets it, and what a core has to say of it at its end."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from bfsim.machine.calls.ledger import Snapshot
+from bfsim.machine.memories import Row
+from bfsim.seen import Seen
+from bfsim.trace import CoreFrame
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """One picture of this core's camera. `rows`: its lines in memory, 2 · `width` bytes of UYVY each."""
+
+    index: int
+    rows: Sequence[Row]
+    width: int
+    height: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FinishedFrame:
+    """What one core reports at the end of a frame. `counted`: what its kernels have counted since the run began."""
+
+    index: int
+    full_at_cclk: int
+    cycles: CoreFrame
+    counted: Snapshot
+    results: Mapping[str, int]
+    remarks: tuple[str, ...]
+    seen: Seen | None
