@@ -138,16 +138,17 @@ class AccessTrace:
         self._words[ENTRIES] = self._kept = 0
 
     def entries(self, count: int) -> NDArray[np.int64]:
-        """Return the first `count` entries of the log."""
-        return self._state[LOG : LOG + count]
+        """Return the first `count` entries of the log behind what is kept: those of the last call."""
+        first = LOG + self._kept
+        return self._state[first : first + count]
 
     def sites(self, count: int) -> NDArray[np.int64]:
-        """Return the sites of the first `count` entries of the log."""
-        first = LOG + int(self._state[ROOM])
+        """Return the sites of these entries."""
+        first = LOG + int(self._state[ROOM]) + self._kept
         return self._state[first : first + count]
 
     def insert(self, count: int, entries: NDArray[np.int64], sites: NDArray[np.int64]) -> int:
-        """Add `entries` to the first `count` of the log, by their stamps and behind those of the same; return the new count."""
+        """Add `entries` to the `count` of the last call, by their stamps and behind those of the same; return the new count."""
         total = count + len(entries)
         self._check_room(total)
         merged, merged_sites = self.entries(total), self.sites(total)

@@ -44,8 +44,8 @@ def sanitized(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
 class KnownCall:
     """A kernel bound to its rows, ready to run.
 
-    `stays_in_l1`: whether neither its accesses nor its code can leave L1; `is_alone`: whether they reach nothing there but buffers that
-    belong to its core alone, and those that are `handed_over`, at the time.
+    `stays_in_l1`: whether neither its accesses nor its code can leave L1; `is_alone`: whether its accesses reach nothing there but buffers
+    that belong to its core alone, and those that are `handed_over`, at the time. Code is read only.
     """
 
     run: Callable[[tuple[Row | int, ...]], Work]
@@ -204,8 +204,7 @@ class CallCache:
         return KnownCall(
             call.run,
             stays_in_l1=not (traced or group.fetched),
-            is_alone=not group.fetched
-            and all(each.buffer in self._own or each.buffer in self._handed_over for each in outside),
+            is_alone=all(each.buffer in self._own or each.buffer in self._handed_over for each in outside),
             handed_over=tuple(
                 dict.fromkeys(each.buffer for each in rows if each.buffer in self._handed_over)
             ),
