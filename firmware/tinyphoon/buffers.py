@@ -63,8 +63,12 @@ def one_core_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
 
 def calibration_buffers(calibration: Calibration) -> Buffers:
     """Return the buffers that depend on the cameras of a recording: tables where it has them, and the geometry."""
+    return with_geometry(rectification_buffers(calibration.sources), calibration)
+
+
+def with_geometry(tables: Buffers, calibration: Calibration) -> Buffers:
+    """Return the tables of each core and the geometry that a recording has."""
     geometry = tuple(geometry_buffer(each) for each in calibration.geometries)
-    tables = rectification_buffers(calibration.sources)
     return {core: (*tables.get(core, ()), *geometry) for core in ("A", "B")}
 
 

@@ -32,6 +32,12 @@ class Features:
     outlines: Outlines
 
 
+def as_found(core: Core, area: Area, found: Features) -> Generator[Any, Any, Features]:  # noqa: ARG001
+    """Leave the features where they are: the picture was rectified."""
+    yield from ()
+    return found
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Steps:
     """The steps that take most of a frame: plain ones, or others with the same results, or nearly so."""
@@ -44,6 +50,7 @@ class Steps:
     circle_detection: Callable[[Core, Frame, int, int, CircleThresholds], Generator[Any, Any, int]] = (
         circle_detection
     )
+    feature_rectification: Callable[[Core, Area, Features], Generator[Any, Any, Features]] = as_found
 
 
 PLAIN = Steps()
@@ -72,4 +79,5 @@ def features(
             core, frame, blobs, lines, mode.rectangle_colours, mode.goal_colours, mode.rectangles
         )
     outlines = Outlines(blobs=blobs, circles=circles, rectangles=rectangles)
-    return Features(frame=frame, edges=edges, lines=lines, outlines=outlines)
+    found = Features(frame=frame, edges=edges, lines=lines, outlines=outlines)
+    return (yield from steps.feature_rectification(core, area, found))

@@ -9,12 +9,11 @@ from functools import partial
 import numpy as np
 
 from bfsim.api import Buffer, Buffers, Calibration, FrameSize
-from tinyphoon.buffers import buffers
+from tinyphoon.buffers import buffers, with_geometry
 from tinyphoon.core_a import core_a
 from tinyphoon.core_b import core_b
 from tinyphoon.features import Steps
 from tinyphoon.fields import to_words
-from tinyphoon.geometry import geometry_buffer
 from tinyphoon.stages.circle_erosion import eroded_circles, shape_buffers
 from tinyphoon.stages.fast_opening import fast_opening
 from tinyphoon.stages.fast_scan import fast_edge_detection, fast_scan_buffers
@@ -69,6 +68,4 @@ def thesis_calibration(calibration: Calibration) -> Buffers:
     """Return the buffers that depend on the cameras of a recording: every picture has a table, and the geometry."""
     size = calibration.size
     sources = calibration.sources or ({core: untouched(size) for core in ("A", "B")} if size else {})
-    tables = sdram_rectification_buffers(sources)
-    geometry = tuple(geometry_buffer(each) for each in calibration.geometries)
-    return {core: (*tables.get(core, ()), *geometry) for core in ("A", "B")}
+    return with_geometry(sdram_rectification_buffers(sources), calibration)
