@@ -20,64 +20,17 @@ from numpy.typing import NDArray
 from rich.table import Table
 
 from benchmarks.quality.seen import Picture, see, uyvy
-from bfsim.api import Calibration, SourcePixels
+from benchmarks.rectified.cameras import RealCameras
+from bfsim.api import Calibration
 from bfsim.errors import BfsimError
 from bfsim.recording import RecordingReader, StereoFrame
-from bfsim.recording.scenes.lens import Lens, turned
+from bfsim.recording.scenes.lens import Lens
 from bfsim.report.tables import new_table, percent
 from bfsim.run import BUILT_IN_RECORDING
 from bfsim.terminal import print_report
 from tinyphoon import tinyphoon
 
-FOCAL_PX = 386.0  # T §6.2
-LENS = Lens(-0.25, 0.08)
-RIGHT_TURN_DEG = (1.0, -1.0, 0.5)
-
-Points = NDArray[np.float32]
-"""Columns and rows of shape (height, width, 2)."""
-
-
-def camera_turn(side: str) -> NDArray[np.float64]:
-    """Return the rotation of a camera against the rectified one."""
-    rotation = np.eye(3)
-    if side == "right":
-        for axis, angle_deg in enumerate(RIGHT_TURN_DEG):
-            rotation = turned(rotation, axis, angle_deg)
-    return rotation
-
-
-def rays(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return points at unit depth as vectors."""
-    return np.concatenate([points, np.ones_like(points[..., :1])], axis=-1)
-
-
-def pixels_of(height: int, width: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the pixels of a picture as points at unit depth, and its centre."""
-    centre = np.array([width - 1, height - 1]) / 2
-    columns, rows = np.meshgrid(np.arange(width), np.arange(height))
-    return (np.stack([columns, rows], axis=-1) - centre) / FOCAL_PX, centre
-
-
-def sources(height: int, width: int, side: str) -> Points:
-    """Return where each rectified pixel lies in the picture of a camera."""
-    points, centre = pixels_of(height, width)
-    seen = rays(points) @ camera_turn(side).T
-    return (LENS.distort(seen[..., :2] / seen[..., 2:]) * FOCAL_PX + centre).astype(np.float32)
-
-
-def targets(height: int, width: int, side: str) -> Points:
-    """Return where each pixel of a camera lies in the rectified picture."""
-    points, centre = pixels_of(height, width)
-    ideal = rays(LENS.undistort(points)) @ camera_turn(side)
-    return (ideal[..., :2] / ideal[..., 2:] * FOCAL_PX + centre).astype(np.float32)
-
-
-def nearest(points: Points) -> SourcePixels:
-    """Return one table: the nearest pixels, -1 outside of the picture."""
-    columns, rows = np.moveaxis(np.rint(points).astype(np.int32), -1, 0)
-    height, width = rows.shape
-    inside = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
-    return SourcePixels(np.where(inside, rows, np.int32(-1)), np.where(inside, columns, np.int32(-1)))
+CAMERAS = RealCameras(386.0, Lens(-0.25, 0.08), (1.0, -1.0, 0.5))  # T §6.2: the focal length
 
 
 def psnr(one: Picture, other: Picture, counted: NDArray[np.bool_]) -> str:
@@ -91,9 +44,9 @@ def compare(path: Path, limit: int) -> list[tuple[str, ...]]:
     with RecordingReader(path) as reader:
         height, width = reader.height, reader.width
         pairs = list(reader.frames(min(limit, reader.frame_count)))
-    points = {side: sources(height, width, side) for side in ("left", "right")}
-    tables = {core: nearest(points[side]) for core, side in (("A", "left"), ("B", "right"))}
-    back = {side: targets(height, width, side) for side in points}
+    points = {side: CAMERAS.sources(height, width, side) for side in ("left", "right")}
+    tables = dict(zip("AB", CAMERAS.tables(height, width).values(), strict=True))
+    back = {side: CAMERAS.targets(height, width, side) for side in points}
     luma = {side: [np.ascontiguousarray(getattr(pair, side)[:, 1::2]) for pair in pairs] for side in points}
     bent = {
         side: [cv2.remap(each, back[side], None, cv2.INTER_LANCZOS4) for each in luma[side]]

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table
 
+from bfsim.api import Seen
 from bfsim.errors import BfsimError
 from bfsim.recording import RecordingReader
 from bfsim.report.overlay.files import OverlayWriter
@@ -38,6 +39,8 @@ SHAPE_OF = {each.name: each.shape for each in MODELS}
 
 SLACK_DEG = 1.0
 """Objects no farther from the way to a thing than its own half width, and this, are taken for it."""
+
+TALLY_HEADS = ("Found", "with place", "direction, deg", "place, mm", "depth, %", "accuracy, %")
 
 Vector = NDArray[np.float64]
 
@@ -110,7 +113,9 @@ def thing_of(found: SeenObject, truth: Mapping[str, Any], places: Mapping[str, V
     return nearest
 
 
-def compare(frames: Iterable[tuple[SeenFrame, Mapping[str, Any]]]) -> tuple[dict[str, Tally], list[float]]:
+def compare(
+    frames: Iterable[tuple[SeenFrame | Seen, Mapping[str, Any]]],
+) -> tuple[dict[str, Tally], list[float]]:
     """Return what came out for each thing of frames with their ground truth, and how accurate what is no thing is said to be.
 
     Of the latter those only that have the dimension of their model.
@@ -145,16 +150,21 @@ def _add(tally: Tally, found: SeenObject, place: Vector) -> None:
         tally.depths_mm.append((place[2], towards[2]))
 
 
+def tally_cells(tally: Tally) -> list[str]:
+    """Return the cells of a thing."""
+    depths = np.array(tally.depths_mm)
+    off = np.abs(depths[:, 1] / depths[:, 0] - 1) if len(depths) else np.zeros(0)
+    return [
+        *(f"{len(tally.accuracies)} of {tally.frames}", f"{len(tally.places_mm)}"),
+        *(_mean(tally.directions_deg, ".1f"), _mean(tally.places_mm, ".0f"), _mean(100 * off, ".1f")),
+        _mean(100 * np.array(tally.accuracies), ".0f"),
+    ]
+
+
 def add_rows(table: Table, scene: str, tallies: Mapping[str, Tally], false: Sequence[float]) -> None:
     """Add a scene to the table."""
     for name, tally in tallies.items():
-        depths = np.array(tally.depths_mm)
-        off = np.abs(depths[:, 1] / depths[:, 0] - 1) if len(depths) else np.zeros(0)
-        table.add_row(
-            *(scene, name, f"{len(tally.accuracies)} of {tally.frames}", f"{len(tally.places_mm)}"),
-            *(_mean(tally.directions_deg, ".1f"), _mean(tally.places_mm, ".0f"), _mean(100 * off, ".1f")),
-            _mean(100 * np.array(tally.accuracies), ".0f"),
-        )
+        table.add_row(scene, name, *tally_cells(tally))
         scene = ""
     best = f"{100 * max(false):.0f} at most" if false else ""
     table.add_row("", "no thing", f"{len(false)}", "", "", "", "", best)
@@ -186,8 +196,7 @@ def recordings(folder: Path, scenes: Collection[str]) -> list[Path]:
 
 def comparison(paths: Sequence[Path], overlays: Path) -> Table:
     """Return what is found of the things in each recording that has some."""
-    heads = ("Found", "with place", "direction, deg", "place, mm", "depth, %", "accuracy, %")
-    table = new_table("Things found, and the mean error of those found", "Scene", "Thing", *heads)
+    table = new_table("Things found, and the mean error of those found", "Scene", "Thing", *TALLY_HEADS)
     overlays.mkdir(exist_ok=True)
     with progress_bar("Simulating") as progress:
         for done, path in enumerate(paths):

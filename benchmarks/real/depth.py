@@ -111,10 +111,17 @@ def _around(points: Points, dense: Disparities, reach: int) -> NDArray[np.float6
     )
 
 
+def errors_at(points: Points, dense: Disparities, reach: int) -> NDArray[np.float64]:
+    """Return how far each point's disparity is from the nearest dense one around; NaN where there is none."""
+    errors = np.abs(points[:, 2:] - _around(points, dense, reach))
+    nearest: NDArray[np.float64] = np.where(np.isnan(errors), np.inf, errors).min(axis=1)
+    return np.where(np.isinf(nearest), np.nan, nearest)
+
+
 def _errors(points: Points, dense: Disparities, reach: int) -> NDArray[np.float64]:
     """Return how far each point's disparity is from the nearest dense one around; without those that have none."""
-    errors = np.abs(points[:, 2:] - _around(points, dense, reach))
-    return np.nanmin(errors[~np.isnan(errors).all(axis=1)], axis=1)
+    errors = errors_at(points, dense, reach)
+    return errors[~np.isnan(errors)]
 
 
 def _wanted(left: Seen, points: Points, dense: Disparities) -> int:
