@@ -53,9 +53,9 @@ def see(path: Path, mode: Mode = INDOOR_FIELD, frames: int | None = None) -> lis
             found = yield from features(core, frame, mode)
             yield from left_sight(core, frame, found.outlines, mode.objects)
             keep(core, "left_seen")
-            yield from core.post("core A is done")
             yield from core.wait("core B is done")
             yield from object_detection(core, frame, mode.objects)
+            yield from core.post("core A is done")
             yield from report(core, frame)
 
     def right_main(core: Core) -> Generator[Any, Any, None]:
