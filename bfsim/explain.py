@@ -153,7 +153,7 @@ def _line(
             least_cclk=always + sum(min(0, side) for side in sides),
             most_cclk=always + sum(max(0, side) for side in sides),
             stall_cclk=sum(
-                each.count * each.stall_cclk
+                each.times * each.stall_cclk
                 for counter in here
                 for each in counter.charges
                 if each.line.line == line
@@ -170,7 +170,7 @@ def _cycles(line: int, counters: Sequence[Counter]) -> tuple[int, list[int]]:
     always, sides = 0, []
     for each in counters:
         cclk = sum(
-            one.count * (one.issue_cclk + one.stall_cclk) for one in each.charges if one.line.line == line
+            one.times * (one.issue_cclk + one.stall_cclk) for one in each.charges if one.line.line == line
         )
         if each.value is None:
             always += cclk
@@ -184,9 +184,9 @@ def _operations(line: int, counters: Sequence[Counter]) -> tuple[ExplainedOperat
     counts: Tally[Op] = Tally()
     for counter in counters:
         for each in counter.charges:
-            if each.line.line == line and (each.count > 0 or counter.value is None):
+            if each.line.line == line and (each.times > 0 or counter.value is None):
                 counts[each.op] = (
-                    max(counts[each.op], each.count) if counter.value else counts[each.op] + each.count
+                    max(counts[each.op], each.times) if counter.value else counts[each.op] + each.times
                 )
     cycles = {each.op: each.issue_cclk for counter in counters for each in counter.charges}
     return tuple(

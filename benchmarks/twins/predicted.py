@@ -35,5 +35,5 @@ def predict(case: Case, profile: CompilerProfile) -> Predicted:
     for counter, events in zip(code.counters, totals.tolist(), strict=False):
         cycles += events * (counter.issue_cclk + counter.stall_cclk)
         for each in counter.charges:
-            operations[each.op.value] += events * each.count
+            operations[each.op.value] += events * each.times
     return Predicted(cycles, dict(operations), checksum)

@@ -17,6 +17,8 @@ from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.charges import Access, Charge
 from bfsim.kernel.profile import CompilerProfile
 
+OPS = {each.value: each for each in Op}
+
 
 @dataclass(frozen=True, slots=True)
 class Costs:
@@ -54,38 +56,47 @@ def kept_costs(key: str, made: Callable[[], Costs]) -> Costs:
 
 
 def _rows(costs: Costs) -> dict[str, Any]:
-    """Return costs for JSON: dataclasses as lists of their fields, which `asdict` would take as long for as the rest takes."""
-    counters = [
-        _fields(each) | {"charges": [[*_fields(one).values()] for one in each.charges]}
-        for each in costs.counters
-    ]
+    """Return costs for JSON: dataclasses as lists of their fields, source lines once and then by their numbers."""
+    lines: dict[SourceLine, int] = {}
+
+    def number(line: SourceLine) -> int:
+        return lines.setdefault(line, len(lines))
+
+    def row(each: Counter) -> list[Any]:
+        numbered = {
+            "charges": [(one.op, number(one.line), *one[2:]) for one in each.charges],
+            "accesses": [(*one[:4], number(one.line), *one[5:]) for one in each.accesses],
+            "enters": [(one.symbol, number(one.caller), one.location) for one in each.enters],
+        }
+        return [numbered.get(name, getattr(each, name)) for name in each.__dataclass_fields__]
+
     return {
-        "counters": [[*each.values()] for each in counters],
+        "counters": list(map(row, costs.counters)),
+        "lines": list(lines),
         "calls": costs.calls,
         "inlined": costs.inlined,
     }
 
 
-def _fields(each: Counter | Charge) -> dict[str, Any]:
-    return {name: getattr(each, name) for name in each.__dataclass_fields__}
-
-
 def _costs(kept: dict[str, Any]) -> Costs:
     """Build costs from their JSON."""
+    lines = [SourceLine(*each) for each in kept["lines"]]
+
+    def counter(row: list[Any]) -> Counter:
+        found = dict(zip(Counter.__dataclass_fields__, row, strict=True))
+        found["charges"] = tuple(Charge(OPS[op], lines[line], *more) for op, line, *more in found["charges"])
+        found["accesses"] = tuple(
+            Access(array, writes, label, number, lines[line], *more)
+            for array, writes, label, number, line, *more in found["accesses"]
+        )
+        found["enters"] = tuple(
+            Entrance(symbol, lines[caller], note) for symbol, caller, note in found["enters"]
+        )
+        return Counter(**found)
+
     calls = {
         routine: tuple(RoutineCall(callee, tuple(map(tuple, arrays))) for callee, arrays in each)
         for routine, each in kept["calls"].items()
     }
     inlined = {int(site): tuple(routines) for site, routines in kept["inlined"].items()}
-    return Costs(tuple(map(_counter, kept["counters"])), calls, inlined)
-
-
-def _counter(row: list[Any]) -> Counter:
-    """Build a counter from its JSON."""
-    found = dict(zip(Counter.__dataclass_fields__, row, strict=True))
-    found["charges"] = tuple(Charge(Op(op), SourceLine(*line), *more) for op, line, *more in found["charges"])
-    found["accesses"] = tuple(Access(*each)._replace(line=SourceLine(*each[4])) for each in found["accesses"])
-    found["enters"] = tuple(
-        Entrance(symbol, SourceLine(*caller), note) for symbol, caller, note in found["enters"]
-    )
-    return Counter(**found)
+    return Costs(tuple(map(counter, kept["counters"])), calls, inlined)

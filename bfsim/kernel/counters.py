@@ -7,7 +7,6 @@ that were costed are the blocks that are counted.
 from __future__ import annotations
 
 from collections import Counter as Tally
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -48,22 +47,25 @@ class Counter:
     @cached_property
     def line_cclk(self) -> tuple[tuple[SourceLine, int, int], ...]:
         """(source line, issue cycles, interlock cycles) per event."""
-        issue: Tally[SourceLine] = Tally()
-        stall: Tally[SourceLine] = Tally()
-        for each in self.charges:
-            issue[each.line] += each.count * each.issue_cclk
-            stall[each.line] += each.count * each.stall_cclk
-        return tuple((line, issue[line], stall[line]) for line in sorted(issue))
+        found: dict[SourceLine, tuple[int, int]] = {}
+        for _, line, issue_cclk, stall_cclk, times, _ in self.charges:
+            issue, stall = found.get(line, (0, 0))
+            found[line] = issue + times * issue_cclk, stall + times * stall_cclk
+        return tuple((line, *found[line]) for line in sorted(found))
 
     @cached_property
     def line_operations(self) -> tuple[tuple[SourceLine, str, int, int], ...]:
-        """(source line, operation or routine of the run-time library, how many, issue cycles) per event."""
-        found: dict[tuple[SourceLine, str], list[Charge]] = {}
-        for each in self.charges:
-            found.setdefault((each.line, each.routine or each.op.value), []).append(each)
+        """(source line, operation or routine of the run-time library, how many, issue cycles) per event.
+
+        A routine ran as often as the rarest of its operations, which each run of it has once.
+        """
+        found: dict[tuple[SourceLine, str], tuple[dict[Op, int], int]] = {}
+        for op, line, issue_cclk, _, times, routine in self.charges:
+            by_op, cclk = found.get((line, routine or op), ({}, 0))
+            by_op[op] = by_op.get(op, 0) + times
+            found[line, routine or op] = by_op, cclk + times * issue_cclk
         return tuple(
-            (line, name, _times(charges), sum(each.count * each.issue_cclk for each in charges))
-            for (line, name), charges in found.items()
+            (line, str(name), min(by_op.values()), cclk) for (line, name), (by_op, cclk) in found.items()
         )
 
     @cached_property
@@ -75,11 +77,3 @@ class Counter:
     def stall_cclk(self) -> int:
         """Interlock cycles per event."""
         return sum(stall for _, _, stall in self.line_cclk)
-
-
-def _times(charges: Iterable[Charge]) -> int:
-    """Return how often an operation runs, or a routine: as often as the rarest of its operations, which each has once."""
-    counts: Tally[Op] = Tally()
-    for each in charges:
-        counts[each.op] += each.count
-    return min(counts.values())

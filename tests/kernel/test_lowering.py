@@ -30,7 +30,7 @@ def lowered(text: str, folder: Path, profile: CompilerProfile = GCC_O2) -> Tally
     counts: Tally[Op] = Tally()
     for counter in kernel.compile(profile).counters:
         for each in counter.charges if counter.value is None else ():
-            counts[each.op] += each.count
+            counts[each.op] += each.times
     return counts
 
 

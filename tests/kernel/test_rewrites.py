@@ -76,7 +76,7 @@ def test_stores_at_the_ends_of_both_sides_are_one(tmp_path: Path) -> None:
     charges = [
         each for counter in kernel.counters(GCC_O2) if counter.value is None for each in counter.charges
     ]
-    assert sum(each.count for each in charges if each.op is Op.STORE8) == 1
+    assert sum(each.times for each in charges if each.op is Op.STORE8) == 1
     assert Op.COND_MOVE in {each.op for each in charges}
 
 

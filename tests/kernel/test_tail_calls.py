@@ -53,7 +53,7 @@ def operations(folder: Path, name: str = "jumps", body: str = "return 1", few: s
         for each in kernel.counters(CALLING_GCC)
         if each.routine == kernel.function.symbol and each.value is None
     )
-    return [charge.op for each in own for charge in each.charges for _ in range(charge.count)]
+    return [charge.op for each in own for charge in each.charges for _ in range(charge.times)]
 
 
 @pytest.mark.parametrize(

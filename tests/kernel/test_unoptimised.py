@@ -44,7 +44,7 @@ def costs_of(import_kernels: ImportText, body: str) -> dict[str, BlockCost]:
 
 def cclk_of(charges: list[Charge] | tuple[Charge, ...]) -> int:
     """Sum up charges."""
-    return sum(each.count * each.issue_cclk for each in charges)
+    return sum(each.times * each.issue_cclk for each in charges)
 
 
 STATEMENTS = {

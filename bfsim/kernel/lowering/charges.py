@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from bfsim.kernel.ir_text import Instruction, SourceLine
 from bfsim.kernel.isa import COSTS, Op
 
 
-@dataclass(frozen=True, slots=True)
-class Charge:
-    """`count` executions of one operation per event; negative where a test moves a cost to its other side."""
+class Charge(NamedTuple):
+    """One operation, executed so many `times` per event; negative where a test moves a cost to its other side."""
 
     op: Op
     line: SourceLine
@@ -20,7 +19,7 @@ class Charge:
     """Cycles of one execution, without interlocks."""
     stall_cclk: int = 0
     """Interlock cycles of one execution (0 in profiles without interlocks)."""
-    count: int = 1
+    times: int = 1
     routine: str = ""
     """The routine of the run-time library that it is an operation of, such as "division"."""
 
@@ -32,16 +31,16 @@ def charge(op: Op, line: SourceLine) -> Charge:
 
 def instead(side: Iterable[Charge], other: Iterable[Charge]) -> tuple[Charge, ...]:
     """Return the charges that turn the cost of `other` into that of `side`."""
-    return (*side, *(replace(each, count=-each.count) for each in other))
+    return (*side, *(each._replace(times=-each.times) for each in other))
 
 
 def merged(charges: Iterable[Charge]) -> tuple[Charge, ...]:
     """Add up like charges; what cancels out is left out."""
-    counts: dict[Charge, int] = {}
+    times: dict[Charge, int] = {}
     for each in charges:
-        one = replace(each, count=1)
-        counts[one] = counts.get(one, 0) + each.count
-    return tuple(replace(one, count=count) for one, count in counts.items() if count)
+        one = each._replace(times=1)
+        times[one] = times.get(one, 0) + each.times
+    return tuple(one._replace(times=in_all) for one, in_all in times.items() if in_all)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from bfsim.kernel import isa
 from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine
@@ -261,7 +260,7 @@ class _OptimisedLowering:
             return
         if label in self.context.tail_calls:
             left_out = self.context.tail_calls[label].left_out
-            cost.charges.append(replace(charge(Op.RETURN, left_out.line), count=-1))
+            cost.charges.append(charge(Op.RETURN, left_out.line)._replace(times=-1))
         if terminator.opcode == "ret":
             self._return(cost, terminator.line)
         elif terminator.opcode == "switch":

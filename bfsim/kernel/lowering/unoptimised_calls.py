@@ -48,7 +48,7 @@ def _library(code: ExpressionCode, op: str) -> list[Charge]:
     if not routine.mix:
         return [Charge(Op.LIBRARY, code.line, routine.cclk, routine=name)]
     return [
-        Charge(each, code.line, COSTS[each].cclk, count=count, routine=name) for each, count in routine.mix
+        Charge(each, code.line, COSTS[each].cclk, times=times, routine=name) for each, times in routine.mix
     ]
 
 
