@@ -27,6 +27,7 @@ from benchmarks.twins.exported import calls_of
 from bfsim.compiling.object_code import ObjectCode, object_code
 from bfsim.compiling.toolchain import blackfin_toolchain
 from bfsim.kernel import GCC_O0, GCC_O2, Kernel
+from bfsim.kernel.tree import first_float
 from bfsim.loading import kernels_of, load_firmware
 from bfsim.run import simulate
 from bfsim.verifying import Sampler
@@ -89,7 +90,7 @@ def _at_all_levels(name: str, sampler: Sampler, kernels: set[Kernel]) -> Iterato
 
 
 def _has_floats(kernel: Kernel) -> bool:
-    return any(each.first_float() for each in (kernel.function, *kernel.function.callees()))
+    return any(first_float(each) for each in (kernel.function, *kernel.function.callees()))
 
 
 def _texts(count: int) -> list[str]:

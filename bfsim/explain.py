@@ -12,9 +12,10 @@ from dataclasses import replace
 from bfsim.building import build_for
 from bfsim.errors import ConfigError
 from bfsim.hardware import find_profile
-from bfsim.kernel import CompilerProfile, Kernel, tree
+from bfsim.kernel import CompilerProfile, Kernel
 from bfsim.kernel.build import Build
 from bfsim.kernel.counters import Counter
+from bfsim.kernel.function import Function
 from bfsim.kernel.inlining import decisions
 from bfsim.kernel.isa import MNEMONICS, Op
 from bfsim.loading import load_firmware, load_kernel
@@ -77,7 +78,7 @@ def _explained(kernel: Kernel, build: Build, records: Sequence[KernelRecord] | N
     )
 
 
-def _kernel_calls(function: tree.Function, profile: CompilerProfile) -> tuple[ExplainedCall, ...]:
+def _kernel_calls(function: Function, profile: CompilerProfile) -> tuple[ExplainedCall, ...]:
     """What becomes of the calls in the code of `function`, those in kernels that are inlined into it among them."""
     kernels = {each.symbol: each for each in (*function.callees(), function)}
     found, waiting = [], [function.symbol]
@@ -102,7 +103,7 @@ def _kernel_calls(function: tree.Function, profile: CompilerProfile) -> tuple[Ex
 
 
 def _lines(
-    function: tree.Function, counters: Sequence[Counter], records: Sequence[KernelRecord] | None
+    function: Function, counters: Sequence[Counter], records: Sequence[KernelRecord] | None
 ) -> tuple[ExplainedLine, ...]:
     """The lines of a kernel, with what of `counters` comes from them."""
     own = [
@@ -117,7 +118,7 @@ def _lines(
     )
 
 
-def _of_kernel(function: tree.Function, records: Sequence[KernelRecord]) -> list[KernelRecord]:
+def _of_kernel(function: Function, records: Sequence[KernelRecord]) -> list[KernelRecord]:
     place = (function.name, function.file, function.first_line)
     found = [each for each in records if (each.kernel, each.file, each.first_line) == place]
     if not found:
@@ -128,7 +129,7 @@ def _of_kernel(function: tree.Function, records: Sequence[KernelRecord]) -> list
 
 
 def _line(
-    function: tree.Function,
+    function: Function,
     line: int,
     text: str,
     counters: Sequence[Counter],

@@ -14,7 +14,8 @@ from bfsim.blackfin.subroutines import LoadedImage
 from bfsim.compiling.recipes import Recipe, code_of
 from bfsim.compiling.toolchain import blackfin_compiler
 from bfsim.errors import KernelError
-from bfsim.kernel import CompilerProfile, Kernel, tree
+from bfsim.kernel import CompilerProfile, Kernel
+from bfsim.kernel.function import Function, Parameter
 from bfsim.kernel.objects.compiled import CompiledObject, compiled_object
 from bfsim.kernel.objects.places import Places, object_function
 from bfsim.kernel.objects.sources import source_of
@@ -32,7 +33,7 @@ class FileCode:
     """The object code of one file, as one of its functions has it. `files`: what it was made of, with their SHA-256."""
 
     files: Mapping[Path, str]
-    function: tree.Function
+    function: Function
     symbol: str
     loaded: LoadedImage
     places: Places
@@ -50,16 +51,14 @@ class FileCode:
         return self._compiled[key]
 
 
-def file_kernel(
-    path: Path, name: str, parameters: tuple[tree.Parameter, ...], result: Number | None
-) -> Kernel:
+def file_kernel(path: Path, name: str, parameters: tuple[Parameter, ...], result: Number | None) -> Kernel:
     """Return the function `name` of a file as a kernel. Raises as `kernel_from`."""
     files = _files(path)
     image = link(read_object(_object_file(path, files), path.name))
     symbol = next((each for each in (f"_{name}", name) if each in image.symbols), f"_{name}")
     address = image.address_of(symbol)
     routine = image.routine_at(address) or Routine(symbol, address, address)
-    kernels: dict[str, tree.Function] = {}
+    kernels: dict[str, Function] = {}
     places = Places(image, kernels, folder=path.parent)
     source = source_of(image, places.lines, routine, path.parent)
     own = re.sub(r"\W", "_", f"{path.name}_{name}", flags=re.ASCII)

@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 from bfsim.errors import KernelError
-from bfsim.kernel import Kernel, tree
+from bfsim.kernel import Kernel
+from bfsim.kernel.function import Parameter
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number
 
 NUMBERS = (IntType, FloatType)
@@ -32,5 +33,5 @@ def kernel_from(
     from bfsim.compiling.file_code import file_kernel  # firmware that is all Python needs none of it
 
     beside = Path(sys._getframe(1).f_globals.get("__file__", "")).parent  # noqa: SLF001
-    declared = tuple(tree.Parameter(each, kind) for each, kind in parameters.items())
+    declared = tuple(Parameter(each, kind) for each, kind in parameters.items())
     return file_kernel(beside / file, name, declared, result)

@@ -9,7 +9,7 @@ from bfsim.blackfin.objects import read_object
 from bfsim.blackfin.subroutines import LoadedImage
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.compiling.object_code import ObjectCode
-from bfsim.kernel import tree
+from bfsim.kernel.function import Function
 from bfsim.kernel.objects.compiled import CompiledObject, code_bytes, compiled_object
 from bfsim.kernel.objects.places import Places
 
@@ -20,7 +20,7 @@ class LoadedCode:
 
     code: ObjectCode
     timing: Timing = GNU
-    _compiled: dict[tuple[tree.Function, bool], CompiledObject] = field(default_factory=dict)
+    _compiled: dict[tuple[Function, bool], CompiledObject] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         image = link(read_object(self.code.octets, "kernels.o"))
@@ -29,15 +29,15 @@ class LoadedCode:
         self._loaded, self._places = LoadedImage(image), Places(image, kernels, of_file)
         self._placed = self.timing.placed(image)
 
-    def has(self, function: tree.Function) -> bool:
+    def has(self, function: Function) -> bool:
         """Whether a kernel is a function of the code: helpers may be inlined in all that call them."""
         return self.code.symbol_of(function) in self._places.image.symbols
 
-    def code_bytes(self, function: tree.Function) -> dict[str, int]:
+    def code_bytes(self, function: Function) -> dict[str, int]:
         """Return the size of a kernel's code, and of each function that it calls."""
         return code_bytes(self.code.symbol_of(function), self._loaded, self._places)
 
-    def compiled(self, function: tree.Function, *, traced: bool = False) -> CompiledObject:
+    def compiled(self, function: Function, *, traced: bool = False) -> CompiledObject:
         """Return a kernel ready to run; `traced`: its accesses to memory are reported.
 
         Raises KernelError if the code has no function for it, as for helpers that are inlined.

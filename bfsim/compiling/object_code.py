@@ -10,8 +10,9 @@ from bfsim import store
 from bfsim.compiling.recipes import Recipe, code_at_hand, code_of
 from bfsim.compiling.toolchain import Toolchain
 from bfsim.errors import ConfigError
-from bfsim.kernel import CompilerProfile, Kernel, keys, tree
+from bfsim.kernel import CompilerProfile, Kernel, keys
 from bfsim.kernel.c import CProgram, Place, c_program
+from bfsim.kernel.function import Function
 
 LEVELS = {"gcc-O2": "-O2", "gcc-O0": "-O0", "gcc": "-O2", "gcc-adi": "-O2"}
 """What the compiler is told, for each profile that stands for it."""
@@ -26,9 +27,9 @@ class ObjectCode:
 
     octets: bytes
     compiler: str
-    names: Mapping[tree.Function, str]
+    names: Mapping[Function, str]
 
-    def symbol_of(self, function: tree.Function) -> str:
+    def symbol_of(self, function: Function) -> str:
         """Return the symbol of a kernel in the file."""
         return f"_{self.names[function]}"
 

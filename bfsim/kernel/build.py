@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
-from bfsim.kernel import tree
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.decorator import Kernel
+from bfsim.kernel.function import Function
 from bfsim.kernel.jit import CompiledKernel
 from bfsim.kernel.profile import VDSP_O2, CompilerProfile
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 class Ready(Protocol):
     """The object code of kernels."""
 
-    def compiled(self, function: tree.Function, *, traced: bool = False) -> CompiledObject:
+    def compiled(self, function: Function, *, traced: bool = False) -> CompiledObject:
         """Return that of a kernel ready to run; `traced`: its accesses to memory are reported."""
 
-    def code_bytes(self, function: tree.Function) -> dict[str, int]:
+    def code_bytes(self, function: Function) -> dict[str, int]:
         """Return its size, and that of each function that it calls, by the names of kernels."""
 
 
@@ -36,7 +36,7 @@ class Build:
     """
 
     profile: CompilerProfile
-    objects: Mapping[tree.Function, Ready] = field(default_factory=dict)
+    objects: Mapping[Function, Ready] = field(default_factory=dict)
     code: str = ""
     digest: str = ""
 

@@ -10,11 +10,12 @@ from functools import cache
 
 import llvmlite.binding as llvm
 
-from bfsim.kernel import generic, tree
+from bfsim.kernel import generic
 from bfsim.kernel.call_paths import calls_of
 from bfsim.kernel.costs import Costs
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.emit import emit
+from bfsim.kernel.function import Function
 from bfsim.kernel.inlining import inlined_calls
 from bfsim.kernel.ir_text import Entrance, Routine, SourceLine, inlined_through, read_module
 from bfsim.kernel.loops import ControlFlow
@@ -36,7 +37,7 @@ PASSES = (
 )  # fmt: skip
 
 
-def costed(function: tree.Function, profile: CompilerProfile) -> Costs:
+def costed(function: Function, profile: CompilerProfile) -> Costs:
     """Cost `function` and its callees."""
     text = optimised(function, profile)
     routines = read_module(text)
@@ -45,7 +46,7 @@ def costed(function: tree.Function, profile: CompilerProfile) -> Costs:
 
 
 @cache
-def optimised(function: tree.Function, profile: CompilerProfile) -> str:
+def optimised(function: Function, profile: CompilerProfile) -> str:
     """Return the optimised IR of `function` and its callees: the code that is costed and counted."""
     inlined = inlined_calls(function, profile)
     module = generic.parsed(emit(function, inlined))
@@ -64,7 +65,7 @@ def optimised(function: tree.Function, profile: CompilerProfile) -> str:
     return rewritten(text, profile)
 
 
-def _inline(module: llvm.ModuleRef, function: tree.Function) -> None:
+def _inline(module: llvm.ModuleRef, function: Function) -> None:
     """Inline the calls that are marked, and leave out what nothing calls any more, as a linker does."""
     defined = [each for each in module.functions if not each.is_declaration and each.name != function.symbol]
     for each in defined:

@@ -9,9 +9,10 @@ from functools import cache
 from typing import Any
 
 from bfsim import store
-from bfsim.kernel import keys, tree
+from bfsim.kernel import keys
 from bfsim.kernel.call_paths import RoutineCall
 from bfsim.kernel.counters import Counter
+from bfsim.kernel.function import Function
 from bfsim.kernel.ir_text import Entrance, SourceLine
 from bfsim.kernel.isa import Op
 from bfsim.kernel.lowering.charges import Access, Charge
@@ -34,7 +35,7 @@ class Costs:
 
 
 @cache
-def costs_of(function: tree.Function, profile: CompilerProfile) -> Costs:
+def costs_of(function: Function, profile: CompilerProfile) -> Costs:
     """Cost `function` and its callees, or take the costs from the cache on disk; once per process."""
 
     def made() -> Costs:

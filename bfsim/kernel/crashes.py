@@ -12,7 +12,7 @@ import signal
 from functools import cache
 
 from bfsim import machine_code
-from bfsim.kernel import tree
+from bfsim.kernel.function import Function
 
 CAUSES = {
     "SIGSEGV": "a memory access that is not allowed",
@@ -83,7 +83,7 @@ _kept: list[object] = []
 """What the handler has the addresses of."""
 
 
-def watch(running: int, function: tree.Function) -> None:
+def watch(running: int, function: Function) -> None:
     """Name the kernel `function` in a crash while the word at the address `running` is not 0."""
     if os.name == "posix":
         place = f"{function.file}:{function.first_line}"

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
-from bfsim.kernel import tree
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.costs import costs_of
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import FIRST_ARGUMENT
+from bfsim.kernel.function import Function
 from bfsim.kernel.jit import CompiledKernel, compile_kernel
 from bfsim.kernel.profile import GCC_O0, GCC_O2, RUN_AS_COMPILED, VDSP_O2, CompilerProfile, profile_named
 from bfsim.kernel.reading import read_kernel
@@ -61,7 +61,7 @@ class Kernel:
     their own width. A kernel of another language has none, but `object_code`, which runs as it is; the profile says how it is timed.
     """
 
-    function: tree.Function
+    function: Function
     python: Callable[..., Any] | None
     object_code: ObjectCode | None = None
 
@@ -156,8 +156,10 @@ class Kernel:
     def _refuse_floats(self, profile: CompilerProfile) -> None:
         if profile.floats is not None:
             return
+        from bfsim.kernel.tree import first_float  # the body must be read, which few runs need
+
         for each in (self.function, *self.function.callees()):
-            line = each.first_float()
+            line = first_float(each)
             if line is not None:
                 place = f"{each.file}:{each.first_line + line - 1}"
                 shown = each.source.splitlines()[line - 1]

@@ -14,6 +14,7 @@ from llvmlite import ir
 
 from bfsim.kernel import divisions, floats, tree
 from bfsim.kernel.floats import register_type
+from bfsim.kernel.function import Function
 from bfsim.kernel.intrinsics.meaning import function_type
 from bfsim.kernel.ir_text import ENTERS
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, u32
@@ -31,12 +32,12 @@ SHIFT_MASK = 31  # a shift count uses its low five bits; the language refuses co
 MOST_SITES = (1 << 16) - 1  # LLVM keeps 16 bits of a column
 
 
-def emit(function: tree.Function, inlined: frozenset[InlinedCall] = frozenset()) -> ir.Module:
+def emit(function: Function, inlined: frozenset[InlinedCall] = frozenset()) -> ir.Module:
     """Emit `function` and every kernel it calls as one module; calls that are to be inlined are marked so."""
     return _emitted(function, inlined)[0]
 
 
-def sites_of(function: tree.Function) -> dict[str, Sites]:
+def sites_of(function: Function) -> dict[str, Sites]:
     """Return, by symbol, the accesses and divisions of `function` and of every kernel it calls, in the order of their numbers.
 
     A number, from 1 on, is the column in the debug location of the instruction; what is none of them has column 0.
@@ -44,14 +45,14 @@ def sites_of(function: tree.Function) -> dict[str, Sites]:
     return _emitted(function, frozenset())[1]
 
 
-def emit_alone(function: tree.Function) -> ir.Module:
+def emit_alone(function: Function) -> ir.Module:
     """Emit `function` only; the kernels that it calls are declared."""
     module = _module(function)
     _Emitter(module, function, frozenset()).run()
     return module
 
 
-def _emitted(function: tree.Function, inlined: frozenset[InlinedCall]) -> tuple[ir.Module, dict[str, Sites]]:
+def _emitted(function: Function, inlined: frozenset[InlinedCall]) -> tuple[ir.Module, dict[str, Sites]]:
     module = _module(function)
     sites = {}
     for each in (*function.callees(), function):
@@ -61,7 +62,7 @@ def _emitted(function: tree.Function, inlined: frozenset[InlinedCall]) -> tuple[
     return module, sites
 
 
-def _module(function: tree.Function) -> ir.Module:
+def _module(function: Function) -> ir.Module:
     """Make a module in which `function` and every kernel it calls is declared."""
     module = ir.Module(name=function.symbol)
     module.add_named_metadata(
@@ -84,7 +85,7 @@ def _weight(body: tuple[tree.Stmt, ...]) -> int:
     )
 
 
-def _declare(module: ir.Module, function: tree.Function) -> None:
+def _declare(module: ir.Module, function: Function) -> None:
     types: list[ir.Type] = []
     for parameter in function.parameters:
         if isinstance(parameter.type, ArrayType):
@@ -100,7 +101,7 @@ def _declare(module: ir.Module, function: tree.Function) -> None:
 @dataclass(slots=True)
 class _Emitter:
     module: ir.Module
-    function: tree.Function
+    function: Function
     inlined: frozenset[InlinedCall]
     sites: list[tree.Load | tree.Store | tree.Binary] = field(init=False, default_factory=list)
     """Accesses and divisions: what can go wrong in a run."""

@@ -12,10 +12,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from bfsim.kernel import tree
 from bfsim.kernel.call_paths import Program
 from bfsim.kernel.counters import Counter
-from bfsim.kernel.guards import RETURN
+from bfsim.kernel.function import Function
 from bfsim.kernel.types import ArrayType, FloatType
 
 FIRST_ARGUMENT = 1  # word 0 of the block is the address of the totals
@@ -24,6 +23,8 @@ STALL_SHIFT = (
 )
 REFUSED = -1  # returned instead of cycles when an integer does not fit in its 32 bits; nothing was run then
 FAILED = -2  # returned when a guard failed, which is noted then; the run was cut short
+RETURN = "@bfsim.return"
+"""Where `setjmp` keeps the way back from a guard."""
 
 
 def cell_name(entry: str) -> str:
@@ -68,7 +69,7 @@ def settle(counters: Sequence[tuple[int, Counter, str]], place: str) -> list[str
     return [*rows, f"  store i64 %{place}.cclk.{len(counters)}, ptr @bfsim.cclk"]
 
 
-def entry_point(function: tree.Function, program: Program, entry: str, *, traced: bool, checked: bool) -> str:
+def entry_point(function: Function, program: Program, entry: str, *, traced: bool, checked: bool) -> str:
     """Return the entry point of `function`: call it, settle what its callees counted, return the cycles."""
     counters = program.counters
     rows = [

@@ -7,11 +7,12 @@ from collections.abc import Iterator, Sequence
 from bfsim.errors import KernelError
 from bfsim.kernel import tree
 from bfsim.kernel.emit import Sites, sites_of
+from bfsim.kernel.function import Function
 from bfsim.kernel.guards import CALLS, FIRST, NUMBER, SECOND, Guard, Guarded, Place
 from bfsim.kernel.types import i32, u32
 
 
-def failure(function: tree.Function, guarded: Guarded, note: Sequence[int]) -> KernelError:
+def failure(function: Function, guarded: Guarded, note: Sequence[int]) -> KernelError:
     """Return the error for a note of `guarded`, the code of `function` and its callees."""
     routines = {each.symbol: each for each in (*function.callees(), function)}
     guard = guarded.guards[note[NUMBER] - 1]
@@ -76,5 +77,5 @@ def _of_divisor(sites: Sites, dividend: int, divisor: int) -> tuple[str, str]:
     return f"{shown} is undefined", f"the divisor must not be {divisor}{condition}"
 
 
-def _place(routine: tree.Function, line: int) -> str:
+def _place(routine: Function, line: int) -> str:
     return f"{routine.file}:{routine.first_line + max(1, line) - 1}"

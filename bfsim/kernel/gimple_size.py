@@ -14,6 +14,7 @@ from functools import cache, cached_property
 from bfsim import store
 from bfsim.kernel import generic, keys, tree
 from bfsim.kernel.emit import emit_alone
+from bfsim.kernel.function import Function
 from bfsim.kernel.ir_text import Instruction, read_module
 from bfsim.kernel.loops import ControlFlow, pointee_nbytes
 from bfsim.kernel.lowering.frequencies import frequencies
@@ -49,7 +50,7 @@ class Estimate:
 
 
 @cache
-def estimate(function: tree.Function) -> Estimate:
+def estimate(function: Function) -> Estimate:
     """Estimate one kernel, nothing inlined into it, or take what was estimated from the cache on disk: profiles and programs share it."""
     key = keys.estimate_key(function)
     kept = store.load(key)
@@ -61,7 +62,7 @@ def estimate(function: tree.Function) -> Estimate:
     return made
 
 
-def _estimated(function: tree.Function) -> Estimate:
+def _estimated(function: Function) -> Estimate:
     module = generic.parsed(emit_alone(function))
     generic.run(EARLY_PASSES, module)
     (routine,) = read_module(str(module))

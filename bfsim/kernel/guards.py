@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from itertools import takewhile
 
 from bfsim.kernel import tree
+from bfsim.kernel.entry import RETURN
 from bfsim.kernel.ir_text import DEFINE, KERNEL_CALL, LABEL
 from bfsim.kernel.pointers import Origin, Pointers, nbytes_of
 
@@ -23,7 +24,6 @@ LOCATION = re.compile(r"^!(\d+) = (?:distinct )?!DILocation\((.*)\)")
 FIELD = re.compile(r"(\w+): !?(\d+)")
 SCOPE = re.compile(r'^!(\d+) = distinct !DISubprogram\(name: "([^"]+)"')
 
-RETURN = "@bfsim.return"
 NUMBER, FIRST, SECOND, CALLS = range(4)
 """Words of the note: the guard that failed and its two values; then, for each routine, the place that called it last."""
 JUMP_WORDS = 128  # no C library's jmp_buf has more

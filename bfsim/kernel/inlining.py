@@ -16,8 +16,8 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cache
 
-from bfsim.kernel import tree
 from bfsim.kernel.emit import InlinedCall
+from bfsim.kernel.function import Function
 from bfsim.kernel.gimple_size import RETURN_TIME, Estimate, estimate
 from bfsim.kernel.keys import compiled_with
 from bfsim.kernel.profile import CompilerProfile, Inlines
@@ -75,7 +75,7 @@ class _Node:
 
 
 @cache
-def decisions(function: tree.Function, profile: CompilerProfile) -> tuple[Decision, ...]:
+def decisions(function: Function, profile: CompilerProfile) -> tuple[Decision, ...]:
     """Return what becomes of the calls in `function` and in the kernels that it calls, callers in the order of their symbols."""
     if not profile.optimises or profile.inlines is Inlines.NOTHING or not function.callees():
         return ()
@@ -99,7 +99,7 @@ def decisions(function: tree.Function, profile: CompilerProfile) -> tuple[Decisi
     return tuple(sorted(each for each in found if each.caller in within))
 
 
-def inlined_calls(function: tree.Function, profile: CompilerProfile) -> frozenset[InlinedCall]:
+def inlined_calls(function: Function, profile: CompilerProfile) -> frozenset[InlinedCall]:
     """Return the calls in the program of `function` that are inlined."""
     return frozenset(
         (each.caller, each.callee, each.line) for each in decisions(function, profile) if each.inlined

@@ -14,11 +14,11 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from bfsim.kernel import tree
 from bfsim.kernel.call_paths import Offset, Program
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.derived import Sum, derived
 from bfsim.kernel.entry import entry_point, globals_of, settle
+from bfsim.kernel.function import Function
 from bfsim.kernel.guards import Guarded
 from bfsim.kernel.intrinsics.meaning import defined
 from bfsim.kernel.ir_text import DEFINE, ENTRY, KERNEL_CALL, LABEL, read_module
@@ -44,7 +44,7 @@ class _NumberedCounter:
 
 def instrument(
     text: str,
-    function: tree.Function,
+    function: Function,
     program: Program,
     entry: str,
     *,
@@ -83,7 +83,7 @@ def _derived(text: str, counters: Sequence[Counter]) -> dict[int, Sum]:
 class _Rewriter:
     """Rewrites the functions of a module row by row; `function` is the one that the entry point calls."""
 
-    function: tree.Function
+    function: Function
     program: Program
     tracing: Tracing | None
     derived: dict[int, Sum]

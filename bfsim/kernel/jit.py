@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 
 from bfsim import machine_code, store
 from bfsim.errors import KernelError
-from bfsim.kernel import crashes, keys, tree
+from bfsim.kernel import crashes, keys
 from bfsim.kernel.call_paths import Program
 from bfsim.kernel.costs import Costs, costs_of
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import cell_name, running_name
+from bfsim.kernel.function import Function
 from bfsim.kernel.profile import CompilerProfile
 
 ENTRY = ctypes.CFUNCTYPE(ctypes.c_int64)
@@ -34,7 +35,7 @@ class CompiledKernel:
     program: Program
     failure: Callable[[], KernelError]
     """Returns what a guard has noted in the last call; see `guards`."""
-    functions: tuple[tree.Function, ...]
+    functions: tuple[Function, ...]
     """The kernel and all that it calls."""
 
     @property
@@ -49,7 +50,7 @@ class CompiledKernel:
 
 @cache
 def compile_kernel(
-    function: tree.Function,
+    function: Function,
     profile: CompilerProfile,
     *,
     traced: bool = False,
@@ -88,7 +89,7 @@ def compile_kernel(
     )
 
 
-def _failure(function: tree.Function, profile: CompilerProfile, entry: str) -> KernelError:
+def _failure(function: Function, profile: CompilerProfile, entry: str) -> KernelError:
     """Return what the guards of a loaded kernel have noted."""
     from bfsim.kernel.costing import optimised  # few kernels fail
     from bfsim.kernel.failures import failure

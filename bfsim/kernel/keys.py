@@ -13,11 +13,11 @@ from functools import cache
 from pathlib import Path
 
 from bfsim import blackfin, machine_code
-from bfsim.kernel import tree
+from bfsim.kernel.function import Function
 from bfsim.kernel.profile import CompilerProfile, Inlines
 
 
-def key(function: tree.Function, profile: CompilerProfile, variant: str) -> str:
+def key(function: Function, profile: CompilerProfile, variant: str) -> str:
     """Digest of all that an entry about `function` depends on; `variant` says what it is."""
     return _digest(variant, _source(function, profile))
 
@@ -32,12 +32,12 @@ def reading_key(*parts: str) -> str:
     return _digest("kernel", reader(), *parts)
 
 
-def estimate_key(function: tree.Function) -> str:
+def estimate_key(function: Function) -> str:
     """Digest of all that the estimate of `function` by itself depends on, in whatever profile and program."""
     return _digest("estimate", tools(), *(each.digest for each in (function, *function.callees())))
 
 
-def program_key(functions: Iterable[tree.Function], entries: Iterable[str]) -> str:
+def program_key(functions: Iterable[Function], entries: Iterable[str]) -> str:
     """Digest of all that the C of kernels depends on; `entries`: symbols of those that something else than kernels calls."""
     rows = sorted((each.file, each.first_line, each.source, each.digest) for each in functions)
     return _digest("C", compiler(), repr(rows), repr(sorted(entries)))
@@ -49,13 +49,13 @@ def object_key(image_digest: str, symbol: str, timing: str, variant: str) -> str
 
 
 @cache
-def _source(function: tree.Function, profile: CompilerProfile) -> str:
+def _source(function: Function, profile: CompilerProfile) -> str:
     """Digest of what every entry about a kernel depends on."""
     program = (function, *compiled_with(function, profile))
     return _digest(tools(), repr(profile), *(each.digest for each in program))
 
 
-def compiled_with(function: tree.Function, profile: CompilerProfile) -> tuple[tree.Function, ...]:
+def compiled_with(function: Function, profile: CompilerProfile) -> tuple[Function, ...]:
     """Return the kernels on which the code of `function` depends, callees first: its own program, and what else calls parts of it.
 
     Where a compiler inlines within a file, other kernels of the file may call the same helpers.

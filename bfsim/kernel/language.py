@@ -16,6 +16,7 @@ from types import CodeType, FunctionType
 from typing import NamedTuple
 
 from bfsim.kernel import tree
+from bfsim.kernel.function import Body, Parameter
 from bfsim.kernel.operators import BINARY
 from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.scope import KernelScope
@@ -28,9 +29,9 @@ STATEMENTS = {"try": "tests with if", "with": "plain statements"}
 class Read(NamedTuple):
     """What is read of a `def`."""
 
-    parameters: tuple[tree.Parameter, ...]
+    parameters: tuple[Parameter, ...]
     result: Number | None
-    body: tree.Body
+    body: Body
 
 
 def read_definition(source: KernelSource, outer: Mapping[str, object], python: FunctionType) -> Read:
@@ -54,7 +55,7 @@ def read_definition(source: KernelSource, outer: Mapping[str, object], python: F
             f"{definition.name} can end without a value",
             f"return an {reader.result} on every way",
         )
-    return Read(parameters, reader.result, tree.Body(tuple(scope.locals.items()), block))
+    return Read(parameters, reader.result, Body(tuple(scope.locals.items()), block))
 
 
 def parsed(text: str) -> ast.AST:
@@ -86,7 +87,7 @@ def _check_names(source: KernelSource, definition: ast.FunctionDef, code: CodeTy
             )
 
 
-def _parameters(scope: KernelScope, definition: ast.FunctionDef) -> tuple[tree.Parameter, ...]:
+def _parameters(scope: KernelScope, definition: ast.FunctionDef) -> tuple[Parameter, ...]:
     arguments = definition.args
     if arguments.vararg or arguments.kwarg or arguments.kwonlyargs or arguments.defaults:
         scope.source.refuse(
@@ -101,7 +102,7 @@ def _parameters(scope: KernelScope, definition: ast.FunctionDef) -> tuple[tree.P
                 f"the parameter {each.arg} needs a type",
                 "write i32, u32, f32, or an array such as u8[:] or i16[:]",
             )
-        parameters.append(tree.Parameter(each.arg, kind))
+        parameters.append(Parameter(each.arg, kind))
         if isinstance(kind, ArrayType):
             scope.arrays[each.arg] = kind
         else:

@@ -14,28 +14,32 @@ import re
 import unicodedata
 from collections.abc import Callable, Mapping
 from functools import cache
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from bfsim import store
 from bfsim.errors import KernelError
-from bfsim.kernel import keys, tree
+from bfsim.kernel import keys
+from bfsim.kernel.function import Function, Parameter
 from bfsim.kernel.intrinsics import INTRINSICS, TO_THE_RIGHT
-from bfsim.kernel.language import Read, parsed, read_definition
+from bfsim.kernel.intrinsics.fract import high_of_fr2x16, low_of_fr2x16
 from bfsim.kernel.operators import OF_TWO
 from bfsim.kernel.refusal import KernelSource
-from bfsim.kernel.scope import HALVES
 from bfsim.kernel.source_files import file_of
 from bfsim.kernel.types import NUMBERS, FloatType, IntType, sqrt, type_named
 
+if TYPE_CHECKING:
+    from bfsim.kernel.language import Read
+
 WORD = re.compile(r"[\w\x80-\U0010ffff]+")
 """All names of a text and more, such as the words of comments."""
+HALVES = (high_of_fr2x16, low_of_fr2x16)
 FUNCTIONS: tuple[Any, ...] = (*INTRINSICS, *TO_THE_RIGHT, *OF_TWO, *HALVES, abs, len, range, sqrt)
 MEANINGS = {id(each): f"{each.__module__}.{each.__qualname__}" for each in FUNCTIONS}
 """Of the functions that the language knows."""
 
 
 class _Known(NamedTuple):
-    """What the cache keeps of a kernel, as text: parameters with their types, names of kernels that it calls, ... See `tree.Function`."""
+    """What the cache keeps of a kernel, as text: parameters with their types, names of kernels that it calls, ... See `Function`."""
 
     parameters: list[tuple[str, str]]
     result: str | None
@@ -44,7 +48,7 @@ class _Known(NamedTuple):
     digest: str
 
 
-def read_kernel(python: Callable[..., Any]) -> tree.Function:
+def read_kernel(python: Callable[..., Any]) -> Function:
     """Read the source of `python` as a kernel. Raises KernelError where it leaves the language."""
     if not inspect.isfunction(python) or hasattr(python, "__wrapped__"):
         raise KernelError(f"@kernel must stand directly above a plain `def`, not on {python!r}")
@@ -58,6 +62,8 @@ def read_kernel(python: Callable[..., Any]) -> tree.Function:
 
     @cache
     def read() -> Read:
+        from bfsim.kernel.language import read_definition  # most starts read no body
+
         return read_definition(source, outer, python)
 
     def known() -> _Known:
@@ -66,7 +72,7 @@ def read_kernel(python: Callable[..., Any]) -> tree.Function:
     meanings = (f"{name} {_meaning(value)}" for name, value in outer.items())
     own = repr((source.text, symbol, python.__name__, code.co_freevars, is_static))
     found = _kept(keys.reading_key(own, *meanings), known)
-    function = tree.Function(
+    function = Function(
         name=python.__name__,
         symbol=symbol,
         file=source.file,
@@ -74,7 +80,7 @@ def read_kernel(python: Callable[..., Any]) -> tree.Function:
         source=source.text,
         names=python.__globals__,
         is_static=is_static,
-        parameters=tuple(tree.Parameter(name, type_named(kind)) for name, kind in found.parameters),
+        parameters=tuple(Parameter(name, type_named(kind)) for name, kind in found.parameters),
         result=NUMBERS[found.result] if found.result else None,
         calls=tuple(outer[name].function for name in found.calls),
         written=frozenset(found.written),
@@ -99,7 +105,7 @@ def _meaning(value: object) -> str:
         return value.hex()
     if isinstance(value, (IntType, FloatType)):
         return str(value)
-    if isinstance(function := getattr(value, "function", None), tree.Function):
+    if isinstance(function := getattr(value, "function", None), Function):
         kinds = [(each.name, str(each.type)) for each in function.parameters]
         return repr((function.symbol, kinds, str(function.result), sorted(function.written)))
     return MEANINGS.get(id(value), "")
@@ -116,6 +122,8 @@ def _kept(key: str, read: Callable[[], _Known]) -> _Known:
 
 
 def _known(read: Read, outer: Mapping[str, Any], head: tuple[str, str, bool]) -> _Known:
+    from bfsim.kernel import tree
+
     body = read.body
     names = {id(getattr(value, "function", None)): name for name, value in outer.items()}
     calls = dict.fromkeys(names[id(each.callee)] for each in tree.calls_in(body.block))
@@ -129,11 +137,13 @@ def _known(read: Read, outer: Mapping[str, Any], head: tuple[str, str, bool]) ->
     )
 
 
-def _check_callees(source: KernelSource, function: tree.Function) -> None:
+def _check_callees(source: KernelSource, function: Function) -> None:
     """Refuse two kernels of one name in one program: their machine code could not be told apart."""
     known = {function.symbol: function}
     for each in function.callees():
         if known.setdefault(each.symbol, each) is not each:
+            from bfsim.kernel.language import parsed
+
             source.refuse(
                 parsed(source.text),
                 f"it needs two different kernels named {each.name}, {each.file}:{each.first_line} "

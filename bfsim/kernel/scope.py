@@ -8,12 +8,11 @@ from dataclasses import replace
 
 from bfsim.kernel import tree
 from bfsim.kernel.expressions import Expressions
+from bfsim.kernel.function import Function, Parameter
 from bfsim.kernel.intrinsics import INTRINSICS, TO_THE_RIGHT, Intrinsic
 from bfsim.kernel.intrinsics.fract import high_of_fr2x16, low_of_fr2x16
 from bfsim.kernel.operators import BUILT_IN, OF_TWO, instead_of
 from bfsim.kernel.types import PAIR, FloatType, IntType, Number, f32, i16, i32, promoted, sqrt
-
-HALVES = (high_of_fr2x16, low_of_fr2x16)
 
 
 class KernelScope(Expressions):
@@ -27,7 +26,7 @@ class KernelScope(Expressions):
         if isinstance(target, (IntType, FloatType)):
             return self._cast(node, target)
         callee = getattr(target, "function", None)
-        if isinstance(callee, tree.Function):
+        if isinstance(callee, Function):
             return self._kernel_call(node, callee)
         if target is len:
             return self._length(node)
@@ -36,7 +35,7 @@ class KernelScope(Expressions):
         if (to_left := TO_THE_RIGHT.get(target)) is not None:
             call = self._intrinsic(node, to_left)
             return replace(call, arguments=(call.arguments[0], self._minus(node.args[1], call.arguments[1])))
-        if target in HALVES and len(node.args) == 1:
+        if target in (high_of_fr2x16, low_of_fr2x16) and len(node.args) == 1:
             return self._half(node, upper=target is high_of_fr2x16)
         known = OF_TWO.get(target) if callable(target) else None
         if known is not None and len(node.args) == 2:
@@ -114,7 +113,7 @@ class KernelScope(Expressions):
             return tree.Binary(">>", pair, tree.Const(16, i32, node.lineno), i32, node.lineno)
         return tree.Cast(pair, i16, i32, node.lineno)
 
-    def _kernel_call(self, node: ast.Call, callee: tree.Function) -> tree.KernelCall:
+    def _kernel_call(self, node: ast.Call, callee: Function) -> tree.KernelCall:
         if len(node.args) != len(callee.parameters):
             self.source.refuse(
                 node,
@@ -127,7 +126,7 @@ class KernelScope(Expressions):
         )
         return tree.KernelCall(callee, arguments, callee.result, node.lineno)
 
-    def _argument(self, node: ast.expr, parameter: tree.Parameter) -> tree.Expr | str:
+    def _argument(self, node: ast.expr, parameter: Parameter) -> tree.Expr | str:
         if isinstance(parameter.type, (IntType, FloatType)):
             return self.number(node, parameter.type)
         if isinstance(node, ast.Name) and self.arrays.get(node.id) == parameter.type:

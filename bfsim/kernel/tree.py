@@ -5,12 +5,13 @@ Every node carries `line`, counted from the first line of the kernel's source (i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import cache, cached_property
+from functools import cache
 
+from bfsim.kernel.function import Body, Function
 from bfsim.kernel.intrinsics import Intrinsic
-from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, Value
+from bfsim.kernel.types import FloatType, IntType, Number, Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,101 +224,18 @@ class Continue:
 Stmt = Assign | Store | If | While | For | Return | Evaluate | Break | Continue
 
 
-@dataclass(frozen=True, slots=True)
-class Parameter:
-    name: str
-    type: Number | ArrayType
-
-
-@dataclass(frozen=True, slots=True)
-class Body:
-    """What a kernel does. `locals` gives the type of every local name."""
-
-    locals: tuple[tuple[str, Value], ...]
-    block: tuple[Stmt, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Function:
-    """A whole kernel. `symbol` is its name in the machine code.
-
-    `file`, `first_line` and `source` say where it stands, `names` what the names of its file mean.
-    A kernel `is_static`, as C calls it, if other kernels of its file name it and nothing else there does: the file's main loops
-    do not run it. Whether another file imports it is not looked at.
-    `calls`: the kernels that it calls itself, each once, in source order. `written`: array parameters that it, or a kernel called
-    by it, stores into. `digest`: of all that its code depends on but its callees. `read`: reads its body, which few runs need.
-    """
-
-    name: str
-    symbol: str
-    file: str
-    first_line: int
-    source: str
-    names: Mapping[str, object]
-    is_static: bool
-    parameters: tuple[Parameter, ...]
-    result: Number | None
-    calls: tuple[Function, ...]
-    written: frozenset[str]
-    digest: str
-    read: Callable[[], Body]
-
-    def __repr__(self) -> str:
-        """Return the symbol alone, which stands for it in the text of a call."""
-        return self.symbol
-
-    @cached_property
-    def _body(self) -> Body:
-        return self.read()
-
-    @property
-    def locals(self) -> tuple[tuple[str, Value], ...]:
-        """Every local name with its type."""
-        return self._body.locals
-
-    @property
-    def body(self) -> tuple[Stmt, ...]:
-        """Its statements."""
-        return self._body.block
-
-    @property
-    def array_names(self) -> tuple[str, ...]:
-        """Names of the parameters that are arrays."""
-        return tuple(each.name for each in self.parameters if isinstance(each.type, ArrayType))
-
-    def first_float(self) -> int | None:
-        """Line of the first float in the kernel itself, counted like every `line`; None without floats."""
-        kinds = (Const, Local, Load, Binary, Unary, Choose, Cast, KernelCall)
-        lines = [
-            each.line
-            for each in parts(self.body)
-            if isinstance(each, kinds) and isinstance(each.type, FloatType)
-        ]
-        in_head = any(
-            FloatType in (type(p.type), type(getattr(p.type, "element", None))) for p in self.parameters
-        )
-        return 1 if in_head else min(lines, default=None)
-
-    def siblings(self) -> tuple[Function, ...]:
-        """The other kernels of its file."""
-        found = [getattr(each, "function", None) for each in self.names.values()]
-        return tuple(
-            each
-            for each in found
-            if isinstance(each, Function) and each.file == self.file and each is not self
-        )
-
-    def callees(self) -> tuple[Function, ...]:
-        """Kernels that this one calls, directly or not, each once, callees first."""
-        return _callees(self)
-
-
-@cache
-def _callees(function: Function) -> tuple[Function, ...]:
-    found: dict[Function, None] = {}
-    for each in function.calls:
-        found.update(dict.fromkeys((*each.callees(), each)))
-    return tuple(found)
+def first_float(function: Function) -> int | None:
+    """Line of the first float in a kernel itself, counted like every `line`; None without floats."""
+    kinds = (Const, Local, Load, Binary, Unary, Choose, Cast, KernelCall)
+    lines = [
+        each.line
+        for each in parts(function.body)
+        if isinstance(each, kinds) and isinstance(each.type, FloatType)
+    ]
+    in_head = any(
+        FloatType in (type(p.type), type(getattr(p.type, "element", None))) for p in function.parameters
+    )
+    return 1 if in_head else min(lines, default=None)
 
 
 def calls_in(node: object) -> list[KernelCall]:

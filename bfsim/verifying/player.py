@@ -16,6 +16,7 @@ import numpy as np
 
 from bfsim.kernel import tree
 from bfsim.kernel.c.names import c_type
+from bfsim.kernel.function import Function
 from bfsim.kernel.types import ArrayType, FloatType
 from bfsim.verifying.sample import Argument
 
@@ -29,7 +30,7 @@ M32 = 0xFFFFFFFF
 
 def write_player(
     folder: Path,
-    kernels: Sequence[tree.Function],
+    kernels: Sequence[Function],
     entries: str,
     calls: Iterable[tuple[int, tuple[Argument, ...]]],
 ) -> list[str]:
@@ -51,7 +52,7 @@ def entries_of(names: Sequence[str], *, declared: bool = True) -> str:
     return "".join((*lines, f"void *const {KERNELS}[] = {{{addresses}}};\n"))
 
 
-def player(kernels: Sequence[tree.Function]) -> str:
+def player(kernels: Sequence[Function]) -> str:
     """Return the program for `kernels`, by their numbers in this order."""
     head = (
         (files(__package__) / "player.h")
@@ -65,7 +66,7 @@ def player(kernels: Sequence[tree.Function]) -> str:
     return "\n".join(parts)
 
 
-def _kernel(number: int, function: tree.Function) -> str:
+def _kernel(number: int, function: Function) -> str:
     """What plays one kernel: `timed_N` makes the call between two readings of the clock, `play_N` has the arguments."""
     measured = tree.measured_arrays(function)
     types, names, take, leave = [], [], [], []

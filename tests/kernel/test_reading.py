@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bfsim.errors import KernelError
-from bfsim.kernel import VDSP_O2, reading, source_files
+from bfsim.kernel import VDSP_O2, language, source_files
 from tests.kernel.modules import import_text
 
 TEXT = """
@@ -29,13 +29,13 @@ def read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """List the kernels that are really read, with an empty cache at first."""
     monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path / "cache"))
     found: list[str] = []
-    real = reading.read_definition
+    real = language.read_definition
 
     def noted(source: object, outer: object, python: object) -> object:
         found.append(python.__name__)  # type: ignore[attr-defined]
         return real(source, outer, python)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(reading, "read_definition", noted)
+    monkeypatch.setattr(language, "read_definition", noted)
     return found
 
 

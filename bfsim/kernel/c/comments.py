@@ -8,7 +8,7 @@ import re
 import textwrap
 import tokenize
 
-from bfsim.kernel import tree
+from bfsim.kernel.function import Function
 
 WIDTH = 100
 
@@ -16,7 +16,7 @@ WIDTH = 100
 class Comments:
     """Comments by line of the kernel's source; each is taken once. `docstring` is the kernel's."""
 
-    def __init__(self, function: tree.Function) -> None:
+    def __init__(self, function: Function) -> None:
         source = textwrap.dedent(function.source)
         definition = ast.parse(source).body[0]
         assert isinstance(definition, ast.FunctionDef)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from bfsim.kernel import tree
+from bfsim.kernel.function import Function
 
 Block = tuple[tree.Stmt, ...]
 
@@ -24,7 +25,7 @@ class Declarations:
     counting: set[int] = field(default_factory=set)
 
 
-def declarations(function: tree.Function) -> Declarations:
+def declarations(function: Function) -> Declarations:
     """Return where the locals of a kernel are declared."""
     parameters = {each.name for each in function.parameters}
     found = Declarations()

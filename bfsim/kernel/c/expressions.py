@@ -12,6 +12,7 @@ import numpy as np
 
 from bfsim.kernel import tree
 from bfsim.kernel.c.names import WORD, LocalNames, c_type
+from bfsim.kernel.function import Function
 from bfsim.kernel.operators import ALIKE, BINARY
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, i32, u32
 
@@ -49,7 +50,7 @@ class Expressions:
     def __init__(
         self,
         names: LocalNames,
-        functions: Mapping[tree.Function, str],
+        functions: Mapping[Function, str],
         constants: Mapping[str, int | float],
     ) -> None:
         self.names, self.functions, self.constants = names, functions, constants

@@ -13,6 +13,7 @@ from bfsim.blackfin.forms import TABLE
 from bfsim.blackfin.operands import Operand
 from bfsim.blackfin.text import text
 from bfsim.kernel import tree
+from bfsim.kernel.function import Function
 from bfsim.kernel.intrinsics import Intrinsic
 from bfsim.kernel.intrinsics.intrinsic import RESULT, Step
 from bfsim.kernel.types import PAIR, IntType
@@ -27,7 +28,7 @@ PAIRED = {"R0", "R2"}
 BLACKFIN = "__bfin__"
 
 
-def intrinsics_in(functions: Iterable[tree.Function]) -> list[Intrinsic]:
+def intrinsics_in(functions: Iterable[Function]) -> list[Intrinsic]:
     """Return the intrinsics that kernels use, by name."""
     nodes = (node for each in functions for node in tree.parts(each.body))
     found = {each.intrinsic for each in nodes if isinstance(each, tree.IntrinsicCall)}

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from bfsim.kernel import tree
+from bfsim.kernel.function import Function
 from bfsim.kernel.types import PAIR, ArrayType, FloatType, IntType, Number, Value
 
 OPERATORS = (
@@ -99,7 +100,7 @@ def free_name(wanted: str, taken: Iterable[str] = ()) -> str:
 class LocalNames:
     """What the parameters and locals of one kernel are called in C, and the lengths that come with its arrays."""
 
-    def __init__(self, function: tree.Function, functions: Iterable[str]) -> None:
+    def __init__(self, function: Function, functions: Iterable[str]) -> None:
         taken = set(functions)
         self.of: dict[str, str] = {}
         for name in _declared(function):
@@ -119,13 +120,13 @@ class LocalNames:
         return name
 
 
-def _declared(function: tree.Function) -> Iterator[str]:
+def _declared(function: Function) -> Iterator[str]:
     yield from (each.name for each in function.parameters)
     parameters = {each.name for each in function.parameters}
     yield from (name for name, _ in function.locals if name not in parameters)
 
 
-def parameter_list(function: tree.Function, names: LocalNames) -> list[str]:
+def parameter_list(function: Function, names: LocalNames) -> list[str]:
     """Return the parameters in C: those of the kernel, then the length of every array that is asked for one."""
     parts = []
     for each in function.parameters:

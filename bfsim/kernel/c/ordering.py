@@ -10,16 +10,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from bfsim.kernel import tree
+from bfsim.kernel.function import Body, Function
 from bfsim.kernel.types import BOOL, Value, i32
 
 
-def ordered(function: tree.Function) -> tree.Function:
+def ordered(function: Function) -> Function:
     """Return `function` with no expression in which the order of evaluation matters."""
     rewriter = _Rewriter({name for name, _ in function.locals})
     block = rewriter.block(function.body)
     if not rewriter.new:
         return function
-    body = tree.Body((*function.locals, *rewriter.new), block)
+    body = Body((*function.locals, *rewriter.new), block)
     return replace(function, read=lambda: body)
 
 

@@ -16,6 +16,7 @@ from bfsim.kernel.c.intrinsics import INTRINSICS, intrinsics_header, intrinsics_
 from bfsim.kernel.c.library import LIBRARY
 from bfsim.kernel.c.names import WORD, free_name, is_free
 from bfsim.kernel.c.statements import Definition, Place, signature
+from bfsim.kernel.function import Function
 from bfsim.kernel.types import Number, f32, i32, u32
 
 OPERATORS = "operators.h"
@@ -28,8 +29,8 @@ class CProgram:
     """Kernels in C. `files`: texts by name. `names`: what each kernel is called. `static`: those that only their file calls."""
 
     files: Mapping[str, str]
-    names: Mapping[tree.Function, str]
-    static: frozenset[tree.Function]
+    names: Mapping[Function, str]
+    static: frozenset[Function]
 
     @property
     def sources(self) -> list[str]:
@@ -38,10 +39,10 @@ class CProgram:
 
 
 def c_program(
-    kernels: Iterable[tree.Function],
+    kernels: Iterable[Function],
     *,
-    entries: Iterable[tree.Function] = (),
-    place: Callable[[tree.Function], Place] | None = None,
+    entries: Iterable[Function] = (),
+    place: Callable[[Function], Place] | None = None,
 ) -> CProgram:
     """Return `kernels` and what they call as C99.
 
@@ -51,7 +52,7 @@ def c_program(
     functions = sorted(_with_callees(kernels), key=lambda each: (each.file, each.first_line))
     static = _static(functions) - frozenset(entries)
     names = _names(functions, static)
-    of_file: dict[str, list[tree.Function]] = {}
+    of_file: dict[str, list[Function]] = {}
     for each in functions:
         of_file.setdefault(each.file, []).append(each)
     stems = _stems(of_file)
@@ -65,14 +66,14 @@ def c_program(
     return CProgram(texts, names, static)
 
 
-def _with_callees(kernels: Iterable[tree.Function]) -> list[tree.Function]:
-    found: dict[tree.Function, None] = {}
+def _with_callees(kernels: Iterable[Function]) -> list[Function]:
+    found: dict[Function, None] = {}
     for each in kernels:
         found.update(dict.fromkeys((*each.callees(), each)))
     return list(found)
 
 
-def _static(functions: Iterable[tree.Function]) -> frozenset[tree.Function]:
+def _static(functions: Iterable[Function]) -> frozenset[Function]:
     elsewhere = {
         call.callee
         for each in functions
@@ -82,12 +83,12 @@ def _static(functions: Iterable[tree.Function]) -> frozenset[tree.Function]:
     return frozenset(each for each in functions if each.is_static and each not in elsewhere)
 
 
-def _names(functions: Iterable[tree.Function], static: frozenset[tree.Function]) -> dict[tree.Function, str]:
+def _names(functions: Iterable[Function], static: frozenset[Function]) -> dict[Function, str]:
     """Kernels keep their names; of several with one name, those that other files see get their file's before it."""
     functions = list(functions)
     many = Tally(each.name for each in functions)
     reserved = names_in_header(intrinsics_in(functions))
-    found: dict[tree.Function, str] = {}
+    found: dict[Function, str] = {}
     for each in functions:
         shared = many[each.name] > 1 and each not in static
         wanted = f"{_stem(each.file)}_{each.name}" if shared else each.name
@@ -112,10 +113,10 @@ def _stems(sources: Iterable[str]) -> dict[str, str]:
 
 
 def _header(
-    of_file: Mapping[str, list[tree.Function]],
+    of_file: Mapping[str, list[Function]],
     stems: Mapping[str, str],
-    names: Mapping[tree.Function, str],
-    static: frozenset[tree.Function],
+    names: Mapping[Function, str],
+    static: frozenset[Function],
 ) -> str:
     lines = [
         *c_comment(
@@ -139,10 +140,10 @@ def _header(
 
 def _source(
     file: str,
-    members: list[tree.Function],
-    names: Mapping[tree.Function, str],
-    static: frozenset[tree.Function],
-    place: Callable[[tree.Function], Place] | None,
+    members: list[Function],
+    names: Mapping[Function, str],
+    static: frozenset[Function],
+    place: Callable[[Function], Place] | None,
 ) -> str:
     constants = _constants(members, names)
     definitions = [
@@ -169,9 +170,7 @@ def _source(
     return "\n".join([*lines, ""])
 
 
-def _constants(
-    members: Iterable[tree.Function], names: Mapping[tree.Function, str]
-) -> dict[str, int | float]:
+def _constants(members: Iterable[Function], names: Mapping[Function, str]) -> dict[str, int | float]:
     """Constants of the file that its kernels name, unless the name means something else in one of them too."""
     taken = {*names.values(), *names_in_header(intrinsics_in(members))}
     wanted: dict[str, int | float] = {}

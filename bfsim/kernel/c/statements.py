@@ -11,6 +11,7 @@ from bfsim.kernel.c.declarations import Block, declarations
 from bfsim.kernel.c.expressions import Binds, Expressions
 from bfsim.kernel.c.names import LocalNames, c_type, parameter_list, result_type
 from bfsim.kernel.c.ordering import ordered
+from bfsim.kernel.function import Function
 from bfsim.kernel.operators import ALIKE
 from bfsim.kernel.types import FloatType, Number
 
@@ -24,13 +25,13 @@ class Place(NamedTuple):
     first_line: int
 
 
-def in_python(function: tree.Function) -> Place:
+def in_python(function: Function) -> Place:
     """Return the kernel's place in its Python file."""
     return Place(function.file, function.first_line)
 
 
 def signature(
-    function: tree.Function, functions: Mapping[tree.Function, str], *, is_static: bool, end: str = ""
+    function: Function, functions: Mapping[Function, str], *, is_static: bool, end: str = ""
 ) -> list[str]:
     """Return the head of a kernel's definition in C, line by line. `functions`: what kernels are called in C."""
     names = LocalNames(function, functions.values())
@@ -55,8 +56,8 @@ class Definition:
 
     def __init__(
         self,
-        function: tree.Function,
-        functions: Mapping[tree.Function, str],
+        function: Function,
+        functions: Mapping[Function, str],
         constants: Mapping[str, int | float],
         *,
         is_static: bool,

@@ -14,11 +14,12 @@ from bfsim.blackfin.pointers import arrays_accessed
 from bfsim.blackfin.subroutines import LoadedImage, Subroutine
 from bfsim.blackfin.timing import Timing
 from bfsim.blackfin.tracing import Tracing
-from bfsim.kernel import keys, tree
+from bfsim.kernel import keys
 from bfsim.kernel.access_trace import WRITE
 from bfsim.kernel.call_paths import Program
 from bfsim.kernel.costs import Costs, kept_costs
 from bfsim.kernel.counters import Counter
+from bfsim.kernel.function import Function
 from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.objects.counted import calls, counters
 from bfsim.kernel.objects.places import Places
@@ -32,10 +33,10 @@ NO_ARRAY = ""
 class CompiledObject:
     """A kernel's object code. `functions`: the kernels, and functions of libraries, that its instructions are of; `places`: which are where."""
 
-    function: tree.Function
+    function: Function
     subroutine: Subroutine
     program: Program
-    functions: tuple[tree.Function, ...]
+    functions: tuple[Function, ...]
     places: Places
     order: NDArray[np.int64]
     """Of each counter of the program, the number of the translated code's counter."""
@@ -51,7 +52,7 @@ class CompiledObject:
 
 
 def compiled_object(
-    function: tree.Function,
+    function: Function,
     symbol: str,
     loaded: LoadedImage,
     places: Places,

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from bfsim.blackfin.lines import LineTable, lines_of
 from bfsim.blackfin.linking import Image, Routine
-from bfsim.kernel import tree
+from bfsim.kernel.function import Body, Function, Parameter
 from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.objects.sources import Source, disassembly, source_of
 from bfsim.kernel.types import Number
@@ -24,12 +24,12 @@ class Places:
     """
 
     image: Image
-    kernels: Mapping[str, tree.Function]
-    of_file: Mapping[str, tree.Function] = field(default_factory=dict)
+    kernels: Mapping[str, Function]
+    of_file: Mapping[str, Function] = field(default_factory=dict)
     folder: Path | None = None
-    functions: dict[str, tree.Function] = field(default_factory=dict)
+    functions: dict[str, Function] = field(default_factory=dict)
     """All that instructions were found to be of, by their own symbols."""
-    _sources: dict[str, tuple[tree.Function, Source]] = field(default_factory=dict)
+    _sources: dict[str, tuple[Function, Source]] = field(default_factory=dict)
 
     @cached_property
     def lines(self) -> LineTable:
@@ -46,11 +46,11 @@ class Places:
         function, source = self._source(self._routine(address))
         return SourceLine(function.symbol, source.lines.get(address, 1))
 
-    def function_at(self, address: int) -> tree.Function:
+    def function_at(self, address: int) -> Function:
         """Return the kernel, or other function, that has the code at an address."""
         return self.functions[self.line_of(self._routine(address).address).routine]
 
-    def function_called(self, symbol: str) -> tree.Function:
+    def function_called(self, symbol: str) -> Function:
         """Return the kernel, or other function, that instructions of the image are of, by its own symbol."""
         if symbol not in self.functions:
             known = next((each for each in self.kernels.values() if each.symbol == symbol), None)
@@ -69,7 +69,7 @@ class Places:
     def _routine(self, address: int) -> Routine:
         return self.image.routine_at(address) or Routine(f"code_{address:08x}", address, address)
 
-    def _source(self, routine: Routine) -> tuple[tree.Function, Source]:
+    def _source(self, routine: Routine) -> tuple[Function, Source]:
         if routine.name not in self._sources:
             source = (
                 source_of(self.image, self.lines, routine, self.folder)
@@ -87,11 +87,11 @@ def object_function(
     name: str,
     symbol: str,
     source: Source,
-    parameters: tuple[tree.Parameter, ...] = (),
+    parameters: tuple[Parameter, ...] = (),
     result: Number | None = None,
-) -> tree.Function:
+) -> Function:
     """Return a function of which there is object code, and no Python."""
-    return tree.Function(
+    return Function(
         name=name,
         symbol=symbol,
         file=source.file,
@@ -104,5 +104,5 @@ def object_function(
         calls=(),
         written=frozenset(),
         digest="",
-        read=lambda: tree.Body((), ()),
+        read=lambda: Body((), ()),
     )

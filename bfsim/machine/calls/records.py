@@ -10,8 +10,8 @@ from functools import cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.kernel import tree
 from bfsim.kernel.call_paths import Offset
+from bfsim.kernel.function import Function
 from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.jit import CompiledKernel
 from bfsim.machine.bus.memory_owners import MemoryOwners
@@ -49,7 +49,7 @@ class _Accesses:
 class _Kernel:
     """Sums of one kernel in one stage, by line."""
 
-    function: tree.Function
+    function: Function
     calls: int = 0
     object_cclk: int = 0
     executions: dict[int, int] = field(default_factory=lambda: defaultdict(int))
