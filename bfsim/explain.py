@@ -19,16 +19,14 @@ from bfsim.kernel.function import Function
 from bfsim.kernel.inlining import decisions
 from bfsim.kernel.isa import MNEMONICS, Op
 from bfsim.loading import load_firmware, load_kernel
-from bfsim.trace import (
+from bfsim.trace import KernelRecord, RunRecord, StallReason
+from bfsim.trace.explanation import (  # fmt: skip
     ExplainedCall,
     ExplainedLine,
     ExplainedOperation,
     Explanation,
     InlinedKernel,
-    KernelRecord,
-    RunRecord,
-    StallReason,
-)  # fmt: skip
+)
 
 BRANCHES = {Op.BRANCH_TAKEN, Op.BRANCH_NOT_TAKEN, Op.BRANCH_TAKEN_BP, Op.BRANCH_NOT_TAKEN_BP}
 

@@ -7,18 +7,19 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console, RenderableType
 
 from bfsim.errors import ConfigError, shown
-from bfsim.report.columns import Columns, tables_of
-from bfsim.report.profile.tables import profile_report
 from bfsim.report.screen import screen, verdict
 from bfsim.report.tables import run_report
 from bfsim.report.target import Target, target_of
 from bfsim.spans import Span
 from bfsim.trace import RunRecord
+
+if TYPE_CHECKING:
+    from bfsim.report.columns import Columns
 
 WIDTH = 80
 HTML = '<pre style="white-space: pre; line-height: 1.2; font-family: monospace">{code}</pre>'
@@ -26,6 +27,8 @@ HTML = '<pre style="white-space: pre; line-height: 1.2; font-family: monospace">
 
 def profile_of_run(run: RunRecord, target: Target | None) -> RenderableType:
     """Return the profile of a run, behind how it keeps a target if there is one."""
+    from bfsim.report.profile.tables import profile_report  # a run on the screen needs neither it nor tables
+
     return profile_report(run, target=target)
 
 
@@ -95,6 +98,8 @@ class Run(RunRecord):
         They are frames, results, stages, stalls, kernels, lines, owners, accesses, paths, buffers, traffic and spans;
         `bfsim.report.columns` says what a row of each is. `spans` are what `simulate(on_spans=...)` told.
         """
+        from bfsim.report.columns import tables_of
+
         return tables_of(self, spans)
 
     def to_pandas(self, spans: Iterable[Span] = ()) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bfsim.errors import ConfigError, WorkError
 from bfsim.identifying import DigestedFrames
@@ -17,11 +17,11 @@ from bfsim.loading import LoadedFirmware, kernels_of
 from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.core.core import Core
 from bfsim.machine.named_kernels import kernels_named
-from bfsim.machine.retiming.recording_core import RecordingCore
-from bfsim.machine.retiming.replayed_core import ReplayedCore, played_again
 from bfsim.report.save import growing_file
 from bfsim.trace import Identity
-from bfsim.work_file import WorkReader, WorkWriter, opened
+
+if TYPE_CHECKING:
+    from bfsim.work_file import WorkReader
 
 SAME = {
     "recording": "recording",
@@ -69,6 +69,9 @@ def recording_work(
     path: Path, machine: Board, identity: Identity, frames: DigestedFrames, loaded: LoadedFirmware
 ) -> Iterator[None]:
     """Record what the cores of `machine` do in the `with` block; the file is there at its end. Raises ConfigError where none can be written."""
+    from bfsim.machine.retiming.recording_core import RecordingCore  # few runs are recorded
+    from bfsim.work_file import WorkWriter
+
     if machine.fidelity is not Fidelity.FAST:
         raise ConfigError(
             "--record-work must go with --fidelity fast: only there the same buses play it again"
@@ -101,6 +104,9 @@ def playing_work(
     Raises WorkError for a file that is no whole recorded run, or one of another recording, firmware or compiler, or that cannot be
     played on this machine.
     """
+    from bfsim.machine.retiming.replayed_core import played_again
+    from bfsim.work_file import opened
+
     with opened(path) as reader:
         _check(reader, machine, identity, frames.total)
         kernels = _kernels(reader, loaded)
@@ -115,6 +121,8 @@ def playing_work(
 def _replayed(
     reader: WorkReader, kernels: dict[str, Kernel], env: Any, name: str, *arguments: Any, **named: Any
 ) -> Core:
+    from bfsim.machine.retiming.replayed_core import ReplayedCore
+
     return ReplayedCore(env, name, *arguments, kernels=kernels, works=reader.works(name), **named)
 
 

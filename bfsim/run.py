@@ -15,7 +15,6 @@ from bfsim import shipped
 from bfsim.assumptions import assumed_clocks, assumed_geometry, doubted_cameras, geometry_in_words
 from bfsim.building import build_for
 from bfsim.chip.spec import BoardSpec
-from bfsim.device_script import read_script
 from bfsim.errors import ConfigError, FirmwareError, RecordingError, shown
 from bfsim.given import given_firmware
 from bfsim.hardware import find_board, find_profile
@@ -263,6 +262,8 @@ def _devices(path: Path | None, loaded: LoadedFirmware) -> tuple[dict[str, Devic
         raise ConfigError(
             f"--script must go with firmware that has a device to tell, and {loaded.name} has none"
         )
+    from bfsim.device_script import read_script  # few runs have one
+
     script, digest = read_script(path)
     try:
         return devices_of(loaded.firmware, script), digest

@@ -17,7 +17,7 @@ from bfsim.errors import ConfigError
 from bfsim.kernel import GCC_O2
 from bfsim.loading import load_firmware, load_kernel
 from bfsim.machine.memories import Row
-from bfsim.trace import Assembly
+from bfsim.trace.assembly import Assembly
 
 DATA = Path(__file__).parent / "blackfin" / "data"
 CALLS = 3

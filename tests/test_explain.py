@@ -12,7 +12,8 @@ from bfsim.errors import ConfigError, FirmwareError
 from bfsim.explain import explain, explain_named
 from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2
 from bfsim.run import simulate
-from bfsim.trace import ExplainedLine, Explanation, RunRecord, StallReason
+from bfsim.trace import RunRecord, StallReason
+from bfsim.trace.explanation import ExplainedLine, Explanation
 from tests.kernel import cost_kernels
 
 

@@ -17,7 +17,7 @@ from bfsim.blackfin.stalls import Stalls, stalls
 from bfsim.blackfin.text import text
 from bfsim.blackfin.timing import Timing
 from bfsim.blackfin.turns import Chain, Turn, longest_chain, turns
-from bfsim.trace import Assembly, AssemblyInstruction, AssemblyLoop, SourceText
+from bfsim.trace.assembly import Assembly, AssemblyInstruction, AssemblyLoop, SourceText
 
 CHAIN, ISSUE, JUMPS, WAITS = (
     "a dependence chain",

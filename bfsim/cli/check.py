@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
@@ -202,6 +201,8 @@ def _append(outcomes: Sequence[Outcome], path: Path) -> None:
 
 def _commit() -> str:
     """Return the commit of the current folder, with -dirty where it was changed; empty outside of git."""
+    import subprocess
+
     command = ["git", "describe", "--always", "--dirty", "--abbrev=40", "--match="]
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - it is git

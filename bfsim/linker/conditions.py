@@ -13,7 +13,6 @@ _DEFINED = re.compile(r"\bdefined\s*(?:\(\s*(\w+)\s*\)|(\w+))")
 
 def holds(condition: str, macros: Mapping[str, Macro]) -> bool:
     """Say whether `condition` is not 0; names that no macro defines are 0. Raise MacroError if it has no value."""
-    from bfsim.linker.grammar import parse_condition  # the grammar costs time that few LDFs need to pay twice
 
     def is_defined(use: re.Match[str]) -> str:
         return "1" if (use[1] or use[2]) in macros else "0"
@@ -22,6 +21,8 @@ def holds(condition: str, macros: Mapping[str, Macro]) -> bool:
     expanded = _DEFINED.sub(is_defined, expand(_DEFINED.sub(is_defined, condition), macros))
     if expanded.strip() in ("0", "1"):
         return expanded.strip() == "1"
+    from bfsim.linker.grammar import parse_condition  # lark costs 50 ms, which few conditions need
+
     try:
         return parse_condition(expanded) != 0
     except LinkError as error:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +32,6 @@ from bfsim.machine.core.interrupts import Interrupts
 from bfsim.machine.core.layouts import Layouts
 from bfsim.machine.core.readout import plain_view
 from bfsim.machine.core.synchronised import SharedObjects
-from bfsim.machine.detailed.bus import DetailedBus
 from bfsim.machine.dma.checks import DmaSpace
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.memory_dma import Dma
@@ -48,6 +48,9 @@ from bfsim.machine.simulation import Simulation
 from bfsim.machine.stack import stack_outside_l1
 from bfsim.machine.symbols import PROCESSORS
 from bfsim.trace import BoardRecord, FrameRecord
+
+if TYPE_CHECKING:
+    from bfsim.machine.detailed.bus import DetailedBus
 
 
 class Fidelity(StrEnum):
@@ -82,11 +85,7 @@ class Board:
         pictures_nbytes = 2 * 2 * self.size.width_px * self.size.height_px  # two at a time
         self._memories = Memories(self.spec, outside_nbytes=chip.ppis * pictures_nbytes + OUTSIDE_NBYTES)
         self._outside = [self._memories.outside + number * pictures_nbytes for number in range(chip.ppis + 1)]
-        self._bus = (
-            DetailedBus(env, self.spec, self._memories)
-            if self.fidelity is Fidelity.DETAILED
-            else Bus(env, self.spec, self._memories)
-        )
+        self._bus = self._bus_in(env)
         self._caches = {core: caches_of(self.link_map, PROCESSORS[core]) for core in chip.cores}
         for core, caches in self._caches.items():
             check_caches(self.link_map, core, caches, chip.regions)
@@ -158,6 +157,13 @@ class Board:
         return self._record(capture, frames.records, calls, interrupted=interrupted)
 
     # ---- wiring
+
+    def _bus_in(self, env: Simulation) -> Bus | DetailedBus:
+        if self.fidelity is Fidelity.FAST:
+            return Bus(env, self.spec, self._memories)
+        from bfsim.machine.detailed.bus import DetailedBus  # few runs have it
+
+        return DetailedBus(env, self.spec, self._memories)
 
     def _capture(self, pictures: Iterator[StereoPictures]) -> Capture:
         ppis = {

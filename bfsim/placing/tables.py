@@ -6,12 +6,12 @@ import json
 from collections.abc import Iterator
 from dataclasses import replace
 
-from pydantic_core import to_jsonable_python
 from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
 from bfsim.placing.placed import Placed
+from bfsim.report.jsonable import jsonable
 from bfsim.report.tables import new_table, percent, stacked
 from bfsim.report.units import size
 
@@ -32,7 +32,7 @@ def placed_report(placed: Placed, top: int) -> RenderableType:
 
 def placed_json(placed: Placed) -> str:
     """Return all of it but the LDF's text as indented text. Keys are the field names of `placed`, so each carries its unit."""
-    plain = to_jsonable_python(replace(placed, ldf=""))
+    plain = jsonable(replace(placed, ldf=""))
     del plain["ldf"]
     more = {"predicted_ms": placed.predicted_ms, "after_ms": placed.after_ms}
     return f"{json.dumps({'schema': SCHEMA, **plain, **more}, indent=2, ensure_ascii=False)}\n"

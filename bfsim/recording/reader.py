@@ -7,7 +7,7 @@ import os
 from collections import deque
 from collections.abc import Iterator, Mapping
 from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
@@ -16,7 +16,6 @@ from mcap.records import Message
 
 from bfsim.errors import RecordingError, cut, shown
 from bfsim.recording import layout
-from bfsim.recording.calibration_report import CalibrationReport
 from bfsim.recording.container import McapContainer
 from bfsim.recording.frames import (
     DisparityImage,
@@ -25,6 +24,9 @@ from bfsim.recording.frames import (
     StereoGeometry,
     UyvyImage,
 )
+
+if TYPE_CHECKING:
+    from bfsim.recording.calibration_report import CalibrationReport
 
 # One camera may start before the other. Farther ahead its clock is another, and waiting would fill memory.
 _AHEAD_BYTES = 64 << 20
@@ -277,6 +279,8 @@ class RecordingReader:
         record = self._metadata(layout.CALIBRATION_RECORD)
         if not record:
             return None
+        from bfsim.recording.calibration_report import CalibrationReport
+
         try:
             return CalibrationReport.from_json(record.get("json", ""))
         except RecordingError as error:

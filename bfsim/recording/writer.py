@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Any, Self
+from typing import IO, TYPE_CHECKING, Any, Self
 
 import numpy as np
 from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
@@ -20,9 +20,11 @@ from numpy.typing import NDArray
 from bfsim import __version__
 from bfsim.errors import RecordingError, shown
 from bfsim.recording import layout
-from bfsim.recording.calibration_report import CalibrationReport
 from bfsim.recording.frames import DisparityImage, RectificationTables, StereoGeometry, UyvyImage
 from bfsim.recording.growing_file import growing_file, writing
+
+if TYPE_CHECKING:
+    from bfsim.recording.calibration_report import CalibrationReport
 
 _FRAME_IDS = {layout.LEFT_TOPIC: "left", layout.RIGHT_TOPIC: "right", layout.DISPARITY_TOPIC: "left"}
 

@@ -8,10 +8,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import Any
 
-from pydantic_core import to_jsonable_python
-
 from bfsim.report.budget import budget_of
 from bfsim.report.digest import cycle_digest, identity_digest
+from bfsim.report.jsonable import jsonable
 from bfsim.report.owners import owner_frames
 from bfsim.report.warnings import warnings_of
 from bfsim.trace import RunRecord, RunWarning
@@ -36,10 +35,10 @@ def as_json(run: RunRecord) -> dict[str, Any]:
     Keys are the field names of `bfsim.trace` and `bfsim.report.budget`, so each carries its unit.
     """
     records = {each.name: getattr(run, each.name) for each in fields(RunRecord)}
-    plain: dict[str, Any] = to_jsonable_python(records, fallback=_plain)
+    plain: dict[str, Any] = jsonable(records, fallback=_plain)
     for core in (core for frame in plain["frames"] for core in frame["cores"]):
         del core["owners"]  # `owners` has them, frame by frame
-    budget = to_jsonable_python(budget_of(run), fallback=dict)
+    budget = jsonable(budget_of(run), fallback=dict)
     digests = {"identity": identity_digest(run.identity), "cycles": cycle_digest(run.frames)}
     warnings = [_flat(each) for each in warnings_of(run)]
     del plain["assumptions"]  # they are among the warnings
@@ -50,7 +49,7 @@ def as_json(run: RunRecord) -> dict[str, Any]:
         "identity": plain.pop("identity"),
         "budget": budget,
         **plain,
-        "owners": to_jsonable_python(list(owner_frames(run))),
+        "owners": jsonable(list(owner_frames(run))),
     }
 
 

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import PurePath
 
-from pydantic_core import to_jsonable_python
 from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.table import Table
 from rich.text import Text
 
+from bfsim.report.jsonable import jsonable
 from bfsim.report.tables import new_table, percent, stacked
-from bfsim.trace import Assembly, AssemblyInstruction, AssemblyLoop, SourceText
+from bfsim.trace.assembly import Assembly, AssemblyInstruction, AssemblyLoop, SourceText
 
 SCHEMA = "bfsim.assembly/1"
 DEAR_SHARE = 0.05
@@ -38,7 +38,7 @@ def assembly_report(assembly: Assembly) -> RenderableType:
 
 def assembly_json(assembly: Assembly) -> str:
     """Return the records as indented text that ends in a line feed; keys are the field names of `bfsim.trace`."""
-    return json.dumps({"schema": SCHEMA, **to_jsonable_python(assembly)}, indent=2, ensure_ascii=False) + "\n"
+    return json.dumps({"schema": SCHEMA, **jsonable(assembly)}, indent=2, ensure_ascii=False) + "\n"
 
 
 @dataclass(frozen=True, slots=True)

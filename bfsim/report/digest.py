@@ -8,8 +8,8 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Sequence
-
-from pydantic_core import to_jsonable_python
+from dataclasses import fields, is_dataclass
+from typing import Any
 
 from bfsim.trace import FrameRecord, Identity
 
@@ -33,5 +33,11 @@ def _cycles(frame: FrameRecord) -> list[object]:
 
 
 def _canonical(value: object) -> bytes:
-    plain = to_jsonable_python(value, fallback=dict)
-    return json.dumps(plain, sort_keys=True, separators=(",", ":")).encode()
+    return json.dumps(value, sort_keys=True, separators=(",", ":"), default=_named).encode()
+
+
+def _named(value: Any) -> dict[str, object]:
+    """Return a record or a mapping as a dict."""
+    if is_dataclass(value):
+        return {each.name: getattr(value, each.name) for each in fields(value)}
+    return dict(value)

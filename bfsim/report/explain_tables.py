@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from pathlib import PurePath
 
-from pydantic_core import to_jsonable_python
 from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from bfsim.report.jsonable import jsonable
 from bfsim.report.tables import new_table, percent, stacked
-from bfsim.trace import ExplainedLine, ExplainedOperation, Explanation
+from bfsim.trace.explanation import ExplainedLine, ExplainedOperation, Explanation
 
 LOOP_SETUP = "loop_setup"
 SCHEMA = "bfsim.explain/1"
@@ -54,9 +54,7 @@ def _calls(explanation: Explanation) -> Table:
 
 def explain_json(explanation: Explanation) -> str:
     """Return the explanation as indented text that ends in a line feed; keys are the field names of `bfsim.trace`."""
-    return (
-        json.dumps({"schema": SCHEMA, **to_jsonable_python(explanation)}, indent=2, ensure_ascii=False) + "\n"
-    )
+    return json.dumps({"schema": SCHEMA, **jsonable(explanation)}, indent=2, ensure_ascii=False) + "\n"
 
 
 def _add(table: Table, line: ExplainedLine, whole_cclk: int) -> None:

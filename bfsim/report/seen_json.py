@@ -8,8 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import Any, Self
 
-from pydantic_core import to_jsonable_python
-
+from bfsim.report.jsonable import jsonable
 from bfsim.report.spool import Spool
 from bfsim.seen import Seen, SeenFrame
 
@@ -71,7 +70,7 @@ def seen_json(frame: SeenFrame, *, with_features: bool) -> dict[str, Any]:
     }
     if with_features:
         plain["cameras"] = {each.camera: _features(each) for each in frame.cameras}
-    found: dict[str, Any] = to_jsonable_python(plain)
+    found: dict[str, Any] = jsonable(plain)
     return found
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from pathlib import PurePath
 
-from pydantic_core import to_jsonable_python
 from rich.console import RenderableType
 from rich.text import Text
 
+from bfsim.report.jsonable import jsonable
 from bfsim.report.tables import new_table, stacked
 from bfsim.verified import Verification
 
@@ -69,4 +69,4 @@ def as_json(found: Verification) -> str:
         "different": found.different,
         "unequal": found.unequal,
     }
-    return json.dumps({"schema": SCHEMA, **totals, **to_jsonable_python(found)}, indent=2)
+    return json.dumps({"schema": SCHEMA, **totals, **jsonable(found)}, indent=2)

@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
-from pydantic_core import to_jsonable_python
 
 from bfsim.drafts import draft_folder
 from bfsim.errors import ConfigError
 from bfsim.report.digest import identity_digest
+from bfsim.report.jsonable import jsonable
 from bfsim.report.save import writing
 from bfsim.sweeping.running import Outcome
 from bfsim.trace import Identity
@@ -81,7 +81,7 @@ class Store:
 
     def keep(self, key: str, outcome: Outcome) -> None:
         """Keep what became of a point, also if the machine loses its power afterwards."""
-        self._write(self._points, key, {"schema": SCHEMA, "key": key, "outcome": to_jsonable_python(outcome)})
+        self._write(self._points, key, {"schema": SCHEMA, "key": key, "outcome": jsonable(outcome)})
 
     def recording_digest(self, recording: Path, frames: int) -> str:
         """Return the digest of a recording that was read before and is the same file since; otherwise nothing."""

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 
-from pydantic_core import to_jsonable_python
-
 from bfsim.report.diff.difference import Difference
+from bfsim.report.jsonable import jsonable
 
 SCHEMA = "bfsim.diff/1"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
@@ -14,5 +13,5 @@ SCHEMA = "bfsim.diff/1"
 
 def diff_json(difference: Difference) -> str:
     """Return all of a difference as indented text. Keys are the field names of `difference`, so each carries its unit."""
-    plain = {"schema": SCHEMA, "cclk": difference.cclk, **to_jsonable_python(difference)}
+    plain = {"schema": SCHEMA, "cclk": difference.cclk, **jsonable(difference)}
     return f"{json.dumps(plain, indent=2, ensure_ascii=False)}\n"

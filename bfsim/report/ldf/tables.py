@@ -6,11 +6,11 @@ import json
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from pydantic_core import to_jsonable_python
 from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from bfsim.report.jsonable import jsonable
 from bfsim.report.ldf.bars import bars
 from bfsim.report.ldf.lint import Finding
 from bfsim.report.ldf.map import MemoryMap
@@ -36,8 +36,8 @@ def ldf_json(memory_map: MemoryMap, findings: Sequence[Finding]) -> str:
     """Return map and findings as indented text that ends in a line feed; keys are the records' field names."""
     plain = {
         "schema": SCHEMA,
-        **to_jsonable_python(memory_map),
-        "findings": to_jsonable_python(list(findings)),
+        **jsonable(memory_map),
+        "findings": jsonable(list(findings)),
     }
     return json.dumps(plain, indent=2, ensure_ascii=False) + "\n"
 

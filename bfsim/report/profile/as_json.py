@@ -5,9 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from pydantic_core import to_jsonable_python
-
 from bfsim.report.digest import cycle_digest, identity_digest
+from bfsim.report.jsonable import jsonable
 from bfsim.report.profile.buffers import buffers_of, traffic_of
 from bfsim.report.profile.callers import callers_of
 from bfsim.report.profile.frames import worst_frames
@@ -41,4 +40,4 @@ def profile_json(run: RunRecord, core: str | None = None, stage: str | None = No
         "median_frame": median,
         "worst_frames": worst,
     }
-    return json.dumps(to_jsonable_python(plain, fallback=dict), indent=2, ensure_ascii=False) + "\n"
+    return json.dumps(jsonable(plain, fallback=dict), indent=2, ensure_ascii=False) + "\n"
