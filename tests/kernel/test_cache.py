@@ -226,7 +226,8 @@ def follow_in(folder: Path, *, limit_bytes: int = resource.RLIM_INFINITY) -> Non
     program = folder.with_name("follow.py")
     limit = f"import resource as r; r.setrlimit(r.RLIMIT_FSIZE, ({limit_bytes}, {limit_bytes}))"
     program.write_text(limit + FOLLOW)
-    surroundings = {**os.environ, "BFSIM_CACHE_DIR": str(folder)}
+    # the limit would cut what Python keeps of the modules, too, which it then cannot read
+    surroundings = {**os.environ, "BFSIM_CACHE_DIR": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(
         [sys.executable, str(program)],
         capture_output=True,
