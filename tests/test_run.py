@@ -14,11 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bfsim import store
 from bfsim.errors import BfsimError, ConfigError, FirmwareError, LinkError, RecordingError
-from bfsim.kernel import native
-from bfsim.kernel.traced_access import trace_access
-from bfsim.machine.bus.weave import advance
 from bfsim.recording import RecordingWriter
 from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.run import BUILT_IN_RECORDING, PLACEMENTS, Feed, Fidelity, simulate
@@ -71,6 +67,7 @@ eyes = Firmware(mains={"A": main, "B": main}, buffers=buffers, camera="camera", 
 
 DIGESTS = """\
 import json, sys
+sys.modules["numba"] = None  # which cannot be imported then
 from pathlib import Path
 from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.run import Feed, Fidelity, simulate
@@ -102,16 +99,6 @@ def run_eyes(recording: Path, **how: object) -> RunRecord:
     return simulate(recording, firmware="fw_eyes:eyes", **how)  # type: ignore[arg-type]
 
 
-def cache_without_kernels(folder: Path) -> Path:
-    """Return a cache that has only what plays the buses, which takes ten seconds to compile; test_end_to_end starts without."""
-    for each in (trace_access, advance):
-        assert each.address()
-        name = native._key(each.symbol)
-        (folder / name[:2]).mkdir(parents=True)
-        shutil.copy(store.folder() / name[:2] / name, folder / name[:2])
-    return folder
-
-
 def start(folder: Path, recording: Path, **environment: str) -> subprocess.Popen[str]:
     """Start a process that runs the firmware in `folder` with both feeds and prints its digests."""
     command = [sys.executable, "-c", DIGESTS, str(recording)]
@@ -121,21 +108,20 @@ def start(folder: Path, recording: Path, **environment: str) -> subprocess.Popen
 
 
 def test_the_same_run_has_the_same_digests_everywhere(home: Path, tmp_path: Path) -> None:
-    """In other processes, under other hash seeds, from another folder, without and with its kernels in the cache."""
+    """In other processes, under other hash seeds, from another folder, with an empty cache and then with its own; none imports numba."""
     recording = record(home / "drive.mcap", 4)
     elsewhere = tmp_path / "else" / "where"
     elsewhere.mkdir(parents=True)
     for name in ("fw_eyes.py", "drive.mcap"):
         shutil.copy(home / name, elsewhere / name)
-    cold = cache_without_kernels(tmp_path / "cold")
-    before = len([*cold.rglob("*")])
+    cold = tmp_path / "cold"
     processes = [
         start(home, recording, PYTHONHASHSEED="1"),
         start(elsewhere, elsewhere / "drive.mcap", PYTHONHASHSEED="2", BFSIM_CACHE_DIR=str(cold)),
     ]
     here = [run_eyes(recording, feed=feed) for feed in Feed]
     outputs = [each.communicate()[0] for each in processes]
-    assert len([*cold.rglob("*")]) > before
+    assert any(cold.rglob("*"))
     warm = start(elsewhere, Path("drive.mcap"), PYTHONHASHSEED="3", BFSIM_CACHE_DIR=str(cold))
     outputs.append(warm.communicate()[0])
     expected = [[identity_digest(each.identity), cycle_digest(each.frames)] for each in here]
