@@ -31,8 +31,7 @@ from bfsim.recording.scenes.lens import Lens, Misfit
 from bfsim.report.tables import new_table, percent, stacked
 from bfsim.run_inputs import calibration_of
 from bfsim.terminal import print_report
-from tinyphoon import tinyphoon
-from tinyphoon.rectified_features import rectified_features
+from tinyphoon import rectified_features, tinyphoon
 
 WAYS = {"pictures": tinyphoon, "features": rectified_features}
 CCLK_PER_MS = CM_BF561.clocks.cclk_hz / 1000

@@ -13,7 +13,7 @@ FIRMWARE_FOLDER = _PACKAGE.parent if _IS_INSTALLED else _PACKAGE.parent / "firmw
 """The folder that holds the package FIRMWARE_PACKAGE."""
 
 FIRMWARE_PACKAGE = "tinyphoon"
-FIRMWARE = ("tinyphoon", "fast", "thesis", "one_eye")
+FIRMWARE = ("tinyphoon", "fast", "thesis", "rectified_features", "one_eye")
 """Names in that package that `--firmware` takes alone. The first one is the default."""
 
 ACCURACY = (_PACKAGE if _IS_INSTALLED else _PACKAGE.parent) / "docs" / "accuracy.md"

@@ -97,7 +97,7 @@ def test_what_is_shipped_neither_shadows_nor_is_shadowed(
     write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A package of the same name in the current folder, or on Python's path, is another one; in one process, too."""
-    write("tinyphoon/__init__.py", GOOD + "tinyphoon = fast = thesis = one_eye = fw\n")
+    write("tinyphoon/__init__.py", GOOD + "tinyphoon = fast = thesis = rectified_features = one_eye = fw\n")
     write("elsewhere/tinyphoon/__init__.py", named("elsewhere") + "tinyphoon = fw\n")
     monkeypatch.syspath_prepend(tmp_path / "elsewhere")
     for _ in range(2):
@@ -217,7 +217,7 @@ def test_what_is_no_package_and_name_is_refused(name: str) -> None:
     """Nothing is imported for it."""
     with pytest.raises(
         FirmwareError,
-        match="--firmware must be one of tinyphoon, fast, thesis, one_eye, FILE.py:NAME or PACKAGE:NAME, not '",
+        match="--firmware must be one of tinyphoon, fast, thesis, rectified_features, one_eye, FILE.py:NAME or PACKAGE:NAME, not '",
     ):
         load_firmware(name)
 
@@ -226,8 +226,8 @@ def test_a_missing_package_is_told_where_it_should_be(write: Write, tmp_path: Pa
     """The folder that was searched stands in the message, and how what is built in is written."""
     write("fw_here.py", GOOD)
     for name, advice in (
-        ("fw_missing:fw", "built in are tinyphoon, fast, thesis and one_eye"),
-        ("fw_missing", "built in are tinyphoon, fast, thesis and one_eye"),
+        ("fw_missing:fw", "built in are tinyphoon, fast, thesis, rectified_features and one_eye"),
+        ("fw_missing", "built in are tinyphoon, fast, thesis, rectified_features and one_eye"),
         ("fw_missing:tinyphoon", "the built-in firmware is written tinyphoon"),
     ):
         with pytest.raises(FirmwareError) as caught:

@@ -14,7 +14,16 @@ from tinyphoon.losses import LOSSES, THESIS_LOSSES
 from tinyphoon.one_core import one_core
 from tinyphoon.strategy.modes import THESIS_FIELD
 from tinyphoon.strategy_unit.unit import StrategyUnit
-from tinyphoon.variants import FAST, THESIS, fast_buffers, mains, thesis_buffers, thesis_calibration
+from tinyphoon.variants import (
+    FAST,
+    RECTIFIED_FEATURES,
+    THESIS,
+    fast_buffers,
+    mains,
+    places_calibration,
+    thesis_buffers,
+    thesis_calibration,
+)
 from tinyphoon.view.picture_colours import picture_colours
 from tinyphoon.view.view import view
 
@@ -69,6 +78,14 @@ thesis = replace(
     losses=THESIS_LOSSES,
 )
 """The steps that the thesis describes: what the robot ran, as far as it says so. Lines are found in another way."""
+
+rectified_features = replace(
+    tinyphoon,
+    mains=mains(RECTIFIED_FEATURES),
+    calibration=places_calibration,
+    rows=rows(rectified_in="Line detection"),
+)
+"""The features of the pictures as the cameras have them, rectified in place of the pictures (T §7.2)."""
 
 one_eye = Firmware(
     mains={"A": one_core},

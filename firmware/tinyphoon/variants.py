@@ -17,8 +17,10 @@ from tinyphoon.fields import to_words
 from tinyphoon.stages.circle_erosion import eroded_circles, shape_buffers
 from tinyphoon.stages.fast_opening import fast_opening
 from tinyphoon.stages.fast_scan import fast_edge_detection, fast_scan_buffers
+from tinyphoon.stages.feature_rectification import feature_rectification, picture_as_it_came
 from tinyphoon.stages.line_ends import scan_by_ends
 from tinyphoon.stages.looped_erosion import looped_buffers
+from tinyphoon.stages.rectified_places import places_buffers
 from tinyphoon.stages.rosenfeld_blobs import SEGMENTS, rosenfeld_blobs, rosenfeld_buffers
 from tinyphoon.stages.rosenfeld_hysteresis import rosenfeld_edges
 from tinyphoon.stages.sdram_opening import sdram_opening
@@ -35,6 +37,7 @@ THESIS = Steps(
     line_scan=scan_by_ends,
     circle_detection=eroded_circles,
 )
+RECTIFIED_FEATURES = Steps(rectification=picture_as_it_came, feature_rectification=feature_rectification)
 
 
 def mains(steps: Steps) -> Mapping[str, partial]:
@@ -62,6 +65,11 @@ def thesis_buffers(size: FrameSize) -> Mapping[str, Sequence[Buffer]]:
         for each in of_core["shared"]
     )
     return of_core
+
+
+def places_calibration(calibration: Calibration) -> Buffers:
+    """Return the buffers that depend on the cameras of a recording: where pixels lie in rectified pictures, and the geometry."""
+    return with_geometry(places_buffers(calibration.sources), calibration)
 
 
 def thesis_calibration(calibration: Calibration) -> Buffers:

@@ -14,8 +14,7 @@ from bfsim.trace import FrameRecord
 from tests.firmware import rectified_references as plain
 from tests.firmware.lenses import nearest, source_points
 from tests.firmware.whole_pictures import buffer, run
-from tinyphoon import tinyphoon
-from tinyphoon.rectified_features import rectified_features
+from tinyphoon import rectified_features, tinyphoon
 from tinyphoon.stages.rectified_edges import longest_row, move_edges_row, sort_words, store_moved_row
 from tinyphoon.stages.rectified_lines import rectify_lines
 from tinyphoon.stages.rectified_outlines import rectify_blobs, rectify_circles, rectify_ends

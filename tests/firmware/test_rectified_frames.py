@@ -12,8 +12,8 @@ from tests.firmware.lenses import nearest, rectified, source_points
 from tests.firmware.pictures import grey_uyvy, random_uyvy
 from tests.firmware.test_areas import run
 from tests.firmware.whole_pictures import buffer, random_frames, stereo
+from tinyphoon import rectified_features
 from tinyphoon.areas import Area
-from tinyphoon.rectified_features import rectified_features
 from tinyphoon.stages.rectified_lines import rectify_lines
 from tinyphoon.stages.rectified_places import places_buffers
 from tinyphoon.stores.edges import EDGE_DATA

@@ -31,6 +31,7 @@ from tinyphoon.stores.edges import EDGE_DATA
 from tinyphoon.strategy.orders import mode_in
 from tinyphoon.view.colours import colour_of
 from tinyphoon.view.objects import objects_of
+from tinyphoon.view.rectified_pictures import rectified_picture
 
 CIRCLE_TESTS = {"centre": c.CENTRE_PASSED, "radius": c.RADIUS_PASSED}
 SIDES = {
@@ -67,6 +68,8 @@ def _picture(readout: Readout, area: Area) -> NDArray[np.uint8]:
     if readout.has_buffer("rectified_image"):
         return readout.values("rectified_image")
     picture = readout.picture()
+    if readout.has_buffer("places"):
+        return rectified_picture(picture, readout.values("places"), area)
     return picture[area.y : area.y + area.height, 2 * area.x : 2 * (area.x + area.width)]
 
 
