@@ -36,6 +36,10 @@ def symbols_of(firmware: Firmware, size: FrameSize, build: Build = ESTIMATED) ->
         for each in buffers:
             if not isinstance(each, Buffer):
                 raise FirmwareError(f"buffers of {owner} must be of bfsim.api.Buffer, not {each!r}")
+            if each.handed_over and (owner != "shared" or each.name == firmware.camera):
+                raise FirmwareError(
+                    f"buffer {each.name} of {owner} must not be handed over (handed_over=True): only a shared buffer that no camera fills is"
+                )
             found.append(
                 Symbol(
                     name=each.name,

@@ -115,6 +115,18 @@ def test_work_out_of_turn_ends_the_run(waits: bool, core: type[Core] | None) -> 
     outcome(task, handed_over=False)  # whose order the cycles decide
 
 
+def test_what_no_other_core_has_is_not_handed_over() -> None:
+    """A buffer of one core is refused before the run."""
+
+    def own(size: FrameSize) -> dict[str, Sequence[Buffer]]:
+        plain = buffers(size)
+        return {**plain, "A": (*plain["A"], Buffer("mine", i32, 64, "L1_data_a", handed_over=True))}
+
+    mains = {core: every_frame(by_lock) for core in "AB"}
+    with pytest.raises(FirmwareError, match="buffer mine of A must not be handed over"):
+        board_of(Firmware(mains=mains, buffers=own, camera="camera", rows=(BudgetRow(stage="Work"),)))
+
+
 def test_who_was_told_by_whom_else_may_work_on_it() -> None:
     """Of three cores C hears of A's turn from B only."""
     cores = Handovers("ABC")
