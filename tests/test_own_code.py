@@ -118,7 +118,7 @@ def test_the_run_says_whose_code_and_for_how_much(runs: dict[str, Run]) -> None:
 def _nothing_at_hand(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
     monkeypatch.setenv("BFSIM_CACHE_DIR", str(tmp_path))
     monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr("bfsim.compiling.recipes.shipped", lambda _name: None)
+    monkeypatch.setattr("bfsim.store.shipped", lambda _package, _name: None)
     yield
 
 

@@ -22,18 +22,19 @@ if TYPE_CHECKING:
 WORKS = "works"
 """Folder of the store: in it each sweep that runs has one of its own."""
 
-LEAST_LEFT = 2
+LEAST_LEFT = 9
 """The least points that are left for the first of them to be recorded.
 
-With all that kernels work on in L1 recording takes 1.5 to 2 times as long as a run, and playing a third to a quarter of it.
+With all that kernels work on in L1 a frame more takes 118 ms to run, 654 ms to record and 45 ms to play (20 and 60 frames, processor
+time): n points that are left gain from n = (654 - 45) / (118 - 45), 8.3, on.
 """
 
 MOST_WAITS = 0.02
 """Of the time, for memory outside of L1: what kernels access there is written, read and played word by word.
 
-Measured at 0.6 % (the default LDF, 100 frames) recording takes 1.7 times as long as a run and playing 0.17 times; at 45 % (l2.ldf,
-3 frames) 3.7 and 1.1 times. On a straight line between them [assumed] two points that are left gain up to 3 %, seven up to 26 %:
-where it is wrong a sweep takes longer. Its figures are the same.
+At 0.6 % (the default LDF) playing pays, as above; at 45 % (l2.ldf, 3 frames, before runs were made faster) recording took 3.7 and
+playing 1.1 times as long as a run. What lies between is not measured [assumed]: where it is wrong a sweep takes longer. Its figures
+are the same.
 """
 
 

@@ -15,17 +15,17 @@ import pytest
 
 from bfsim.sweeping.running import Outcome, Work, code_digest, run_point
 from bfsim.sweeping.sweep import Sweep
-from bfsim.sweeping.works import MOST_WAITS, WORKS, Works
+from bfsim.sweeping.works import LEAST_LEFT, MOST_WAITS, WORKS, Works
 from tests.sweeping.rig import BASE, home_in, planned
 from tests.sweeping.test_store import CLAIM
 
-BOARDS = "[axes]\nset.sdram.nRP = [2, 3, 4, 5, 6]\n"
+BOARDS = "[axes]\nset.sdram.nRP = [2, 3, 4, 5, 6]\nset.sdram.nRCD = [2, 3]\n"
 RUN = Outcome(frames=1, figures={"objects.ball.total": 3, "frame_rate Hz": 10.0})
 
 
 @pytest.fixture
 def sweep(tmp_path: Path) -> Sweep:
-    """Five points that differ in the board."""
+    """Ten points that differ in the board: when the first one is done, just enough are left."""
     return planned(home_in(tmp_path, BASE + BOARDS))
 
 
@@ -66,9 +66,9 @@ def test_points_wait_for_what_they_can_be_played_from(sweep: Sweep) -> None:
         assert not works.is_expected(third)
 
 
-@pytest.mark.parametrize(("left", "waits"), [(5, MOST_WAITS + 0.01), (2, 0)])
+@pytest.mark.parametrize(("left", "waits"), [(LEAST_LEFT + 1, MOST_WAITS + 0.01), (LEAST_LEFT, 0)])
 def test_what_does_not_pay_is_not_recorded(sweep: Sweep, left: int, waits: float) -> None:
-    """With many waits for memory playing takes as long as running; and of two points the second would be recorded for nobody."""
+    """With many waits for memory playing takes as long as running; and of few points recording one takes longer than it saves."""
     points = sweep.todo[:left]
     with Works(sweep.store, points) as works:
         for each in points:
@@ -83,7 +83,7 @@ def test_a_point_that_dies_as_it_records_is_run(sweep: Sweep) -> None:
         works.order(first)
         works.done(first, RUN)
         assert works.order(second) is not None
-        assert [works.order(each) for each in (second, *rest)] == [None] * 4
+        assert [works.order(each) for each in (second, *rest)] == [None] * LEAST_LEFT
 
 
 def test_works_of_a_killed_sweep_are_removed_and_those_of_another_one_stay(sweep: Sweep) -> None:
