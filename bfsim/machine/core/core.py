@@ -99,6 +99,7 @@ class Core(SynchronisedCore):
             stages=stages,
             calls=calls,
             interrupts=shared.interrupts[name],
+            handovers=shared.handovers,
         )
         self.finished: list[FinishedFrame] = []
         """Frames that are done, until the board takes them."""

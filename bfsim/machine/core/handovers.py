@@ -16,7 +16,7 @@ Gifts = dict[str, int]
 
 
 class Handovers:
-    """Who has given what away, and who knows of it: a vector clock [Mattern] for each core and each thing that they wait for."""
+    """Who has given what away, and who knows of it: a vector clock (Mattern 1989) for each core and each thing that they wait for."""
 
     def __init__(self, cores: Iterable[str]) -> None:
         self._known: dict[str, Gifts] = {core: dict.fromkeys(cores, 0) for core in cores}

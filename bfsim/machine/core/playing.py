@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator
 from typing import Any
 
 import simpy
@@ -17,6 +17,7 @@ from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.calls.call_cache import CallCache, DeferredWork
 from bfsim.machine.core.accounts import Account
 from bfsim.machine.core.clock import CoreClock
+from bfsim.machine.core.handovers import Handovers
 from bfsim.machine.core.interrupts import Handler, Interrupts
 from bfsim.machine.core.waits import Waits, awaited, name_of
 from bfsim.machine.firmware_lines import line_at, line_of
@@ -39,11 +40,13 @@ class PlayingCore(CoreClock):
         stages: tuple[str, ...],
         calls: CallCache,
         interrupts: Interrupts,
+        handovers: Handovers,
     ) -> None:
         super().__init__(env, name, board, bus, stages)
         self._number = number
         self._calls = calls
         self._interrupts = interrupts
+        self._handovers = handovers
         self._unclaimed: Work | None = None
         self._unclaimed_kernel: Kernel | None = None
         self.waits = Waits(name)
@@ -68,8 +71,8 @@ class PlayingCore(CoreClock):
         except (LookupError, TypeError, AttributeError):  # the first time, or something is wrong
             call = self._calls.prepare(kernel, arguments)
         self._unclaimed_kernel = kernel
-        if call.handed_over:
-            self._use(call.handed_over)
+        for each in call.handed_over:
+            self._handovers.use(self.name, each)
         if call.stays_in_l1 or (call.is_alone and self._goes_ahead()):
             work = call.run(arguments)
         else:  # it may meet what others do, and runs when the simulated time is there
@@ -170,14 +173,6 @@ class PlayingCore(CoreClock):
         if transfer.end is None:
             return self._bus.when_done(transfer)
         return self._env.after(max(0, transfer.end - self._env.tick))
-
-    def _use(self, buffers: Sequence[str]) -> None:
-        """Note that the next call works on `buffers`, which the cores hand over. Raises FirmwareError if another core has one."""
-        raise NotImplementedError
-
-    def _was_interrupted(self, source: str) -> None:
-        """Note that an interrupt of `source` was taken."""
-        raise NotImplementedError
 
     def _goes_ahead(self) -> bool:
         """Whether calls that nobody else can meet run before the simulated time is there."""
@@ -303,7 +298,7 @@ class PlayingCore(CoreClock):
         before, self._in_handler = self._in_handler, True
         while self._interrupts.is_waiting:
             source, handler = self._interrupts.take()
-            self._was_interrupted(source)
+            self._handovers.take(self.name, f"{source} of core {self.name}")
             begin_cclk = self._cclk
             with self._elsewhere():
                 self.stall(StallReason.INTERRUPT, events.interrupt_entry_cclk, f"interrupt {source}")

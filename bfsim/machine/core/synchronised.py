@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Mapping
 from typing import Any
 
 import simpy
@@ -57,7 +57,7 @@ class SynchronisedCore(PlayingCore):
     def post(self, name: str) -> Generator[Any, Any, None]:
         """Add one to the semaphore `name`, in L2."""
         yield from self._test_and_set(f"semaphore {name}")
-        self._shared.handovers.give(self.name, f"semaphore {name}")
+        self._handovers.give(self.name, f"semaphore {name}")
         self._semaphore(name).post()
         self._tell_count(name)
 
@@ -68,7 +68,7 @@ class SynchronisedCore(PlayingCore):
         turn = self._semaphore(name).take()
         if turn is not None:
             yield from self._take_turn(turn, f"semaphore {name!r}", f"semaphore {name}")
-        self._shared.handovers.take(self.name, f"semaphore {name}")
+        self._handovers.take(self.name, f"semaphore {name}")
         self._tell_count(name)
 
     @awaited
@@ -83,7 +83,7 @@ class SynchronisedCore(PlayingCore):
             yield from self._take_turn(turn, f"lock {name!r}, held by {lock.holder}", f"lock {name}")
             lock.holder = self._described()
         lock.since_cclk = self._cclk
-        self._shared.handovers.take(self.name, f"lock {name}")
+        self._handovers.take(self.name, f"lock {name}")
 
     @awaited
     def unlock(self, name: str) -> Generator[Any, Any, None]:
@@ -97,7 +97,7 @@ class SynchronisedCore(PlayingCore):
             )
         if timeline := self._env.timeline:
             timeline.span(SpanKind.LOCK, f"lock {name}", f"core {self.name}", lock.since_cclk, self._cclk)
-        self._shared.handovers.give(self.name, f"lock {name}")
+        self._handovers.give(self.name, f"lock {name}")
         lock.release()
 
     def _take_turn(self, turn: simpy.Event, what: str, owner: str) -> Generator[Any, Any, None]:
@@ -153,15 +153,5 @@ class SynchronisedCore(PlayingCore):
             raise FirmwareError(f"core {self.name} can interrupt another core of the chip, not {other!r}")
         self.issue(self._board.chip.events.mmr_write_cclk, f"interrupt {OTHER_CORE}")
         yield from self.sync()
-        self._shared.handovers.give(self.name, f"interrupt of core {other}")
+        self._handovers.give(self.name, f"{OTHER_CORE} of core {other}")
         others[other].request(OTHER_CORE)
-
-    def _was_interrupted(self, source: str) -> None:
-        """Take what the other core has given away, if it was that which interrupted this one."""
-        if source == OTHER_CORE:
-            self._shared.handovers.take(self.name, f"interrupt of core {self.name}")
-
-    def _use(self, buffers: Sequence[str]) -> None:
-        """Note that the next call works on buffers that are handed over."""
-        for each in buffers:
-            self._shared.handovers.use(self.name, each)
