@@ -99,7 +99,7 @@ class BareCore:
 
     def has_buffer(self, name: str) -> bool:
         """Return whether there is a buffer called `name`."""
-        return name in self._layouts
+        return self._layouts.has_buffer(name)
 
     def input_ring(self, image: Sequence[Row], ring: str | Sequence[Row]) -> BareInput:
         """Return an input ring without DMA."""

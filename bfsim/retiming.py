@@ -8,7 +8,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from bfsim.errors import ConfigError, WorkError
 from bfsim.identifying import DigestedFrames
@@ -16,6 +16,7 @@ from bfsim.kernel import Kernel
 from bfsim.loading import LoadedFirmware, kernels_of
 from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.core.core import Core
+from bfsim.machine.core.parts import Parts
 from bfsim.machine.named_kernels import kernels_named
 from bfsim.report.save import growing_file
 from bfsim.trace import Identity
@@ -44,18 +45,24 @@ def retimed(
     *,
     record_work: Path | None,
     work: Path | None,
-    is_watched: bool,
+    has_pictures: bool,
+    has_timeline: bool,
 ) -> Iterator[None]:
     """Record the run of `machine` in the `with` block to a file, or have it play one, or neither.
 
-    `is_watched`: whether anybody wants pictures or a timeline of it.
+    `has_pictures`, `has_timeline`: whether anybody wants such of it.
     """
     with ExitStack() as stack:
         if record_work and work:
             raise ConfigError("--record-work must stand without --work: what is played is recorded already")
+        if record_work and has_timeline:
+            raise ConfigError(
+                "--record-work must go without --trace and --html: their timeline needs everything done at its time, but what is "
+                "recorded is done ahead; make it in a run of its own"
+            )
         if record_work:
             stack.enter_context(recording_work(record_work, machine, identity, frames, loaded))
-        if work and is_watched:
+        if work and (has_pictures or has_timeline):
             raise ConfigError(
                 "--work must go without pictures, timelines and HTML: a recorded run has neither pixels nor single calls, only cycles"
             )
@@ -69,7 +76,8 @@ def recording_work(
     path: Path, machine: Board, identity: Identity, frames: DigestedFrames, loaded: LoadedFirmware
 ) -> Iterator[None]:
     """Record what the cores of `machine` do in the `with` block; the file is there at its end. Raises ConfigError where none can be written."""
-    from bfsim.machine.retiming.recording_core import RecordingCore  # few runs are recorded
+    from bfsim.machine.retiming.recorded_ahead import RecordedAhead  # few runs are recorded
+    from bfsim.machine.retiming.recording_core import RecordingCore
     from bfsim.work_file import WorkWriter
 
     if machine.fidelity is not Fidelity.FAST:
@@ -77,7 +85,13 @@ def recording_work(
             "--record-work must go with --fidelity fast: only there the same buses play it again"
         )
     with growing_file(path) as stream, WorkWriter(stream, path) as writer:
-        machine.core = partial(RecordingCore, on_work=writer.add, on_obstacle=writer.add_obstacle)
+        cores: list[RecordingCore] = []
+
+        def recorded(parts: Parts) -> Core:
+            cores.append(RecordingCore(parts, on_work=writer.add, on_obstacle=writer.add_obstacle))
+            return cores[-1]
+
+        machine.core, machine.ahead = recorded, RecordedAhead
         writer.begin(
             identity={
                 each: value for each, value in asdict(identity).items() if each in (*SAME, "ldf_digest")
@@ -86,7 +100,9 @@ def recording_work(
             is_bound=machine.is_bound_to_placement,
         )
         yield
-        if not all(each.is_done for each in machine.cores.values()):
+        for core in cores:
+            core.end()
+        if not all(each.is_done for each in machine.main_loops.values()):
             writer.add_obstacle("the run was interrupted before its end")
         writer.end(
             frame_digests=frames.digests,
@@ -114,16 +130,14 @@ def playing_work(
         machine.firmware = replace(
             machine.firmware, mains=dict.fromkeys(machine.firmware.mains, played_again), view=None
         )
-        machine.core = partial(_replayed, reader, kernels)
+        machine.core, machine.ahead = partial(_replayed, reader, kernels), None
         yield
 
 
-def _replayed(
-    reader: WorkReader, kernels: dict[str, Kernel], env: Any, name: str, *arguments: Any, **named: Any
-) -> Core:
+def _replayed(reader: WorkReader, kernels: dict[str, Kernel], parts: Parts) -> Core:
     from bfsim.machine.retiming.replayed_core import ReplayedCore
 
-    return ReplayedCore(env, name, *arguments, kernels=kernels, works=reader.works(name), **named)
+    return ReplayedCore(parts, kernels, reader.works(parts.name))
 
 
 def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -> None:

@@ -180,9 +180,15 @@ def simulate(
             if on_seen:
                 on_seen(SeenFrame(index=index, times_ns=source.take_times_ns(index), cameras=cameras))
 
-        watched = bool(on_seen or on_spans)
         with retimed(
-            machine, identity, source, loaded, record_work=record_work, work=work, is_watched=watched
+            machine,
+            identity,
+            source,
+            loaded,
+            record_work=record_work,
+            work=work,
+            has_pictures=bool(on_seen),
+            has_timeline=bool(on_spans),
         ):
             left = machine.run(exchange.watch(source), count, show if on_seen else None, on_time, on_spans)
     identity = replace(

@@ -232,9 +232,10 @@ MACHINE = {
     },
     "symbols": {"buffers", "code", "firmware_lines", "program"},
     "loader": {"buffers", "bus", "cameras", "memories", "program", "symbols"},
-    "finished_frames": {"calls", "core"},
+    "main_loop": {"core", "program"},
+    "finished_frames": {"calls", "main_loop"},
     "listeners": {"bus", "finished_frames", "simulation", "timeline"},
-    "main_loops": {"core", "firmware_lines", "listeners", "program", "simulation"},
+    "main_loops": {"firmware_lines", "listeners", "main_loop", "simulation"},
 }
 """Each block of the machine and what it may import of the others. The board wires them: it imports them all."""
 READ_VERSION = {"recording", "report", "identifying", "cli"}  # these also read `bfsim.__version__`

@@ -162,6 +162,8 @@ def test_what_needs_more_than_cycles_is_refused(work: Path, folder: Path) -> Non
         simulate(frames=FRAMES, work=work, fidelity=Fidelity.DETAILED)
     with pytest.raises(ConfigError, match="--record-work must go with --fidelity fast"):
         simulate(frames=FRAMES, record_work=folder / "none.work", fidelity=Fidelity.DETAILED)
+    with pytest.raises(ConfigError, match="--record-work must go without --trace"):
+        simulate(frames=FRAMES, record_work=folder / "none.work", on_spans=lambda _: None)
     assert not (folder / "none.work").exists()
 
 

@@ -17,7 +17,6 @@ from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.linker import LinkMap
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus.bus import Bus
-from bfsim.machine.bus.masters import RING_STREAMS
 from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches, written_through
 from bfsim.machine.calls.call_cache import BeforeCall, CallCache
 from bfsim.machine.calls.conflicts import SubBanks
@@ -26,18 +25,20 @@ from bfsim.machine.calls.ledger import Ledger
 from bfsim.machine.cameras.capture import Capture, Feed, StereoPictures
 from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.code import code_outside_l1, code_records
-from bfsim.machine.core.ahead_core import AheadCore
+from bfsim.machine.core.ahead import Ahead
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.interrupts import Interrupts
 from bfsim.machine.core.layouts import Layouts
+from bfsim.machine.core.parts import Parts
 from bfsim.machine.core.readout import plain_view
-from bfsim.machine.core.synchronised import SharedObjects
+from bfsim.machine.core.synchronisation import SharedObjects
+from bfsim.machine.core.wiring import AroundCores, parts_of
 from bfsim.machine.dma.checks import DmaSpace
-from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.dma.memory_dma import Dma
 from bfsim.machine.finished_frames import FinishedFrames
 from bfsim.machine.listeners import Announcer, OnFrame, OnSeen, OnSpans, OnTime
 from bfsim.machine.loader import LoadedBuffers
+from bfsim.machine.main_loop import MainLoop
 from bfsim.machine.main_loops import MainLoops
 from bfsim.machine.memories import Memories
 from bfsim.machine.peripherals.device import Device
@@ -64,7 +65,8 @@ class Fidelity(StrEnum):
 class Board:
     """A board with firmware in it, ready to run once. `devices`: at the other ends of peripherals, by the names of these.
 
-    `core`: makes its cores, where they need not be detailed.
+    `ahead`: the progress of its cores, which run ahead unless they must not, or this is None. `core`: makes what firmware gets of a
+    core's parts.
     """
 
     spec: BoardSpec
@@ -76,8 +78,10 @@ class Board:
     before_call: tuple[BeforeCall, ...] = ()
     devices: Mapping[str, Device] = field(default_factory=dict)
     fidelity: Fidelity = Fidelity.FAST
-    core: Callable[..., Core] = AheadCore
+    ahead: type[Ahead] | None = Ahead
+    core: Callable[[Parts], Core] = Core
     cores: dict[str, Core] = field(init=False, default_factory=dict)
+    main_loops: dict[str, MainLoop] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         chip, env = self.spec.chip, Simulation()
@@ -92,7 +96,9 @@ class Board:
         self._buffers = LoadedBuffers(
             self.spec, self.firmware, self.size, self.link_map, self._memories, self._bus.owners
         )
-        self._shared = SharedObjects({core: Interrupts(env, core, chip.interrupts) for core in chip.cores})
+        self._shared = SharedObjects(
+            env, {core: Interrupts(env, core, chip.interrupts) for core in chip.cores}
+        )
         cached = [
             part for core, caches in self._caches.items() for part in cached_parts(core, caches, chip.regions)
         ]
@@ -132,17 +138,18 @@ class Board:
         Raises DeadlockError when the cores block each other.
         """
         calls: dict[str, CallCache] = {}
-        frames = FinishedFrames(self.cores, calls, on_frame)
+        frames = FinishedFrames(self.main_loops, calls, on_frame)
         announcer = Announcer(self._env, self._bus, self.spec.clocks, frames, on_seen, on_time, on_spans)
         capture = self._capture(pictures)
+        view = (self.firmware.view or plain_view) if on_seen else None
+        around = self._around_cores(capture, frames.collect, view)
         for number, name in enumerate(self.spec.chip.cores):
             access_trace = self._access_trace(number, name)
             calls[name] = self._call_cache(number, name, access_trace)
-            view = (self.firmware.view or plain_view) if on_seen else None
-            self.cores[name] = self._core(
-                number, name, access_trace, calls[name], capture, frames.collect, view
-            )
-        loops = MainLoops(self._env, self.cores, self.firmware.mains, self._shared.turns, announcer)
+            parts = parts_of(around, number, self._layouts(name), access_trace, calls[name])
+            self.cores[name] = self.core(parts)
+            self.main_loops[name] = MainLoop(parts, self.cores[name], self.firmware.mains[name])
+        loops = MainLoops(self._env, self.main_loops, self._shared.turns, announcer)
         interrupted = False
         try:
             loops.play()
@@ -214,34 +221,23 @@ class Board:
     def _stack_outside_l1(self, core: str) -> NDArray[np.uint8] | None:
         return stack_outside_l1(self.link_map, PROCESSORS[core], self.spec.chip.regions, self._memories)
 
-    def _core(
-        self,
-        number: int,
-        name: str,
-        access_trace: AccessTrace,
-        calls: CallCache,
-        capture: Capture,
-        on_finished: Callable[[], None],
-        view: View | None,
-    ) -> Core:
-        inward, outward = (MdmaStream(self._bus, self.spec, each) for each in RING_STREAMS[number])
-        placed, declared = self._buffers.of[name], partial(self._buffers.declared, name)
-        make = Core if self.fidelity is Fidelity.DETAILED else self.core
-        return make(
-            self._env,
-            name,
-            self.spec,
-            layouts=Layouts(name, self._memories, placed, self.size, declared),
-            calls=calls,
+    def _layouts(self, core: str) -> Layouts:
+        declared = partial(self._buffers.declared, core)
+        return Layouts(core, self._memories, self._buffers.of[core], self.size, declared)
+
+    def _around_cores(
+        self, capture: Capture, on_finished: Callable[[], None], view: View | None
+    ) -> AroundCores:
+        return AroundCores(
+            env=self._env,
+            board=self.spec,
             bus=self._bus,
-            number=number,
-            access_trace=access_trace,
+            shared=self._shared,
             capture=capture,
-            streams=(inward, outward),
             dma=self._dma,
             peripherals=self._peripherals,
-            shared=self._shared,
             stages=tuple(each.stage for each in self.firmware.rows),
+            ahead=self.ahead if self.fidelity is Fidelity.FAST else None,
             on_finished=on_finished,
             view=view,
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from bfsim.machine.calls.call_cache import CallCache
-from bfsim.machine.core.core import Core
+from bfsim.machine.main_loop import MainLoop
 from bfsim.seen import Seen
 from bfsim.signals import uninterrupted
 from bfsim.trace import FrameRecord
@@ -16,22 +16,23 @@ class FinishedFrames:
 
     def __init__(
         self,
-        cores: Mapping[str, Core],
+        loops: Mapping[str, MainLoop],
         calls: Mapping[str, CallCache],
         on_frame: Callable[[FrameRecord], None] | None,
     ) -> None:
-        """`calls`: of each core; `on_frame`: told each record."""
+        """`loops`, `calls`: of each core; `on_frame`: told each record."""
         self.records: list[FrameRecord] = []
         self.seen: list[tuple[int, tuple[Seen, ...]]] = []
-        self._cores = cores
+        self._loops = loops
         self._calls = calls
         self._on_frame = on_frame
 
     def collect(self) -> None:
         """Make one record of a frame as soon as every core has finished it."""
-        if not all(core.finished for core in self._cores.values()):
+        finished = [each.pictures.finished for each in self._loops.values()]
+        if not all(finished):
             return
-        parts = [core.finished.pop(0) for core in self._cores.values()]
+        parts = [each.pop(0) for each in finished]
         for calls, part in zip(self._calls.values(), parts, strict=True):
             calls.report(part.counted)
         record = FrameRecord(

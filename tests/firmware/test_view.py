@@ -150,7 +150,7 @@ def readout(results: dict[str, int], mode: Mode = INDOOR_FIELD, **buffers: Any) 
         name: [SimpleNamespace(array=row) for row in np.atleast_2d(each)]
         for name, each in {**empty, **buffers}.items()
     }
-    core: Any = SimpleNamespace(name="A", rows=rows.__getitem__, has_buffer=rows.__contains__)
+    core: Any = SimpleNamespace(core="A", rows=rows.__getitem__, has_buffer=rows.__contains__)
     picture = np.arange(32, dtype=np.uint8).reshape(4, 8)
     frame: Any = SimpleNamespace(rows=[SimpleNamespace(array=each) for each in picture], width=4, height=4)
     return Readout(core, frame, {f"{name}_A": count for name, count in results.items()})

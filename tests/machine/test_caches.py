@@ -122,13 +122,13 @@ def test_a_line_costs_once() -> None:
             times.append((yield from timed(core, walk)))
 
     def timed(core: Core, walk: Sequence[int]) -> Play:
-        stalls = core._account.kernels.stall_cclk
+        stalls = core._parts.clock.accounts.now.kernels.stall_cclk
         before = stalls.get(StallReason.CACHE_FILL, 0)
         yield core.run(visit, core.array("far_image"), core.array("order"), len(walk))
         return stalls.get(StallReason.CACHE_FILL, 0) - before
 
     board = made_board(in_work(work), ldf=shipped("cache.ldf"), more=(FAR, ORDER))
-    board.core = Core  # which has its stalls when its firmware looks
+    board.ahead = None  # a core has its stalls when its firmware looks then
     outcome = board.run(noise(1))
     sdram = CM_BF561.sdram
     hit_cclk = (CHIP.external.core_sync_sclk + sdram.nCL) * CCLK_PER_SCLK - 1

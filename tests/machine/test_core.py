@@ -332,3 +332,41 @@ def test_stall_reasons_are_where_they_happened() -> None:
     frame = run(every_frame(work)).frames[0]
     for stage in ("Work", REST):
         assert stage_of(frame, stage).stall_cclk[StallReason.RING_EMPTY] > 0
+
+
+def test_firmware_gets_nothing_of_the_machine() -> None:
+    """Its core has what main loops and handlers may ask for, and a sentence about each."""
+    asked = [
+        "array",
+        "at",
+        "has_buffer",
+        "idle",
+        "input_ring",
+        "interrupt_core",
+        "lock",
+        "memory_dma",
+        "next_frame",
+        "now_ticks",
+        "on_interrupt",
+        "output_ring",
+        "overlay",
+        "part",
+        "post",
+        "ppi_status",
+        "publish",
+        "receive",
+        "remark",
+        "request_interrupt",
+        "rows",
+        "run",
+        "send",
+        "set_camera",
+        "set_picture_size",
+        "stage",
+        "unlock",
+        "use_size",
+        "wait",
+        "window_ring",
+    ]
+    assert [name for name in dir(Core) if not name.startswith("_")] == asked
+    assert all(getattr(Core, name).__doc__ for name in asked)

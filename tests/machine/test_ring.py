@@ -306,7 +306,7 @@ def test_rings_never_hold_more_than_they_have_rows(turns: list[int]) -> None:
         for number in range(frame.height):
             source, target = (yield from ring.line()), (yield from out.row())
             yield core.run(spin, turns[number % len(turns)])
-            on_their_way = [each for each in out._transfers if each.end is None or each.end > core.now_ticks]
+            on_their_way = [each for each in out._copies if each.end is None or each.end > core.now_ticks]
             assert len(on_their_way) < out._depth
             for valid in range(max(0, number - 1), number + 1):
                 assert np.array_equal(ring[valid].array, frame.rows[valid].array)
@@ -316,7 +316,7 @@ def test_rings_never_hold_more_than_they_have_rows(turns: list[int]) -> None:
         written.append(np.stack([row.array for row in core.rows("image")]))
 
     board = load(every_frame(work), every_frame(work))
-    board.core = Core  # which is where its firmware is at every moment
+    board.ahead = None  # a core's clock is where its firmware is then
     board.run(noise(2))
     for picture, (left, right) in zip(noise(2), zip(written[::2], written[1::2], strict=True), strict=True):
         assert {left.tobytes(), right.tobytes()} == {picture.left.tobytes(), picture.right.tobytes()}

@@ -123,7 +123,7 @@ def test_every_message_arrives_as_it_was_sent(sent: list[bytes], buffer: str) ->
 
     def work(core: Core, frame: Frame) -> Play:
         for each in sent:
-            if (sending := core._peripherals["SPI"].sending) is not None:
+            if (sending := core._parts.messages._peripherals["SPI"].sending) is not None:
                 yield sending  # the buffer is in use
             yield from core.send(core.array(buffer), put(core, each, buffer))
 

@@ -138,7 +138,7 @@ def test_mistakes_of_a_device_are_told_as_such(device: SpiDevice, message: str) 
 
     def work(core: Core, frame: Frame) -> Play:
         yield from core.send(core.array("message"), 2)
-        while (sending := core._peripherals["SPI"].sending) is not None:
+        while (sending := core._parts.messages._peripherals["SPI"].sending) is not None:
             yield sending
         yield from core.receive(core.array("message"))
 

@@ -197,7 +197,7 @@ def test_every_byte_arrives_as_it_was_sent(out: list[bytes], into: list[bytes], 
             got.append(row.octets[:nbytes].tobytes())
             assert len(each) == nbytes
         for each in out:
-            while (sending := core._peripherals["UART"].sending) is not None:
+            while (sending := core._parts.messages._peripherals["UART"].sending) is not None:
                 yield sending  # the buffer is in use
             yield from core.send(core.array(buffer), put(core, each, buffer), over="UART")
 

@@ -36,10 +36,15 @@ class CoreLogs:
         room, count = self.room_of(core)[log.LOG :], accesses.shape[1]
         room[:count], room[w.LOG_ENTRIES : w.LOG_ENTRIES + count] = accesses
 
+    def first(self, core: int, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return the first `count` entries of a core's log, and their sites."""
+        room = self.room_of(core)[log.LOG :]
+        return room[:count], room[w.LOG_ENTRIES :][:count]
+
     def entries(self, core: int, count: int) -> list[tuple[int, int]]:
         """Return the first `count` entries of a core's log, each with its site."""
-        room = self.room_of(core)[log.LOG :]
-        return list(zip(room[:count].tolist(), room[w.LOG_ENTRIES :][:count].tolist(), strict=True))
+        entries, sites = self.first(core, count)
+        return list(zip(entries.tolist(), sites.tolist(), strict=True))
 
     def stalls_at_sites(self, core: int, count: int) -> NDArray[np.int64]:
         """Return what the first `count` sites of a core have stalled so far: by site and, in the order of `bus.state`, reason.

@@ -35,6 +35,10 @@ BeforeCall = Callable[[Kernel, tuple[Row | int, ...]], None]
 """Is told of a kernel and its arguments before each call, and changes neither."""
 
 
+def _nobody(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
+    """Care for no call."""
+
+
 def sanitized(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
     """Run a kernel as it is written, on copies. Raises KernelError for a wrong index or divisor."""
     kernel.sanitize([each.array if isinstance(each, Row) else each for each in arguments])
@@ -42,12 +46,14 @@ def sanitized(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class KnownCall:
-    """A kernel bound to its rows, ready to run.
+    """The kernel `name` bound to its rows, ready to run. `number`: the how-manieth of its core.
 
     `stays_in_l1`: whether neither its accesses nor its code can leave L1; `is_alone`: whether its accesses reach nothing there but buffers
     that belong to its core alone, and those that are `handed_over`, at the time. Code is read only.
     """
 
+    name: str
+    number: int
     run: Callable[[tuple[Row | int, ...]], Work]
     stays_in_l1: bool
     is_alone: bool
@@ -70,13 +76,12 @@ class WatchedCall:
 
 
 class DeferredWork(Work):
-    """A call that is still to be made, with `run`. `owner`: whom its cycles belong to, if to no kernel."""
+    """A call that is still to be made, with `run`."""
 
-    __slots__ = ("_arguments", "_call", "owner")
+    __slots__ = ("_arguments", "_call")
 
-    def __init__(self, call: BoundCall, arguments: tuple[Row | int, ...], owner: str = "") -> None:
+    def __init__(self, call: KnownCall, arguments: tuple[Row | int, ...]) -> None:
         super().__init__(0, 0)
-        self.owner = owner
         self._call = call
         self._arguments = arguments
 
@@ -121,6 +126,9 @@ class CallCache:
         self._groups: dict[tuple[str, Kernel, tuple[int, ...]], CallGroup] = {}
         self._in_stage: dict[str, StageGroups] = {}
         self._calls: dict[str, dict[tuple[Kernel, object], KnownCall]] = {}
+        self._count = 0
+        self.on_prepared: BeforeCall = _nobody
+        """Is told of each call that is prepared."""
         self.enter(REST)
 
     def enter(self, stage: str) -> None:
@@ -147,6 +155,8 @@ class CallCache:
             name = getattr(kernel, "__name__", repr(kernel))
             raise FirmwareError(f"core.run must get a function with @kernel before it, not {name}")
         call = self.known[kernel, kernel.arrays_of(arguments)] = self._prepared(kernel, arguments)
+        self._count += 1
+        self.on_prepared(kernel, arguments)
         return call
 
     @property
@@ -202,6 +212,8 @@ class CallCache:
         if self._before_call:
             call = WatchedCall(call, kernel, self._before_call)
         return KnownCall(
+            kernel.name,
+            self._count,
             call.run,
             stays_in_l1=not (traced or group.fetched),
             is_alone=all(each.buffer in self._own or each.buffer in self._handed_over for each in outside),

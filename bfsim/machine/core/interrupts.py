@@ -6,7 +6,8 @@ that wait, the one of the lowest IVG level comes first, then the lowest number; 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import simpy
@@ -15,8 +16,10 @@ from bfsim.chip.interrupts import SicInterrupt
 from bfsim.errors import FirmwareError
 from bfsim.machine.simulation import Simulation
 
-Handler = Callable[[Any], Any]
+CoreHandler = Callable[[Any], Any]
 """Called with the core: a function, or a generator function that yields kernels as a main loop does."""
+Handler = Callable[[], Any]
+"""The same, bound to its core."""
 
 
 class Interrupts:
@@ -31,6 +34,8 @@ class Interrupts:
         self._raised = env.event()
         self.are_handled = False
         """Whether any interrupt has a handler."""
+        self.is_held = False
+        """Whether none is taken now, since a handler runs, or the core's clock is not where its firmware is."""
         self.counts: dict[str, int] = {}
         """Interrupts that were taken, by source."""
 
@@ -53,6 +58,23 @@ class Interrupts:
             self._waiting.add(source)
             event, self._raised = self._raised, self._env.event()
             event.succeed()
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Have no interrupt taken inside."""
+        before, self.is_held = self.is_held, True
+        yield
+        self.is_held = before
+
+    @property
+    def can_come(self) -> bool:
+        """Whether a handler would be called if its interrupt came now."""
+        return self.are_handled and not self.is_held
+
+    @property
+    def can_be_taken(self) -> bool:
+        """Whether an interrupt waits whose handler can be called now."""
+        return self.can_come and self.is_waiting
 
     @property
     def is_waiting(self) -> bool:

@@ -24,7 +24,8 @@ class Layouts:
         declared: Callable[[FrameSize], Mapping[str, Buffer]],
     ) -> None:
         """`placed`: the buffers for pictures of `size`. `declared`: what the firmware wants for another size."""
-        self._core = core
+        self.core = core
+        """Name of the core."""
         self.memories = memories
         self._placed = placed
         self._full = size
@@ -56,7 +57,8 @@ class Layouts:
             )
         return self.memories.overlay(placed, buffer.element, buffer.columns)[: buffer.rows]
 
-    def __contains__(self, name: str) -> bool:
+    def has_buffer(self, name: str) -> bool:
+        """Whether there is a buffer called `name`."""
         return name in self._buffers
 
     def rows(self, name: str) -> Rows:
@@ -65,7 +67,7 @@ class Layouts:
             return self._buffers[name]
         except KeyError:
             known = ", ".join(sorted(self._buffers))
-            raise FirmwareError(f"core {self._core} has no buffer {name!r}; it has {known}") from None
+            raise FirmwareError(f"core {self.core} has no buffer {name!r}; it has {known}") from None
 
     def overlay(self, buffer: str | Sequence[Row], element: Number, columns: int) -> Rows:
         """Return the memory of a buffer, or of rows that follow each other, as rows of `columns` elements of another kind."""

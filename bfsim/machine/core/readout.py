@@ -15,11 +15,11 @@ from bfsim.seen import CAMERAS, Seen, SeenText
 
 
 class HasBuffers(Protocol):
-    """What has a name, and buffers by their names: a core."""
+    """What has the buffers of a core by their names."""
 
     @property
-    def name(self) -> str:
-        """Its name."""
+    def core(self) -> str:
+        """Name of the core."""
 
     def has_buffer(self, name: str) -> bool:
         """Whether there is a buffer called `name`."""
@@ -31,16 +31,16 @@ class HasBuffers(Protocol):
 class Readout:
     """What a core has in memory at the end of a frame, before anything of the next one is in it."""
 
-    def __init__(self, core: HasBuffers, frame: Frame, results: Mapping[str, int]) -> None:
+    def __init__(self, buffers: HasBuffers, frame: Frame, results: Mapping[str, int]) -> None:
         """`results`: the numbers published for the frame."""
-        self._core = core
+        self._buffers = buffers
         self._frame = frame
         self._results = results
 
     @property
     def core(self) -> str:
         """Name of the core."""
-        return self._core.name
+        return self._buffers.core
 
     @property
     def camera(self) -> str:
@@ -49,11 +49,11 @@ class Readout:
 
     def has_buffer(self, name: str) -> bool:
         """Whether there is a buffer called `name`."""
-        return self._core.has_buffer(name)
+        return self._buffers.has_buffer(name)
 
     def values(self, name: str) -> NDArray[Any]:
         """Return a copy of a buffer: one-dimensional if it has one row, else of shape (rows, columns)."""
-        rows = self._core.rows(name)
+        rows = self._buffers.rows(name)
         return rows[0].array.copy() if len(rows) == 1 else stacked(rows)
 
     def records(self, name: str, words: int, count: int) -> NDArray[Any]:

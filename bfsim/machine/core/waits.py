@@ -24,6 +24,8 @@ class Waits:
     def __init__(self, core: str) -> None:
         self._core = core
         self._made: list[tuple[Wait, str]] = []
+        self.present: str | None = None
+        """What the core waits for, in words, while only another device can let it go on."""
 
     def note(self, wait: Wait) -> None:
         """Note a wait that the firmware has just made. Who asks for the next frame must have begun all before."""
@@ -48,9 +50,8 @@ class Waits:
 class HasWaits(Protocol):
     """What makes waits for the firmware of one core."""
 
-    @property
-    def waits(self) -> Waits:
-        """Those of the core."""
+    _waits: Waits
+    """Those of the core."""
 
 
 Owner = TypeVar("Owner", bound=HasWaits)
@@ -67,7 +68,7 @@ def awaited(method: Method[Owner, Arguments, Result]) -> Method[Owner, Arguments
         self: Owner, /, *arguments: Arguments.args, **named: Arguments.kwargs
     ) -> Generator[Any, Any, Result]:
         wait = method(self, *arguments, **named)
-        self.waits.note(wait)
+        self._waits.note(wait)
         return wait
 
     return made

@@ -14,8 +14,8 @@ from bfsim.errors import FirmwareError
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.masters import STREAMS
 from bfsim.machine.bus.transfer_plans import Transfer, Walk
-from bfsim.machine.core.playing import PlayingCore
-from bfsim.machine.core.waits import Waits, awaited
+from bfsim.machine.core.progress import Progress
+from bfsim.machine.core.waits import awaited
 from bfsim.machine.dma.channel import ChannelStep, DmaChannel, check_pair
 from bfsim.machine.dma.checks import DmaSpace
 from bfsim.machine.dma.config import DmaConfig
@@ -38,8 +38,8 @@ class Dma:
         self._space = space
         self._streams: dict[str, MemoryDma] = {}
 
-    def stream(self, name: str, core: PlayingCore) -> MemoryDma:
-        """Return the stream `name`, whose registers `core` programs from now on."""
+    def stream(self, name: str, progress: Progress) -> MemoryDma:
+        """Return the stream `name`, whose registers the core with this progress programs from now on."""
         known = [each for each in STREAMS if each in self._board.chip.interrupts.__members__]
         if name not in known:
             raise FirmwareError(f"a memory DMA stream must be one of {', '.join(known)}, not {name!r}")
@@ -47,7 +47,7 @@ class Dma:
             self._streams[name] = MemoryDma(
                 self._env, self._board, self._bus, self._memories, self._space, name
             )
-        self._streams[name].core = core
+        self._streams[name].is_of(progress)
         return self._streams[name]
 
 
@@ -56,8 +56,6 @@ class MemoryDma:
 
     Firmware sets the registers by `program` and starts both with `start`; the words move while the core goes on.
     """
-
-    core: PlayingCore
 
     def __init__(
         self, env: Simulation, board: BoardSpec, bus: Bus, memories: Memories, space: DmaSpace, name: str
@@ -86,19 +84,19 @@ class MemoryDma:
         for channel, registers in ((self.source, source), (self.destination, destination)):
             for register, value in registers.items():
                 channel.write(register, value, place)
-        self.core.program_device(self.name, writes=len(source) + len(destination))
+        self._progress.program_device(self.name, writes=len(source) + len(destination))
 
-    @property
-    def waits(self) -> Waits:
-        """The waits of the core that programs it."""
-        return self.core.waits
+    def is_of(self, progress: Progress) -> None:
+        """Have the core with this progress program it from now on."""
+        self._progress = progress
+        self._waits = progress.waits
 
     @awaited
     def start(self, source: DmaConfig, destination: DmaConfig) -> Generator[Any, Any, None]:
         """Write both CONFIG registers; the first work unit begins. MmrError for what the chip would flag."""
         place = running_line()
-        self.core.program_device(self.name, writes=2)
-        yield from self.core.sync()
+        self._progress.program_device(self.name, writes=2)
+        yield from self._progress.sync()
         steps = self.source.start(source, place), self.destination.start(destination, place)
         check_pair(self.source, self.destination)
         self._stopping = False
@@ -106,13 +104,13 @@ class MemoryDma:
 
     def stop(self) -> None:
         """Write both CONFIG registers with DMAEN=0. The work unit under way is still moved; the chip would cut it."""
-        self.core.program_device(self.name, writes=2)
+        self._progress.program_device(self.name, writes=2)
         self._stopping = True
 
     @awaited
     def wait(self) -> Generator[Any, Any, None]:
         """Stall until the work that was started is done; with FLOW=AUTO it is after a `stop` only."""
-        yield from self.core.wait_event(self.done, f"{self.name}", lambda: self._last)
+        yield from self._progress.wait_event(self.done, f"{self.name}", lambda: self._last)
 
     def _run(self, source: ChannelStep, destination: ChannelStep) -> Generator[Any, Any, None]:
         """Move one work unit after the other, until one of the channels stops."""
@@ -176,4 +174,4 @@ class MemoryDma:
 
     def _interrupt(self, *, wanted: bool) -> None:
         if wanted:
-            self.core.request_interrupt(self.name)
+            self._progress.request_interrupt(self.name)

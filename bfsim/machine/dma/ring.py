@@ -10,9 +10,8 @@ from typing import Any
 
 from bfsim.chip.dma_registers import COPY_READS, COPY_WRITES
 from bfsim.errors import FirmwareError
-from bfsim.machine.bus.transfer_plans import Transfer
-from bfsim.machine.core.playing import PlayingCore
-from bfsim.machine.core.waits import Waits, awaited
+from bfsim.machine.core.progress import Copy, Progress
+from bfsim.machine.core.waits import awaited
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.trace import StallReason
@@ -37,12 +36,12 @@ class InputRing:
     """Lines of a picture, first to last, one line ahead of the core."""
 
     def __init__(
-        self, core: PlayingCore, stream: MdmaStream, image: Sequence[Row], rows: Sequence[Row],
+        self, progress: Progress, stream: MdmaStream, image: Sequence[Row], rows: Sequence[Row],
         on_line: Callable[[int, int], None],
     ) -> None:  # fmt: skip
         """`on_line`: called with the number of each line that is taken, and with how many there are."""
         _check(rows, image)
-        self._core = core
+        self._progress = progress
         self._stream = stream
         self._image = image
         self._rows = rows
@@ -50,13 +49,12 @@ class InputRing:
         self._owner = f"ring {rows[0].buffer}"
         self._height, self._depth = len(image), len(rows)
         self._taken = 0
-        self._coming: Transfer | None = None
-        """The next line's transfer."""
+        self._coming: Copy | None = None  # the next line
 
     def line(self) -> Generator[Any, Any, Row]:
         """Wait for the next line and return its row. It stays valid for as many calls as the ring has rows, less one."""
-        core, number = self._core, self._taken
-        if late := core.catch_up():
+        progress, number = self._progress, self._taken
+        if late := progress.catch_up():
             yield late
         if number == self._height:
             raise FirmwareError(
@@ -64,19 +62,19 @@ class InputRing:
             )
         self._taken = number + 1
         self._on_line(number, self._height)
-        core.program_device(self._owner, writes=COPY_WRITES, reads=COPY_READS)
-        transfer = self._coming or self._fetch(number)
+        progress.program_device(self._owner, writes=COPY_WRITES, reads=COPY_READS)
+        copy = self._fetch(number) if self._coming is None else self._coming
         # one line ahead: its row is the one that the core gave up with this call
         self._coming = self._fetch(number + 1) if number + 1 < self._height else None
-        core.settle()
-        is_there = core.goes_on(transfer, StallReason.RING_EMPTY, self._owner)
-        core.tell_level(self._owner, int(is_there))
+        progress.settle()
+        is_there = progress.goes_on(copy, StallReason.RING_EMPTY, self._owner)
+        progress.clock.tell_level(self._owner, int(is_there))
         if not is_there:
-            yield from core.wait_transfer(transfer, StallReason.RING_EMPTY, self._owner)
+            yield from progress.wait_transfer(copy, StallReason.RING_EMPTY, self._owner)
         return self._rows[number % self._depth]
 
-    def _fetch(self, number: int) -> Transfer:
-        return self._stream.copy(self._image[number], self._rows[number % self._depth], self._core.now_ticks)
+    def _fetch(self, number: int) -> Copy:
+        return self._progress.copy(self._stream, self._image[number], self._rows[number % self._depth])
 
     def __getitem__(self, number: int) -> Row:
         """Return the row of line `number`, which must still be in the ring."""
@@ -92,51 +90,48 @@ class OutputRing:
     """Finished lines on their way to a picture in memory."""
 
     def __init__(
-        self, core: PlayingCore, stream: MdmaStream, rows: Sequence[Row], image: Sequence[Row]
+        self, progress: Progress, stream: MdmaStream, rows: Sequence[Row], image: Sequence[Row]
     ) -> None:
         _check(rows, image)
-        self._core = core
+        self._progress = progress
         self._stream = stream
         self._image = image
         self._rows = rows
         self._owner = f"ring {rows[0].buffer}"
         self._height, self._depth = len(image), len(rows)
-        self._transfers: list[Transfer] = []
+        self._copies: list[Copy] = []
+        self._waits = progress.waits
 
     def row(self) -> Generator[Any, Any, Row]:
         """Wait until a row is free and return it, to be written and then sent."""
-        number, depth = len(self._transfers), self._depth
+        number, depth = len(self._copies), self._depth
         if number >= depth:
-            transfer, why = self._transfers[number - depth], (StallReason.RING_FULL, self._owner)
-            if self._core.can_be_interrupted or not self._core.goes_on(transfer, *why):
-                yield from self._core.wait_transfer(transfer, *why)
+            progress, copy = self._progress, self._copies[number - depth]
+            why = StallReason.RING_FULL, self._owner
+            if progress.interrupts.can_come or not progress.goes_on(copy, *why):
+                yield from progress.wait_transfer(copy, *why)
         return self._rows[number % depth]
 
     def send(self) -> None:
         """Start the DMA of the row that was written, to the next line of the picture."""
-        number = len(self._transfers)
+        number = len(self._copies)
         if number == self._height:
             raise FirmwareError(
                 f"the picture {self._image[0].buffer} has {self._height} lines; one more was sent"
             )
-        self._core.program_device(self._owner, writes=COPY_WRITES, reads=COPY_READS)
+        self._progress.program_device(self._owner, writes=COPY_WRITES, reads=COPY_READS)
         row = self._rows[number % self._depth]
-        self._transfers.append(self._stream.copy(row, self._image[number], self._core.now_ticks))
-        if self._core.is_told:
+        self._copies.append(self._progress.copy(self._stream, row, self._image[number]))
+        if self._progress.clock.timeline:
             self._tell_fill()
 
     def _tell_fill(self) -> None:
         """Tell how many rows wait for their DMA."""
-        on_their_way = [each for each in self._transfers[-self._depth :] if not self._core.has(each)]
-        self._core.tell_level(self._owner, len(on_their_way))
-
-    @property
-    def waits(self) -> Waits:
-        """The waits of the core whose ring it is."""
-        return self._core.waits
+        on_their_way = [each for each in self._copies[-self._depth :] if not self._progress.has(each)]
+        self._progress.clock.tell_level(self._owner, len(on_their_way))
 
     @awaited
     def flush(self) -> Generator[Any, Any, None]:
         """Wait until every line that was sent has arrived."""
-        if self._transfers:
-            yield from self._core.wait_transfer(self._transfers[-1], StallReason.RING_FULL, self._owner)
+        if self._copies:
+            yield from self._progress.wait_transfer(self._copies[-1], StallReason.RING_FULL, self._owner)

@@ -12,12 +12,11 @@ from bfsim.kernel import Kernel
 from bfsim.kernel.types import ArrayType, IntType, Number, u8
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Bus
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.core import Core
+from bfsim.machine.core.parts import Parts
 from bfsim.machine.core.semaphore import Semaphore
 from bfsim.machine.core.spin_lock import SpinLock
-from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.machine.retiming.translated import Stretch, translated
 from bfsim.machine.retiming.work import (
@@ -40,20 +39,14 @@ Wait = Generator[Any, Any, Any]
 class ReplayedCore(Core):
     """A core that plays `works`. `kernels`: those of its firmware, by symbol."""
 
-    def __init__(
-        self,
-        *arguments: Any,
-        bus: Bus,
-        streams: tuple[MdmaStream, MdmaStream],
-        kernels: dict[str, Kernel],
-        works: Iterator[FrameWork],
-        **named: Any,
-    ) -> None:
-        super().__init__(*arguments, bus=bus, streams=streams, **named)
+    def __init__(self, parts: Parts, kernels: dict[str, Kernel], works: Iterator[FrameWork]) -> None:
+        super().__init__(parts)
+        self._bus = parts.bus
+        self._chip = parts.board.chip
         self._works = works
         self._kernels = kernels
-        self._firsts = np.array(bus.owners.first, np.int64)
-        self._is_outside = self._firsts < int(bus.words[w.L2_END])
+        self._firsts = np.array(parts.bus.owners.first, np.int64)
+        self._is_outside = self._firsts < int(parts.bus.words[w.L2_END])
         self._kinds_of_calls: list[int] = []  # of those that were prepared: what running them is to the bus
         self._account_names: list[str] = []
         self._copies = np.zeros((0, 3), np.int64)
@@ -94,14 +87,14 @@ class ReplayedCore(Core):
         self._account_names += work.accounts
         if len(work.copies):
             self._copies = np.concatenate([self._copies, self._planned(work.copies)])
-        frame = translated(work, self._firsts, self._is_outside, self._copies, self._board.chip.events)
+        frame = translated(work, self._firsts, self._is_outside, self._copies, self._chip.events)
         events = np.searchsorted(work.events[:, 0], np.arange(len(work.calls) + 1)).tolist()
         for number, stretches in enumerate(frame.stretches()):
             for each in stretches:
                 yield from self._stretch(each)
             if number < len(work.calls):
                 _, counters, since = work.events[events[number] : events[number + 1]].T
-                self._calls.events[counters] += since
+                self._parts.calls.events[counters] += since
                 name, arguments = work.calls[number]
                 yield from self._call(name, arguments)
 
@@ -109,9 +102,9 @@ class ReplayedCore(Core):
         runs_at, kernels = stretch.calls
         if len(runs_at):
             stretch.operations[runs_at, 0] = np.array(self._kinds_of_calls)[kernels]
-        yield self._bus.stretches.play(self._number, self._cclk, stretch.operations, stretch.accesses)
-        played = self._bus.stretches.played(self._number, len(self._account_names))
-        self._charge_stretch(played, self._account_names)
+        number, clock, stretches = self._parts.number, self._parts.clock, self._bus.stretches
+        yield stretches.play(number, clock.cclk, stretch.operations, stretch.accesses)
+        clock.stretch(stretches.played(number, len(self._account_names)), self._account_names)
 
     def _planned(self, copies: Table) -> Table:
         """Plan copies; return the numbers of their plans, and where they go from and to: rows of what is behind COPY.
@@ -122,7 +115,7 @@ class ReplayedCore(Core):
             self._firsts[copies[:, owner]] + copies[:, byte]
             for owner, byte in ((SOURCE, SOURCE_BYTE), (DESTINATION, DESTINATION_BYTE))
         )
-        within_word = (sources | destinations) % self._board.chip.dma.word_bytes
+        within_word = (sources | destinations) % self._chip.dma.word_bytes
         kinds = np.column_stack([copies[:, [STREAM, SOURCE, DESTINATION, NBYTES]], within_word])
         _, examples, kind_of = np.unique(kinds, axis=0, return_index=True, return_inverse=True)
         plans = self._bus.stretches.keep_plans([self._plan(*copies[each].tolist()) for each in examples])
@@ -135,7 +128,7 @@ class ReplayedCore(Core):
         for each in rows:
             if "SCRATCH" in each.memory:
                 raise WorkError(f"{each.buffer} must be where DMA can reach it, not in {each.memory}")
-        return self._streams[stream].plan(*rows).words
+        return self._parts.rings.streams[stream].plan(*rows).words
 
     # Calls of firmware, by the name that they are noted by
 
@@ -146,11 +139,11 @@ class ReplayedCore(Core):
 
     def _take_semaphore(self, name: str, turn: int) -> Wait:
         yield from self.wait(name)
-        self._check_turn(self._semaphore(name), turn)
+        self._check_turn(self._parts.shared.semaphore(name), turn)
 
     def _take_lock(self, name: str, turn: int) -> Wait:
         yield from self.lock(name)
-        self._check_turn(self._lock(name), turn)
+        self._check_turn(self._parts.shared.lock(name), turn)
 
     def _check_turn(self, shared: Semaphore | SpinLock, turn: int) -> None:
         if shared.taken != turn:
@@ -187,7 +180,7 @@ class ReplayedCore(Core):
             raise WorkError(
                 f"core {self.name} gets {got}{where} where it got {had} when the run was recorded, for others are missed here: {NOT_THE_SAME}"
             )
-        if any(name.startswith("ppi_words_lost_") for name in self._results):
+        if self._parts.pictures.has_lost_words:
             raise WorkError(
                 f"in frame {index} the DMA of a camera loses words on this hardware: {NOT_THE_SAME}"
             )
@@ -206,7 +199,7 @@ class ReplayedCore(Core):
             else (0 if isinstance(each.type, IntType) else 0.0)
             for each in parameters
         ]
-        call = self._calls.prepare(kernel, tuple(arguments))
+        call = self._parts.calls.prepare(kernel, tuple(arguments))
         given = [each for each in arguments if isinstance(each, Row)]
         moved_out = [each.buffer for each, was in zip(given, in_l1, strict=True) if was and not each.is_in_l1]
         if moved_out:
@@ -222,7 +215,7 @@ class ReplayedCore(Core):
     def _row(self, place: Place, element: Number = u8) -> Row:
         """Return the row at a place, of elements of a kind."""
         owner = self._bus.owners[place.owner]
-        array = self._layouts.memories.bytes_from(self._offset(place), place.nbytes).view(element.dtype)
+        array = self._parts.layouts.memories.bytes_from(self._offset(place), place.nbytes).view(element.dtype)
         return Row(owner.buffer, owner.memory, 0, self._offset(place), array)
 
 

@@ -65,10 +65,10 @@ def doing(deeds: Deeds) -> Main:
     return every_frame(work)
 
 
-def outcome(deeds: tuple[Deeds, Deeds], core: type[Core] | None = None) -> BoardRecord:
-    """Run a firmware of two cores on cores of a kind, or of the kind that is used by itself."""
+def outcome(deeds: tuple[Deeds, Deeds], *, ahead: bool = True) -> BoardRecord:
+    """Run a firmware of two cores, ahead where they may or in step with the simulated time."""
     board = load(*map(doing, deeds))
-    board.core = core or board.core
+    board.ahead = board.ahead if ahead else None
     return replace(board.run(noise(2)), events=0)
 
 
@@ -82,4 +82,4 @@ deeds = st.lists(st.tuples(st.sampled_from(DEEDS), st.integers(1, 400)), max_siz
 @example(([], [("rings", 1), ("handle", 1), ("rings", 1)])).via("a ring meets it when nothing is late")
 def test_what_is_done_ahead_is_charged_as_if_it_were_not(deeds: tuple[Deeds, Deeds]) -> None:
     """Rings, own and shared memory, stages, semaphores, and handlers that come in between."""
-    assert outcome(deeds) == outcome(deeds, Core)
+    assert outcome(deeds) == outcome(deeds, ahead=False)

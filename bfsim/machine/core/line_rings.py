@@ -1,0 +1,47 @@
+"""The line rings that a core makes for its firmware: of DMA, or of none where the picture lies in cached memory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from bfsim.kernel.access_trace import AccessTrace
+from bfsim.machine.calls.cached_lines import CachedInput, CachedOutput
+from bfsim.machine.core.layouts import Layouts
+from bfsim.machine.core.progress import Progress
+from bfsim.machine.dma.mdma import MdmaStream
+from bfsim.machine.dma.ring import InputRing, OutputRing
+from bfsim.machine.memories import Row
+
+
+class LineRings:
+    """Those of one core, by its two `streams`: of input and of output."""
+
+    def __init__(
+        self, progress: Progress, streams: tuple[MdmaStream, MdmaStream], layouts: Layouts, access_trace: AccessTrace,
+        on_line: Callable[[int, int], None],
+    ) -> None:  # fmt: skip
+        """`on_line`: called with the number of each line that is taken, and with how many there are."""
+        self.streams = streams
+        self._progress = progress
+        self._layouts = layouts
+        self._access_trace = access_trace
+        self._on_line = on_line
+
+    def input(self, image: Sequence[Row], ring: str | Sequence[Row]) -> InputRing | CachedInput:
+        """Return a ring that fetches the lines of `image`, or the image's own lines if it is cached."""
+        if self._is_cached(image):
+            return CachedInput(image, self._on_line)
+        return self.window(image, self._layouts.rows(ring) if isinstance(ring, str) else ring)
+
+    def window(self, image: Sequence[Row], rows: Sequence[Row]) -> InputRing:
+        """Return a ring that fetches the lines of `image` even if it is cached."""
+        return InputRing(self._progress, self.streams[0], image, rows, self._on_line)
+
+    def output(self, ring: str, image: Sequence[Row]) -> OutputRing | CachedOutput:
+        """Return a ring that takes lines to `image`, or the image's own lines if it is cached."""
+        if self._is_cached(image):
+            return CachedOutput(image)
+        return OutputRing(self._progress, self.streams[1], self._layouts.rows(ring), image)
+
+    def _is_cached(self, image: Sequence[Row]) -> bool:
+        return bool(image) and self._access_trace.caches(image[0].offset)

@@ -1,0 +1,43 @@
+"""What a core consists of. Firmware knows none of it: it gets a `Core`, which asks these."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bfsim.chip.spec import BoardSpec
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.calls.call_cache import CallCache
+from bfsim.machine.cameras.capture import Capture
+from bfsim.machine.core.clock import CoreClock
+from bfsim.machine.core.layouts import Layouts
+from bfsim.machine.core.line_rings import LineRings
+from bfsim.machine.core.messages import Messages
+from bfsim.machine.core.pictures import Pictures
+from bfsim.machine.core.progress import Progress
+from bfsim.machine.core.stages import Stages
+from bfsim.machine.core.synchronisation import SharedObjects, Synchronisation
+from bfsim.machine.core.tasks import Tasks
+from bfsim.machine.dma.memory_dma import Dma
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parts:
+    """The parts of the core `name`, the `number` of a board's `bus`; what it shares with the other one: `shared`, `capture` and `dma`."""
+
+    name: str
+    number: int
+    board: BoardSpec
+    bus: Bus
+    clock: CoreClock
+    progress: Progress
+    calls: CallCache
+    tasks: Tasks
+    stages: Stages
+    pictures: Pictures
+    layouts: Layouts
+    rings: LineRings
+    messages: Messages
+    synchronisation: Synchronisation
+    shared: SharedObjects
+    capture: Capture
+    dma: Dma

@@ -1,0 +1,53 @@
+"""The stage that a core is in: its row of the budget, which its cycles go to, and what conflicts in L1 cost it."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from bfsim.errors import FirmwareError
+from bfsim.machine.bus.bus import Bus
+from bfsim.machine.calls.call_cache import CallCache
+from bfsim.machine.calls.conflicts import Accesses
+from bfsim.machine.core.accounts import KERNELS
+from bfsim.machine.core.progress import Progress
+from bfsim.trace import StallReason
+
+
+class Stages:
+    """The stages of a core's firmware, by `names`."""
+
+    def __init__(self, names: tuple[str, ...], progress: Progress, calls: CallCache, bus: Bus) -> None:
+        self._names = names
+        self._progress = progress
+        self._clock = progress.clock
+        self._calls = calls
+        self._bus = bus
+        self._entered_at_cclk = 0
+
+    @property
+    def present(self) -> str:
+        """The one that the firmware is in."""
+        return self._calls.stage
+
+    def check(self, name: str) -> None:
+        """Raise FirmwareError unless there is a stage `name`."""
+        if name not in self._names:
+            raise FirmwareError(f"stage must be one of {', '.join(self._names)}, not {name!r}")
+
+    def enter(self, stage: str) -> None:
+        """Go over to another stage, and charge the one that ends what conflicts in L1 cost it."""
+        accessed = self._calls.accessed()
+        self._calls.enter(stage)
+        self._progress.when_there(partial(self._change_account, stage, accessed))
+
+    def _change_account(self, stage: str, accessed: Accesses) -> None:
+        """Let cycles go to `stage` from now on; what was `accessed` in L1 before is charged to the one that ends."""
+        self._bus.settle()
+        clock = self._clock
+        conflicts_cclk = self._calls.conflicts_cclk(accessed, clock.cclk - self._entered_at_cclk)
+        if conflicts_cclk:
+            clock.stall(StallReason.L1_CONFLICT, conflicts_cclk, KERNELS)
+        self._entered_at_cclk = clock.cclk
+        if clock.timeline:
+            clock.timeline.enter(stage, clock.cclk)
+        clock.accounts.enter(stage)

@@ -1,0 +1,188 @@
+"""The generators of one core's firmware, its main loop and its handlers: kernels are charged, events waited for."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import Any
+
+import simpy
+
+from bfsim.chip.spec import EventSpec
+from bfsim.errors import BfsimError, FirmwareError, KernelError, shown
+from bfsim.kernel import Kernel, Work
+from bfsim.kernel.work import UNYIELDED
+from bfsim.machine.calls.call_cache import CallCache, DeferredWork, KnownCall
+from bfsim.machine.core.handovers import Handovers
+from bfsim.machine.core.progress import Progress, Wait
+from bfsim.machine.core.waits import name_of
+from bfsim.machine.firmware_lines import line_at, line_of
+from bfsim.machine.memories import Row
+from bfsim.trace import REST, StallReason
+
+
+class Tasks:
+    """What the firmware of core `name` does, one thing after the other."""
+
+    def __init__(
+        self, name: str, progress: Progress, calls: CallCache, handovers: Handovers, events: EventSpec
+    ) -> None:
+        self._name = name
+        self._progress = progress
+        self._interrupts = progress.interrupts
+        self._calls = calls
+        self._handovers = handovers
+        self._events = events
+        self._unclaimed: Work | None = None
+        self._call: KnownCall  # the one that was asked for last
+        self._is_traced = False  # and whether it was made ahead and has a log
+        self._task: Generator[Any, Any, Any] | None = None  # the main loop, or the handler that came between
+        self.frame_index: int | None = None
+        """Index of the picture that is worked on, None between two."""
+
+    def run(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> Work:
+        """Run a kernel now, or promise to: what it gives must be yielded next."""
+        if self._unclaimed is not None:
+            self.check_claimed()
+        try:
+            call = self._calls.known[kernel, kernel.arrays_of(arguments)]
+        except (LookupError, TypeError, AttributeError):  # the first time, or something is wrong
+            call = self._calls.prepare(kernel, arguments)
+        self._call = call
+        for each in call.handed_over:
+            self._handovers.use(self._name, each)
+        if call.stays_in_l1:
+            work = call.run(arguments)
+        elif call.is_alone and self._progress.runs_ahead:
+            self._is_traced = True
+            work = call.run(arguments)
+        else:  # it may meet what others do, and runs when the simulated time is there
+            work = DeferredWork(call, arguments)
+        self._unclaimed = work
+        return work
+
+    def perform(self, task: Generator[Any, Any, Any]) -> Wait:
+        """Play a generator of the firmware: charge the kernels that it yields, and wait for the events."""
+        before, self._task = self._task, task
+        progress, interrupts, value = self._progress, self._interrupts, None
+        while True:
+            try:
+                item = task.send(value)
+            except StopIteration:
+                break
+            except (Exception, SystemExit) as error:
+                raise self.told(error) from error
+            if item is self._unclaimed and item is not None:
+                self._unclaimed = None
+                if self._is_traced:
+                    self._is_traced = False
+                    progress.note_call(item, self._call)
+                elif isinstance(item, DeferredWork):
+                    call = self._call
+                    yield from progress.sync()
+                    item = self._made(item, task)
+                    yield from progress.play_call(item, call)
+                else:
+                    progress.charge_call(item, self._call)
+                value = item.value
+            elif isinstance(item, simpy.Event):
+                value = yield item
+            else:
+                raise self._misused(item, line_at(task))
+            if progress.is_full or (interrupts.are_handled and not interrupts.is_held):
+                yield from progress.sync()
+        self.check_claimed()
+        self._check_waits(task)
+        self._task = before
+
+    def idle(self) -> Wait:
+        """Wait for an interrupt, and let its handler run; one that was asked for already ends the wait at once."""
+        progress, interrupts = self._progress, self._interrupts
+        with interrupts.held():
+            yield from progress.sync()
+        if not interrupts.is_waiting:
+            yield from progress.blocked(iter([interrupts.next_request()]), "an interrupt", None)
+            progress.clock.wake(None, "wait for an interrupt")
+        if not interrupts.is_held:
+            yield from self.serve_interrupts()
+
+    def serve_interrupts(self) -> Wait:
+        """Run the handlers of all interrupts that wait; the way in and out is a stall."""
+        clock, interrupts, name = self._progress.clock, self._interrupts, self._name
+        with interrupts.held():
+            while interrupts.is_waiting:
+                source, handler = interrupts.take()
+                self._handovers.take(name, f"{source} of core {name}")
+                begin_cclk = clock.cclk
+                with clock.elsewhere():
+                    clock.stall(
+                        StallReason.INTERRUPT, self._events.interrupt_entry_cclk, f"interrupt {source}"
+                    )
+                    task = handler()
+                    if isinstance(task, Generator):
+                        yield from self.perform(task)
+                    clock.stall(
+                        StallReason.INTERRUPT, self._events.interrupt_exit_cclk, f"interrupt {source}"
+                    )
+                if clock.timeline:
+                    clock.timeline.interrupt(source, begin_cclk, clock.cclk)
+
+    def check_claimed(self) -> None:
+        """Raise FirmwareError if a call was not yielded."""
+        if self._unclaimed is not None:
+            raise FirmwareError(
+                f"core {self._name}: core.run(...) must be yielded, or its cycles are lost: "
+                f"write `yield core.run({self._call.name}, ...)`"
+            )
+
+    def describe_wait(self) -> str:
+        """Say what the core waits for and where in the firmware."""
+        return (
+            f"core {self._name} waits for {self._progress.waits.present or 'a device'}{line_at(self._task)}"
+        )
+
+    # ---- what is wrong with the firmware
+
+    def told(self, error: Exception | SystemExit) -> BfsimError:
+        """Return what went wrong in the firmware, with its line there."""
+        line = line_of(error)
+        if isinstance(error, KernelError):
+            return self._in_call(error, line)
+        if isinstance(error, BfsimError):
+            return type(error)(f"{error}{line}")
+        what = f"{type(error).__name__}: {error}"
+        if forgotten := self._progress.waits.forgotten():
+            return FirmwareError(f"{forgotten} ({what}){line}")
+        if self._unclaimed is not None:
+            return FirmwareError(f"core {self._name}: {UNYIELDED} ({what}){line}")
+        return FirmwareError(f"core {self._name}: firmware failed with {what}{line}")
+
+    def _check_waits(self, task: Generator[Any, Any, Any]) -> None:
+        """Raise FirmwareError if `task`, which has ended, has forgotten a wait."""
+        try:
+            self._progress.waits.check()
+        except FirmwareError as error:
+            raise FirmwareError(f"{error} at the end of {name_of(task)}") from None
+
+    def _misused(self, item: object, line: str) -> FirmwareError:
+        """Return what is wrong with a yield of `item`, which is no call and no event."""
+        if isinstance(item, Generator):
+            wait = f"{name_of(item)}(...)"
+            return FirmwareError(
+                f"core {self._name}: a wait must be written `yield from {wait}`, not `yield {wait}`{line}"
+            )
+        return FirmwareError(
+            f"core {self._name}: firmware must yield each core.run(...) once, or `yield from` a wait, not {shown(item)}{line}"
+        )
+
+    def _made(self, work: DeferredWork, task: Generator[Any, Any, Any]) -> Work:
+        """Make a call that `task` has yielded."""
+        try:
+            return work.run()
+        except KernelError as error:
+            raise self._in_call(error, line_at(task)) from error
+
+    def _in_call(self, error: KernelError, line: str) -> KernelError:
+        """Return a mistake in a kernel with where and when the firmware called it."""
+        frame = "between two frames" if self.frame_index is None else f"frame {self.frame_index}"
+        stage = "outside of stages" if self._calls.stage == REST else f"stage {self._calls.stage}"
+        return KernelError(f"{error}\n    core {self._name}, {frame}, {stage}{line}")

@@ -1,0 +1,43 @@
+"""The main loop of one core: the process that plays it."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+
+from bfsim.errors import FirmwareError
+from bfsim.machine.core.core import Core
+from bfsim.machine.core.parts import Parts
+from bfsim.machine.core.progress import Wait
+from bfsim.machine.program import Main
+
+
+class MainLoop:
+    """What `main` does with a core. `is_done`: whether it has ended."""
+
+    def __init__(self, parts: Parts, core: Core, main: Main) -> None:
+        self.pictures = parts.pictures
+        self.is_done = False
+        self.main = main
+        self._parts = parts
+        self._core = core
+
+    def play(self) -> Wait:
+        """Run the main loop: the process of this core."""
+        tasks = self._parts.tasks
+        try:
+            task = self.main(self._core)
+        except (Exception, SystemExit) as error:
+            raise tasks.told(error) from error
+        if not isinstance(task, Generator):
+            raise FirmwareError(
+                f"core {self._core.name}: the main loop must be a generator function, not {self.main!r}: "
+                "it waits with `yield from core.next_frame()`, and runs kernels with `yield core.run(...)`"
+            )
+        yield from tasks.perform(task)
+        yield from self._parts.progress.sync()
+        self.pictures.close()
+        self.is_done = True
+
+    def describe_wait(self) -> str:
+        """Say what the core waits for and where in the firmware."""
+        return f"core {self._core.name} has ended" if self.is_done else self._parts.tasks.describe_wait()

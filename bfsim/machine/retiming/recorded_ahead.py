@@ -1,0 +1,94 @@
+"""The progress of a core that runs ahead and has it noted, stretch by stretch, as operations of `FrameWork`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from bfsim.kernel import Work
+from bfsim.machine.bus import state as w
+from bfsim.machine.calls.call_cache import KnownCall
+from bfsim.machine.core.ahead import Ahead, Operation
+from bfsim.machine.core.progress import Wait
+from bfsim.machine.dma.mdma import MdmaStream
+from bfsim.machine.memories import Row
+from bfsim.machine.retiming.work import CALL, Table
+from bfsim.machine.retiming.work_notes import WorkNotes
+
+LATEST = 1 << 14
+"""Copies of a core that can be waited for: the latest so many, of which the bus remembers the ends."""
+
+
+class RecordedAhead(Ahead):
+    """`Ahead`, with `notes` of what it is asked for, unless that `is_paused`: inside a call of firmware that is noted as a whole."""
+
+    def __init__(self, *parts: Any) -> None:
+        super().__init__(*parts)
+        self.notes = WorkNotes(self._name, self._bus.owners)
+        self.is_paused = False
+        self.is_too_late = False
+        """Whether a copy was waited for that is not among the latest."""
+        self.streams: tuple[MdmaStream, ...] = ()
+        """Those of the core."""
+
+    def _begin(self) -> None:
+        super()._begin()
+        self._calls: list[int] = []  # which of those that were prepared each call with accesses is,
+        self._marks: list[int] = []  # and behind how many operations the calls of firmware are
+
+    def mark(self) -> None:
+        """Note the place of a call of firmware."""
+        if self._noted:
+            self._note_calls()
+            self._marks.append(len(self._noted) // w.OPERATION_WORDS)
+        else:
+            self.notes.add(CALL)
+
+    def note_call(self, work: Work, call: KnownCall) -> None:
+        """Note which call it is."""
+        super().note_call(work, call)
+        self._calls.append(call.number)
+
+    def charge_call(self, work: Work, call: KnownCall) -> None:
+        """Note it though nothing is noted before it."""
+        if not (self._noted or self.is_paused):
+            self.notes.add(w.RUN, work.issue_cclk, work.stall_cclk)
+        super().charge_call(work, call)
+
+    def play_call(self, work: Work, call: KnownCall) -> Wait:
+        """Note what was played."""
+        yield from super().play_call(work, call)
+        if not self.is_paused:
+            trace, count = self._access_trace, work.accesses
+            self.notes.add_accesses(trace.entries(count), trace.sites(count))
+            self.notes.add(w.ACCESS, work.issue_cclk, work.stall_cclk, count, call.number)
+
+    def _planned(self, stream: MdmaStream, source: Row, destination: Row) -> Operation:
+        kind, plan, offset, to, _ = super()._planned(stream, source, destination)
+        return kind, plan, offset, to, self.notes.copy(self.streams.index(stream), source, destination)
+
+    def play_stretches(self) -> Wait:
+        """Note what is played."""
+        if self._noted and not self.is_paused:
+            self._note_calls()
+            self._note_stretch(np.array(self._noted, np.int64).reshape(-1, w.OPERATION_WORDS))
+        yield from super().play_stretches()
+
+    def _note_stretch(self, operations: Table) -> None:
+        """Note operations in the words of `FrameWork`."""
+        kinds, notes = operations[:, 0], self.notes
+        accounts = np.array([notes.account(each) for each in self._owners], np.int64)
+        calls, set_ups, copies, awaits = (
+            np.flatnonzero(kinds == each) for each in (w.ACCESS, w.SET_UP, w.COPY, w.AWAIT)
+        )
+        if len(calls):
+            notes.add_accesses(*self._bus.logs.first(self._number, int(operations[calls[-1], 4])))
+            operations[calls, 3] = operations[calls, 4] - operations[calls, 3]
+            operations[calls, 4] = self._calls
+        _, _, account, writes, reads = operations[set_ups].T
+        operations[set_ups, 1:] = np.column_stack([writes, reads, accounts[account], 0 * reads])
+        operations[copies, 1], operations[copies, 2:] = operations[copies, 4], 0
+        operations[awaits, 3] = accounts[operations[awaits, 3]]
+        self.is_too_late |= bool((operations[awaits, 1] > LATEST).any())
+        notes.add_all(np.insert(operations, self._marks, (CALL, 0, 0, 0, 0), axis=0))
