@@ -11,7 +11,7 @@ from typing import Any
 from unittest.mock import patch
 
 from bfsim.kernel.work import PreparedCall
-from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.woven_bus import WovenBus
 
 
 @dataclass(slots=True)
@@ -54,7 +54,7 @@ def native_time(kernels: Stopwatch, weave: Stopwatch) -> Iterator[None]:
     """Take the time of kernels and of the weave, in boards that are made inside."""
     with (
         patch.object(PreparedCall, "__init__", _after(PreparedCall, "_entry", kernels)),
-        patch.object(Bus, "__init__", _after(Bus, "_advance", weave)),
+        patch.object(WovenBus, "__init__", _after(Bus, "_advance", weave)),
     ):
         yield
 

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +16,7 @@ from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.linker import LinkMap
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.calls.caches import cached_parts, caches_of, check_caches, written_through
 from bfsim.machine.calls.call_cache import BeforeCall, CallCache
 from bfsim.machine.calls.conflicts import SubBanks
@@ -49,9 +49,6 @@ from bfsim.machine.simulation import Simulation
 from bfsim.machine.stack import stack_outside_l1
 from bfsim.machine.symbols import PROCESSORS
 from bfsim.trace import BoardRecord, FrameRecord
-
-if TYPE_CHECKING:
-    from bfsim.machine.detailed.bus import DetailedBus
 
 
 class Fidelity(StrEnum):
@@ -165,9 +162,9 @@ class Board:
 
     # ---- wiring
 
-    def _bus_in(self, env: Simulation) -> Bus | DetailedBus:
+    def _bus_in(self, env: Simulation) -> Bus:
         if self.fidelity is Fidelity.FAST:
-            return Bus(env, self.spec, self._memories)
+            return WovenBus(env, self.spec, self._memories)
         from bfsim.machine.detailed.bus import DetailedBus  # few runs have it
 
         return DetailedBus(env, self.spec, self._memories)
@@ -237,7 +234,7 @@ class Board:
             dma=self._dma,
             peripherals=self._peripherals,
             stages=tuple(each.stage for each in self.firmware.rows),
-            ahead=self.ahead if self.fidelity is Fidelity.FAST else None,
+            ahead=self.ahead,
             on_finished=on_finished,
             view=view,
         )
@@ -261,7 +258,7 @@ class Board:
             accesses=tuple(each for core in counted for each in core.accesses(self._bus.owners)),
             paths=tuple(each for core in counted for each in core.paths()),
             buffers=self._buffers.records,
-            traffic=self._bus.traffic(),
+            traffic=self._bus.records.traffic(),
             code=code_records(self.link_map, PROCESSORS, self.spec.chip.regions),
             messages=tuple(each for used in self._peripherals.values() for each in used.records),
             device_notes={name: notes for name, each in self._peripherals.items() if (notes := each.notes)},

@@ -50,7 +50,7 @@ class Announcer:
         self._steps = 0
         if on_spans:
             env.timeline = Timeline(clocks.cclk_ticks)
-            bus.use(env.timeline)
+            bus.records.use(env.timeline)
 
     def tell_step(self) -> None:
         """Tell what an event brought, if it is time."""
@@ -79,7 +79,7 @@ class Announcer:
         assert self._on_spans, "there is no timeline without it"
         now = self._env.tick
         with uninterrupted():
-            self._bus.tell(now + is_over)
+            self._bus.records.tell(now + is_over)
             if is_over:
                 timeline.end(now)
             self._on_spans(timeline.take())

@@ -24,10 +24,10 @@ from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
 from bfsim.machine.board import Board
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.bus.weave import Weave, compiled_weave
+from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Memories, Row
@@ -222,7 +222,7 @@ class Bench:
         self.spec = replace(spec, **changes)
         self.env = Simulation()
         self.memories = Memories(self.spec, outside_nbytes)
-        self.bus = Bus(self.env, self.spec, self.memories, weave)
+        self.bus = WovenBus(self.env, self.spec, self.memories, weave)
         self.stream = self.new_stream()
 
     def new_stream(self, master: int = w.MDMA1_0) -> MdmaStream:

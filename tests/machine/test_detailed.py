@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil
@@ -19,6 +19,7 @@ from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.transfer_plans import Pace, Transfer, Walk
+from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.detailed.arbiter import Grant, MdmaTurns, Request, SdramArbiter
 from bfsim.machine.detailed.bus import DetailedBus
 from bfsim.machine.detailed.sdram import Page, SdramBanks
@@ -27,7 +28,7 @@ from bfsim.machine.simulation import END_OF_TIME, Simulation
 
 each_board = pytest.mark.parametrize("board", BOARDS)
 with_l2 = pytest.mark.parametrize("board", [name for name, each in BOARDS.items() if each.chip.l2])
-MODES = (Bus, DetailedBus)
+MODES = (WovenBus, DetailedBus)
 NBYTES = 1 << 13  # of noise at the beginning of each memory, and of the world outside
 WORD = 4
 
@@ -38,7 +39,7 @@ CoreAccess = tuple[int, int, int]
 class Bench:
     """One bus with its memories; what tests post is all that happens."""
 
-    def __init__(self, mode: type[Bus] = DetailedBus, board: str = "cm-bf561") -> None:
+    def __init__(self, mode: Callable[..., Bus] = DetailedBus, board: str = "cm-bf561") -> None:
         self.spec = board_named(board)
         self.env = Simulation()
         self.memories = Memories(self.spec, NBYTES)

@@ -187,4 +187,4 @@ def test_nobody_is_told_without_a_timeline() -> None:
     board = made_board(every_frame(take_lines))
     board.run(iter(()))
     assert board._env.timeline is None
-    assert board._bus.timeline is None
+    assert board._bus.records.timeline is None

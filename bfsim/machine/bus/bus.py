@@ -1,151 +1,48 @@
-"""What moves between the memories: transfers of the DMAs and accesses of the cores, played by the compiled weave.
-
-The bus keeps its own time, which is behind the simulated time until somebody looks. Whoever wants to know whether something is
-done settles it first; while anybody waits, the simulation plays it up to each event, and wakes those whose transfer is over.
-"""
+"""What a bus of a board is to all who use it: the fast mode's (`woven_bus`) and the detailed mode's (`machine.detailed.bus`) alike."""
 
 from __future__ import annotations
 
-import struct
-from typing import Any
+from typing import Any, Protocol
 
 import simpy
 
-from bfsim.chip.spec import BoardSpec
-from bfsim.errors import FirmwareError
-from bfsim.machine.bus import state as w
-from bfsim.machine.bus.core_calls import CoreCalls, WovenCalls
+from bfsim.machine.bus.bus_records import BusRecords
+from bfsim.machine.bus.core_calls import CoreCalls
 from bfsim.machine.bus.core_logs import CoreLogs
-from bfsim.machine.bus.ends import Ends
 from bfsim.machine.bus.memory_owners import MemoryOwners
-from bfsim.machine.bus.new_state import new_state
 from bfsim.machine.bus.planner import Planner
-from bfsim.machine.bus.stretch_player import StretchPlayer
-from bfsim.machine.bus.told import ToldBus
-from bfsim.machine.bus.traffic import traffic_records
 from bfsim.machine.bus.transfer_plans import Transfer, TransferPlan
-from bfsim.machine.bus.weave import Weave, compiled_weave
-from bfsim.machine.memories import Memories
-from bfsim.machine.simulation import Simulation
-from bfsim.machine.timeline import Timeline
-from bfsim.trace import TrafficRecord
-
-TRANSFER_LAYOUT = struct.Struct(f"@{w.TRANSFER_WORDS}q")
+from bfsim.machine.simulation import Followed
 
 
-class Bus:
-    """The SDRAM bus and the port of L2 of one board, with all who use them.
+class Bus(Followed, Protocol):
+    """The SDRAM bus and the port of L2 of one board, with all who use them."""
 
-    `planner` plans transfers for it; `cores` plays calls of the cores, whose logs are in `logs`; `stretches` plays recorded work.
-    """
-
-    def __init__(
-        self, env: Simulation, board: BoardSpec, memories: Memories, weave: Weave = compiled_weave
-    ) -> None:
-        self._env = env
-        self._board = board
-        self._state = new_state(board, memories)
-        self._memory: Any = memories.arena.view("uint32")  # the weave has only its address
-        self.words: Any = self._state.data
-        """The whole state, word by word."""
-        self._advance = weave(self._state, self._memory)
-        self._ends = Ends(env)
-        self._told: ToldBus | None = None
-        self.owners = MemoryOwners(self.words, memories.sdram_end, memories.l2_end)
-        self.planner = Planner(board, memories, self.owners)
-        self.logs = CoreLogs(self._state)
-        self.cores: CoreCalls = WovenCalls(board, self.words, self.logs, self._ends, self.settle)
-        self.stretches = StretchPlayer(env, self._state, self.logs, self._ends)
-        env.follow(self)
-
-    # ---- time
+    words: Any
+    """Its state, word by word, as in `bus.state`; the counters there are kept on every bus."""
+    owners: MemoryOwners
+    planner: Planner
+    """Plans transfers for it."""
+    logs: CoreLogs
+    """The accesses of the cores' calls,"""
+    cores: CoreCalls
+    """which this plays."""
+    records: BusRecords
 
     def settle(self) -> None:
-        """Grant everything that was asked for before the simulated time."""
-        self.play_until(self._env.tick)
-        if self._told:
-            self._told.sample(self._env.tick)
-
-    def play_until(self, tick: int) -> bool:
-        """Grant everything that was asked for before `tick`; stop early, with True, at an end that somebody waits for.
-
-        The event of whoever waits is put on the simulation's queue at its tick.
-        """
-        while (woken := self._advance(tick)) != w.NONE:
-            if self._ends.wake(woken, self.words[w.DONE_AT]):
-                return True
-        return False
-
-    @property
-    def is_awaited(self) -> bool:
-        """Whether anybody waits for an end."""
-        return bool(self._ends)
-
-    # ---- transfers
+        """Let everything happen that is due at the simulated time."""
 
     def post(self, plan: TransferPlan, at: int = 0) -> Transfer:
         """Put a transfer behind those that its master has already; it begins at tick `at` or later."""
-        words, now = self.words, self._env.tick
-        top = words[w.FREE_TRANSFERS] - 1
-        if top < 0:
-            self.settle()  # those that are over make room
-            top = words[w.FREE_TRANSFERS] - 1
-        if top < 0:
-            raise FirmwareError(f"DMA must have at most {w.MAX_TRANSFERS} transfers to do at a time")
-        words[w.FREE_TRANSFERS] = top
-        place = words[w.FREE_PLACES_AT + top]
-        number = words[w.ALL_POSTED]
-        words[w.ALL_POSTED] = number + 1
-        words[w.ENDS_AT + number % w.ENDS] = w.NONE
-        # the bus may still be behind the simulated time; the transfer is not
-        TRANSFER_LAYOUT.pack_into(
-            words, 8 * (w.TRANSFERS_AT + place * w.TRANSFER_WORDS), number, w.NONE, max(at, now), *plan.words
-        )
-        posted = words[w.POSTED]
-        words[w.POSTS_AT + 2 * posted], words[w.POSTS_AT + 2 * posted + 1] = plan.master, place
-        words[w.POSTED] = posted + 1
-        if self._told:
-            self._told.post(plan.master, number, plan.name, max(at, now), plan.nbytes, now)
-        return Transfer(self.words, number, place)
 
     def when_done(self, transfer: Transfer) -> simpy.Event:
         """Return the event at a transfer's end, which must not be known yet."""
-        self.words[w.TRANSFERS_AT + transfer.place * w.TRANSFER_WORDS + w.WAKE] = w.AT_END
-        return self._ends.of_transfer(transfer.number)
 
     def when_row(self, transfer: Transfer) -> simpy.Event:
         """Return the event at the end of the next row that a transfer writes, or at its own end; neither is known yet."""
-        self.words[w.TRANSFERS_AT + transfer.place * w.TRANSFER_WORDS + w.WAKE] = w.AT_ROWS
-        return self._ends.of_transfer(transfer.number)
 
     def moved_by(self, transfer: Transfer) -> int:
         """Return how many elements a transfer that is not over has moved."""
-        return int(self.words[w.TRANSFERS_AT + transfer.place * w.TRANSFER_WORDS + w.MOVED])
 
     def lost_by(self, master: int) -> int:
         """Return how many elements a peripheral's DMA has lost, since they found its FIFO full or did not come in time."""
-        return int(self.words[w.MASTERS_AT + master + w.ALL_LOST])
-
-    # ---- who wants to know
-
-    def use(self, timeline: Timeline) -> None:
-        """Tell `timeline` of transfers and of the load from now on."""
-        self._told = ToldBus(timeline, self._board, self.words, self.owners)
-
-    @property
-    def timeline(self) -> Timeline | None:
-        """What is told what happens when, if anybody wants to know."""
-        return self._env.timeline
-
-    def tell(self, until: int) -> None:
-        """Tell the timeline of the transfers that were over before tick `until`."""
-        if self._told:
-            self._told.tell(until)
-
-    def flow_of(self, transfer: Transfer | None) -> int:
-        """Return the flow from a transfer, if any, to the wait that it has just ended; 0 if nobody is told."""
-        return self._told.flow_of(transfer.number) if self._told and transfer else 0
-
-    def traffic(self) -> tuple[TrafficRecord, ...]:
-        """Return what every master has moved so far."""
-        return traffic_records(self._state, self.owners, self._board.clocks.cclk_ticks)

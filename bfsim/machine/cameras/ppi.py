@@ -160,7 +160,7 @@ class Ppi:
 
     def end_picture(self) -> int:
         """Ask for the interrupts of a picture's end; return how many of its words found the FIFO full: any of them sets OVR."""
-        if timeline := self._bus.timeline:
+        if timeline := self._bus.records.timeline:
             self._tell_lines(timeline)
         total = self._bus.lost_by(self._master)
         lost, self._lost = total - self._lost, total

@@ -20,9 +20,9 @@ from bfsim.errors import FirmwareError
 from bfsim.kernel import Work
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.stalls import COUNTER_OF
 from bfsim.machine.bus.transfer_plans import Transfer
+from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.calls.call_cache import KnownCall
 from bfsim.machine.core.in_step import InStep
 from bfsim.machine.core.interrupts import Handler
@@ -42,7 +42,7 @@ class Ahead:
     """`Progress` of a core that runs ahead until somebody may interrupt it; `in_step` does what is done at its time."""
 
     def __init__(
-        self, env: Simulation, in_step: InStep, name: str, number: int, bus: Bus, access_trace: AccessTrace, events: EventSpec
+        self, env: Simulation, in_step: InStep, name: str, number: int, bus: WovenBus, access_trace: AccessTrace, events: EventSpec
     ) -> None:  # fmt: skip
         self.clock = in_step.clock
         self.interrupts = in_step.interrupts

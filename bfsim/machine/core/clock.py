@@ -26,7 +26,7 @@ class CoreClock:
         self, env: Simulation, name: str, board: BoardSpec, bus: Bus, stages: tuple[str, ...]
     ) -> None:
         self._env = env
-        self._bus = bus
+        self._records = bus.records
         self._events = board.chip.events
         self.cclk_ticks = board.clocks.cclk_ticks
         self.cclk = 0
@@ -111,7 +111,7 @@ class CoreClock:
     def pass_waiting(self, reason: StallReason | None, cclk: int, ended_by: Transfer | None = None) -> None:
         """Let `cclk` cycles of a wait pass that are on no account yet."""
         if self.timeline and cclk:
-            self.timeline.wait(reason, self.cclk, cclk, self._bus.flow_of(ended_by))
+            self.timeline.wait(reason, self.cclk, cclk, self._records.flow_of(ended_by))
         self.cclk += cclk
 
     def tell_level(self, name: str, value: int) -> None:

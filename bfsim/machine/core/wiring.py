@@ -9,6 +9,7 @@ from bfsim.chip.spec import BoardSpec
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.machine.bus.bus import Bus
 from bfsim.machine.bus.masters import RING_STREAMS
+from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.calls.call_cache import CallCache
 from bfsim.machine.cameras.capture import Capture
 from bfsim.machine.core.ahead import Ahead
@@ -61,7 +62,9 @@ def parts_of(
     clock = CoreClock(env, name, around.board, bus, around.stages)
     in_step = InStep(env, bus, number, clock, shared.interrupts[name], Waits(name))
     progress: Progress = in_step
-    if around.ahead and not env.timeline:  # which is told of everything at its time
+    if (
+        around.ahead and isinstance(bus, WovenBus) and not env.timeline
+    ):  # which is told of everything at its time
         progress = around.ahead(env, in_step, name, number, bus, access_trace, chip.events)
     tasks = Tasks(name, progress, calls, shared.handovers, chip.events)
     in_step.serve_interrupts = tasks.serve_interrupts

@@ -1,18 +1,24 @@
 """The bus of the detailed mode: every transaction an event, every master a process. Slow, and the judge of the fast mode.
 
-It does what `Bus` does and keeps the same counters, but nothing of it is compiled and no two words move at once.
+It keeps the same counters as the fast mode's, but nothing of it is compiled and no two words move at once.
 """
 
 from __future__ import annotations
+
+from typing import Any
 
 import simpy
 
 from bfsim.chip.spec import BoardSpec, L2Spec
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.bus import Bus
+from bfsim.machine.bus.bus_records import BusRecords
+from bfsim.machine.bus.core_calls import CoreCalls
+from bfsim.machine.bus.core_logs import CoreLogs
 from bfsim.machine.bus.masters import RANKS
+from bfsim.machine.bus.memory_owners import MemoryOwners
+from bfsim.machine.bus.new_state import new_state
+from bfsim.machine.bus.planner import Planner
 from bfsim.machine.bus.transfer_plans import Transfer, TransferPlan
-from bfsim.machine.bus.weave import plain_weave
 from bfsim.machine.detailed.arbiter import L2Port, SdramArbiter
 from bfsim.machine.detailed.calls import DetailedCalls
 from bfsim.machine.detailed.core import CorePort
@@ -24,26 +30,33 @@ NO_L2 = L2Spec(read_cclk=0, next_cclk=0, port_bytes=1)
 """Of a chip without: nothing lies in it, and nobody asks for it."""
 
 
-class DetailedBus(Bus):
-    """The SDRAM bus and the port of L2 of one board, with all who use them, as processes."""
+class DetailedBus:
+    """`Bus` by a process for each master."""
 
     def __init__(self, env: Simulation, board: BoardSpec, memories: Memories) -> None:
-        super().__init__(env, board, memories, plain_weave)
+        self._env = env
+        state = new_state(board, memories)
+        self.words: Any = state.data
+        self.owners = MemoryOwners(self.words, memories.sdram_end, memories.l2_end)
+        self.planner = Planner(board, memories, self.owners)
+        self.logs = CoreLogs(state)
+        self.records = BusRecords(board, self.words, self.owners)
         sdram = SdramArbiter(env, board, self.words)
         l2 = L2Port(env, board.chip.l2 or NO_L2, board.clocks.cclk_ticks, self.words)
         self._channels = {
             master: DmaMaster(env, board, memories, sdram, l2, self.words, master) for master in RANKS
         }
         ports = [CorePort(env, board, sdram, l2, self.words, number) for number in range(w.CORES)]
-        self.cores = DetailedCalls(env, board, self.logs, ports)
+        self.cores: CoreCalls = DetailedCalls(env, board, self.logs, ports)
         self._on_their_way: dict[int, DetailedTransfer] = {}
+        env.follow(self)
 
     # ---- time: nothing here is ever behind the simulation
 
     def settle(self) -> None:
         """Let nothing happen: everything that is due has."""
-        if self._told:
-            self._told.sample(self._env.tick)
+        if told := self.records.told:
+            told.sample(self._env.tick)
 
     def play_until(self, tick: int) -> bool:  # noqa: ARG002
         """Do nothing, and stop at nothing: the simulation plays every master."""
@@ -66,8 +79,8 @@ class DetailedBus(Bus):
         assert transfer.done.callbacks is not None
         transfer.done.callbacks.append(lambda _event: self._forget(number))
         self._channels[plan.master].post(transfer)
-        if self._told:
-            self._told.post(plan.master, number, plan.name, transfer.at, plan.nbytes, self._env.tick)
+        if told := self.records.told:
+            told.post(plan.master, number, plan.name, transfer.at, plan.nbytes, self._env.tick)
         return Transfer(self.words, number, w.NONE)
 
     def _forget(self, number: int) -> None:

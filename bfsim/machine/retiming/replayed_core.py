@@ -12,6 +12,7 @@ from bfsim.kernel import Kernel
 from bfsim.kernel.types import ArrayType, IntType, Number, u8
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.woven_bus import WovenBus
 from bfsim.machine.cameras.settling import CameraSettings
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.parts import Parts
@@ -41,6 +42,7 @@ class ReplayedCore(Core):
 
     def __init__(self, parts: Parts, kernels: dict[str, Kernel], works: Iterator[FrameWork]) -> None:
         super().__init__(parts)
+        assert isinstance(parts.bus, WovenBus), "recorded work is played by the weave"
         self._bus = parts.bus
         self._chip = parts.board.chip
         self._works = works
