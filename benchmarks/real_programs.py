@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from benchmarks.twins.measure import FLAGS, SOURCES
 from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.effects import Event
+from bfsim.blackfin.event import Event
 from bfsim.blackfin.linking import link
 from bfsim.blackfin.objects import read_object
 from bfsim.blackfin.processor import Processor

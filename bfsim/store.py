@@ -12,16 +12,19 @@ Some of what takes long comes with bfsim, under such names too.
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import stat
 import tempfile
 import warnings
 import zlib
+from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from importlib.resources import files
 from io import FileIO
 from pathlib import Path
+from typing import Any
 
 import platformdirs
 
@@ -79,10 +82,19 @@ def save(name: str, body: bytes) -> None:
             raise
 
 
+def kept(name: str, made: Callable[[], Any]) -> Any:
+    """Return the data that are kept under `name`, or that are `made` now and kept: as JSON has them, tuples as lists."""
+    found = load(name)
+    if found is None:
+        found = json.dumps(made(), separators=(",", ":")).encode()
+        save(name, found)
+    return json.loads(found)
+
+
 def shipped(package: str, name: str) -> bytes | None:
     """Return what comes with bfsim in a package, under a digest of what it was made of; None if nothing was made of that."""
-    kept = files(package) / KEPT / name
-    return zlib.decompress(kept.read_bytes()) if kept.is_file() else None
+    file = files(package) / KEPT / name
+    return zlib.decompress(file.read_bytes()) if file.is_file() else None
 
 
 def _checksum(name: str, body: bytes) -> bytes:

@@ -10,7 +10,9 @@ import pytest
 
 from bfsim.api import Kernel, f32, i32, kernel_from, u8
 from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.subroutines import ARRAYS, placed
+from bfsim.blackfin.linking import link
+from bfsim.blackfin.objects import read_object
+from bfsim.blackfin.subroutines import ARRAYS, LoadedImage, placed
 from bfsim.compiling import file_code
 from bfsim.errors import ConfigError, KernelError
 from bfsim.explain import explain
@@ -157,6 +159,21 @@ def test_explain_shows_the_lines_of_c() -> None:
     assert shown.file.endswith("sums.c")
     assert shown.lines[0].text.startswith("int32_t sums(")
     assert {each.line for each in shown.lines if each.operations} >= {17, 18, 21}
+
+
+def test_a_function_may_go_on_in_the_next_one() -> None:
+    """The block that both are in is of the first, its lines are of both; accesses are reported with their lines."""
+    kernel = kernel_from(DATA / "falling.o", "before", row=u8[:], result=i32)
+    assert kernel(ROW) == ROW[0]
+    code = kernel.compile(GCC_O2, traced=True)
+    assert code.subroutine.translated.entry
+    assert {each.line.routine for each in code.program.sites} == {"_first"}
+
+
+def test_code_behind_an_exception_is_another_function_s() -> None:
+    """Nobody comes back from one to a function that is called."""
+    image = LoadedImage(link(read_object((DATA / "falling.o").read_bytes(), "falling.o")))
+    assert list(image.explored(image.image.symbols["_trap"]).blocks) == [image.image.symbols["_trap"]]
 
 
 def test_a_wild_access_is_refused() -> None:

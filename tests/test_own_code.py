@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -28,6 +30,15 @@ from tests.machine.owners import assert_owned
 
 FEW_CALLED = ("suppress_row", "gauss3_row", "clear_segments")
 """Kernels, each in several stages, of which every call is played once more."""
+
+MAKERS = (
+    "elftools",
+    "bfsim.blackfin.decode",
+    "bfsim.blackfin.translate",
+    "bfsim.kernel.language",
+    "bfsim.kernel.c",
+)
+"""Of what is kept."""
 
 
 @pytest.fixture(scope="module")
@@ -84,6 +95,16 @@ def test_each_call_takes_the_cycles_that_verify_has(runs: dict[str, Run], sample
     for each in found.kernels:
         here = sum(path.issue_cclk for path in runs["gcc"].paths if path.path[0] == symbols[each.kernel])
         assert here == each.measured_cclk > 0
+
+
+@pytest.mark.usefixtures("runs")
+def test_a_warm_start_reads_no_object_code() -> None:
+    """All that is made of it is kept: neither the reader of ELF files nor the decoder, and no kernel's body, is needed again."""
+    source = (
+        "import sys; from bfsim.run import simulate; simulate(frames=1, profile='gcc'); print(*sys.modules)"
+    )
+    imported = subprocess.run([sys.executable, "-c", source], check=True, capture_output=True, text=True)
+    assert not {*MAKERS} & {*imported.stdout.split()}
 
 
 def test_every_cycle_has_an_owner(runs: dict[str, Run]) -> None:

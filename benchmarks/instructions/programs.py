@@ -20,7 +20,7 @@ import numpy as np
 
 from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.decode import InstructionError
-from bfsim.blackfin.effects import Event
+from bfsim.blackfin.event import Event
 from bfsim.blackfin.objects import Use, read_object
 from bfsim.blackfin.processor import AccessError, Processor
 from bfsim.machine_code import Effort

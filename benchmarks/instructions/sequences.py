@@ -15,7 +15,7 @@ from random import Random
 import numpy as np
 
 from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.effects import Event
+from bfsim.blackfin.event import Event
 from bfsim.blackfin.form import Beside, Form
 from bfsim.blackfin.forms import (
     accumulators,

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
 
-from bfsim.blackfin.linking import Routine
+from bfsim.blackfin.image import Routine
 from bfsim.blackfin.subroutines import LoadedImage
 from bfsim.blackfin.timing import Timing
 from bfsim.compiling.file_code import FileCode

@@ -27,6 +27,8 @@ EVENTS = {
 STOPS = {"halt", "abort"}
 NEVER_ON = (DIRECT | COMPUTED | STOPS) - CALLS - BRANCHES
 """Control never goes to what follows."""
+NEVER_RESUMED = NEVER_ON | (EVENTS - ASSERTIONS)
+"""Nor behind these, where nobody goes on behind an event."""
 MOST_INSTRUCTIONS = 1 << 18
 """[ours] Two and a half times all of GCC's and newlib's libraries. A wild jump into memory that is zero meets millions of NOPs."""
 CLOCKED = {"CYCLES", "CYCLES2", "SYSCFG"}
@@ -56,13 +58,15 @@ class Block:
 class Code:
     """The code that can be reached from `entries`, which are also addresses that a computed jump may lead to.
 
-    `blocks`: by their addresses. `resumed`: where calls, and the events that leave native code, come back to. `loop_starts`: of each
-    last instruction of a hardware loop and the number of its counter, where its loops begin. Raises InstructionError where more than
+    `resumes`: whether it may go on behind an event that leaves native code. `blocks`: by their addresses. `resumed`: where calls, and
+    such events, come back to. `loop_starts`: of each last instruction of a hardware loop and the number of its counter, where its
+    loops begin. Raises InstructionError where more than
     `MOST_INSTRUCTIONS` can be reached.
     """
 
     fetch: Fetch
     entries: frozenset[int]
+    resumes: bool = True
     blocks: dict[int, Block] = field(default_factory=dict)
     resumed: set[int] = field(default_factory=set)
     loop_starts: dict[tuple[int, int], set[int]] = field(default_factory=dict)
@@ -100,7 +104,7 @@ class Code:
             found = self._targets(instruction)
             leaders |= found
             waiting += found
-            if does(instruction) not in NEVER_ON:
+            if does(instruction) not in self._never_on:
                 waiting.append(instruction.end)
             if _is_clocked(instruction):
                 leaders.add(address)
@@ -123,9 +127,14 @@ class Code:
             self.loop_starts.setdefault((end, counter), set()).add(start)
             return {start}
         found = {int(operands["t"])} if what in DIRECT else set()
-        if what in (CALLS | EVENTS) - ASSERTIONS - STOPS:
+        if what in (CALLS | EVENTS) - ASSERTIONS - self._never_on:
             self.resumed.add(instruction.end)
-        return found | ({instruction.end} if what in (CALLS | EVENTS | BRANCHES) - STOPS else set())
+        return found | ({instruction.end} if what in (CALLS | EVENTS | BRANCHES) - self._never_on else set())
+
+    @property
+    def _never_on(self) -> set[str]:
+        """What control never goes on behind."""
+        return NEVER_ON if self.resumes else NEVER_RESUMED
 
     def _block(self, start: int, leaders: set[int]) -> Block:
         instructions: list[Instruction] = []

@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim import machine_code
-from bfsim.blackfin.effects import Event
+from bfsim.blackfin.event import Event
 from bfsim.blackfin.guard import runner
+from bfsim.blackfin.native_code import native_code
 from bfsim.blackfin.processor import OUTSIDE
 from bfsim.blackfin.registers import SLOTS
 from bfsim.blackfin.subroutines import REGISTERS, RESULT, STACK, STACK_BYTES, WORD_BYTES, Placed, Subroutine
@@ -161,7 +162,7 @@ take:
 
 @cache
 def _entry() -> Callable[[int, int], int]:
-    machine_code.add(machine_code.host_code(ENTRY))
+    machine_code.add(native_code(ENTRY))
     kind = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p)
     return kind(machine_code.address_of(RUN))
 
@@ -182,7 +183,7 @@ class BoundCall:
     ) -> None:
         """`trace`: the block that accesses are reported through, where the subroutine reports any."""
         self._subroutine = subroutine
-        self._kept = parts, counts, trace  # the block has their addresses only
+        self._kept = counts, trace  # the block has their addresses only
         translated, state = subroutine.translated, subroutine.processor.state
         room = max(len(REGISTERS), words)
         head = {
@@ -204,10 +205,10 @@ class BoundCall:
             word
             for each in parts
             for word in (
-                each.octets.ctypes.data,
-                each.copy.ctypes.data,
-                len(each.octets),
-                len(each.octets) * each.is_writeable,
+                each.address,
+                each.copy,
+                each.nbytes,
+                each.nbytes * each.is_writeable,
             )
         ]
         values = [*(head[each] for each in range(HEAD)), *(room * [0]), *copies]

@@ -8,38 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from enum import IntEnum
 from typing import Protocol
 
 from llvmlite import ir
 
+from bfsim.blackfin.event import Event
 from bfsim.blackfin.registers import ASTAT_UNUSED, COPIES, FLAGS, width
 from bfsim.blackfin.value import Value
 
 I8, I32, I64 = ir.IntType(8), ir.IntType(32), ir.IntType(64)
-
-
-class Event(IntEnum):
-    """Why native code was left."""
-
-    UNKNOWN_TARGET = 0
-    """PC is an address that it does not have as the start of a block; also where a caller of it returns to."""
-    ILLEGAL = 1
-    """At PC is no instruction."""
-    EXCEPTION = 2
-    """EXCPT: its number is ARGUMENT."""
-    OUTPUT = 3
-    """OUTC: the character is ARGUMENT."""
-    HALT = 4
-    ABORT = 5
-    ASSERTION = 6
-    """DBGA found another value than it expects, ARGUMENT."""
-    SYSTEM = 7
-    """An instruction of the system that is not simulated: RTI, RAISE, IDLE ..."""
-    FUEL = 8
-    """As many blocks were run as were allowed."""
-    FAULT = 9
-    """An access to an address where there is no memory. Registers are lost."""
 
 
 @dataclass(frozen=True, slots=True)

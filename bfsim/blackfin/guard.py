@@ -14,7 +14,8 @@ from functools import cache
 
 from bfsim import machine_code
 from bfsim.blackfin.address_space import SPAN_BYTES
-from bfsim.blackfin.effects import Event
+from bfsim.blackfin.event import Event
+from bfsim.blackfin.native_code import native_code
 
 RUNNER = f"""
 @bfsim_run_jump = internal global [512 x i8] zeroinitializer, align 16
@@ -89,7 +90,7 @@ class Runner:
 @cache
 def runner() -> Runner:
     """Return what runs native code."""
-    machine_code.add(machine_code.host_code(RUNNER))
+    machine_code.add(native_code(RUNNER))
     action = _Action.from_address(machine_code.address_of("bfsim_run_action"))
     action.handler = machine_code.address_of("bfsim_run_handler")
     action.flags = SA_SIGINFO | SA_NODEFER

@@ -11,42 +11,10 @@ from dataclasses import dataclass
 
 from bfsim.blackfin.decode import Instruction
 from bfsim.blackfin.dependences import registers_of
+from bfsim.blackfin.timing import Interlock
 
 PARTLY = {"set_low", "set_high"}
 """What these do to a register leaves the other half as it is, but waits for nothing."""
-
-
-@dataclass(frozen=True, slots=True)
-class Interlock:
-    """An instruction that reads one of `registers` at once waits `cclk` behind one that has written it, in one of these ways.
-
-    `by`: what that does. `loaded`: a word of memory came as it is. `moved_from`: it read one of these registers. `used_by`: what
-    waits, if not all. `source`: who says so.
-    """
-
-    about: str
-    registers: frozenset[str]
-    cclk: int
-    source: str
-    by: frozenset[str] = frozenset()
-    loaded: bool = False
-    moved_from: frozenset[str] = frozenset()
-    used_by: frozenset[str] = frozenset()
-
-    def made_by(self, instruction: Instruction) -> frozenset[str]:
-        """Return the registers that are not there at once behind an instruction."""
-        found = registers_of(instruction)
-        does = {each.form.does for each in instruction.operations}
-        if (self.by and self.by.isdisjoint(does)) or (
-            self.moved_from and self.moved_from.isdisjoint(found.reads)
-        ):
-            return frozenset()
-        return self.registers & (found.loaded if self.loaded else found.writes)
-
-    def holds(self, instruction: Instruction) -> bool:
-        """Whether an instruction that reads such a register waits for it."""
-        does = {each.form.does for each in instruction.operations}
-        return does.isdisjoint(PARTLY) and (not self.used_by or not self.used_by.isdisjoint(does))
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +44,23 @@ class Wait:
     register: str = ""
 
 
+def made_by(interlock: Interlock, instruction: Instruction) -> frozenset[str]:
+    """Return the registers of an interlock that are not there at once behind an instruction."""
+    found = registers_of(instruction)
+    does = {each.form.does for each in instruction.operations}
+    if (interlock.by and interlock.by.isdisjoint(does)) or (
+        interlock.moved_from and interlock.moved_from.isdisjoint(found.reads)
+    ):
+        return frozenset()
+    return interlock.registers & (found.loaded if interlock.loaded else found.writes)
+
+
+def holds(interlock: Interlock, instruction: Instruction) -> bool:
+    """Whether an instruction that reads a register of an interlock waits for it."""
+    does = {each.form.does for each in instruction.operations}
+    return does.isdisjoint(PARTLY) and (not interlock.used_by or not interlock.used_by.isdisjoint(does))
+
+
 def issued(
     instruction: Instruction, before: Waiting, interlocks: Iterable[Interlock]
 ) -> tuple[Wait, Waiting]:
@@ -84,11 +69,11 @@ def issued(
     waits = [
         Wait(left, register)
         for (register, each), left in before.cclk.items()
-        if register in found.reads and each.holds(instruction)
+        if register in found.reads and holds(each, instruction)
     ]
     wait = max(waits, key=lambda each: (each.cclk, each.register), default=Wait())
     left = {key: cclk for key, cclk in before.later(wait.cclk + 1).cclk.items() if key[0] not in found.writes}
-    made = {(register, each): each.cclk for each in interlocks for register in each.made_by(instruction)}
+    made = {(register, each): each.cclk for each in interlocks for register in made_by(each, instruction)}
     return wait, Waiting(left | made)
 
 

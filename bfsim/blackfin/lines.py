@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from elftools.elf.constants import SH_FLAGS
 from elftools.elf.elffile import ELFFile
 
-from bfsim.blackfin.linking import Image
+from bfsim.blackfin.image import Image
 from bfsim.blackfin.objects import damaged
 
 FIRST_VERSION_FROM_0 = 5

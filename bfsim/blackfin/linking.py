@@ -6,14 +6,12 @@ memory, or as far beyond as they reach: nothing of the timing depends on it, for
 
 from __future__ import annotations
 
-import hashlib
 import struct
-from bisect import bisect_right
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
-from bfsim.blackfin.objects import ObjectFile, Relocation, Section, Symbol, Use
+from bfsim.blackfin.image import MOST_NAMES, Image, Routine, Segment, Use
+from bfsim.blackfin.objects import ObjectFile, Relocation, Section, Symbol
 from bfsim.blackfin.relocations import FIELDS, Kind
 from bfsim.errors import KernelError, cut
 
@@ -22,75 +20,6 @@ BASE = {Use.CODE: 0xFFA00000, Use.DATA: 0xFF900000}
 ADDRESSES = 1 << 32
 LONGEST_ALIGN = 4096
 WORD_BYTES = 4
-MOST_NAMES = 5
-"""As many names are listed of what is missing."""
-
-
-@dataclass(frozen=True, slots=True)
-class Segment:
-    """Bytes from an address on: code, or data."""
-
-    address: int
-    octets: bytes
-    use: Use
-
-    @property
-    def end(self) -> int:
-        """The address behind it."""
-        return self.address + len(self.octets)
-
-
-@dataclass(frozen=True, slots=True)
-class Routine:
-    """A function in an image: from its first address to the one behind it."""
-
-    name: str
-    address: int
-    end: int
-
-
-@dataclass(frozen=True, slots=True)
-class Image:
-    """A program in memory: its segments, addresses by symbol, its functions in the order of their addresses.
-
-    `pointers`: addresses of code that its data holds, such as those of a switch; of a linked program all words that may be. `octets`: the file with
-    its relocations applied, for what reads debugging information.
-    """
-
-    name: str
-    segments: tuple[Segment, ...]
-    symbols: Mapping[str, int]
-    routines: tuple[Routine, ...]
-    pointers: frozenset[int]
-    octets: bytes
-
-    @property
-    def digest(self) -> str:
-        """SHA-256 of the file."""
-        return hashlib.sha256(self.octets).hexdigest()
-
-    def octets_of(self, first: int, end: int) -> bytes:
-        """Return the bytes of a range of addresses, as far as one segment has them."""
-        for each in self.segments:
-            if each.address <= first < each.end:
-                return each.octets[first - each.address : end - each.address]
-        return b""
-
-    def routine_at(self, address: int) -> Routine | None:
-        """Return the function that an address is in, or None outside of all."""
-        number = bisect_right(self.routines, address, key=lambda each: each.address)
-        found = self.routines[number - 1] if number else None
-        return found if found and address < found.end else None
-
-    def address_of(self, symbol: str) -> int:
-        """Return the address of a symbol. Raises KernelError if there is none of that name."""
-        if symbol not in self.symbols:
-            names = ", ".join(cut(each.name) for each in self.routines[:MOST_NAMES])
-            more = f" and {len(self.routines) - MOST_NAMES} more" if len(self.routines) > MOST_NAMES else ""
-            raise KernelError(
-                f"{self.name} must define {cut(symbol)}, but has only {names or 'no function'}{more}"
-            )
-        return self.symbols[symbol]
 
 
 def link(file: ObjectFile) -> Image:

@@ -8,7 +8,6 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import Any
 
 from elftools.elf.constants import SH_FLAGS
@@ -17,6 +16,7 @@ from elftools.elf.relocation import RelocationSection
 from elftools.elf.sections import Section as ElfSection
 from elftools.elf.sections import SymbolTableSection
 
+from bfsim.blackfin.image import Use
 from bfsim.errors import KernelError, cut
 
 MACHINE = "EM_BLACKFIN"
@@ -25,15 +25,6 @@ MOST_BYTES = 64 << 20
 """[ours] Of a file, and of what it wants in memory: as much as the largest board has of SDRAM."""
 FUNCTIONS = (("STT_NOTYPE", "STB_GLOBAL"), ("STT_NOTYPE", "STB_WEAK"))
 """Of assembler without .type: names that other files see, if they are of code."""
-
-
-class Use(StrEnum):
-    """What a section holds."""
-
-    CODE = "code"
-    DATA = "data"
-    NOTES = "notes"
-    """Nothing for the processor, such as debugging information."""
 
 
 @dataclass(frozen=True, slots=True)

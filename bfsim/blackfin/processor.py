@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import llvmlite.binding as llvm
 import numpy as np
@@ -13,23 +13,28 @@ from numpy.typing import NDArray
 
 from bfsim import machine_code, store
 from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.blocks import Code
-from bfsim.blackfin.decode import InstructionError
-from bfsim.blackfin.effects import Event
+from bfsim.blackfin.event import Event
 from bfsim.blackfin.guard import runner
+from bfsim.blackfin.native_code import native_code
 from bfsim.blackfin.registers import ACCUMULATOR_PARTS, ACCUMULATORS, ASTAT_UNUSED, FLAGS, SLOTS
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.blackfin.tracing import Tracing
-from bfsim.blackfin.translate import NAME, Counted, is_large, translate
 from bfsim.errors import BfsimError
 from bfsim.machine_code import Effort
 
+if TYPE_CHECKING:
+    from bfsim.blackfin.blocks import Code
+    from bfsim.blackfin.translate import Counted
+
+NAME = "blackfin"
+"""What native code is called; what is kept is called by this and its own name."""
 OUTSIDE = 0xFFFFFFFE
 """[ours] Where a subroutine that is called from outside returns to: no memory is there, and no code can be."""
 
 
 LOOP_BLOCKS = 50
-"""[ours] Code of up to so many blocks is most often a loop over pixels, which is worth all of LLVM's effort."""
+"""[ours] Code of up to so many blocks is most often a loop over pixels, which is worth all of LLVM's effort. For what is longer that takes
+ten times as long."""
 COUNT_BYTES = 4
 """Of the number of counters before machine code that is kept."""
 
@@ -66,10 +71,13 @@ class State:
 
 @dataclass
 class Translated:
-    """Code in this process. `counts`: how often each of its counters has counted since it was translated. `explore`: finds the code."""
+    """Code in this process. `counts`: how often each of its counters has counted since it was translated. `explore`: finds the code.
+
+    `native` has the code where it ends with this.
+    """
 
     entry: int
-    native: llvm.ExecutionEngine
+    native: llvm.ExecutionEngine | None
     counts: NDArray[np.int64]
     explore: Callable[[], Counted]
 
@@ -139,6 +147,8 @@ class Processor:
                     f"{runner().fault.value:#010x}"
                 )
             if event is Event.ILLEGAL:
+                from bfsim.blackfin.decode import InstructionError  # few runs decode
+
                 raise InstructionError(self._refusal(self.state["PC"]))
             if event is not Event.UNKNOWN_TARGET or self.state["PC"] == OUTSIDE:
                 return event
@@ -153,51 +163,50 @@ class Processor:
         return address not in self.translated.code.targets
 
     def _translate(self) -> Translated:
-        name = self.name if self.translated is None else ""
-        kept = store.load(name) if name else None
-        if kept is None:
-            kept = self._compiled()
-            if name:
-                store.save(name, kept)
-        count, machine = int.from_bytes(kept[:COUNT_BYTES], "little"), kept[COUNT_BYTES:]
-        native = machine_code.loaded(machine)
-        counts = np.zeros(count, np.int64)
-        return Translated(native.get_function_address(NAME), native, counts, self.counted)
-
-    def _compiled(self) -> bytes:
-        """Make the machine code; return how many counters it has, and it."""
+        if self.name and self.translated is None:
+            return self._kept(self.name)
         found = self.counted()
-        text = translate(found, fuel=self.fuel is not None, tracing=self.tracing, results=self.results)
-        machine = native_code(text, self.effort if self.effort is not None else effort_for(found.code))
-        return len(found.counters).to_bytes(COUNT_BYTES, "little") + machine
+        native = machine_code.loaded(native_code(*self._module(found, NAME)))
+        counts = np.zeros(len(found.counters), np.int64)
+        return Translated(native.get_function_address(NAME), native, counts, lambda: found)
+
+    def _kept(self, name: str) -> Translated:
+        """Return the native code that is kept under a name, or made now; a process has it once."""
+        symbol, kept = f"{NAME}_{name}", store.load(name)
+        if kept is None:
+            found = self.counted()
+            count = len(found.counters).to_bytes(COUNT_BYTES, "little")
+            kept = count + machine_code.host_code(*self._module(found, symbol))
+            store.save(name, kept)
+        if not machine_code.address_of(symbol):
+            machine_code.add(kept[COUNT_BYTES:])
+        counts = np.zeros(int.from_bytes(kept[:COUNT_BYTES], "little"), np.int64)
+        return Translated(machine_code.address_of(symbol), None, counts, self.counted)
+
+    def _module(self, found: Counted, symbol: str) -> tuple[str, Effort]:
+        """Return the LLVM module of code, whose function is called `symbol`, and how much LLVM is to do for it."""
+        from bfsim.blackfin.translate import is_large, translate  # most starts find all native code
+
+        text = translate(
+            found, symbol, fuel=self.fuel is not None, tracing=self.tracing, results=self.results
+        )
+        if self.effort is not None:
+            return text, self.effort
+        if is_large(found.code):
+            return text, Effort.NONE
+        return text, Effort.ALL if len(found.code.blocks) <= LOOP_BLOCKS else Effort.REGISTERS
 
     def counted(self) -> Counted:
         """Return all that can be reached from the entries."""
         entries = frozenset(self.entries)
         if self.explore:
             return self.explore(entries)
+        from bfsim.blackfin.blocks import Code  # what is kept has been explored
+        from bfsim.blackfin.translate import Counted
+
         return Counted(Code(self.space.fetch, entries), self.timing)
 
     def _refusal(self, address: int) -> str:
         assert self.translated
         blocks = self.translated.code.blocks.values()
         return next(each.refused for each in blocks if each.refused and each.end == address)
-
-
-def effort_for(code: Code) -> Effort:
-    """Return how much LLVM is to do for code: less of what is long, for it takes ten times as long for all that it can."""
-    if is_large(code):
-        return Effort.NONE
-    return Effort.ALL if len(code.blocks) <= LOOP_BLOCKS else Effort.REGISTERS
-
-
-def native_code(text: str, effort: Effort) -> bytes:
-    """Compile a module, or take its machine code from the cache on disk, where only what took long is kept."""
-    if effort is Effort.NONE:
-        return machine_code.host_code(text, effort)
-    key = hashlib.sha256(f"object code\0{effort}\0{machine_code.host()}\0{text}".encode()).hexdigest()
-    kept = store.load(key)
-    if kept is None:
-        kept = machine_code.host_code(text, effort)
-        store.save(key, kept)
-    return kept

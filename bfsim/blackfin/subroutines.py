@@ -6,28 +6,27 @@ what one leaves in its static variables another one finds.
 
 from __future__ import annotations
 
-import ctypes
 import mmap
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.blackfin.address_space import AddressSpace
-from bfsim.blackfin.blocks import Code
-from bfsim.blackfin.effects import Event
+from bfsim.blackfin.event import Event
 from bfsim.blackfin.guard import runner
-from bfsim.blackfin.linking import Image
+from bfsim.blackfin.image import Image
 from bfsim.blackfin.processor import Processor, Translated
 from bfsim.blackfin.timing import GNU, Timing
-from bfsim.blackfin.translate import Counted
 from bfsim.errors import KernelError
 
-Octets = NDArray[np.uint8]
+if TYPE_CHECKING:
+    from bfsim.blackfin.blocks import Code
+    from bfsim.blackfin.translate import Counted
 
 STACK, STACK_BYTES = 0xFFB00000, 4096
 """[HRM] The scratchpad memory of a core."""
@@ -75,13 +74,20 @@ class LoadedImage:
         """Return the code that is entered at `first`; it is looked for once."""
         key = frozenset(first)
         if key not in self._codes:
-            self._codes[key] = Code(self.space.fetch, frozenset(self._entries(set(first))))
+            self._codes[key] = self._code(self._entries(set(first)))
         return self._codes[key]
+
+    def _code(self, entries: Iterable[int]) -> Code:
+        from bfsim.blackfin.blocks import Code  # most starts explore no code
+
+        return Code(self.space.fetch, frozenset(entries), resumes=False)
 
     def _counted_from(self, timing: Timing, first: frozenset[int]) -> Counted:
         """Return that with its counters, which are the same with and without reports of accesses."""
         key = first, timing.digest
         if key not in self._counted:
+            from bfsim.blackfin.translate import Counted
+
             self._counted[key] = Counted(self.explored(*first), timing)
         return self._counted[key]
 
@@ -90,9 +96,7 @@ class LoadedImage:
         entries, found = set[int](), first
         while not found <= entries:
             entries |= found
-            reached = {
-                self.image.routine_at(each) for each in Code(self.space.fetch, frozenset(entries)).blocks
-            }
+            reached = {self.image.routine_at(each) for each in self._code(entries).blocks}
             found = {each for each in self.image.pointers if self.image.routine_at(each) in reached - {None}}
         return entries
 
@@ -126,10 +130,14 @@ class Subroutine:
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """Memory of the host that has a copy in the Blackfin's while a function runs. What is not writeable is not copied back."""
+    """Memory at an address of the host that has a copy at another one, in the Blackfin's, while a function runs.
 
-    octets: Octets
-    copy: Octets
+    What is not writeable is not copied back.
+    """
+
+    address: int
+    copy: int
+    nbytes: int
     is_writeable: bool
 
 
@@ -139,7 +147,7 @@ def placed(arrays: Sequence[NDArray[Any]], space: AddressSpace) -> tuple[list[Pl
     They lie there in the order of the arguments, wherever they are here: code may compare addresses, and its cycles must not depend
     on the host's. Raises KernelError if there is no room for them.
     """
-    ranges = [(each.ctypes.data, each.ctypes.data + each.nbytes) for each in arrays]
+    ranges = [(first := each.ctypes.data, first + each.nbytes) for each in arrays]
     joined = list(_joined(ranges))
     starts = [low for low, _ in joined]
     parts: list[Placed] = []
@@ -153,11 +161,9 @@ def placed(arrays: Sequence[NDArray[Any]], space: AddressSpace) -> tuple[list[Pl
             nbytes = high - low
             if address + nbytes > ARRAYS + ARRAYS_BYTES:
                 raise KernelError(f"the arrays of a call must fit into {ARRAYS_BYTES:,} bytes, but do not")
-            octets = np.ctypeslib.as_array((ctypes.c_uint8 * nbytes).from_address(low))
             within = (each for each, (begin, _) in zip(arrays, ranges, strict=True) if low <= begin < high)
-            parts.append(
-                Placed(octets, space.at(address, nbytes), all(each.flags.writeable for each in within))
-            )
+            is_writeable = all(each.flags.writeable for each in within)
+            parts.append(Placed(low, space.origin + address, nbytes, is_writeable))
             address += nbytes
         addresses.append(place_of[number] + first - low)
     return parts, addresses

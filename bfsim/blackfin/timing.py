@@ -12,12 +12,13 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from bfsim.blackfin.decode import Instruction, Operation
-from bfsim.blackfin.interlocks import Interlock
-from bfsim.blackfin.linking import Image
+from bfsim.blackfin.image import Image
 from bfsim.blackfin.registers import DAG, DATA, POINTERS
+
+if TYPE_CHECKING:
+    from bfsim.blackfin.decode import Instruction, Operation
 
 MOVE_SEVERAL = frozenset({"push_multiple", "pop_multiple"})
 RANGES = {"d": 8, "p": 6}
@@ -30,6 +31,24 @@ class Whole(NamedTuple):
     first: int
     end: int
     cclk: int
+
+
+@dataclass(frozen=True, slots=True)
+class Interlock:
+    """An instruction that reads one of `registers` at once waits `cclk` behind one that has written it, in one of these ways.
+
+    `by`: what that does. `loaded`: a word of memory came as it is. `moved_from`: it read one of these registers. `used_by`: what
+    waits, if not all. `source`: who says so.
+    """
+
+    about: str
+    registers: frozenset[str]
+    cclk: int
+    source: str
+    by: frozenset[str] = frozenset()
+    loaded: bool = False
+    moved_from: frozenset[str] = frozenset()
+    used_by: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)

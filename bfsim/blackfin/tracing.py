@@ -13,6 +13,7 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from bfsim import machine_code
+from bfsim.blackfin.native_code import native_code
 
 TRACER = "bfsim_trace_object"
 IR = f"""
@@ -57,9 +58,12 @@ done:
 
 @dataclass(frozen=True)
 class Tracing:
-    """How accesses are told apart: `site_of` an instruction, by its address. A report has the bytes of an access, `write` more if it writes."""
+    """How accesses are told apart: `site_of` a block and an instruction in it, by their addresses.
 
-    site_of: Callable[[int], int]
+    A report has the bytes of an access, `write` more if it writes.
+    """
+
+    site_of: Callable[[int, int], int]
     write: int
 
 
@@ -80,5 +84,5 @@ def block_of(state: int, followed: Sequence[Followed]) -> Any:
 
 @cache
 def _tracer() -> int:
-    machine_code.add(machine_code.host_code(IR))
+    machine_code.add(native_code(IR))
     return machine_code.address_of(TRACER)

@@ -17,7 +17,8 @@ from llvmlite import ir
 
 from bfsim.blackfin.blocks import Block, Code
 from bfsim.blackfin.decode import Instruction
-from bfsim.blackfin.effects import I8, I32, I64, Effects, Event, Flow
+from bfsim.blackfin.effects import I8, I32, I64, Effects, Flow
+from bfsim.blackfin.event import Event
 from bfsim.blackfin.flow import Edge, Way
 from bfsim.blackfin.registers import SLOTS, width
 from bfsim.blackfin.semantics import SEMANTICS
@@ -28,7 +29,6 @@ from bfsim.blackfin.value import Value
 
 POINTER = ir.PointerType()
 REPORT = ir.FunctionType(ir.VoidType(), (POINTER, I64, I64, I64, I64))
-NAME = "blackfin"
 ALWAYS_READ = frozenset({"PC", "CLOCK", "WAITED"})
 LARGE_PROGRAM_BLOCKS = 500
 """[ours] LLVM's time to optimise one function of more blocks grows with their square: minutes for a program with newlib's printf."""
@@ -92,17 +92,18 @@ def _counters(code: Code, timing: Timing) -> list[Counter]:
 
 def translate(
     of: Counted,
+    symbol: str,
     *,
     fuel: bool = False,
     tracing: Tracing | None = None,
     results: frozenset[str] | None = None,
 ) -> str:
-    """Return the LLVM module of code; its function is called `NAME`. With `fuel`, the FUEL of the state is how many blocks it may run.
+    """Return the LLVM module of code; its function is called `symbol`. With `fuel`, the FUEL of the state is how many blocks it may run.
 
     With `tracing`, accesses to memory are reported, each with the cycle of this call of the function at which its instruction is issued.
     `results`: registers that somebody reads when it is left, if not all.
     """
-    return str(_Translation(of, fuel=fuel, tracing=tracing, results=results).module())
+    return str(_Translation(of, symbol, fuel=fuel, tracing=tracing, results=results).module())
 
 
 class _Translation:
@@ -111,6 +112,7 @@ class _Translation:
     def __init__(
         self,
         of: Counted,
+        symbol: str,
         *,
         fuel: bool,
         tracing: Tracing | None,
@@ -119,8 +121,8 @@ class _Translation:
         self.code, self.timing, self.fuel, self.tracing = of.code, of.timing, fuel, tracing
         self.results = None if results is None else results | ALWAYS_READ
         counted = self.counted = of.counters
-        self.made = ir.Module(NAME)
-        self.function = ir.Function(self.made, ir.FunctionType(I32, (POINTER, POINTER, POINTER)), NAME)
+        self.made = ir.Module(symbol)
+        self.function = ir.Function(self.made, ir.FunctionType(I32, (POINTER, POINTER, POINTER)), symbol)
         self.memory, self.state, self.counts = self.function.args
         for each in self.function.args:
             each.add_attribute("noalias")
@@ -175,7 +177,7 @@ class _Translation:
         number = self.numbers[block.start, False, None]
         for instruction, wait in zip(block.instructions, self.counted[number].waits, strict=True):
             cclk += wait.cclk
-            effects = self._instruction(builder, instruction, cclk)
+            effects = self._instruction(builder, instruction, block.start, cclk)
             for register, value in effects.pending.items():
                 self.values[register] = value.ir
                 written[register] = None
@@ -204,8 +206,8 @@ class _Translation:
             self.values[register] = self._read(builder, register)
         return self.values[register]
 
-    def _instruction(self, builder: ir.IRBuilder, instruction: Instruction, cclk: int) -> Effects:
-        """Add an instruction that is issued `cclk` cycles after its block has begun."""
+    def _instruction(self, builder: ir.IRBuilder, instruction: Instruction, block: int, cclk: int) -> Effects:
+        """Add an instruction that is issued `cclk` cycles after its block, at the address `block`, has begun."""
         effects = Effects(
             builder,
             partial(self._value, builder),
@@ -213,7 +215,7 @@ class _Translation:
             lambda: self._clock(builder),
             instruction.address,
             lambda: self._following(builder, instruction),
-            report=partial(self._report, builder, instruction, cclk) if self.tracing else None,
+            report=partial(self._report, builder, instruction, block, cclk) if self.tracing else None,
         )
         for each in instruction.operations:
             SEMANTICS[each.form.does](effects, **each.operands, **each.form.given)
@@ -223,6 +225,7 @@ class _Translation:
         self,
         builder: ir.IRBuilder,
         instruction: Instruction,
+        block: int,
         cclk: int,
         address: Value,
         nbytes: int,
@@ -231,12 +234,12 @@ class _Translation:
     ) -> None:
         """Report an access."""
         assert self.tracing
-        block = builder.inttoptr(self._read(builder, "TRACE"), POINTER)
-        tracer = builder.load(block, typ=REPORT.as_pointer())
+        told = builder.inttoptr(self._read(builder, "TRACE"), POINTER)
+        tracer = builder.load(told, typ=REPORT.as_pointer())
         stamp = builder.add(builder.load(self.stamp), I64(cclk))
         access = I64(nbytes + self.tracing.write * writes)
-        site = I64(self.tracing.site_of(instruction.address))
-        builder.call(tracer, [block, address.zero_extended(64).ir, access, stamp, site])
+        site = I64(self.tracing.site_of(block, instruction.address))
+        builder.call(tracer, [told, address.zero_extended(64).ir, access, stamp, site])
 
     def _pass(self, builder: ir.IRBuilder, cclk: ir.Value) -> None:
         """Let cycles pass for what is reported."""

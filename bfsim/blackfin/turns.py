@@ -11,7 +11,7 @@ from bfsim.blackfin.blocks import BRANCHES, CALLS, COMPUTED, DIRECT, Code, does
 from bfsim.blackfin.decode import Instruction
 from bfsim.blackfin.dependences import registers_of
 from bfsim.blackfin.flow import Edge, Loop, Way, dominators
-from bfsim.blackfin.interlocks import NOTHING, issued_in_turn
+from bfsim.blackfin.interlocks import NOTHING, holds, issued_in_turn, made_by
 from bfsim.blackfin.stalls import fetched_anew
 from bfsim.blackfin.timing import Timing
 
@@ -137,7 +137,7 @@ def _arrivals(
 
 def _wait(writer: Instruction, register: str, reader: Instruction, timing: Timing) -> int:
     waits = (
-        each.cclk for each in timing.interlocks if register in each.made_by(writer) and each.holds(reader)
+        each.cclk for each in timing.interlocks if register in made_by(each, writer) and holds(each, reader)
     )
     return max(waits, default=0)
 

@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from bfsim.blackfin.linking import Routine, link
+from bfsim.blackfin.image import Routine
+from bfsim.blackfin.linking import link
 from bfsim.blackfin.objects import MOST_BYTES, read_object
 from bfsim.blackfin.subroutines import LoadedImage
 from bfsim.compiling.recipes import Recipe, code_of

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, field
 
-from bfsim.blackfin.linking import link
-from bfsim.blackfin.objects import read_object
+from bfsim import store
+from bfsim.blackfin.image import Image, packed, unpacked
 from bfsim.blackfin.subroutines import LoadedImage
 from bfsim.blackfin.timing import GNU, Timing
 from bfsim.compiling.object_code import ObjectCode
+from bfsim.kernel import keys
 from bfsim.kernel.function import Function
 from bfsim.kernel.objects.compiled import CompiledObject, code_bytes, compiled_object
 from bfsim.kernel.objects.places import Places
@@ -23,7 +25,7 @@ class LoadedCode:
     _compiled: dict[tuple[Function, bool], CompiledObject] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        image = link(read_object(self.code.octets, "kernels.o"))
+        image = _linked(self.code.octets)
         kernels = {self.code.symbol_of(each): each for each in self.code.names}
         of_file = {each.symbol: each for each in self.code.names}
         self._loaded, self._places = LoadedImage(image), Places(image, kernels, of_file)
@@ -48,3 +50,16 @@ class LoadedCode:
                 function, symbol, self._loaded, self._places, self._placed, traced=traced
             )
         return self._compiled[function, traced]
+
+
+def _linked(octets: bytes) -> Image:
+    """Return the image of an object file: linked now, or kept."""
+    key = keys.object_key(hashlib.sha256(octets).hexdigest(), "", "", "image")
+    kept = store.load(key)
+    if kept is None:
+        from bfsim.blackfin.linking import link  # most starts find all images
+        from bfsim.blackfin.objects import read_object
+
+        kept = packed(link(read_object(octets, "kernels.o")))
+        store.save(key, kept)
+    return unpacked(kept)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -11,7 +10,6 @@ from bfsim.compiling.recipes import Recipe, code_at_hand, code_of
 from bfsim.compiling.toolchain import Toolchain
 from bfsim.errors import ConfigError
 from bfsim.kernel import CompilerProfile, Kernel, keys
-from bfsim.kernel.c import CProgram, Place, c_program
 from bfsim.kernel.function import Function
 
 LEVELS = {"gcc-O2": "-O2", "gcc-O0": "-O0", "gcc": "-O2", "gcc-adi": "-O2"}
@@ -54,10 +52,10 @@ def object_code(
 
     Raises ConfigError where there is neither kept code nor a compiler, and with what the compiler says if it refuses.
     """
-    level, program = level_of(profile), _in_c(kernels, entries)
-    if not program.names:
+    level, (files, names) = level_of(profile), _in_c(kernels, entries)
+    if not names:
         raise ConfigError("the run must call a kernel for there to be real code, but calls none")
-    return ObjectCode(*code_of(_recipe(program, level), toolchain), program.names)
+    return ObjectCode(*code_of(_recipe(files, level), toolchain), names)
 
 
 def object_code_at_hand(
@@ -67,41 +65,38 @@ def object_code_at_hand(
     toolchain: Toolchain | None,
 ) -> ObjectCode | None:
     """Return what `object_code` does, or None where there is neither kept code nor a compiler."""
-    program = _in_c(kernels, entries)
-    found = code_at_hand(_recipe(program, level_of(profile)), toolchain)
-    return found and ObjectCode(*found, program.names)
+    files, names = _in_c(kernels, entries)
+    found = code_at_hand(_recipe(files, level_of(profile)), toolchain)
+    return found and ObjectCode(*found, names)
 
 
 def recipe_of(kernels: Iterable[Kernel], entries: Iterable[Kernel], profile: CompilerProfile) -> Recipe:
     """Return what the code of `kernels` is made of."""
-    return _recipe(_in_c(kernels, entries), level_of(profile))
+    files, _ = _in_c(kernels, entries)
+    return _recipe(files, level_of(profile))
 
 
-def _recipe(program: CProgram, level: str) -> Recipe:
-    return Recipe(program.files, tuple(program.sources), ("-w", level))
+def _recipe(files: Mapping[str, str], level: str) -> Recipe:
+    return Recipe(files, tuple(each for each in files if each.endswith(".c")), ("-w", level))
 
 
-def _in_c(kernels: Iterable[Kernel], entries: Iterable[Kernel]) -> CProgram:
-    """Kernels as C whose lines are called by the kernel and counted from its first: wherever the Python lies, the C is the same.
+def _in_c(
+    kernels: Iterable[Kernel], entries: Iterable[Kernel]
+) -> tuple[Mapping[str, str], Mapping[Function, str]]:
+    """Kernels as files of C, and what each is called there. Their lines are called by the kernel and counted from its first: wherever the Python lies, the C is the same.
 
     It is kept in the user's cache, for to write all kernels of firmware takes longer than to run a frame.
     """
     called = {each.function.symbol: each.function for each in entries}
     functions = {one.symbol: one for each in kernels for one in (*each.function.callees(), each.function)}
-    name = keys.program_key(functions.values(), called)
-    if (kept := store.load(name)) is not None:
-        files, names, static = json.loads(kept)
-        found = {functions[symbol]: name for symbol, name in names.items()}
-        return CProgram(files, found, frozenset(functions[each] for each in static))
-    program = c_program(
-        functions.values(),
-        entries=called.values(),
-        place=lambda function: Place(function.symbol, 1),
-    )
-    parts = (
-        program.files,
-        {function.symbol: each for function, each in program.names.items()},
-        sorted(each.symbol for each in program.static),
-    )
-    store.save(name, json.dumps(parts).encode())
-    return program
+
+    def made() -> tuple[Mapping[str, str], Mapping[str, str]]:
+        from bfsim.kernel.c import Place, c_program  # most starts find all C
+
+        program = c_program(
+            functions.values(), entries=called.values(), place=lambda function: Place(function.symbol, 1)
+        )
+        return program.files, {function.symbol: each for function, each in program.names.items()}
+
+    files, names = store.kept(keys.program_key(functions.values(), called), made)
+    return files, {functions[symbol]: name for symbol, name in names.items()}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -69,6 +68,8 @@ class Toolchain:
         return self._output(*self.runner, str(program), folder=program.parent)
 
     def _output(self, *command: str, folder: Path | None = None) -> str:
+        import subprocess  # most starts ask no compiler
+
         done = subprocess.run(  # noqa: S603, the user's own compiler and what it made
             command, check=False, capture_output=True, text=True, cwd=folder
         )

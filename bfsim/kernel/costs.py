@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -48,52 +47,60 @@ def costs_of(function: Function, profile: CompilerProfile) -> Costs:
 
 def kept_costs(key: str, made: Callable[[], Costs]) -> Costs:
     """Return the costs that the cache on disk keeps under a key, or those that are made now, which it keeps."""
-    kept = store.load(key)
-    if kept is not None:
-        return _costs(json.loads(kept))
-    costs = made()
-    store.save(key, json.dumps(_rows(costs), separators=(",", ":")).encode())
-    return costs
+    return _costs(store.kept(key, lambda: _rows(made())))
 
 
 def _rows(costs: Costs) -> dict[str, Any]:
-    """Return costs for JSON: dataclasses as lists of their fields, source lines once and then by their numbers."""
-    lines: dict[SourceLine, int] = {}
-
-    def number(line: SourceLine) -> int:
-        return lines.setdefault(line, len(lines))
+    """Return costs for JSON: lines, charges and accesses once each, and then by their numbers."""
+    lines, charges, accesses = _Numbered(), _Numbered(), _Numbered()
 
     def row(each: Counter) -> list[Any]:
         numbered = {
-            "charges": [(one.op, number(one.line), *one[2:]) for one in each.charges],
-            "accesses": [(*one[:4], number(one.line), *one[5:]) for one in each.accesses],
-            "enters": [(one.symbol, number(one.caller), one.location) for one in each.enters],
+            "charges": [charges[one.op, lines[one.line], *one[2:]] for one in each.charges],
+            "accesses": [accesses[*one[:4], lines[one.line], *one[5:]] for one in each.accesses],
+            "enters": [(one.symbol, lines[one.caller], one.location) for one in each.enters],
         }
         return [numbered.get(name, getattr(each, name)) for name in each.__dataclass_fields__]
 
     return {
         "counters": list(map(row, costs.counters)),
         "lines": list(lines),
+        "charges": list(charges),
+        "accesses": list(accesses),
         "calls": costs.calls,
         "inlined": costs.inlined,
     }
 
 
+class _Numbered(dict[Any, int]):
+    """Things by which they were asked for, numbered in that order."""
+
+    def __missing__(self, key: Any) -> int:
+        return self.setdefault(key, len(self))
+
+
 def _costs(kept: dict[str, Any]) -> Costs:
     """Build costs from their JSON."""
     lines = [SourceLine(*each) for each in kept["lines"]]
+    charges = [Charge(OPS[op], lines[line], *more) for op, line, *more in kept["charges"]]
+    accesses = [
+        Access(array, writes, label, number, lines[line], *more)
+        for array, writes, label, number, line, *more in kept["accesses"]
+    ]
 
     def counter(row: list[Any]) -> Counter:
-        found = dict(zip(Counter.__dataclass_fields__, row, strict=True))
-        found["charges"] = tuple(Charge(OPS[op], lines[line], *more) for op, line, *more in found["charges"])
-        found["accesses"] = tuple(
-            Access(array, writes, label, number, lines[line], *more)
-            for array, writes, label, number, line, *more in found["accesses"]
+        routine, label, value, equals, charged, accessed, nbytes, depth, enters = row
+        return Counter(
+            routine,
+            label,
+            value,
+            equals,
+            tuple([charges[each] for each in charged]),
+            tuple([accesses[each] for each in accessed]),
+            nbytes,
+            depth,
+            tuple([Entrance(symbol, lines[caller], note) for symbol, caller, note in enters]),
         )
-        found["enters"] = tuple(
-            Entrance(symbol, lines[caller], note) for symbol, caller, note in found["enters"]
-        )
-        return Counter(**found)
 
     calls = {
         routine: tuple(RoutineCall(callee, tuple(map(tuple, arrays))) for callee, arrays in each)

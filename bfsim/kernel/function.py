@@ -37,7 +37,8 @@ class Function:
     A kernel `is_static`, as C calls it, if other kernels of its file name it and nothing else there does: the file's main loops
     do not run it. Whether another file imports it is not looked at.
     `calls`: the kernels that it calls itself, each once, in source order. `written`: array parameters that it, or a kernel called
-    by it, stores into. `digest`: of all that its code depends on but its callees. `read`: reads its body, which few runs need.
+    by it, stores into; `measured`: those whose length is asked for, which comes with them in C. `digest`: of all that its code
+    depends on but its callees. `read`: reads its body, which few runs need.
     """
 
     name: str
@@ -51,6 +52,7 @@ class Function:
     result: Number | None
     calls: tuple[Function, ...]
     written: frozenset[str]
+    measured: frozenset[str]
     digest: str
     read: Callable[[], Body]
 

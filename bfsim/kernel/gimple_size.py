@@ -7,12 +7,11 @@ count one; phis and widenings are free. The size of 230 routines was 12 % off on
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass
 from functools import cache, cached_property
 
 from bfsim import store
-from bfsim.kernel import generic, keys, tree
+from bfsim.kernel import generic, keys
 from bfsim.kernel.emit import emit_alone
 from bfsim.kernel.function import Function
 from bfsim.kernel.ir_text import Instruction, read_module
@@ -52,23 +51,15 @@ class Estimate:
 @cache
 def estimate(function: Function) -> Estimate:
     """Estimate one kernel, nothing inlined into it, or take what was estimated from the cache on disk: profiles and programs share it."""
-    key = keys.estimate_key(function)
-    kept = store.load(key)
-    if kept is not None:
-        found = json.loads(kept)
-        return Estimate(found["size"], found["time"], tuple(CallSite(**each) for each in found["calls"]))
-    made = _estimated(function)
-    store.save(key, json.dumps(asdict(made), separators=(",", ":")).encode())
-    return made
+    found = store.kept(keys.estimate_key(function), lambda: asdict(_estimated(function)))
+    return Estimate(found["size"], found["time"], tuple(CallSite(**each) for each in found["calls"]))
 
 
 def _estimated(function: Function) -> Estimate:
     module = generic.parsed(emit_alone(function))
     generic.run(EARLY_PASSES, module)
     (routine,) = read_module(str(module))
-    arguments = {
-        each.symbol: len(each.parameters) + len(tree.measured_arrays(each)) for each in function.callees()
-    }
+    arguments = {each.symbol: len(each.parameters) + len(each.measured) for each in function.callees()}
     return _Estimator(ControlFlow(routine), arguments).run()
 
 

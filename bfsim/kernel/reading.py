@@ -9,7 +9,6 @@ from __future__ import annotations
 import builtins
 import hashlib
 import inspect
-import json
 import re
 import unicodedata
 from collections.abc import Callable, Mapping
@@ -45,6 +44,7 @@ class _Known(NamedTuple):
     result: str | None
     calls: list[str]
     written: list[str]
+    measured: list[str]
     digest: str
 
 
@@ -71,7 +71,7 @@ def read_kernel(python: Callable[..., Any]) -> Function:
 
     meanings = (f"{name} {_meaning(value)}" for name, value in outer.items())
     own = repr((source.text, symbol, python.__name__, code.co_freevars, is_static))
-    found = _kept(keys.reading_key(own, *meanings), known)
+    found = _Known(*store.kept(keys.reading_key(own, *meanings), known))
     function = Function(
         name=python.__name__,
         symbol=symbol,
@@ -84,6 +84,7 @@ def read_kernel(python: Callable[..., Any]) -> Function:
         result=NUMBERS[found.result] if found.result else None,
         calls=tuple(outer[name].function for name in found.calls),
         written=frozenset(found.written),
+        measured=frozenset(found.measured),
         digest=found.digest,
         read=lambda: read().body,
     )
@@ -111,16 +112,6 @@ def _meaning(value: object) -> str:
     return MEANINGS.get(id(value), "")
 
 
-def _kept(key: str, read: Callable[[], _Known]) -> _Known:
-    """Return what the cache keeps under a key, or what is read now, which it keeps."""
-    kept = store.load(key)
-    if kept is not None:
-        return _Known(*json.loads(kept))
-    known = read()
-    store.save(key, json.dumps(known).encode())
-    return known
-
-
 def _known(read: Read, outer: Mapping[str, Any], head: tuple[str, str, bool]) -> _Known:
     from bfsim.kernel import tree
 
@@ -133,6 +124,7 @@ def _known(read: Read, outer: Mapping[str, Any], head: tuple[str, str, bool]) ->
         result=str(read.result) if read.result else None,
         calls=list(calls),
         written=sorted(tree.written_arrays(body)),
+        measured=sorted(tree.measured_arrays(body)),
         digest=hashlib.sha256(text.encode()).hexdigest(),
     )
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import ast
 import io
-import json
 import linecache
 from collections import Counter as Tally
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -75,20 +74,16 @@ def _names_by_use(file: SourceFile, marks: frozenset[str]) -> tuple[Tally[str], 
 
 @cache
 def _read(text: str) -> SourceFile:
-    lines, key = io.StringIO(text).readlines(), keys.file_key(text)
-    kept = store.load(key)
-    if kept is None:
-        statements, extents = _walked(text)
-        store.save(key, json.dumps([statements, list(extents.items())]).encode())
-    else:
-        rows, definitions = json.loads(kept)
-        statements = [Statement(*row) for row in rows]
-        extents = {first_line: Extent(*row) for first_line, row in definitions}
-    return SourceFile(lines, statements, extents)
+    statements, extents = store.kept(keys.file_key(text), lambda: _walked(text))
+    return SourceFile(
+        io.StringIO(text).readlines(),
+        [Statement(*row) for row in statements],
+        {first_line: Extent(*row) for first_line, row in extents},
+    )
 
 
-def _walked(text: str) -> tuple[list[Statement], dict[int, Extent]]:
-    """Return the statements of a file and its definitions."""
+def _walked(text: str) -> tuple[list[Statement], list[tuple[int, Extent]]]:
+    """Return the statements of a file, and its definitions with their first lines."""
     statements, extents = [], {}
     for statement in ast.parse(text).body:
         names = set()
@@ -100,7 +95,7 @@ def _walked(text: str) -> tuple[list[Statement], dict[int, Extent]]:
                 extents[first_line] = Extent(each.end_lineno or each.lineno, _marks_of(each))
         marks = _marks_of(statement) if isinstance(statement, ast.FunctionDef) else ()
         statements.append(Statement(marks, sorted(names)))
-    return statements, extents
+    return statements, list(extents.items())
 
 
 def _marks_of(definition: ast.FunctionDef | ast.AsyncFunctionDef) -> Sequence[str]:

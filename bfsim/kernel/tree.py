@@ -5,9 +5,8 @@ Every node carries `line`, counted from the first line of the kernel's source (i
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from functools import cache
 
 from bfsim.kernel.function import Body, Function
 from bfsim.kernel.intrinsics import Intrinsic
@@ -243,32 +242,31 @@ def calls_in(node: object) -> list[KernelCall]:
     return [each for each in parts(node) if isinstance(each, KernelCall)]
 
 
-@cache
-def measured_arrays(function: Function) -> frozenset[str]:
-    """Array parameters whose length `function` or a kernel called by it asks for: in C, they come with it."""
-    nodes = list(parts(function.body))
-    found = {each.array for each in nodes if isinstance(each, Length)}
-    for call in nodes:
-        if isinstance(call, KernelCall):
-            inner = measured_arrays(call.callee)
-            pairs = zip(call.callee.parameters, call.arguments, strict=True)
-            found |= {each for parameter, each in pairs if isinstance(each, str) and parameter.name in inner}
-    return frozenset(found)
+def measured_arrays(body: Body) -> frozenset[str]:
+    """Array parameters whose length a body, or a kernel called by it, asks for."""
+    return _arrays(body, Length, lambda callee: callee.measured)
 
 
 def written_arrays(body: Body) -> frozenset[str]:
     """Array parameters that a body, or a kernel called by it, stores into."""
+    return _arrays(body, Store, lambda callee: callee.written)
+
+
+def _arrays(
+    body: Body, kind: type[Length | Store], of: Callable[[Function], frozenset[str]]
+) -> frozenset[str]:
+    """Arrays that a body has in a `kind` of node, or gives to a kernel as one `of` its parameters."""
     nodes = list(parts(body.block))
-    written = {each.array for each in nodes if isinstance(each, Store)}
+    found = {each.array for each in nodes if isinstance(each, kind)}
     for call in nodes:
         if isinstance(call, KernelCall):
             pairs = zip(call.callee.parameters, call.arguments, strict=True)
-            written |= {
+            found |= {
                 each
                 for parameter, each in pairs
-                if isinstance(each, str) and parameter.name in call.callee.written
+                if isinstance(each, str) and parameter.name in of(call.callee)
             }
-    return frozenset(written)
+    return frozenset(found)
 
 
 def parts(node: object) -> Iterator[object]:

@@ -14,7 +14,6 @@ from pathlib import Path
 
 import numpy as np
 
-from bfsim.kernel import tree
 from bfsim.kernel.c.names import c_type
 from bfsim.kernel.function import Function
 from bfsim.kernel.types import ArrayType, FloatType
@@ -68,7 +67,7 @@ def player(kernels: Sequence[Function]) -> str:
 
 def _kernel(number: int, function: Function) -> str:
     """What plays one kernel: `timed_N` makes the call between two readings of the clock, `play_N` has the arguments."""
-    measured = tree.measured_arrays(function)
+    measured = function.measured
     types, names, take, leave = [], [], [], []
     for place, each in enumerate(function.parameters):
         if isinstance(each.type, ArrayType):

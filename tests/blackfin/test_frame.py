@@ -6,7 +6,7 @@ import pytest
 
 from bfsim.blackfin import blocks
 from bfsim.blackfin.decode import InstructionError, decode, disassemble
-from bfsim.blackfin.effects import Event
+from bfsim.blackfin.event import Event
 from bfsim.blackfin.processor import OUTSIDE, AccessError
 from bfsim.blackfin.text import text
 from tests.blackfin.code import CODE, DATA, processor

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from bfsim.blackfin.image import Use, packed, unpacked
 from bfsim.blackfin.lines import Line, lines_of
 from bfsim.blackfin.linking import BASE, link
-from bfsim.blackfin.objects import MOST_BYTES, Use, read_object
+from bfsim.blackfin.objects import MOST_BYTES, read_object
 from bfsim.errors import KernelError
 
 DATA = Path(__file__).parent / "data"
@@ -31,6 +32,15 @@ def test_relocations_are_applied_as_by_the_linker() -> None:
         assert ours.octets == theirs.octets
     assert made.symbols["_behind"] == judge.symbols["_behind"] == judge.routines[-1].address
     assert [each.name for each in made.routines] == ["_start", "_near", "_behind"]
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_an_image_can_be_kept(name: str) -> None:
+    """As bytes, of which the same one is made again."""
+    made = link(read_object(octets_of(name), name))
+    again = unpacked(packed(made))
+    assert again == made
+    assert again.digest == made.digest
 
 
 def test_memory_that_is_only_zeroed_takes_its_place() -> None:

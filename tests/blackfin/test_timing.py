@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from bfsim.blackfin.decode import Instruction, decode
+from bfsim.blackfin.image import Image, Routine
 from bfsim.blackfin.interlocks import NOTHING, issued_in_turn
-from bfsim.blackfin.linking import Image, Routine
 from bfsim.blackfin.timing import ADI, GNU, Timing
 from bfsim.kernel import GCC_O0, GCC_O2, VDSP_O2
 from bfsim.kernel.objects.timing import timing_of

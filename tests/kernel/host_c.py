@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from bfsim.kernel import Kernel, tree
+from bfsim.kernel import Kernel
 from bfsim.kernel.c import CProgram, c_program
 from bfsim.kernel.types import FloatType, IntType, Number
 
@@ -57,7 +57,7 @@ def call(library: ctypes.CDLL, program: CProgram, kernel: Kernel, *arguments: An
     function = kernel.function
     entry = library[program.names[function]]
     entry.restype = _scalar(function.result) if function.result else None
-    measured = tree.measured_arrays(function)
+    measured = function.measured
     given: list[Any] = []
     for parameter, each in zip(function.parameters, arguments, strict=True):
         if isinstance(parameter.type, (IntType, FloatType)):

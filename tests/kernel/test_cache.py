@@ -194,6 +194,14 @@ def test_an_entry_is_text_or_machine_code(folder: Path, tmp_path: Path) -> None:
     assert b"ELF" in code[:4] or code[:4] in (b"\xcf\xfa\xed\xfe", b"\x64\x86\x00\x00")
 
 
+@pytest.mark.usefixtures("folder")
+def test_data_are_made_once() -> None:
+    """And come from the cache as they did when they were made: as JSON has them."""
+    made = iter([{"a": (1, 2)}])
+    found = [store.kept("0" * 64, lambda: next(made)) for _ in range(2)]
+    assert found == [{"a": [1, 2]}] * 2
+
+
 def test_processes_share_the_cache_and_agree_on_the_cycles(tmp_path: Path) -> None:
     """Two processes that start at once, in other folders and with other hash seeds, count the same cycles.
 

@@ -14,7 +14,7 @@ from benchmarks.firmware_twins.recorded import SAMPLES, recorded
 from benchmarks.firmware_twins.twins import TWINS, predict
 from benchmarks.twins.measure import missing_tools, traced
 from bfsim.compiling.toolchain import blackfin_toolchain
-from bfsim.kernel import GCC_O2, tree
+from bfsim.kernel import GCC_O2
 from tinyphoon.stages.hysteresis import group_edges_row
 from tinyphoon.stages.line_scan import segments_row
 
@@ -52,7 +52,7 @@ def test_the_sample_is_spread_over_the_run() -> None:
 
 def test_a_length_is_a_parameter_of_the_twin_if_the_kernel_or_a_helper_asks_for_it() -> None:
     """`segments_row` passes `above` to a helper that asks for its length; it asks for none itself."""
-    assert tree.measured_arrays(segments_row.function) == {"above"}
+    assert segments_row.function.measured == {"above"}
 
 
 @pytest.mark.toolchain

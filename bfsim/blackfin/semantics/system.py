@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from bfsim.blackfin.effects import Effects, Event
+from bfsim.blackfin.effects import Effects
+from bfsim.blackfin.event import Event
 
 
 def nothing(fx: Effects) -> None:

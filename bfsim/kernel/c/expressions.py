@@ -167,7 +167,7 @@ class Expressions:
 
     def _kernelcall(self, node: tree.KernelCall) -> tuple[str, Binds]:
         given = [self.names.of[each] if isinstance(each, str) else self.text(each) for each in node.arguments]
-        measured = tree.measured_arrays(node.callee)
+        measured = node.callee.measured
         for parameter, each in zip(node.callee.parameters, node.arguments, strict=True):
             if isinstance(parameter.type, ArrayType) and parameter.name in measured:
                 assert isinstance(each, str)

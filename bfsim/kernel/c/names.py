@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from bfsim.kernel import tree
 from bfsim.kernel.function import Function
 from bfsim.kernel.types import PAIR, ArrayType, FloatType, IntType, Number, Value
 
@@ -107,7 +106,7 @@ class LocalNames:
             self.of[name] = free_name(name, taken)
             taken.add(self.of[name])
         self.lengths: dict[str, str] = {}
-        measured = tree.measured_arrays(function)
+        measured = function.measured
         for name in (each for each in function.array_names if each in measured):
             self.lengths[name] = free_name(f"{name}_length", taken)
             taken.add(self.lengths[name])

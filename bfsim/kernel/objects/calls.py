@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from bfsim.blackfin.calling import BoundCall, Counts
 from bfsim.blackfin.subroutines import STACK, STACK_BYTES, placed
 from bfsim.blackfin.tracing import Followed, block_of
-from bfsim.kernel import tree
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.objects.compiled import CompiledObject
 from bfsim.kernel.types import ArrayType, FloatType, Number
@@ -40,18 +39,19 @@ class ObjectCall:
         self._check, self._result, self._access_trace = check, function.result, access_trace
         self._kept = arrays  # their places have their addresses only
         parts, addresses = placed(arrays, code.subroutine.processor.space)
-        measured = tree.measured_arrays(function)
         named = list(zip(function.array_names, arrays, strict=True))
-        lengths = [len(array) for name, array in named if name in measured]
+        lengths = [len(array) for name, array in named if name in function.measured]
         count = len(function.parameters)
         counts = Counts(totals[: len(code.order)], code.order)
-        followed = [
-            Followed(address, array.nbytes, array.ctypes.data, first_site + number)
-            for number, (address, array) in enumerate(zip(addresses, arrays, strict=True))
-        ]
-        if stack is not None:
-            followed.append(_followed_stack(stack, first_site + len(arrays)))
-        trace = access_trace and block_of(access_trace.address(), followed)
+        trace = None
+        if access_trace:
+            followed = [
+                Followed(address, array.nbytes, array.ctypes.data, first_site + number)
+                for number, (address, array) in enumerate(zip(addresses, arrays, strict=True))
+            ]
+            if stack is not None:
+                followed.append(_followed_stack(stack, first_site + len(arrays)))
+            trace = block_of(access_trace.address(), followed)
         self._call = BoundCall(code.subroutine, count + len(lengths), parts, counts, trace)
         self._words = self._call.arguments
         self._words[count : count + len(lengths)] = lengths

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -10,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim import store
-from bfsim.blackfin.pointers import arrays_accessed
 from bfsim.blackfin.subroutines import LoadedImage, Subroutine
 from bfsim.blackfin.timing import Timing
 from bfsim.blackfin.tracing import Tracing
@@ -21,7 +19,6 @@ from bfsim.kernel.costs import Costs, kept_costs
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.function import Function
 from bfsim.kernel.ir_text import SourceLine
-from bfsim.kernel.objects.counted import calls, counters
 from bfsim.kernel.objects.places import Places
 from bfsim.kernel.types import ArrayType
 
@@ -70,6 +67,9 @@ def compiled_object(
     arrays = (*function.array_names, NO_ARRAY) if traced else ()
 
     def made() -> Costs:
+        from bfsim.blackfin.pointers import arrays_accessed  # most starts find all costs
+        from bfsim.kernel.objects.counted import calls, counters
+
         counted = subroutine.processor.counted()
         accessed = arrays_accessed(counted.code, subroutine.address, words)
         found = counters(counted.counters, places, timing, accessed, arrays)
@@ -84,7 +84,7 @@ def compiled_object(
         subroutine.processor.tracing = Tracing(_site_of(program, places), WRITE)
     numbers = {id(each): number for number, each in enumerate(costs.counters)}
     order = np.array([numbers[id(each)] for each in program.counters], np.int64)
-    lines = {line.routine for each in costs.counters for line, _, _ in each.line_cclk} - set(costs.calls)
+    lines = {one.line.routine for each in costs.counters for one in each.charges} - set(costs.calls)
     functions = tuple(places.function_called(each) for each in (*costs.calls, *sorted(lines)))
     return CompiledObject(function, subroutine, program, functions, places, order)
 
@@ -92,26 +92,30 @@ def compiled_object(
 def code_bytes(symbol: str, loaded: LoadedImage, places: Places) -> dict[str, int]:
     """Return the size of the code of a function in an image, and of each function that it calls, by the names of kernels."""
     key = keys.object_key(loaded.image.digest, symbol, "", "bytes of code")
-    if (kept := store.load(key)) is not None:
-        found: dict[str, int] = json.loads(kept)
+
+    def made() -> dict[str, int]:
+        found: dict[str, int] = {}
+        for each in loaded.explored(loaded.image.address_of(symbol)).blocks.values():
+            name = places.function_at(each.start).symbol
+            found[name] = found.get(name, 0) + each.end - each.start
         return found
-    found = {}
-    for each in loaded.explored(loaded.image.address_of(symbol)).blocks.values():
-        name = places.function_at(each.start).symbol
-        found[name] = found.get(name, 0) + each.end - each.start
-    store.save(key, json.dumps(found).encode())
+
+    found: dict[str, int] = store.kept(key, made)
     return found
 
 
-def _site_of(program: Program, places: Places) -> Callable[[int], int]:
-    """Return what finds the first site of an instruction: that of its line and the first array. Those of the other arrays are behind it."""
+def _site_of(program: Program, places: Places) -> Callable[[int, int], int]:
+    """Return what finds the first site of an instruction in a block: that of its line and the first array.
+
+    Those of the other arrays are behind it.
+    """
     first: dict[tuple[str, SourceLine], int] = {}
     for path in program.paths:
         routine = path.routines[-1]
         for number, site in enumerate(program.own_sites[routine], path.first.site):
             first.setdefault((routine, site.line), number)
 
-    def site_of(address: int) -> int:
-        return first[places.function_at(address).symbol, places.line_of(address)]
+    def site_of(block: int, address: int) -> int:
+        return first[places.function_at(block).symbol, places.line_of(address)]
 
     return site_of

@@ -53,7 +53,7 @@ def _counter(
         return Counter(routine, label, way, None, merged(instead(charges, replaced)), ())
     lines = dict.fromkeys(places.line_of(one.address) for one in block.instructions if accesses_memory(one))
     accesses = (
-        *(Access(array, False, label, 0, line, may_be=True) for line in lines for array in traced),  # noqa: FBT003
+        *(Access(array, False, "", 0, line, may_be=True) for line in lines for array in traced),  # noqa: FBT003
         *(
             Access(array, writes, label, number, places.line_of(one.address), turn=turn, among=len(arrays))
             for number, one in enumerate(block.instructions)

@@ -6,13 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from bfsim.blackfin.lines import LineTable, lines_of
-from bfsim.blackfin.linking import Image, Routine
+from bfsim.blackfin.image import Image, Routine
 from bfsim.kernel.function import Body, Function, Parameter
 from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.objects.sources import Source, disassembly, source_of
 from bfsim.kernel.types import Number
+
+if TYPE_CHECKING:
+    from bfsim.blackfin.lines import LineTable
 
 
 @dataclass
@@ -34,6 +37,8 @@ class Places:
     @cached_property
     def lines(self) -> LineTable:
         """What the debugging information says of addresses."""
+        from bfsim.blackfin.lines import lines_of  # most starts find all that depends on it
+
         return lines_of(self.image)
 
     def line_of(self, address: int) -> SourceLine:
@@ -103,6 +108,7 @@ def object_function(
         result=result,
         calls=(),
         written=frozenset(),
+        measured=frozenset(),
         digest="",
         read=lambda: Body((), ()),
     )

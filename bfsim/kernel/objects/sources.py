@@ -5,12 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from bfsim.blackfin.decode import InstructionError, disassemble
-from bfsim.blackfin.lines import LineTable
-from bfsim.blackfin.linking import Image, Routine
-from bfsim.blackfin.text import text
+from bfsim import store
+from bfsim.blackfin.image import Image, Routine
+from bfsim.kernel import keys
+
+if TYPE_CHECKING:
+    from bfsim.blackfin.lines import LineTable
 
 MOST_BYTES = 1 << 20
 """[ours] Of a source file that is shown."""
@@ -68,13 +72,22 @@ def _head(rows: list[str], begin: int, name: str) -> int:
 
 def disassembly(image: Image, routine: Routine) -> Source:
     """Return the instructions of a function as its source, each a line."""
-    rows, lines = [], {}
+    key = keys.object_key(image.digest, routine.name, "", "disassembly")
+    rows = store.kept(key, partial(_disassembled, image, routine))
+    text = "\n".join(f"{address:08x}  {each}" for address, each in rows)
+    lines = {address: number for number, (address, _) in enumerate(rows, 1)}
+    return Source(image.name, 1, text or routine.name, lines)
+
+
+def _disassembled(image: Image, routine: Routine) -> list[tuple[int, str]]:
+    """Return the address and the text of each instruction of a function."""
+    from bfsim.blackfin.decode import InstructionError, disassemble  # most starts find all that they show
+    from bfsim.blackfin.text import text
+
+    rows = []
     try:
-        for number, each in enumerate(
-            disassemble(image.octets_of(routine.address, routine.end), routine.address), 1
-        ):
-            rows.append(f"{each.address:08x}  {text(each)}")
-            lines[each.address] = number
+        for each in disassemble(image.octets_of(routine.address, routine.end), routine.address):
+            rows.append((each.address, text(each)))
     except InstructionError:
         pass  # constants between functions are no instructions
-    return Source(image.name, 1, "\n".join(rows) or routine.name, lines)
+    return rows

@@ -1,0 +1,28 @@
+"""Why native code of the Blackfin is left."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class Event(IntEnum):
+    """Why native code was left."""
+
+    UNKNOWN_TARGET = 0
+    """PC is an address that it does not have as the start of a block; also where a caller of it returns to."""
+    ILLEGAL = 1
+    """At PC is no instruction."""
+    EXCEPTION = 2
+    """EXCPT: its number is ARGUMENT."""
+    OUTPUT = 3
+    """OUTC: the character is ARGUMENT."""
+    HALT = 4
+    ABORT = 5
+    ASSERTION = 6
+    """DBGA found another value than it expects, ARGUMENT."""
+    SYSTEM = 7
+    """An instruction of the system that is not simulated: RTI, RAISE, IDLE ..."""
+    FUEL = 8
+    """As many blocks were run as were allowed."""
+    FAULT = 9
+    """An access to an address where there is no memory. Registers are lost."""

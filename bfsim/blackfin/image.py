@@ -1,0 +1,113 @@
+"""A program in the Blackfin's memory: what lies where, under which names."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import astuple, dataclass
+from enum import StrEnum
+from functools import cached_property
+
+from bfsim.errors import KernelError, cut
+
+MOST_NAMES = 5
+"""As many names are listed of what is missing."""
+
+
+class Use(StrEnum):
+    """What a section holds."""
+
+    CODE = "code"
+    DATA = "data"
+    NOTES = "notes"
+    """Nothing for the processor, such as debugging information."""
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """Bytes from an address on: code, or data."""
+
+    address: int
+    octets: bytes
+    use: Use
+
+    @property
+    def end(self) -> int:
+        """The address behind it."""
+        return self.address + len(self.octets)
+
+
+@dataclass(frozen=True, slots=True)
+class Routine:
+    """A function in an image: from its first address to the one behind it."""
+
+    name: str
+    address: int
+    end: int
+
+
+@dataclass(frozen=True)
+class Image:
+    """A program in memory: its segments, addresses by symbol, its functions in the order of their addresses.
+
+    `pointers`: addresses of code that its data holds, such as those of a switch; of a linked program all words that may be. `octets`: the file with
+    its relocations applied, for what reads debugging information.
+    """
+
+    name: str
+    segments: tuple[Segment, ...]
+    symbols: Mapping[str, int]
+    routines: tuple[Routine, ...]
+    pointers: frozenset[int]
+    octets: bytes
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of the file."""
+        return hashlib.sha256(self.octets).hexdigest()
+
+    def octets_of(self, first: int, end: int) -> bytes:
+        """Return the bytes of a range of addresses, as far as one segment has them."""
+        for each in self.segments:
+            if each.address <= first < each.end:
+                return each.octets[first - each.address : end - each.address]
+        return b""
+
+    def routine_at(self, address: int) -> Routine | None:
+        """Return the function that an address is in, or None outside of all."""
+        number = bisect_right(self.routines, address, key=lambda each: each.address)
+        found = self.routines[number - 1] if number else None
+        return found if found and address < found.end else None
+
+    def address_of(self, symbol: str) -> int:
+        """Return the address of a symbol. Raises KernelError if there is none of that name."""
+        if symbol not in self.symbols:
+            names = ", ".join(cut(each.name) for each in self.routines[:MOST_NAMES])
+            more = f" and {len(self.routines) - MOST_NAMES} more" if len(self.routines) > MOST_NAMES else ""
+            raise KernelError(
+                f"{self.name} must define {cut(symbol)}, but has only {names or 'no function'}{more}"
+            )
+        return self.symbols[symbol]
+
+
+def packed(image: Image) -> bytes:
+    """Return an image as bytes: a line of JSON, and behind it the contents of its segments and the file."""
+    segments = [(each.address, len(each.octets), each.use) for each in image.segments]
+    routines = [astuple(each) for each in image.routines]
+    head = json.dumps([image.name, segments, image.symbols, routines, sorted(image.pointers)])
+    return b"".join((head.encode(), b"\n", *(each.octets for each in image.segments), image.octets))
+
+
+def unpacked(octets: bytes) -> Image:
+    """Return the image that `packed` has made bytes of."""
+    head, _, rest = octets.partition(b"\n")
+    name, rows, symbols, routines, pointers = json.loads(head)
+    segments = []
+    for address, nbytes, use in rows:
+        segments.append(Segment(address, rest[:nbytes], Use(use)))
+        rest = rest[nbytes:]
+    return Image(
+        name, tuple(segments), symbols, tuple(Routine(*each) for each in routines), frozenset(pointers), rest
+    )
