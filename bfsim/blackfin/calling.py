@@ -1,6 +1,7 @@
 """Calls of subroutines by one native function: memory is copied in and out, arguments are handed over, and counts are added up.
 
-From Python a call is one C call with one argument, the address of its block: words of 64 bits with all that it needs.
+From Python a call is a C call without arguments, which is the cheapest that Python has: the variable `BLOCK` holds the address of words
+of 64 bits with all that it needs.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ import ctypes
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,18 +24,22 @@ from bfsim.blackfin.registers import SLOTS
 from bfsim.blackfin.subroutines import REGISTERS, RESULT, STACK, STACK_BYTES, WORD_BYTES, Placed, Subroutine
 
 (
-    CODE, MEMORY, STATE, COUNTS, COUNTED,  # the native code, its memory, registers and counts, and how many these are
+    RUN, CODE, MEMORY, STATE, COUNTS, COUNTED,  # what runs native code, the code, its memory, registers and counts, and how many these are
     TOTALS, ORDER, TOTALLED,  # where counts are added, in which order, and how many
     ADDRESS, TOP, WORDS, PARTS,  # of the subroutine, of its stack; numbers of arguments and of copied parts
     TRACE,  # where accesses are reported to (`tracing`)
-) = range(13)  # fmt: skip
-HEAD = 13
+) = range(14)  # fmt: skip
+HEAD = 14
 PART_WORDS = 4
 """Of memory that is copied: its address here, that of its copy, how many bytes, and how many of them are copied back."""
-RUN = "bfsim_run_object"
+ENTRY, BLOCK = "bfsim_run_object", "bfsim_object_block"
 STALL_SHIFT = 32
 """Of the result of a call, the lower half is cycles without waits, and the upper one waits."""
 ISSUE_MASK = (1 << STALL_SHIFT) - 1
+REFUSED = -(1 << 63)
+"""Returned in place of cycles when an argument does not fit; nothing was run then."""
+WORDS_OF_ARGUMENT = 3
+"""Its value, and the least and the largest that it may have."""
 
 
 def _field(name: str, number: int, kind: str = "i64") -> str:
@@ -55,11 +60,13 @@ def _loop(name: str, count: str, body: str, after: str) -> str:
 before.{name}:
   br label %head.{name}
 head.{name}:
-  %{name} = phi i64 [ 0, %before.{name} ], [ %{name}.next, %body.{name} ]
+  %{name} = phi i64 [ 0, %before.{name} ], [ %{name}.next, %next.{name} ]
   %{name}.more = icmp slt i64 %{name}, {count}
   br i1 %{name}.more, label %body.{name}, label %{after}
 body.{name}:
-{body}  %{name}.next = add i64 %{name}, 1
+{body}  br label %next.{name}
+next.{name}:
+  %{name}.next = add i64 %{name}, 1
   br label %head.{name}
 {after}:
 """
@@ -87,12 +94,25 @@ def _registers() -> str:
 FIELDS = "".join(
     _field(name, number, kind)
     for name, number, kind in (
-        ("code", CODE, "ptr"), ("memory", MEMORY, "ptr"), ("state", STATE, "ptr"), ("counts", COUNTS, "ptr"),
+        ("run", RUN, "ptr"), ("code", CODE, "ptr"), ("memory", MEMORY, "ptr"), ("state", STATE, "ptr"), ("counts", COUNTS, "ptr"),
         ("counted", COUNTED, "i64"), ("totals", TOTALS, "ptr"), ("order", ORDER, "ptr"), ("totalled", TOTALLED, "i64"),
         ("address", ADDRESS, "i64"), ("top", TOP, "i64"), ("words", WORDS, "i64"), ("parts", PARTS, "i64"),
         ("trace", TRACE, "i64"),
     )
 )  # fmt: skip
+CHECK = """\
+  %value.at = getelementptr i64, ptr %arguments, i64 %checked
+  %value = load i64, ptr %value.at
+  %least.at = getelementptr i64, ptr %bounds, i64 %checked
+  %least = load i64, ptr %least.at
+  %largest.at = getelementptr i64, ptr %least.at, i64 %words
+  %largest = load i64, ptr %largest.at
+  %below = icmp slt i64 %value, %least
+  %above = icmp sgt i64 %value, %largest
+  %outside = or i1 %below, %above
+  br i1 %outside, label %unfit, label %fits
+fits:
+"""
 HAND_OVER = """\
   %word.at = getelementptr i64, ptr %arguments, i64 %argument
   %word = load i64, ptr %word.at
@@ -121,14 +141,19 @@ START = "".join(
         ("PC", "%address"),
     )
 )
-ENTRY = f"""
+MODULE = f"""
+@{BLOCK} = global ptr null
 declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)
 declare void @llvm.memset.p0.i64(ptr, i8, i64, i1)
 
-define i64 @{RUN}(ptr %block, ptr %run) {{
+define i64 @{ENTRY}() {{
+  %block = load ptr, ptr @{BLOCK}
 {FIELDS}\
   %arguments = getelementptr i64, ptr %block, i64 {HEAD}
-  %copied = getelementptr i64, ptr %arguments, i64 %words
+  %bounds = getelementptr i64, ptr %arguments, i64 %words
+  %argument.words = mul i64 %words, {WORDS_OF_ARGUMENT}
+  %copied = getelementptr i64, ptr %arguments, i64 %argument.words
+{_loop("checked", "%words", CHECK, "bring")}\
 {_loop("brought", "%parts", _copy("brought", back=False), "hand_over")}\
   %stack = getelementptr i8, ptr %memory, i64 %top
 {_loop("argument", "%words", HAND_OVER, "start")}\
@@ -144,6 +169,8 @@ refuse:
   %event.wide = zext i32 %event to i64
   %failed = sub i64 -1, %event.wide
   ret i64 %failed
+unfit:
+  ret i64 {REFUSED}
 take:
 {_loop("fetched", "%parts", _copy("fetched", back=True), "add_up")}\
 {_loop("total", "%totalled", ADD_UP, "done")}\
@@ -157,14 +184,22 @@ take:
   ret i64 %result
 }}
 """
-"""Its result: the cycles without waits, and above them the waits; or -1 less the number of the event for which the code was left."""
+"""Its result: the cycles without waits, and above them the waits; REFUSED; or -1 less the number of the event for which the code was left."""
+
+
+class _Entry(NamedTuple):
+    """`call()` makes the call whose block `block` has the address of."""
+
+    call: Callable[[], int]
+    block: ctypes.c_int64
 
 
 @cache
-def _entry() -> Callable[[int, int], int]:
-    machine_code.add(native_code(ENTRY))
-    kind = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p)
-    return kind(machine_code.address_of(RUN))
+def _entry() -> _Entry:
+    machine_code.add(native_code(MODULE))
+    kind = ctypes.CFUNCTYPE(ctypes.c_int64)
+    block = ctypes.c_int64.from_address(machine_code.address_of(BLOCK))
+    return _Entry(kind(machine_code.address_of(ENTRY)), block)
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,17 +211,26 @@ class Counts:
 
 
 class BoundCall:
-    """A subroutine bound to its memory. `arguments`: its words, of which the lower 32 bits count, to be set before it is called."""
+    """A subroutine bound to its memory. `arguments`: its words, of which the lower 32 bits count; what may have one value alone has it.
+
+    `result`: the address of what a call leaves in R0.
+    """
 
     def __init__(
-        self, subroutine: Subroutine, words: int, parts: Sequence[Placed], counts: Counts, trace: Any = None
+        self,
+        subroutine: Subroutine,
+        bounds: Sequence[tuple[int, int]],
+        parts: Sequence[Placed],
+        counts: Counts,
+        trace: Any = None,
     ) -> None:
-        """`trace`: the block that accesses are reported through, where the subroutine reports any."""
+        """`bounds`: the least and the largest value of each argument. `trace`: the block that accesses are reported through, if any are."""
         self._subroutine = subroutine
         self._kept = counts, trace  # the block has their addresses only
         translated, state = subroutine.translated, subroutine.processor.state
-        room = max(len(REGISTERS), words)
+        words = [*bounds, *((0, 0) for _ in range(len(bounds), len(REGISTERS)))]
         head = {
+            RUN: runner().guarded,
             CODE: translated.entry,
             MEMORY: subroutine.processor.space.origin,
             STATE: state.slots.ctypes.data,
@@ -196,36 +240,26 @@ class BoundCall:
             ORDER: counts.order.ctypes.data,
             TOTALLED: len(counts.order),
             ADDRESS: subroutine.address,
-            TOP: STACK + STACK_BYTES - WORD_BYTES * room,
-            WORDS: room,
+            TOP: STACK + STACK_BYTES - WORD_BYTES * len(words),
+            WORDS: len(words),
             PARTS: len(parts),
             TRACE: ctypes.addressof(trace) if trace else 0,
         }
-        copies = [
-            word
-            for each in parts
-            for word in (
-                each.address,
-                each.copy,
-                each.nbytes,
-                each.nbytes * each.is_writeable,
-            )
-        ]
-        values = [*(head[each] for each in range(HEAD)), *(room * [0]), *copies]
+        least, largest = ([each[side] for each in words] for side in (0, 1))
+        values = [*(head[each] for each in range(HEAD)), *least, *least, *largest]
+        for each in parts:
+            values += each.address, each.copy, each.nbytes, each.nbytes * each.is_writeable
         self._block = (ctypes.c_int64 * len(values))(*values)
         self._at = ctypes.addressof(self._block)
-        self.arguments: Any = (ctypes.c_int64 * room).from_buffer(self._block, 8 * HEAD)
-        self._result = ctypes.c_uint32.from_address(state.slots.ctypes.data + 8 * SLOTS[RESULT])
-        self._entry, self._run = _entry(), runner().address
+        self.arguments: Any = (ctypes.c_int64 * len(words)).from_buffer(self._block, 8 * HEAD)
+        self.result = head[STATE] + 8 * SLOTS[RESULT]
+        self._call, self._current = _entry()
 
-    def run(self) -> tuple[int, int]:
-        """Call it; return its cycles without waits, and those of waits. Raises KernelError where it does anything else than to return."""
-        cclk = self._entry(self._at, self._run)
-        if cclk < 0:
-            self._subroutine.refuse(Event(-1 - cclk))
-        return cclk & ISSUE_MASK, cclk >> STALL_SHIFT
+    def run(self) -> int:
+        """Call it. Returns its cycles without waits, and those of waits `STALL_SHIFT` bits above; less than 0 if it did not return."""
+        self._current.value = self._at
+        return self._call()
 
-    @property
-    def result(self) -> int:
-        """What the last call left in R0."""
-        return int(self._result.value)
+    def refuse(self, outcome: int) -> NoReturn:
+        """Raise KernelError for what `run` has returned of a call that did not return."""
+        self._subroutine.refuse(Event(-1 - outcome))

@@ -1,7 +1,8 @@
 """Native code that touches an address without memory: it ends there, and the process goes on.
 
 While it runs, faults in the reservation of its address space are caught by a signal handler, which is machine code and leaves the native
-code by `siglongjmp`; what is in its registers is lost. Other faults go to whoever has had the signal before.
+code by `siglongjmp`; what is in its registers is lost. Other faults go to whoever has had the signal before. The signal is taken for one
+run, or once for all that follow (`catch_always`).
 """
 
 from __future__ import annotations
@@ -20,43 +21,71 @@ from bfsim.blackfin.native_code import native_code
 RUNNER = f"""
 @bfsim_run_jump = internal global [512 x i8] zeroinitializer, align 16
 @bfsim_run_origin = internal global i64 0
+@bfsim_run_runs = internal global i64 0
 @bfsim_run_action = global [256 x i8] zeroinitializer, align 16
 @bfsim_run_before = internal global [256 x i8] zeroinitializer, align 16
 @bfsim_run_fault = global i64 0
+@bfsim_always_action = global [256 x i8] zeroinitializer, align 16
+@bfsim_always_before = internal global [256 x i8] zeroinitializer, align 16
 declare i32 @sigaction(i32, ptr, ptr)
 declare i32 @__sigsetjmp(ptr, i32) returns_twice
 declare void @siglongjmp(ptr, i32) noreturn
 
-define void @bfsim_run_handler(i32 %number, ptr %information, ptr %context) {{
+define internal void @handle(i32 %number, ptr %information, ptr %before) {{
   %place = getelementptr i8, ptr %information, i64 16
   %address = load i64, ptr %place
   %origin = load i64, ptr @bfsim_run_origin
   %offset = sub i64 %address, %origin
-  %ours = icmp ule i64 %offset, {SPAN_BYTES}
+  %within = icmp ule i64 %offset, {SPAN_BYTES}
+  %runs = load volatile i64, ptr @bfsim_run_runs
+  %may.be = icmp ne i64 %runs, 0
+  %ours = and i1 %within, %may.be
   br i1 %ours, label %leave, label %pass
 leave:
   store i64 %offset, ptr @bfsim_run_fault
   call void @siglongjmp(ptr @bfsim_run_jump, i32 1)
   unreachable
 pass:
-  %given = call i32 @sigaction(i32 %number, ptr @bfsim_run_before, ptr null)
+  %given = call i32 @sigaction(i32 %number, ptr %before, ptr null)
   ret void
 }}
 
-define i32 @bfsim_run(ptr %code, ptr %memory, ptr %state, ptr %counts) {{
+define void @bfsim_run_handler(i32 %number, ptr %information, ptr %context) {{
+  call void @handle(i32 %number, ptr %information, ptr @bfsim_run_before)
+  ret void
+}}
+
+define void @bfsim_always_handler(i32 %number, ptr %information, ptr %context) {{
+  call void @handle(i32 %number, ptr %information, ptr @bfsim_always_before)
+  ret void
+}}
+
+define i32 @bfsim_always() {{
+  %taken = call i32 @sigaction(i32 {int(signal.SIGSEGV)}, ptr @bfsim_always_action, ptr @bfsim_always_before)
+  ret i32 %taken
+}}
+
+define i32 @bfsim_run_guarded(ptr %code, ptr %memory, ptr %state, ptr %counts) {{
   %origin = ptrtoint ptr %memory to i64
   store i64 %origin, ptr @bfsim_run_origin
-  %taken = call i32 @sigaction(i32 {int(signal.SIGSEGV)}, ptr @bfsim_run_action, ptr @bfsim_run_before)
+  store volatile i64 1, ptr @bfsim_run_runs
   %fault = call i32 @__sigsetjmp(ptr @bfsim_run_jump, i32 0) returns_twice
   %first = icmp eq i32 %fault, 0
-  br i1 %first, label %run, label %faulted
+  br i1 %first, label %run, label %end
 run:
-  %event = call i32 %code(ptr %memory, ptr %state, ptr %counts)
+  %left = call i32 %code(ptr %memory, ptr %state, ptr %counts)
+  br label %end
+end:
+  %event = phi i32 [ {int(Event.FAULT)}, %0 ], [ %left, %run ]
+  store volatile i64 0, ptr @bfsim_run_runs
+  ret i32 %event
+}}
+
+define i32 @bfsim_run(ptr %code, ptr %memory, ptr %state, ptr %counts) {{
+  %taken = call i32 @sigaction(i32 {int(signal.SIGSEGV)}, ptr @bfsim_run_action, ptr @bfsim_run_before)
+  %event = call i32 @bfsim_run_guarded(ptr %code, ptr %memory, ptr %state, ptr %counts)
   %given = call i32 @sigaction(i32 {int(signal.SIGSEGV)}, ptr @bfsim_run_before, ptr null)
   ret i32 %event
-faulted:
-  %given.back = call i32 @sigaction(i32 {int(signal.SIGSEGV)}, ptr @bfsim_run_before, ptr null)
-  ret i32 {int(Event.FAULT)}
 }}
 """
 """`si_addr` is at byte 16 of Linux's `siginfo_t` on every 64-bit processor."""
@@ -79,24 +108,35 @@ class _Action(ctypes.Structure):
 class Runner:
     """`run(code, memory, state, counts)`: calls native code and returns its event; `fault`: the address of the last fault.
 
-    `address`: of `run`, for native code.
+    `guarded`: the address of what does the same where faults are caught always, not while it runs alone.
     """
 
     run: Callable[[int, int, int, int], int]
     fault: ctypes.c_int64
-    address: int
+    guarded: int
 
 
 @cache
 def runner() -> Runner:
     """Return what runs native code."""
     machine_code.add(native_code(RUNNER))
-    action = _Action.from_address(machine_code.address_of("bfsim_run_action"))
-    action.handler = machine_code.address_of("bfsim_run_handler")
-    action.flags = SA_SIGINFO | SA_NODEFER
+    for each in ("run", "always"):
+        action = _Action.from_address(machine_code.address_of(f"bfsim_{each}_action"))
+        action.handler = machine_code.address_of(f"bfsim_{each}_handler")
+        action.flags = SA_SIGINFO | SA_NODEFER
     kind = ctypes.CFUNCTYPE(ctypes.c_int32, *(4 * [ctypes.c_void_p]))
     return Runner(
         kind(machine_code.address_of("bfsim_run")),
         ctypes.c_int64.from_address(machine_code.address_of("bfsim_run_fault")),
-        machine_code.address_of("bfsim_run"),
+        machine_code.address_of("bfsim_run_guarded"),
     )
+
+
+@cache
+def catch_always() -> None:
+    """Catch faults from now on: to take the signal for each call takes longer than a short call.
+
+    Whoever takes it later must hand it on.
+    """
+    runner()
+    ctypes.CFUNCTYPE(ctypes.c_int32)(machine_code.address_of("bfsim_always"))()

@@ -83,6 +83,12 @@ _kept: list[object] = []
 """What the handler has the addresses of."""
 
 
+def take_signals() -> None:
+    """Hear of crashes from now on."""
+    if os.name == "posix":
+        _first()
+
+
 def watch(running: int, function: Function) -> None:
     """Name the kernel `function` in a crash while the word at the address `running` is not 0."""
     if os.name == "posix":

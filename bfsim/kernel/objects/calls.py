@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
+import ctypes
+import struct
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.blackfin.calling import BoundCall, Counts
+from bfsim.blackfin.calling import ISSUE_MASK, STALL_SHIFT, BoundCall, Counts
+from bfsim.blackfin.guard import catch_always
 from bfsim.blackfin.subroutines import STACK, STACK_BYTES, placed
 from bfsim.blackfin.tracing import Followed, block_of
+from bfsim.kernel import crashes
 from bfsim.kernel.access_trace import AccessTrace
+from bfsim.kernel.function import Function
 from bfsim.kernel.objects.compiled import CompiledObject
-from bfsim.kernel.types import ArrayType, FloatType, Number
+from bfsim.kernel.types import ArrayType, FloatType, IntType, u32
 from bfsim.kernel.work import BITS, FLOAT, Work
+
+IN_MEMORY = {
+    "i8": ctypes.c_int8, "u8": ctypes.c_uint8, "i16": ctypes.c_int16, "u16": ctypes.c_uint16,
+    "i32": ctypes.c_int32, "u32": ctypes.c_uint32, "f32": ctypes.c_float,
+}  # fmt: skip
+"""Numbers by their types: of what R0 holds, a narrow type has the lower bits."""
 
 
 class ObjectCall:
@@ -36,13 +48,13 @@ class ObjectCall:
         stack is, if its accesses are told, too.
         """
         function = code.function
-        self._check, self._result, self._access_trace = check, function.result, access_trace
+        self._check, self._access_trace = check, access_trace
         self._kept = arrays  # their places have their addresses only
         parts, addresses = placed(arrays, code.subroutine.processor.space)
-        named = list(zip(function.array_names, arrays, strict=True))
-        lengths = [len(array) for name, array in named if name in function.measured]
-        count = len(function.parameters)
-        counts = Counts(totals[: len(code.order)], code.order)
+        kinds = [each.type for each in function.parameters]
+        self._count = len(kinds)
+        self._integers = [position for position, each in enumerate(kinds) if isinstance(each, IntType)]
+        self._floats = [position for position, each in enumerate(kinds) if isinstance(each, FloatType)]
         trace = None
         if access_trace:
             followed = [
@@ -52,16 +64,14 @@ class ObjectCall:
             if stack is not None:
                 followed.append(_followed_stack(stack, first_site + len(arrays)))
             trace = block_of(access_trace.address(), followed)
-        self._call = BoundCall(code.subroutine, count + len(lengths), parts, counts, trace)
+        _catch_faults()
+        counts = Counts(totals[: len(code.order)], code.order)
+        self._call = BoundCall(code.subroutine, _bounds(function, arrays, addresses), parts, counts, trace)
         self._words = self._call.arguments
-        self._words[count : count + len(lengths)] = lengths
-        places = iter(addresses)
-        self._numbers = []
-        for position, each in enumerate(function.parameters):
-            if isinstance(each.type, ArrayType):
-                self._words[position] = next(places)
-            else:
-                self._numbers.append((position, isinstance(each.type, FloatType)))
+        self._result: Any = (
+            IN_MEMORY[str(function.result)].from_address(self._call.result) if function.result else None
+        )
+        self._work = Work(0, 0)
 
     @property
     def stays_in_l1(self) -> bool:
@@ -69,27 +79,66 @@ class ObjectCall:
         return self._access_trace is None
 
     def run(self, arguments: Sequence[Any]) -> Work:
-        """Run the code now and say what it cost. Of `arguments`, only the numbers are read."""
-        self._check(arguments)
-        for position, is_float in self._numbers:
-            value = arguments[position]
-            self._words[position] = BITS.unpack(FLOAT.pack(value))[0] if is_float else int(value)
-        issue_cclk, stall_cclk = self._call.run()
-        value = None if self._result is None else _value(self._call.result, self._result)
-        return Work(
-            issue_cclk, stall_cclk, value, self._access_trace.take_count() if self._access_trace else 0
-        )
+        """Run the code now and say what it cost, until the next run. Of `arguments`, only the numbers are read."""
+        if self._integers:
+            self._put(arguments)
+        if self._floats:
+            self._put_floats(arguments)
+        outcome = self._call.run()
+        if outcome < 0 or len(arguments) != self._count:
+            self._check(arguments)
+            self._call.refuse(outcome)
+        work = self._work  # one for all runs: to make it takes Python longer than to run a short kernel
+        work.issue_cclk = outcome & ISSUE_MASK
+        work.stall_cclk = outcome >> STALL_SHIFT
+        work.accesses = self._access_trace.take_count() if self._access_trace else 0
+        if self._result is not None:
+            work.value = self._result.value
+        return work
+
+    def _put(self, arguments: Sequence[Any]) -> None:
+        """Put the integers where the code finds them; those that do not fit are refused there."""
+        try:
+            for position in self._integers:
+                self._words[position] = arguments[position]
+        except (TypeError, IndexError):
+            self._check(arguments)
+            for position in self._integers:
+                self._words[position] = int(arguments[position])
+
+    def _put_floats(self, arguments: Sequence[Any]) -> None:
+        """Put the bits of the floats there; what is no number is refused."""
+        try:
+            for position in self._floats:
+                self._words[position] = BITS.unpack(FLOAT.pack(arguments[position]))[0]
+        except (struct.error, OverflowError, IndexError):
+            self._check(arguments)
+
+
+def _bounds(
+    function: Function, arrays: Sequence[NDArray[Any]], addresses: Sequence[int]
+) -> list[tuple[int, int]]:
+    """Return the least and the largest value of each argument: those of an array, its address and its length, have one."""
+    places = iter(addresses)
+    found = []
+    for each in function.parameters:
+        if isinstance(each.type, ArrayType):
+            place = next(places)
+            found.append((place, place))
+        else:
+            found.append(u32.bounds if isinstance(each.type, FloatType) else each.type.bounds)
+    named = zip(function.array_names, arrays, strict=True)
+    return found + [(len(array), len(array)) for name, array in named if name in function.measured]
+
+
+@cache
+def _catch_faults() -> None:
+    """Take the signal of a fault in object code, behind whoever tells of crashes: it does not hand a fault on as it was."""
+    crashes.take_signals()
+    catch_always()
 
 
 def _followed_stack(stack: NDArray[np.uint8], site: int) -> Followed:
     """The stack from its top, where both begin, as far down as both reach."""
     nbytes = min(STACK_BYTES, len(stack))
     return Followed(STACK + STACK_BYTES - nbytes, nbytes, stack[len(stack) - nbytes :].ctypes.data, site)
-
-
-def _value(word: int, kind: Number) -> float:
-    """What a function returns in R0, of which a narrow type has the lower bits."""
-    if isinstance(kind, FloatType):
-        value: float = FLOAT.unpack(BITS.pack(word))[0]
-        return value
-    return kind(word)
