@@ -22,6 +22,7 @@ from bfsim.machine.calls.call_cache import BeforeCall, CallCache
 from bfsim.machine.calls.conflicts import SubBanks
 from bfsim.machine.calls.fetch import CodeCache, CodeOutside
 from bfsim.machine.calls.ledger import Ledger
+from bfsim.machine.calls.records import object_share
 from bfsim.machine.cameras.capture import Capture, Feed, StereoPictures
 from bfsim.machine.cameras.ppi import Ppi
 from bfsim.machine.code import code_outside_l1, code_records
@@ -48,7 +49,7 @@ from bfsim.machine.program import Firmware, View
 from bfsim.machine.simulation import Simulation
 from bfsim.machine.stack import stack_outside_l1
 from bfsim.machine.symbols import PROCESSORS
-from bfsim.trace import BoardRecord, FrameRecord
+from bfsim.trace import BoardRecord, FrameRecord, Later
 
 
 class Fidelity(StrEnum):
@@ -254,9 +255,9 @@ class Board:
             frames=tuple(frames),
             missed=tuple(sorted(capture.missed)),
             interrupted=interrupted,
-            kernels=tuple(each for core in counted for each in core.kernels()),
-            accesses=tuple(each for core in counted for each in core.accesses(self._bus.owners)),
-            paths=tuple(each for core in counted for each in core.paths()),
+            kernels=Later(lambda: [each for core in counted for each in core.kernels()]),
+            accesses=Later(lambda: [each for core in counted for each in core.accesses()]),
+            paths=Later(lambda: [each for core in counted for each in core.paths()]),
             buffers=self._buffers.records,
             traffic=self._bus.records.traffic(),
             code=code_records(self.link_map, PROCESSORS, self.spec.chip.regions),
@@ -268,4 +269,5 @@ class Board:
                 for source, count in sorted(each.counts.items())
             },
             events=self._env.count_events(),
+            object_share=object_share(counted),
         )

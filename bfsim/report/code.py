@@ -7,15 +7,9 @@ from bfsim.trace import RunRecord
 OF_FILES = "object code of files"
 
 
-def object_share(run: RunRecord) -> float:
-    """Return the part of the kernels' issue cycles that instructions of object code took."""
-    issue = sum(each.issue_cclk for each in run.kernels)
-    return sum(each.object_cclk for each in run.kernels) / issue if issue else 0.0
-
-
 def code_in_words(run: RunRecord) -> str:
     """Say whose object code ran, for which part of the issue cycles; nothing where all was estimated as was asked for."""
-    share = object_share(run)
+    share = run.object_share
     if not share and not run.identity.code:
         return ""
     whose = run.identity.code or OF_FILES

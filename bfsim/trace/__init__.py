@@ -9,6 +9,7 @@ from __future__ import annotations
 from bfsim.trace.frames import REST, CoreFrame, FrameRecord, OwnerCost, StageCost, StallReason
 from bfsim.trace.hardware import BufferRecord, CodeRecord, MemoryRecord, MessageRecord, TrafficRecord
 from bfsim.trace.kernels import AccessRecord, KernelRecord, LineCost, PathRecord
+from bfsim.trace.later import Later
 from bfsim.trace.run import BoardRecord, BudgetRow, Identity, Reference, RunRecord, RunWarning, WarningKind
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "FrameRecord",
     "Identity",
     "KernelRecord",
+    "Later",
     "LineCost",
     "MemoryRecord",
     "MessageRecord",

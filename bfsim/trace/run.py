@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -99,16 +99,16 @@ class BoardRecord:
     """What a board leaves behind when the recording is over, or the user stopped it. `missed` are the recording's frames that came while the firmware was busy.
 
     `messages` went over peripherals; `device_notes` are what the devices there had to say at the end, by peripheral. `interrupts` were
-    taken, by core and source.
+    taken, by core and source. `object_share` is the part of the kernels' issue cycles that instructions of object code took.
     When `interrupted` by Ctrl-C, `traffic` also holds what was moved of the frame that was not finished.
     """
 
     frames: tuple[FrameRecord, ...]
     missed: tuple[int, ...]
     interrupted: bool
-    kernels: tuple[KernelRecord, ...]
-    accesses: tuple[AccessRecord, ...]
-    paths: tuple[PathRecord, ...]
+    kernels: Sequence[KernelRecord]
+    accesses: Sequence[AccessRecord]
+    paths: Sequence[PathRecord]
     buffers: tuple[BufferRecord, ...]
     traffic: tuple[TrafficRecord, ...]
     code: tuple[CodeRecord, ...]
@@ -116,6 +116,7 @@ class BoardRecord:
     device_notes: Mapping[str, tuple[str, ...]]
     interrupts: Mapping[str, int]
     events: int
+    object_share: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -178,7 +178,8 @@ class CallCache:
 
     def records(self) -> CoreRecords:
         """Return the records of what was reported."""
-        return CoreRecords(self._core, self._groups.values(), self._ledger.reported)
+        buffers = tuple(each.buffer for each in self._owners)
+        return CoreRecords(self._core, tuple(self._groups.values()), self._ledger.reported, buffers)
 
     def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> KnownCall:
         for each in arguments:

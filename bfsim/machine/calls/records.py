@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cache, partial
+from functools import cache, cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,6 @@ from bfsim.kernel.call_paths import Offset
 from bfsim.kernel.function import Function
 from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.jit import CompiledKernel
-from bfsim.machine.bus.memory_owners import MemoryOwners
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.calls.ledger import FILLS, Snapshot, stalls_by_reason
 from bfsim.trace import AccessRecord, KernelRecord, LineCost, PathRecord
@@ -68,20 +67,22 @@ class _Path:
 
 
 class CoreRecords:
-    """The records of one core, made of its groups of calls and of what had been counted at one moment."""
+    """The records of one core, made of its groups of calls and of what had been counted at one moment, once they are asked for.
 
-    def __init__(self, core: str, groups: Iterable[CallGroup], counted: Snapshot) -> None:
+    `buffers`: names of the owners of memory, by their numbers.
+    """
+
+    def __init__(
+        self, core: str, groups: Sequence[CallGroup], counted: Snapshot, buffers: Sequence[str]
+    ) -> None:
         self._core = core
-        self._kernels: dict[tuple[str, str], _Kernel] = {}
-        self._paths: dict[tuple[str, tuple[str, ...]], _Path] = defaultdict(_Path)
-        for group in groups:
-            events = counted.events[group.first_event :]
-            self._add_events(group, events[: len(group.code.counters)].tolist())
-            self._add_stalls(group, counted.sites[group.first_site :])
+        self._groups = groups
+        self._counted = counted
+        self._buffers = buffers
 
     def kernels(self) -> Iterator[KernelRecord]:
         """Yield one record per stage and kernel."""
-        for (stage, symbol), each in self._kernels.items():
+        for (stage, symbol), each in self._sums.kernels.items():
             function, first = each.function, each.function.first_line
             costs = each.lines.values()
             yield KernelRecord(
@@ -110,16 +111,16 @@ class CoreRecords:
                 object_cclk=each.object_cclk,
             )
 
-    def accesses(self, owners: MemoryOwners) -> Iterator[AccessRecord]:
+    def accesses(self) -> Iterator[AccessRecord]:
         """Yield one record per stage, kernel, line and buffer."""
-        for (stage, symbol), kernel in self._kernels.items():
+        for (stage, symbol), kernel in self._sums.kernels.items():
             for (line, owner), each in sorted(kernel.accesses.items()):
                 yield AccessRecord(
                     core=self._core,
                     stage=stage,
                     symbol=symbol,
                     line=kernel.function.first_line + line - 1,
-                    buffer=owners[owner].buffer,
+                    buffer=self._buffers[owner],
                     reads=each.reads,
                     writes=each.writes,
                     fills=each.fills,
@@ -128,7 +129,7 @@ class CoreRecords:
 
     def paths(self) -> Iterator[PathRecord]:
         """Yield one record per stage and path of calls."""
-        for (stage, path), each in self._paths.items():
+        for (stage, path), each in self._sums.paths.items():
             yield PathRecord(
                 core=self._core,
                 stage=stage,
@@ -138,24 +139,69 @@ class CoreRecords:
                 stall_cclk=stalls_by_reason(each.cost.interlocks_cclk, each.cost.stalls.tolist()),
             )
 
+    def issue_cclk(self, *, of_objects: bool = False) -> int:
+        """Return the issue cycles of all calls, or of those that ran as object code: sooner than the records would."""
+        total = 0
+        for group, events in _counted(self._groups, self._counted):
+            if not of_objects or _is_object(group):
+                total += sum(
+                    events[number] * issue_cclk
+                    for number, _, counter in group.counted()
+                    for _, issue_cclk, _ in counter.line_cclk
+                )
+        return total
+
+    @cached_property
+    def _sums(self) -> _Sums:
+        return _Sums(self._groups, self._counted)
+
+
+def object_share(cores: Sequence[CoreRecords]) -> float:
+    """Return the part of the kernels' issue cycles that instructions of object code took."""
+    of_objects = sum(each.issue_cclk(of_objects=True) for each in cores)
+    return of_objects / sum(each.issue_cclk() for each in cores) if of_objects else 0.0
+
+
+def _is_object(group: CallGroup) -> bool:
+    return not isinstance(group.code, CompiledKernel)
+
+
+def _counted(groups: Iterable[CallGroup], counted: Snapshot) -> Iterator[tuple[CallGroup, list[int]]]:
+    """Yield the groups with the events of their counters. Those that came behind the counted moment are left out."""
+    for group in groups:
+        if group.first_event < len(counted.events):
+            events = counted.events[group.first_event :][: len(group.code.counters)]
+            yield group, events.tolist()
+
+
+class _Sums:
+    """What adds up over the groups: `kernels` by stage and symbol, `paths` by stage and symbols."""
+
+    def __init__(self, groups: Iterable[CallGroup], counted: Snapshot) -> None:
+        self.kernels: dict[tuple[str, str], _Kernel] = {}
+        self.paths: dict[tuple[str, tuple[str, ...]], _Path] = defaultdict(_Path)
+        for group, events in _counted(groups, counted):
+            self._add_events(group, events)
+            self._add_stalls(group, counted.sites[group.first_site :])
+
     def _kernel(self, group: CallGroup, symbol: str) -> _Kernel:
         key = (group.stage, symbol)
-        if key not in self._kernels:
-            self._kernels[key] = _Kernel(next(each for each in group.code.functions if each.symbol == symbol))
-        return self._kernels[key]
+        if key not in self.kernels:
+            self.kernels[key] = _Kernel(next(each for each in group.code.functions if each.symbol == symbol))
+        return self.kernels[key]
 
     def _add_events(self, group: CallGroup, totals: Sequence[int]) -> None:
         program, owner_of = group.code.program, group.by_array(group.owners)
-        is_object = not isinstance(group.code, CompiledKernel)
+        is_object = _is_object(group)
         kernel_of = cache(partial(self._kernel, group))
         executions: dict[tuple[Offset, SourceLine], int] = {}
         for number, path, counter in group.counted():
             events = totals[number]
             for each in counter.enters:
                 kernel_of(each.symbol).calls += events
-                self._paths[group.stage, program.entered(path, each)].calls += events
+                self.paths[group.stage, program.entered(path, each)].calls += events
             for place, issue_cclk, stall_cclk in counter.line_cclk:
-                through = self._paths[group.stage, program.through(path, place)]
+                through = self.paths[group.stage, program.through(path, place)]
                 kernel = kernel_of(place.routine)
                 kernel.object_cclk += events * issue_cclk * is_object
                 for cost in (kernel.lines[place.line], through.cost):
@@ -182,7 +228,7 @@ class CoreRecords:
             if row.any():
                 kernel, stalls = self._kernel(group, site.line.routine), row[:FILLS]
                 kernel.lines[site.line.line].stalls += stalls
-                self._paths[group.stage, site.path].cost.stalls += stalls
+                self.paths[group.stage, site.path].cost.stalls += stalls
                 accesses = kernel.accesses[site.line.line, site.owner]
                 accesses.stalls += stalls
                 accesses.fills += int(row[FILLS])
