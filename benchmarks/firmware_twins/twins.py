@@ -11,6 +11,7 @@ from benchmarks.firmware_twins.recorded import Calls, copied, recorded
 from benchmarks.twins.lcg import fnv
 from bfsim.api import Kernel
 from bfsim.kernel import CompilerProfile
+from bfsim.machine_code import Effort
 from bfsim.verifying.player import checksum
 from tinyphoon.stages.blob_detection import segment_row
 from tinyphoon.stages.circle_edges import select_edges_row
@@ -60,7 +61,7 @@ class Predicted:
 
 def predict(kernel: Kernel, calls: Calls, profile: CompilerProfile) -> Predicted:
     """Make the recorded calls of a kernel."""
-    code = kernel.compile(profile)
+    code = kernel.compile(profile, effort=Effort.NONE)
     cycles, left = [], []
     for each in calls.arguments:
         arguments = copied(each)

@@ -9,6 +9,7 @@ from typing import Any
 from benchmarks.twins.case import Case
 from bfsim.kernel import CompilerProfile
 from bfsim.kernel.profile import Inlines
+from bfsim.machine_code import Effort
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +24,8 @@ class Predicted:
 def predict(case: Case, profile: CompilerProfile) -> Predicted:
     """Run a twin and add up what its operations cost; helpers in C by hand are called (noinline)."""
     kernel = case.kernel
-    code = kernel.compile(profile if case.exported else replace(profile, inlines=Inlines.NOTHING))
+    called = replace(profile, inlines=Inlines.NOTHING)
+    code = kernel.compile(profile if case.exported else called, effort=Effort.NONE)
     totals = code.new_totals()
 
     def run(*arguments: Any) -> int | None:

@@ -24,6 +24,7 @@ from bfsim.kernel.profile import GCC_O0, GCC_O2, RUN_AS_COMPILED, VDSP_O2, Compi
 from bfsim.kernel.reading import read_kernel
 from bfsim.kernel.types import ArrayType, FloatType, IntType
 from bfsim.kernel.work import PreparedCall, Work, is_single
+from bfsim.machine_code import Effort
 
 if TYPE_CHECKING:
     from bfsim.kernel.objects.compiled import CompiledObject
@@ -91,7 +92,13 @@ class Kernel:
         return tuple(i for i, each in enumerate(self.function.parameters) if isinstance(each.type, FloatType))
 
     def compile(
-        self, profile: CompilerProfile, *, traced: bool = False, counted: bool = True, checked: bool = True
+        self,
+        profile: CompilerProfile,
+        *,
+        traced: bool = False,
+        counted: bool = True,
+        checked: bool = True,
+        effort: Effort = Effort.ALL,
     ) -> CompiledKernel | CompiledObject:
         """Compile for `profile`, or take it from the cache on disk. See `jit.compile_kernel`.
 
@@ -100,7 +107,9 @@ class Kernel:
         if self.object_code:
             return self.object_code.compiled(profile, traced=traced)
         self._refuse_floats(profile)
-        return compile_kernel(self.function, profile, traced=traced, counted=counted, checked=checked)
+        return compile_kernel(
+            self.function, profile, traced=traced, counted=counted, checked=checked, effort=effort
+        )
 
     def counters(self, profile: CompilerProfile) -> tuple[Counter, ...]:
         """Return what is counted in a run and what it costs, callees included. Raises KernelError as `compiled`."""
@@ -253,7 +262,7 @@ class Kernel:
             return
         arrays = [arguments[each] for each in self.array_positions]
         before = [each.copy() for each in arrays]
-        code = compile_kernel(self.function, AS_WRITTEN, counted=False)
+        code = compile_kernel(self.function, AS_WRITTEN, counted=False, effort=Effort.REGISTERS)
         try:
             self.prepare(code, arrays, code.new_totals()).run(arguments)
         finally:

@@ -22,6 +22,7 @@ from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import cell_name, running_name
 from bfsim.kernel.function import Function
 from bfsim.kernel.profile import CompilerProfile
+from bfsim.machine_code import Effort
 
 ENTRY = ctypes.CFUNCTYPE(ctypes.c_int64)
 
@@ -56,14 +57,18 @@ def compile_kernel(
     traced: bool = False,
     counted: bool = True,
     checked: bool = True,
+    effort: Effort = Effort.ALL,
 ) -> CompiledKernel:
     """Compile `function`, or take it from the cache on disk; once per process.
 
     `traced` kernels report every access to the access trace; without `counted` there are no counters
     (the floor that benchmarks compare with) and every call costs 0 cycles; without `checked` no index and no divisor
-    is checked, which must be known to be right.
+    is checked, which must be known to be right. Code that runs a few times is there sooner with less `effort`; its
+    results and counts are the same.
     """
-    key = keys.key(function, profile, f"traced={traced} counted={counted} checked={checked}")
+    key = keys.key(
+        function, profile, f"traced={traced} counted={counted} checked={checked} effort={effort.name}"
+    )
     entry = _entry_name(key)
     costs = costs_of(function, profile) if counted else Costs()
     program = Program(function.symbol, costs, function.array_names)
@@ -75,7 +80,7 @@ def compile_kernel(
         text = instrument(
             optimised(function, profile), function, program, entry, traced=traced, checked=checked
         )
-        code = machine_code.host_code(text)
+        code = machine_code.host_code(text, effort)
         store.save(key, code)
     if not machine_code.address_of(entry):  # else an equal function has loaded it, and its note is there
         machine_code.add(code)

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from bfsim.kernel import Kernel
+from bfsim.machine_code import Effort
 from bfsim.run import simulate
 
 FRAMES = 2
@@ -19,7 +20,7 @@ def test_checks_change_no_cycle_of_the_firmware(monkeypatch: pytest.MonkeyPatch)
 
     def unchecked(self: Kernel, *given: Any, **how: Any) -> Any:
         asked.append(self.name)
-        return compiled(self, *given, **how, checked=False)
+        return compiled(self, *given, **how, checked=False, effort=Effort.NONE)
 
     monkeypatch.setattr(Kernel, "compile", unchecked)
     assert simulate(frames=FRAMES) == checked
