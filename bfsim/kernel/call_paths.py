@@ -12,6 +12,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.ir_text import KERNEL_CALL, Entrance, Routine, SourceLine
 from bfsim.kernel.loops import ControlFlow
@@ -76,6 +79,31 @@ def _calls(routine: Routine, parameters: Mapping[str, Sequence[str]]) -> Iterato
                 yield RoutineCall(found[1], tuple((name, root) for name, root in roots if root in own))
 
 
+class RoutineCosts(NamedTuple):
+    """What an event of a counter costs, and whom: a row for each counter and each routine that has a part of it.
+
+    `symbols`: the routines. `counter` and `routine`: numbers of both, a row each. `costs`: calls, issue and stall cycles, a row each.
+    """
+
+    symbols: tuple[str, ...]
+    counter: NDArray[np.int64]
+    routine: NDArray[np.int64]
+    costs: NDArray[np.int64]
+
+
+class CountedAccesses(NamedTuple):
+    """So many accesses that an event of a counter makes, of one site, each spread over `among` elements; `array`: the program's.
+
+    `counter` and `site`: numbers of both.
+    """
+
+    counter: int
+    site: int
+    array: str
+    among: int
+    accesses: int
+
+
 @dataclass(frozen=True)
 class Program:
     """The kernel `symbol` and all that it calls, as it is counted: each counter once for each path to its routine."""
@@ -119,6 +147,42 @@ class Program:
     def sites(self) -> tuple[Site, ...]:
         """Where it may access memory outside L1, path by path."""
         return tuple(each for path in self.paths for each in self.own_sites[path.routines[-1]])
+
+    @cached_property
+    def routine_costs(self) -> RoutineCosts:
+        """Whose calls and cycles each counter counts."""
+        rows: dict[tuple[int, str], list[int]] = {}
+        for number, counter in enumerate(self.counters):
+            for each in counter.enters:
+                rows.setdefault((number, each.symbol), [0, 0, 0])[0] += 1
+            for place, issue_cclk, stall_cclk in counter.line_cclk:
+                row = rows.setdefault((number, place.routine), [0, 0, 0])
+                row[1] += issue_cclk
+                row[2] += stall_cclk
+        numbers = {
+            symbol: number for number, symbol in enumerate(dict.fromkeys(symbol for _, symbol in rows))
+        }
+        return RoutineCosts(
+            tuple(numbers),
+            np.array([counter for counter, _ in rows], np.int64),
+            np.array([numbers[symbol] for _, symbol in rows], np.int64),
+            np.array(list(rows.values()), np.int64).reshape(-1, 3),
+        )
+
+    @cached_property
+    def accesses(self) -> tuple[CountedAccesses, ...]:
+        """What the events of its counters access in its arrays."""
+        found: dict[tuple[int, int, str, int], int] = {}
+        for path in self.paths:
+            routine, first = path.routines[-1], path.first
+            sites = {each: first.site + number for number, each in enumerate(self.own_sites[routine])}
+            for number, counter in enumerate(self.own[routine], first.counter):
+                for each in counter.accesses:
+                    if each.is_counted and each.array in path.arrays:
+                        site = sites[Site(each.line, each.array)]
+                        key = (number, site, path.arrays[each.array], each.among)
+                        found[key] = found.get(key, 0) + 1
+        return tuple(CountedAccesses(*key, accesses) for key, accesses in found.items())
 
     def call_offsets(self, routine: str) -> tuple[Offset, ...]:
         """Return, of each call that a routine makes, where the callee's part begins, from where the caller's does."""

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import ChipSpec
-from bfsim.kernel.call_paths import Site
 from bfsim.machine.bus import state as w
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.memories import Memories, Row
@@ -127,13 +126,15 @@ def _spread(group: CallGroup) -> NDArray[np.int64]:
     Five rows: the core's number of the counter, sub-bank, accesses, sub-banks to share them, and the core's site that makes them.
     """
     banks = group.by_array(group.subbanks)
-    found: dict[tuple[int, int, int, int], int] = {}
-    for number, path, counter in group.counted():
-        for access in counter.accesses:
-            hit = banks.get(path.arrays.get(access.array, ""), set())
-            site = group.first_site + group.site_number(path, Site(access.line, access.array))
-            for bank in hit if access.is_counted else ():
-                key = (group.first_event + number, bank, len(hit) * access.among, site)
-                found[key] = found.get(key, 0) + 1
-    rows = [(number, bank, each, parts, site) for (number, bank, parts, site), each in found.items()]
+    rows = [
+        (
+            group.first_event + each.counter,
+            bank,
+            each.accesses,
+            len(banks[each.array]) * each.among,
+            group.first_site + each.site,
+        )
+        for each in group.code.program.accesses
+        for bank in banks[each.array]
+    ]
     return np.array(rows, np.int64).reshape(-1, 5).T

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.kernel import Kernel
-from bfsim.kernel.call_paths import CallPath, Site
+from bfsim.kernel.call_paths import CallPath
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.ir_text import SourceLine
 from bfsim.kernel.jit import CompiledKernel
@@ -57,10 +57,6 @@ class CallGroup:
                 (number, path, counter)
                 for number, counter in enumerate(program.own[path.routines[-1]], path.first.counter)
             )
-
-    def site_number(self, path: CallPath, site: Site) -> int:
-        """Return the number of a site of a path among those of the group."""
-        return path.first.site + self.code.program.own_sites[path.routines[-1]].index(site)
 
     @property
     def site_count(self) -> int:

@@ -24,7 +24,8 @@ SITE_STALLS = (*BUS_STALLS, StallReason.L1_CONFLICT)
 """What is counted of a site, in the order of a snapshot; the lines that its accesses filled are behind them."""
 FILLS = len(SITE_STALLS)
 SITE_COLUMNS = np.array([COLUMN_OF[each] for each in SITE_STALLS])
-INTERLOCKS = COLUMN_OF[StallReason.INTERLOCK]
+CHARGED = np.array([CALLS, ISSUE, COLUMN_OF[StallReason.INTERLOCK]])
+"""The columns of what an event of a counter costs."""
 
 MAX_EVENTS = 1 << 20
 NO_ROOM = "firmware must call its kernels in fewer stages, or with fewer different buffers: there are too many to keep apart"
@@ -64,9 +65,9 @@ class Ledger:
         self._conflicts = _zeros(w.MAX_SITES)
         self._event_count, self._site_count = 0, w.NO_SITE + 1
         self._owners: dict[Owner, int] = {}
-        self._charges: list[tuple[int, int, int, int]] = []  # event, owner, column, cycles or calls
+        self._charges: list[tuple[Rows, Rows, Rows]] = []
+        """Of each group: events, their owners, and what each costs that owner in CHARGED."""
         self._site_owners: list[int] = [0] * self._site_count
-        self._charged = np.zeros((4, 0), np.int64)  # the same as columns
         self._before = self.snapshot()
         self.reported = self._before
         """The counts at the end of the last frame that is on record."""
@@ -88,14 +89,11 @@ class Ledger:
         def owner(symbol: str) -> int:
             return self._owners.setdefault(Owner(group.stage, names[symbol], symbol), len(self._owners))
 
-        for number, _, counter in group.counted():
-            event = group.first_event + number
-            for each in counter.enters:
-                self._charges.append((event, owner(each.symbol), CALLS, 1))
-            for place, issue_cclk, stall_cclk in counter.line_cclk:
-                self._charges.append((event, owner(place.routine), ISSUE, issue_cclk))
-                self._charges.append((event, owner(place.routine), INTERLOCKS, stall_cclk))
-        self._site_owners.extend(owner(each.line.routine) for each in group.sites())
+        symbols, counter, routine, costs = group.code.program.routine_costs
+        owners = np.array([owner(each) for each in symbols], np.int64)
+        self._charges.append((group.first_event + counter, owners[routine], costs))
+        self._site_owners.extend(owner(each.line.routine) for each in group.code.program.sites)
+        self._site_owners.extend(owner(each) for each in group.fetched)
 
     def add_conflicts(self, sites: Rows, cclk: Rows) -> None:
         """Add cycles that conflicts in L1 cost at sites."""
@@ -117,11 +115,12 @@ class Ledger:
     def close(self, now: Snapshot) -> tuple[Sequence[Owner], Rows]:
         """Return the kernels in each stage, and what they cost since the last time: rows of an `OwnerCosts` table."""
         counted, self._before = now.since(self._before), now
-        if len(self._charges) != self._charged.shape[1]:
-            self._charged = np.array(self._charges, np.int64).T
-        events, owners, columns, each = self._charged
+        if len(self._charges) > 1:
+            events, owners, each = map(np.concatenate, zip(*self._charges, strict=True))
+            self._charges = [(events, owners, each)]
         costs = np.zeros((len(self._owners), COLUMNS), np.int64)
-        np.add.at(costs, (owners, columns), counted.events[events] * each)
+        for events, owners, each in self._charges:
+            np.add.at(costs, (owners[:, np.newaxis], CHARGED), counted.events[events, np.newaxis] * each)
         stalled = np.flatnonzero(counted.sites[:, :FILLS].any(axis=1))
         owners = np.array(self._site_owners)[stalled]
         np.add.at(costs, (owners[:, np.newaxis], SITE_COLUMNS), counted.sites[stalled, :FILLS])
