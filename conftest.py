@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
+import platformdirs
 import pytest
 
 from bfsim.__main__ import COLLECT_AFTER
@@ -33,19 +36,21 @@ def pytest_configure() -> None:
 def pytest_cmdline_main(config: pytest.Config) -> Iterator[None]:
     """Keep compiled kernels where BFSIM_CACHE_DIR says; without it in a folder of this run, which its workers share.
 
-    It starts empty. Before all of the tests a cold start fills it with what each worker would compile first.
+    It starts with what the user has. Before all of the tests a command adds what each worker would compile first.
     """
     if hasattr(config, "workerinput") or "BFSIM_CACHE_DIR" in os.environ:
         return (yield)
     with tempfile.TemporaryDirectory(prefix="bfsim-tests-", ignore_cleanup_errors=True) as folder:
         cache = Path(folder) / "kernels"
         if config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.collectonly:
-            _start_cold(cache, Path(folder))
+            with suppress(OSError):  # of somebody who has never run bfsim
+                shutil.copytree(platformdirs.user_cache_dir("bfsim"), cache)
+            _compile_first(cache, Path(folder))
         os.environ["BFSIM_CACHE_DIR"] = str(cache)
         return (yield)
 
 
-def _start_cold(cache: Path, folder: Path) -> None:
+def _compile_first(cache: Path, folder: Path) -> None:
     """Let a command compile the built-in firmware's kernels into `cache`. If that fails, the tests say why."""
     command = [sys.executable, "-m", "bfsim", "run", "--frames", "2"]
     environment = {**os.environ, "BFSIM_CACHE_DIR": str(cache)}

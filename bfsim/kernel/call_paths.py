@@ -92,7 +92,7 @@ class RoutineCosts(NamedTuple):
 
 
 class CountedAccesses(NamedTuple):
-    """So many accesses that an event of a counter makes, of one site, each spread over `among` elements; `array`: the program's.
+    """So many accesses that an event of a counter makes at one site. `array`: the program's; each may be to that or to others, `among` in all.
 
     `counter` and `site`: numbers of both.
     """
