@@ -17,7 +17,7 @@ from bfsim.linker import LinkMap
 from bfsim.machine.board import Board
 from bfsim.machine.cameras.capture import Feed
 from bfsim.trace import BoardRecord, FrameRecord
-from tests.machine.kernels import copy, spin
+from tests.machine.kernels import copy, first, spin
 from tests.machine.rig import (
     SIZE,
     STAGES,
@@ -154,6 +154,21 @@ def test_ctrl_c_reports_the_frames_done(core: str, how: Any) -> None:
     outcome = run(*(mains if core == "A" else mains[::-1]), frames=10)
     assert outcome.interrupted
     assert [each.index for each in outcome.frames] == [0, 1, 2]
+
+
+def test_a_kernel_that_began_in_the_interrupted_frame_is_in_no_record() -> None:
+    """Records are of the frames that are done."""
+
+    def late(core: Core, frame: Frame) -> Generator[Any, Any, None]:
+        yield core.run(spin, 10)
+        if frame.index == 2:
+            yield core.run(first, core.rows("single_row")[0])
+            raise KeyboardInterrupt
+
+    outcome = run(every_frame(late), frames=3)
+    assert len(outcome.frames) == 2
+    assert [(each.kernel, each.calls) for each in outcome.kernels] == [("spin", 2)]
+    assert not outcome.accesses
 
 
 def test_ctrl_c_while_the_recording_is_read_reports_the_frames_done() -> None:
