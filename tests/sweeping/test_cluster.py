@@ -77,7 +77,6 @@ def test_one_worker_records_and_the_others_play(
     file.with_name("fw_eyes.py").write_text(NOTES_RUNS)
     with Cluster(address, running.code_digest()) as cluster:
         monkeypatch.setattr(cluster, "room", lambda: 1)  # else all run at once
-        monkeypatch.setattr("bfsim.sweeping.works.LEAST_LEFT", 2)
         played, _ = swept(file, cluster)
     assert file.with_name("runs").read_text() == "A" * 2  # the first one, and the one that was recorded
     assert not list((file.with_suffix(".sweep") / "works").iterdir())

@@ -199,7 +199,6 @@ def test_points_that_differ_in_the_board_are_played(file: Path, monkeypatch: pyt
         return simulate(*arguments, **what)
 
     monkeypatch.setattr("bfsim.sweeping.running.simulate", simulated)
-    monkeypatch.setattr("bfsim.sweeping.works.LEAST_LEFT", 2)
     played, _ = swept(file)
     assert sorted(runs) == ["played"] * 4 + ["recorded"] * 2 + ["run"] * 2
     assert not list((file.with_suffix(".sweep") / "works").iterdir())

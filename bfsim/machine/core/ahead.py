@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import simpy
+from numpy.typing import NDArray
 
 from bfsim.chip.spec import EventSpec
 from bfsim.errors import FirmwareError
@@ -220,12 +221,15 @@ class Ahead:
 
     def play_stretches(self) -> Wait:
         """Have the bus play what was done ahead, and do at each moment what was to be done then."""
-        if not self._noted:
-            return
-        self._note_calls()
+        if self._noted:
+            self._note_calls()
+            yield from self._play(np.array(self._noted, np.int64))
+
+    def _play(self, operations: NDArray[np.int64]) -> Wait:
+        """Have the bus play operations, all in one."""
         with self.interrupts.held():  # no handler comes between,
             self.is_full = False  # and no second play of the same
-            owners, operations, first = list(self._owners), np.array(self._noted, np.int64), 0
+            owners, first = list(self._owners), 0
             for end, what in (*self._moments, (len(operations), self._begin)):
                 if end > first:
                     yield self._bus.stretches.play(self._number, self.clock.cclk, operations[first:end])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bfsim.kernel import Work
 from bfsim.machine.bus import state as w
@@ -68,12 +69,10 @@ class RecordedAhead(Ahead):
         kind, plan, offset, to, _ = super()._planned(stream, source, destination)
         return kind, plan, offset, to, self.notes.copy(self.streams.index(stream), source, destination)
 
-    def play_stretches(self) -> Wait:
-        """Note what is played."""
-        if self._noted and not self.is_paused:
-            self._note_calls()
-            self._note_stretch(np.array(self._noted, np.int64).reshape(-1, w.OPERATION_WORDS))
-        yield from super().play_stretches()
+    def _play(self, operations: NDArray[np.int64]) -> Wait:
+        if not self.is_paused:
+            self._note_stretch(operations.reshape(-1, w.OPERATION_WORDS).copy())
+        return super()._play(operations)
 
     def _note_stretch(self, operations: Table) -> None:
         """Note operations in the words of `FrameWork`."""
