@@ -10,7 +10,6 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import suppress
-from pathlib import Path
 
 import platformdirs
 import pytest
@@ -36,22 +35,34 @@ def pytest_configure() -> None:
 def pytest_cmdline_main(config: pytest.Config) -> Iterator[None]:
     """Keep compiled kernels where BFSIM_CACHE_DIR says; without it in a folder of this run, which its workers share.
 
-    It starts with what the user has. Before all of the tests a command adds what each worker would compile first.
+    That starts with what the user has. Before all of the tests commands add what workers would compile at the same time.
     """
-    if hasattr(config, "workerinput") or "BFSIM_CACHE_DIR" in os.environ:
+    if hasattr(config, "workerinput"):
         return (yield)
+    is_whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.collectonly
     with tempfile.TemporaryDirectory(prefix="bfsim-tests-", ignore_cleanup_errors=True) as folder:
-        cache = Path(folder) / "kernels"
-        if config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.collectonly:
+        if "BFSIM_CACHE_DIR" not in os.environ:
+            cache = os.environ["BFSIM_CACHE_DIR"] = f"{folder}/kernels"
             with suppress(OSError):  # of somebody who has never run bfsim
-                shutil.copytree(platformdirs.user_cache_dir("bfsim"), cache)
-            _compile_first(cache, Path(folder))
-        os.environ["BFSIM_CACHE_DIR"] = str(cache)
+                if is_whole:
+                    shutil.copytree(platformdirs.user_cache_dir("bfsim"), cache)
+        if is_whole:
+            _compile_first(folder)
         return (yield)
 
 
-def _compile_first(cache: Path, folder: Path) -> None:
-    """Let a command compile the built-in firmware's kernels into `cache`. If that fails, the tests say why."""
-    command = [sys.executable, "-m", "bfsim", "run", "--frames", "2"]
-    environment = {**os.environ, "BFSIM_CACHE_DIR": str(cache)}
-    subprocess.run(command, cwd=folder, env=environment, capture_output=True, check=False)  # noqa: S603  # this Python, this module
+OF_MANY_TESTS = ((), ("--ldf", "l2"), ("--profile", "gcc"))
+"""Runs of the built-in firmware whose kernels many tests need."""
+
+
+def _compile_first(folder: str) -> None:
+    """Let commands compile them, side by side. If one fails, the tests say why."""
+    command = [sys.executable, "-m", "bfsim", "run", "--frames", "1"]
+    started = [
+        subprocess.Popen(
+            [*command, *options], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )  # noqa: S603  # this Python, this module
+        for options in OF_MANY_TESTS
+    ]
+    for each in started:
+        each.wait()
