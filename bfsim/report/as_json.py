@@ -13,7 +13,7 @@ from bfsim.report.digest import cycle_digest, identity_digest
 from bfsim.report.jsonable import jsonable
 from bfsim.report.owners import owner_frames
 from bfsim.report.warnings import warnings_of
-from bfsim.trace import Later, RunRecord, RunWarning
+from bfsim.trace import RunRecord, RunWarning
 
 SCHEMA = "bfsim.run/4"
 """Name and version of the layout; the version rises when a key changes its meaning or goes away."""
@@ -54,9 +54,7 @@ def as_json(run: RunRecord) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return dict(value)
-    return list(value) if isinstance(value, Later) else []
+    return dict(value) if isinstance(value, Mapping) else []
 
 
 def _flat(warning: RunWarning) -> dict[str, Any]:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 from bfsim.report.budget import budget_rows, stage_names
 from bfsim.report.profile.cost import Cost, sum_of
 from bfsim.report.profile.lines import LineProfile, lines_of, place_of
 from bfsim.report.start_up import without_start_up
-from bfsim.trace import CoreFrame, KernelRecord, OwnerCost, RunRecord
+from bfsim.trace import CoreFrame, KernelRecord, Later, OwnerCost, RunRecord
 
 
 @dataclass(slots=True, kw_only=True)
@@ -21,7 +22,7 @@ class OwnerProfile:
     place: str = ""
     calls: int = 0
     cost: Cost = field(default_factory=Cost)
-    lines: tuple[LineProfile, ...] = ()
+    lines: Sequence[LineProfile] = ()
 
 
 @dataclass(slots=True, kw_only=True)
@@ -89,9 +90,7 @@ def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None
         found = owners.get(name, {}).get((kernel, symbol))
         if found:
             found.place = place_of(records[0])
-            found.lines = tuple(
-                each for each in lines_of(records) if each.executions or each.cost.elapsed_cclk
-            )
+            found.lines = Later(partial(_lines_that_ran, records))
     return Profile(
         cores=cores,
         frames=len(run.frames),
@@ -102,6 +101,10 @@ def profile_of(run: RunRecord, core: str | None = None, stage: str | None = None
             if each in costs and costs[each].elapsed_cclk
         ),
     )
+
+
+def _lines_that_ran(records: Sequence[KernelRecord]) -> list[LineProfile]:
+    return [each for each in lines_of(records) if each.executions or each.cost.elapsed_cclk]
 
 
 def kernel_records(run: RunRecord, cores: Sequence[str]) -> dict[tuple[str, str, str], list[KernelRecord]]:
