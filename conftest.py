@@ -58,10 +58,9 @@ OF_MANY_TESTS = ((), ("--ldf", "l2"), ("--profile", "gcc"))
 def _compile_first(folder: str) -> None:
     """Let commands compile them, side by side. If one fails, the tests say why."""
     command = [sys.executable, "-m", "bfsim", "run", "--frames", "1"]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     started = [
-        subprocess.Popen(
-            [*command, *options], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-        )  # noqa: S603  # this Python, this module
+        subprocess.Popen([*command, *options], cwd=folder, **quiet)  # noqa: S603  # this Python, this module
         for options in OF_MANY_TESTS
     ]
     for each in started:
