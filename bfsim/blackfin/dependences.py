@@ -25,11 +25,12 @@ VISIBLE = frozenset(STATE) - UNSEEN
 
 @dataclass(frozen=True, slots=True)
 class Registers:
-    """What an instruction does to registers. `loaded`: those of `writes` that get a word of memory as it is."""
+    """What an instruction does to registers. `loaded`: those of `writes` that get a word of memory as it is. `does`: what its forms do."""
 
     reads: frozenset[str]
     writes: frozenset[str]
     loaded: frozenset[str]
+    does: frozenset[str]
 
 
 @dataclass(slots=True)
@@ -72,5 +73,6 @@ def _noted(instruction: Instruction) -> Registers:
     loaded = {
         name for name, value in effects.pending.items() if any(value.ir is each for each in effects.words)
     }
-    writes = VISIBLE & effects.pending.keys()
-    return Registers(VISIBLE & reads, writes, writes & loaded)
+    writes = VISIBLE.intersection(effects.pending)
+    does = frozenset(each.form.does for each in instruction.operations)
+    return Registers(VISIBLE & reads, writes, writes & loaded, does)

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 
 from bfsim.blackfin.decode import Instruction
-from bfsim.blackfin.dependences import registers_of
+from bfsim.blackfin.dependences import Registers, registers_of
 from bfsim.blackfin.timing import Interlock
 
 PARTLY = {"set_low", "set_high"}
@@ -44,41 +45,51 @@ class Wait:
     register: str = ""
 
 
-def made_by(interlock: Interlock, instruction: Instruction) -> frozenset[str]:
+NO_WAIT = Wait()
+
+
+def made_by(interlock: Interlock, writer: Registers) -> frozenset[str]:
     """Return the registers of an interlock that are not there at once behind an instruction."""
-    found = registers_of(instruction)
-    does = {each.form.does for each in instruction.operations}
-    if (interlock.by and interlock.by.isdisjoint(does)) or (
-        interlock.moved_from and interlock.moved_from.isdisjoint(found.reads)
+    if (interlock.by and interlock.by.isdisjoint(writer.does)) or (
+        interlock.moved_from and interlock.moved_from.isdisjoint(writer.reads)
     ):
         return frozenset()
-    return interlock.registers & (found.loaded if interlock.loaded else found.writes)
+    return interlock.registers & (writer.loaded if interlock.loaded else writer.writes)
 
 
-def holds(interlock: Interlock, instruction: Instruction) -> bool:
+def holds(interlock: Interlock, reader: Registers) -> bool:
     """Whether an instruction that reads a register of an interlock waits for it."""
-    does = {each.form.does for each in instruction.operations}
-    return does.isdisjoint(PARTLY) and (not interlock.used_by or not interlock.used_by.isdisjoint(does))
+    return reader.does.isdisjoint(PARTLY) and (
+        not interlock.used_by or not interlock.used_by.isdisjoint(reader.does)
+    )
+
+
+@cache
+def _made(writer: Registers, interlocks: tuple[Interlock, ...]) -> Waiting:
+    """Return what is waited for behind an instruction because of it: few make anything be waited for."""
+    return Waiting({(register, each): each.cclk for each in interlocks for register in made_by(each, writer)})
 
 
 def issued(
-    instruction: Instruction, before: Waiting, interlocks: Iterable[Interlock]
+    instruction: Instruction, before: Waiting, interlocks: tuple[Interlock, ...]
 ) -> tuple[Wait, Waiting]:
     """Return how long an instruction waits, and what is waited for behind it."""
     found = registers_of(instruction)
+    made = _made(found, interlocks)
+    if not before.cclk:
+        return NO_WAIT, made
     waits = [
         Wait(left, register)
         for (register, each), left in before.cclk.items()
-        if register in found.reads and holds(each, instruction)
+        if register in found.reads and holds(each, found)
     ]
-    wait = max(waits, key=lambda each: (each.cclk, each.register), default=Wait())
+    wait = max(waits, key=lambda each: (each.cclk, each.register), default=NO_WAIT)
     left = {key: cclk for key, cclk in before.later(wait.cclk + 1).cclk.items() if key[0] not in found.writes}
-    made = {(register, each): each.cclk for each in interlocks for register in made_by(each, instruction)}
-    return wait, Waiting(left | made)
+    return wait, Waiting({**left, **made.cclk})
 
 
 def issued_in_turn(
-    instructions: Iterable[Instruction], before: Waiting, interlocks: Iterable[Interlock]
+    instructions: Iterable[Instruction], before: Waiting, interlocks: tuple[Interlock, ...]
 ) -> tuple[tuple[Wait, ...], Waiting]:
     """Return how long each instruction of a sequence waits, and what is waited for behind the last one."""
     waits = []

@@ -38,9 +38,12 @@ def stalls(code: Code, timing: Timing) -> Stalls:
         for each in edges(code)
         if each.way in {Way.FALLS, Way.REPEATS} and {each.source, each.target} <= waiting
     ]
-    left = _left(code, carrying, timing)
-    for start in waiting:
-        jumped[start], _ = issued_in_turn(code.blocks[start].instructions, NOTHING, timing.interlocks)
+    alone = {
+        start: issued_in_turn(each.instructions, NOTHING, timing.interlocks)
+        for start, each in code.blocks.items()
+    }
+    jumped |= {start: alone[start][0] for start in waiting}
+    left = _left(code, {start: behind for start, (_, behind) in alone.items()}, carrying, timing)
     carried = {}
     for each in carrying:
         before = left[each.source].later(fetched_anew(code.blocks[each.source], each.way, timing))
@@ -50,12 +53,11 @@ def stalls(code: Code, timing: Timing) -> Stalls:
     return Stalls(jumped, carried)
 
 
-def _left(code: Code, carrying: Sequence[Edge], timing: Timing) -> dict[int, Waiting]:
-    """What is waited for at the end of each block, at the worst."""
-    left = {
-        start: issued_in_turn(each.instructions, NOTHING, timing.interlocks)[1]
-        for start, each in code.blocks.items()
-    }
+def _left(
+    code: Code, alone: Mapping[int, Waiting], carrying: Sequence[Edge], timing: Timing
+) -> dict[int, Waiting]:
+    """What is waited for at the end of each block, at the worst; `alone`: where nothing is waited for at its begin."""
+    left = dict(alone)
     behind: dict[int, list[Edge]] = {}
     for each in carrying:
         behind.setdefault(each.source, []).append(each)

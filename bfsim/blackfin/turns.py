@@ -136,8 +136,9 @@ def _arrivals(
 
 
 def _wait(writer: Instruction, register: str, reader: Instruction, timing: Timing) -> int:
+    first, second = registers_of(writer), registers_of(reader)
     waits = (
-        each.cclk for each in timing.interlocks if register in made_by(each, writer) and holds(each, reader)
+        each.cclk for each in timing.interlocks if register in made_by(each, first) and holds(each, second)
     )
     return max(waits, default=0)
 
