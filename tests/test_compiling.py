@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 
-from benchmarks.toolchain.keep import FOLDER, recipes
+from benchmarks.toolchain.keep import FOLDER, programs, recipes
 from bfsim import compiling, store
 from bfsim.blackfin.objects import read_object
-from bfsim.compiling.object_code import object_code
+from bfsim.compiling.object_code import InC, object_code
 from bfsim.compiling.recipes import KEPT_COMPILER
 from bfsim.compiling.toolchain import Toolchain, blackfin_compiler, prefer
 from bfsim.errors import ConfigError
@@ -70,7 +71,10 @@ def test_a_folder_that_is_named_comes_before_the_path(
 
 def test_what_comes_with_bfsim_is_the_code_of_what_it_is_now() -> None:
     """Kernels of the built-in firmware, and examples: `python -m benchmarks.toolchain.keep` compiles what was changed."""
-    wanted = {each.digest(KEPT_COMPILER) for each in recipes()}
-    assert {each.name for each in FOLDER.iterdir()} == wanted
-    for each in wanted:
+    in_c = programs()
+    compiled = {each.digest(KEPT_COMPILER) for each in recipes(in_c.values())}
+    assert {each.name for each in FOLDER.iterdir()} == compiled | in_c.keys()
+    for name, each in in_c.items():
+        assert InC(**json.loads(store.shipped(compiling.__name__, name) or b"{}")) == each
+    for each in compiled:
         assert read_object(store.shipped(compiling.__name__, each) or b"", each).symbols

@@ -1,4 +1,4 @@
-"""Compile what comes with bfsim: the kernels of the built-in firmware, and the examples of the documentation.
+"""Compile what comes with bfsim: the kernels of the built-in firmware, which are kept as C, too, and the examples of the documentation.
 
     python -m benchmarks.toolchain.keep
 
@@ -8,11 +8,13 @@ After a change of a kernel of the built-in firmware it must be run again, or `bf
 
 from __future__ import annotations
 
+import json
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict
 
 from bfsim.compiling.file_code import SOURCES, recipe_of_source
-from bfsim.compiling.object_code import LEVELS, recipe_of
+from bfsim.compiling.object_code import LEVELS, InC, recipe_of, written
 from bfsim.compiling.recipes import KEPT_COMPILER, Recipe
 from bfsim.compiling.toolchain import blackfin_toolchain
 from bfsim.kernel import profile_named
@@ -24,13 +26,20 @@ from tests.pages import PAGES, ROOT, blocks_of
 FOLDER = ROOT / "bfsim" / "compiling" / KEPT
 
 
-def recipes() -> Iterator[Recipe]:
-    """Yield what is kept."""
-    for name in FIRMWARE:
-        loaded = load_firmware(name)
-        entries = entries_of(loaded.firmware)
+def programs() -> dict[str, InC]:
+    """Write the built-in firmware as C. Returns it under the names under which it is kept."""
+    found = [load_firmware(each) for each in FIRMWARE]
+    entries = [entries_of(each.firmware) for each in found]
+    return dict(
+        written(kernels_of(each.own) | called, called) for each, called in zip(found, entries, strict=True)
+    )
+
+
+def recipes(programs: Iterable[InC]) -> Iterator[Recipe]:
+    """Yield what is compiled and kept."""
+    for program in programs:
         for profile in map(profile_named, LEVELS):
-            yield recipe_of(kernels_of(loaded.own) | entries, entries, profile)
+            yield recipe_of(program.files, profile)
     for page in PAGES:
         for each in blocks_of(page):
             if each.title.endswith(SOURCES):
@@ -42,9 +51,12 @@ def main() -> None:
     toolchain = blackfin_toolchain()
     assert toolchain.identity == KEPT_COMPILER, toolchain.identity
     FOLDER.mkdir(exist_ok=True)
-    wanted = {each.digest(KEPT_COMPILER): each for each in recipes()}
+    in_c = programs()
+    wanted = {each.digest(KEPT_COMPILER): each for each in recipes(in_c.values())}
     for old in {each.name for each in FOLDER.iterdir()} - wanted.keys():
         (FOLDER / old).unlink()
+    for name, program in in_c.items():
+        (FOLDER / name).write_bytes(zlib.compress(json.dumps(asdict(program)).encode(), 9))
     for name, each in wanted.items():
         if not (FOLDER / name).exists():
             (FOLDER / name).write_bytes(zlib.compress(each.made(toolchain), 9))

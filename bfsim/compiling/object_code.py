@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 from bfsim import store
 from bfsim.compiling.recipes import Recipe, code_at_hand, code_of
@@ -52,10 +54,10 @@ def object_code(
 
     Raises ConfigError where there is neither kept code nor a compiler, and with what the compiler says if it refuses.
     """
-    level, (files, names) = level_of(profile), _in_c(kernels, entries)
+    files, names = _in_c(kernels, entries)
     if not names:
         raise ConfigError("the run must call a kernel for there to be real code, but calls none")
-    return ObjectCode(*code_of(_recipe(files, level), toolchain), names)
+    return ObjectCode(*code_of(recipe_of(files, profile), toolchain), names)
 
 
 def object_code_at_hand(
@@ -66,37 +68,57 @@ def object_code_at_hand(
 ) -> ObjectCode | None:
     """Return what `object_code` does, or None where there is neither kept code nor a compiler."""
     files, names = _in_c(kernels, entries)
-    found = code_at_hand(_recipe(files, level_of(profile)), toolchain)
+    found = code_at_hand(recipe_of(files, profile), toolchain)
     return found and ObjectCode(*found, names)
 
 
-def recipe_of(kernels: Iterable[Kernel], entries: Iterable[Kernel], profile: CompilerProfile) -> Recipe:
-    """Return what the code of `kernels` is made of."""
-    files, _ = _in_c(kernels, entries)
-    return _recipe(files, level_of(profile))
+def recipe_of(files: Mapping[str, str], profile: CompilerProfile) -> Recipe:
+    """Return what the code of kernels in C is made of."""
+    return Recipe(files, tuple(each for each in files if each.endswith(".c")), ("-w", level_of(profile)))
 
 
-def _recipe(files: Mapping[str, str], level: str) -> Recipe:
-    return Recipe(files, tuple(each for each in files if each.endswith(".c")), ("-w", level))
+@dataclass(frozen=True, slots=True)
+class InC:
+    """Kernels as files of C, and the name of each function there, by its symbol."""
+
+    files: Mapping[str, str]
+    names: Mapping[str, str]
+
+
+def written(kernels: Iterable[Kernel], entries: Iterable[Kernel]) -> tuple[str, InC]:
+    """Write kernels as C, and return the name under which that is kept."""
+    functions, called = _by_symbol(kernels), {each.function.symbol: each.function for each in entries}
+    return keys.program_key(functions.values(), called), _written(functions, called)
 
 
 def _in_c(
     kernels: Iterable[Kernel], entries: Iterable[Kernel]
 ) -> tuple[Mapping[str, str], Mapping[Function, str]]:
-    """Kernels as files of C, and what each is called there. Their lines are called by the kernel and counted from its first: wherever the Python lies, the C is the same.
+    """Return kernels as files of C, and what each is called there.
 
-    It is kept in the user's cache, for to write all kernels of firmware takes longer than to run a frame.
+    It is kept in the user's cache, and that of the built-in firmware comes with bfsim, for to write all kernels of firmware takes
+    longer than to run a frame.
     """
-    called = {each.function.symbol: each.function for each in entries}
-    functions = {one.symbol: one for each in kernels for one in (*each.function.callees(), each.function)}
+    functions, called = _by_symbol(kernels), {each.function.symbol: each.function for each in entries}
+    name = keys.program_key(functions.values(), called)
 
-    def made() -> tuple[Mapping[str, str], Mapping[str, str]]:
-        from bfsim.kernel.c import Place, c_program  # most starts find all C
+    def made() -> Any:
+        shipped = store.shipped(__package__, name)
+        return asdict(_written(functions, called)) if shipped is None else json.loads(shipped)
 
-        program = c_program(
-            functions.values(), entries=called.values(), place=lambda function: Place(function.symbol, 1)
-        )
-        return program.files, {function.symbol: each for function, each in program.names.items()}
+    found = InC(**store.kept(name, made))
+    return found.files, {functions[symbol]: each for symbol, each in found.names.items()}
 
-    files, names = store.kept(keys.program_key(functions.values(), called), made)
-    return files, {functions[symbol]: name for symbol, name in names.items()}
+
+def _by_symbol(kernels: Iterable[Kernel]) -> dict[str, Function]:
+    return {one.symbol: one for each in kernels for one in (*each.function.callees(), each.function)}
+
+
+def _written(functions: Mapping[str, Function], called: Mapping[str, Function]) -> InC:
+    """Lines are called by the kernel and counted from its first: wherever the Python lies, the C is the same."""
+    from bfsim.kernel.c import Place, c_program  # most starts find all C
+
+    program = c_program(
+        functions.values(), entries=called.values(), place=lambda function: Place(function.symbol, 1)
+    )
+    return InC(program.files, {function.symbol: each for function, each in program.names.items()})

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import hashlib
 import sys
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from functools import cache
-from pathlib import Path
+from pathlib import Path, PurePath
 
 from bfsim import blackfin, machine_code
 from bfsim.kernel.function import Function
@@ -37,10 +37,16 @@ def estimate_key(function: Function) -> str:
     return _digest("estimate", tools(), *(each.digest for each in (function, *function.callees())))
 
 
-def program_key(functions: Iterable[Function], entries: Iterable[str]) -> str:
-    """Digest of all that the C of kernels depends on; `entries`: symbols of those that something else than kernels calls."""
-    rows = sorted((each.file, each.first_line, each.source, each.digest) for each in functions)
-    return _digest("C", compiler(), repr(rows), repr(sorted(entries)))
+def program_key(functions: Iterable[Function], entries: Collection[str]) -> str:
+    """Digest of all that the C of kernels depends on, wherever their files lie; `entries`: symbols of those that something else calls."""
+    found = sorted(functions, key=lambda each: (each.file, each.first_line))
+    files = {file: number for number, file in enumerate(dict.fromkeys(each.file for each in found))}
+    rows = [
+        (files[each.file], PurePath(each.file).parts[-2:], each.symbol, each.source, each.digest)
+        for each in found
+    ]
+    public = [each.symbol for each in found if each.is_static and each.symbol in entries]
+    return _digest("C", _writer(), repr(rows), repr(public))
 
 
 def object_key(image_digest: str, symbol: str, timing: str, variant: str) -> str:
@@ -83,6 +89,16 @@ def sources() -> list[Path]:
 def compiler() -> str:
     """Digest of the compiler's own sources."""
     return hashlib.sha256(b"".join(each.read_bytes() for each in sources())).hexdigest()
+
+
+@cache
+def _writer() -> str:
+    """Digest of the sources that write C: what the reader makes of kernels is in their own digests."""
+    here = Path(__file__).parent
+    names = ("function.py", "operators.py", "tree.py", "types.py")
+    found = [here / each for each in names]
+    found += [each for folder in ("c", "intrinsics") for each in sorted((here / folder).rglob("*.[hp]*"))]
+    return hashlib.sha256(b"".join(each.read_bytes() for each in found if each.suffix != ".pyc")).hexdigest()
 
 
 @cache
