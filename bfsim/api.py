@@ -5,8 +5,9 @@ from __future__ import annotations
 from bfsim.chip.dma_registers import Flow, WdSize
 from bfsim.chip.ppi_registers import PpiStatusBit
 from bfsim.compiling.kernel_from import kernel_from
+from bfsim.compiling.own_code import kernel
 from bfsim.errors import FirmwareError, cut, shown
-from bfsim.kernel import Kernel, Work, f32, i8, i16, i32, kernel, quotient, remainder, sqrt, u8, u16, u32
+from bfsim.kernel import Kernel, Work, f32, i8, i16, i32, quotient, remainder, sqrt, u8, u16, u32
 from bfsim.kernel.intrinsics.fract import (
     abs_fr1x16,
     abs_fr1x32,

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import pickle
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from bfsim import building
 from bfsim.building import build_for
 from bfsim.compiling.object_code import object_code
-from bfsim.errors import KernelError
+from bfsim.errors import BfsimWarning
 from bfsim.explain import explain_named
-from bfsim.kernel import GCC_O2, Kernel
-from bfsim.kernel.profile import GCC
+from bfsim.kernel import GCC_O2, CompilerProfile, Kernel
+from bfsim.kernel.profile import GCC, GCC_ADI
 from bfsim.loading import entries_of, kernels_of, load_firmware, load_kernel
 from bfsim.machine.memories import Row
 from bfsim.report.code import code_in_words
@@ -155,7 +157,7 @@ def test_without_code_and_compiler_all_is_estimated() -> None:
 
 
 def test_explain_shows_the_own_code() -> None:
-    """Its operations are instructions, so that their cycles times their executions are those of the run; `cost` estimates."""
+    """Its operations are instructions, so that their cycles times their executions are those of the run."""
     done = simulate(frames=1, profile="gcc")
     found = explain_named("sobel_row", FIRMWARE[0], "gcc", done)
     assert found.profile == "GCC 12.2.0 -O2, timing gnu"
@@ -165,9 +167,30 @@ def test_explain_shows_the_own_code() -> None:
     assert {each.line for each in found.lines if each.operations} <= set(text)
     size = sum(each.nbytes for each in done.code)
     assert 0 < found.code_bytes < size
+
+
+@pytest.mark.usefixtures("_nothing_at_hand")
+def test_a_cost_without_a_compiler_is_an_estimate() -> None:
+    """And is said to be."""
     kernel = load_kernel("isqrt32", FIRMWARE[0])
-    with pytest.raises(
-        KernelError, match="must be asked of a profile that estimates it, such as gcc-O2, not of gcc"
+    with pytest.warns(BfsimWarning, match="the cost of isqrt32 in gcc is an estimate: no code of GCC"):
+        assert kernel.cost(100, profile="gcc") == kernel.cost(100, profile="gcc-O2")
+
+
+@pytest.mark.toolchain
+@pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
+@pytest.mark.parametrize("profile", [GCC, GCC_ADI], ids=lambda each: each.name)
+def test_the_cost_of_a_kernel_is_that_of_its_code_in_a_run(profile: CompilerProfile) -> None:
+    """Compiled with its file alone, it takes the cycles that it takes compiled with the whole firmware."""
+    build = build_for(load_firmware(FIRMWARE[0]), profile)
+    line = np.arange(320, dtype=np.uint8)
+    for name, arguments in (
+        ("isqrt32", (1_000_000,)),
+        ("mean_offset", (np.arange(400, dtype=np.uint16), 200, 1, 20, 2)),
+        ("gauss3_row", (line, line, line, np.zeros(320, np.uint8))),
     ):
-        kernel.cost(100, profile="gcc")
-    assert kernel.cost(100, profile="gcc-O2") > 0
+        kernel = load_kernel(name, FIRMWARE[0])
+        code = build.compiled(kernel)
+        arrays = [arguments[each] for each in kernel.array_positions]
+        work = kernel.prepare(code, arrays, code.new_totals()).run(arguments)
+        assert kernel.cost(*arguments, profile=profile.name) == work.issue_cclk + work.stall_cclk > 0

@@ -17,7 +17,6 @@ from bfsim.compiling.file_code import SOURCES, recipe_of_source
 from bfsim.compiling.object_code import LEVELS, InC, recipe_of, written
 from bfsim.compiling.recipes import KEPT_COMPILER, Recipe
 from bfsim.compiling.toolchain import blackfin_toolchain
-from bfsim.kernel import profile_named
 from bfsim.loading import entries_of, kernels_of, load_firmware
 from bfsim.shipped import FIRMWARE
 from bfsim.store import KEPT
@@ -38,8 +37,8 @@ def programs() -> dict[str, InC]:
 def recipes(programs: Iterable[InC]) -> Iterator[Recipe]:
     """Yield what is compiled and kept."""
     for program in programs:
-        for profile in map(profile_named, LEVELS):
-            yield recipe_of(program.files, profile)
+        for level in dict.fromkeys(LEVELS.values()):
+            yield recipe_of(program.files, level)
     for page in PAGES:
         for each in blocks_of(page):
             if each.title.endswith(SOURCES):

@@ -54,10 +54,10 @@ def object_code(
 
     Raises ConfigError where there is neither kept code nor a compiler, and with what the compiler says if it refuses.
     """
-    files, names = _in_c(kernels, entries)
+    level, (files, names) = level_of(profile), _in_c(kernels, entries)
     if not names:
         raise ConfigError("the run must call a kernel for there to be real code, but calls none")
-    return ObjectCode(*code_of(recipe_of(files, profile), toolchain), names)
+    return ObjectCode(*code_of(recipe_of(files, level), toolchain), names)
 
 
 def object_code_at_hand(
@@ -68,13 +68,13 @@ def object_code_at_hand(
 ) -> ObjectCode | None:
     """Return what `object_code` does, or None where there is neither kept code nor a compiler."""
     files, names = _in_c(kernels, entries)
-    found = code_at_hand(recipe_of(files, profile), toolchain)
+    found = code_at_hand(recipe_of(files, level_of(profile)), toolchain)
     return found and ObjectCode(*found, names)
 
 
-def recipe_of(files: Mapping[str, str], profile: CompilerProfile) -> Recipe:
+def recipe_of(files: Mapping[str, str], level: str) -> Recipe:
     """Return what the code of kernels in C is made of."""
-    return Recipe(files, tuple(each for each in files if each.endswith(".c")), ("-w", level_of(profile)))
+    return Recipe(files, tuple(each for each in files if each.endswith(".c")), ("-w", level))
 
 
 @dataclass(frozen=True, slots=True)

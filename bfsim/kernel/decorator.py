@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,14 +14,14 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.errors import KernelError
+from bfsim.errors import BfsimWarning, KernelError
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.costs import costs_of
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import FIRST_ARGUMENT
 from bfsim.kernel.function import Function
 from bfsim.kernel.jit import CompiledKernel, compile_kernel
-from bfsim.kernel.profile import GCC_O0, GCC_O2, RUN_AS_COMPILED, VDSP_O2, CompilerProfile, profile_named
+from bfsim.kernel.profile import GCC_O0, RUN_AS_COMPILED, VDSP_O2, CompilerProfile, profile_named
 from bfsim.kernel.reading import read_kernel
 from bfsim.kernel.types import ArrayType, FloatType, IntType
 from bfsim.kernel.work import PreparedCall, Work, is_single
@@ -60,11 +61,13 @@ class Kernel:
 
     `python` is the function as it was written, to be called with lists and ints: elements of numpy arrays would wrap at
     their own width. A kernel of another language has none, but `object_code`, which runs as it is; the profile says how it is timed.
+    `own_code` finds the code that a profile's compiler makes of one in Python, if there is any.
     """
 
     function: Function
     python: Callable[..., Any] | None
     object_code: ObjectCode | None = None
+    own_code: Callable[[Kernel, CompilerProfile], CompiledObject | None] | None = None
 
     @property
     def name(self) -> str:
@@ -287,22 +290,31 @@ class Kernel:
         """Run as a call does, and return its CCLK cycles: those of its operations, callees included, and their interlocks.
 
         It is what the call takes with code and arrays in L1, without waits for memory: for a unit test. `profile` names
-        the compiler. Raises KernelError for arguments that do not fit, and for a profile whose kernels run as its compiler's own code,
-        which there is of whole firmware.
+        the compiler; with `gcc` and `gcc-adi` it is the cost of the code that GCC makes of the kernel, or with a warning an estimate where
+        there is none. Raises KernelError for arguments that do not fit, and ConfigError with what GCC says if it refuses.
         """
-        if profile in RUN_AS_COMPILED and not self.object_code:
-            raise KernelError(
-                f"the cost of {self.name} must be asked of a profile that estimates it, such as {GCC_O2.name}, not of {profile}; "
-                f"`bfsim explain {self.name} --profile {profile}` has that of its own code ({self.place})"
-            )
         work = self._call(arguments, profile_named(profile))
         return work.issue_cclk + work.stall_cclk
 
     def _call(self, arguments: Sequence[Any], profile: CompilerProfile) -> Work:
         self.check(arguments)
         arrays = [arguments[each] for each in self.array_positions]
-        code = self.compile(profile)
+        code = self._own(profile) or self.compile(profile)
         return self.prepare(code, arrays, code.new_totals()).run(arguments)
+
+    def _own(self, profile: CompilerProfile) -> CompiledObject | None:
+        """Return the code that the compiler of a profile makes of it, if that is what runs."""
+        if self.object_code or profile.name not in RUN_AS_COMPILED:
+            return None
+        code = self.own_code(self, profile) if self.own_code else None
+        if code is None:
+            warnings.warn(
+                f"the cost of {self.name} in {profile.name} is an estimate: no code of GCC is kept for it, and GCC is not on the PATH "
+                f"({self.place})",
+                BfsimWarning,
+                stacklevel=4,
+            )
+        return code
 
 
 def kernel(python: Callable[..., Any] | None = None, /, **options: object) -> Kernel:
