@@ -21,7 +21,8 @@ class MdmaStream:
 
     def __init__(self, bus: Bus, board: BoardSpec, master: int) -> None:
         self._bus = bus
-        self._master = master
+        self.master = master
+        """Its row in `bus.state`."""
         self._startup_ticks = board.chip.dma.startup_sclk * board.clocks.sclk_ticks
         self._word_bytes = board.chip.dma.word_bytes
         self._plans: dict[tuple[Row, Row], TransferPlan] = {}
@@ -54,7 +55,7 @@ class MdmaStream:
         count = source.nbytes // size
         inward, outward = (Walk(each.offset, count, size, size) for each in (source, destination))
         return self._bus.planner.copy(
-            self._master,
+            self.master,
             inward,
             outward,
             count,

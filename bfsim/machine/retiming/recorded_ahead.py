@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from bfsim.kernel import Work
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.masters import RING_STREAMS
 from bfsim.machine.calls.call_cache import KnownCall
 from bfsim.machine.core.ahead import Ahead, Operation
 from bfsim.machine.core.progress import Wait
@@ -30,8 +31,6 @@ class RecordedAhead(Ahead):
         self.is_paused = False
         self.is_too_late = False
         """Whether a copy was waited for that is not among the latest."""
-        self.streams: tuple[MdmaStream, ...] = ()
-        """Those of the core."""
 
     def _begin(self) -> None:
         super()._begin()
@@ -67,7 +66,8 @@ class RecordedAhead(Ahead):
 
     def _planned(self, stream: MdmaStream, source: Row, destination: Row) -> Operation:
         kind, plan, offset, to, _ = super()._planned(stream, source, destination)
-        return kind, plan, offset, to, self.notes.copy(self.streams.index(stream), source, destination)
+        number = RING_STREAMS[self._number].index(stream.master)
+        return kind, plan, offset, to, self.notes.copy(number, source, destination)
 
     def _play(self, operations: NDArray[np.int64]) -> Wait:
         if not self.is_paused:

@@ -32,7 +32,6 @@ class RecordingCore(Core):
         assert isinstance(parts.progress, RecordedAhead), "what is recorded runs ahead"
         self._progress = parts.progress
         self._notes = parts.progress.notes
-        parts.progress.streams = parts.rings.streams
         self._on_work = on_work
         self._on_obstacle = on_obstacle
         self._result: Any = None  # of the last call that has waited
