@@ -61,9 +61,9 @@ def plain() -> Run:
 
 @pytest.fixture(scope="module")
 def work(folder: Path, plain: Run) -> Path:
-    """Return the recorded work of that run; recording it changes nothing."""
+    """Return the recorded work of that run; recording it changes nothing, and takes no event more: it runs ahead, too."""
     path = folder / "thesis.work"
-    assert differing(plain, simulate(frames=FRAMES, record_work=path)) <= HOSTS_OWN
+    assert not differing(plain, simulate(frames=FRAMES, record_work=path))
     return path
 
 
