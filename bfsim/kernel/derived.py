@@ -40,16 +40,34 @@ def derived(routine: Routine, counters: Sequence[Counter]) -> dict[int, Sum]:
 def _like_blocks_before(flow: ControlFlow, blocks: dict[str, int]) -> dict[int, Sum]:
     """Blocks of one loop of which each way through the first passes the second, and the other way round."""
     found: dict[int, Sum] = {}
-    always_behind = _post_dominators(flow)
+    always_behind = flow.post_dominators
     for label in flow.order:
         if label not in blocks:
             continue
         for before in flow.order:
             alike = before != label and before in flow.dominators[label] and label in always_behind[before]
-            if alike and before in blocks and flow.innermost(before) is flow.innermost(label):
+            if (
+                alike
+                and before in blocks
+                and flow.innermost(before) is flow.innermost(label)
+                and not _comes_again(flow, before, label)
+            ):
                 found[blocks[label]] = found.get(blocks[before], ((1, blocks[before]),))
                 break
     return found
+
+
+def _comes_again(flow: ControlFlow, label: str, without: str) -> bool:
+    """Whether a way leads from a block back to it that does not pass another one: a loop may have several ways back."""
+    reached, waiting = {without}, [label]
+    while waiting:
+        for way in flow.blocks[waiting.pop()].successors:
+            if way == label:
+                return True
+            if way not in reached:
+                reached.add(way)
+                waiting.append(way)
+    return False
 
 
 def _side(flow: ControlFlow, label: str, counted: dict[str, Sum]) -> Sum | None:
@@ -63,19 +81,3 @@ def _side(flow: ControlFlow, label: str, counted: dict[str, Sum]) -> Sum | None:
     if flow.predecessors[no] == [label] and no in counted and label in counted:
         return (*counted[label], *((-factor, number) for factor, number in counted[no]))
     return None
-
-
-def _post_dominators(flow: ControlFlow) -> dict[str, frozenset[str]]:
-    """Of each block: the blocks that every way from it passes."""
-    every = frozenset(flow.blocks)
-    found = {label: every if flow.blocks[label].successors else frozenset({label}) for label in flow.blocks}
-    changed = True
-    while changed:
-        changed = False
-        for label in reversed(flow.order):
-            behind = [found[each] for each in flow.blocks[label].successors]
-            if behind:
-                new = frozenset.intersection(*behind) | {label}
-                changed |= new != found[label]
-                found[label] = new
-    return found

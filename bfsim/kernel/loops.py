@@ -21,13 +21,17 @@ OUTER = ".outer"  # ending of the label that LLVM gives the outer of two loops w
 
 @dataclass(slots=True)
 class Loop:
-    """A natural loop. `inner` are the loops directly inside it, `leaving` blocks that a threaded jump takes out of it."""
+    """A natural loop. `inner` are the loops directly inside it, `leaving` blocks that a threaded jump takes out of it.
+
+    `counting`: the block whose test counts the iterations, if one does.
+    """
 
     header: str
     latch: str
     blocks: frozenset[str]
     inner: list[Loop] = field(default_factory=list)
     leaving: frozenset[str] = frozenset()
+    counting: str = ""
 
     @property
     def height(self) -> int:
@@ -92,6 +96,24 @@ class ControlFlow:
                 new = frozenset.intersection(*before) | {label} if before else frozenset({label})
                 changed |= new != found[label]
                 found[label] = new
+        return found
+
+    @cached_property
+    def post_dominators(self) -> dict[str, frozenset[str]]:
+        """Of each block: the blocks that every way from it passes."""
+        every = frozenset(self.blocks)
+        found = {
+            label: every if self.blocks[label].successors else frozenset({label}) for label in self.blocks
+        }
+        changed = True
+        while changed:
+            changed = False
+            for label in reversed(self.order):
+                behind = [found[each] for each in self.blocks[label].successors]
+                if behind:
+                    new = frozenset.intersection(*behind) | {label}
+                    changed |= new != found[label]
+                    found[label] = new
         return found
 
     @cached_property
@@ -170,8 +192,8 @@ class ControlFlow:
 
     def ending(self, loop: Loop) -> str:
         """The block whose test ends `loop`."""
-        if f"{loop.latch}{COPIED}" in self.blocks:
-            return self.predecessors[loop.latch][0]
+        if loop.counting:
+            return loop.counting
         return loop.header if self.is_split(loop) else loop.latch
 
     def loops_of(self, label: str) -> list[Loop]:

@@ -57,12 +57,16 @@ class Rule(StrEnum):
     COPIED_HEADERS = "a loop of two tests is rotated until both are at its end"
     PREPARED_DIFFERENCES = "a counter is its pointer less what is computed before the loop"
     COMPARED_COUNTERS = "a counter of a loop is guessed to be within what bounds it"
+    LOOP_GUARDS = "a test that decides whether an inner loop is come to is guessed to fail"
+    SPLIT_TESTS = "`and` and `or` are branches, each test its own"
 
 
 GCC: dict[Rule, str] = {
     Rule.COPIED_HEADERS: "should_duplicate_loop_header_p in tree-ssa-loop-ch.cc",
     Rule.PREPARED_DIFFERENCES: "get_computation_cost in tree-ssa-loop-ivopts.cc",
     Rule.COMPARED_COUNTERS: "predict_iv_comparison in predict.cc",
+    Rule.LOOP_GUARDS: "PRED_LOOP_GUARD in predict.cc",
+    Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
     Rule.KNOWN_SIGN: "expand_divmod in expmed.cc",
     Rule.DIVIDED_COUNTS: '"Costs of niter computation too high" in loop-doloop.cc',
@@ -118,4 +122,6 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.COPIED_HEADERS: ("run_tasks", "mu_law_block"),
     Rule.PREPARED_DIFFERENCES: ("centre_of_mass", "moved_boxes"),
     Rule.COMPARED_COUNTERS: ("label_regions", "largest_first"),
+    Rule.LOOP_GUARDS: ("join_parts", "pack_runs"),
+    Rule.SPLIT_TESTS: ("ray_length", "unpack_runs", "lzss_expand"),
 }

@@ -99,9 +99,11 @@ def test_a_stack_that_a_continue_skips_is_counted_down(step: int, counted: bool,
 
 def test_the_least_element_goes_along_in_a_register(tmp_path: Path) -> None:
     """a[least] is loaded before the loop; one load an iteration is left, and the branch, since two values are chosen."""
-    least = "if a[i] < a[s]:\n    s = i\n"
-    found = lowered(loops(least), tmp_path)
-    assert Op.COND_MOVE not in found
+    least, behind = "if a[i] < a[s]:\n    s = i\n", "    return s\n"
+    wanted = loops(least).removesuffix(behind) + "    t = a[s]\n    a[s] = n\n    return t\n"
+    assert Op.COND_MOVE not in lowered(wanted, tmp_path)
+    alone = lowered(loops(least), tmp_path)
+    assert alone[Op.COND_MOVE] == 1  # nothing behind the loop loads a[least], so it is not sure to be loaded
     stored = lowered(loops(least + "a[i] = n"), tmp_path)
     assert stored[Op.COND_MOVE] == 1  # the store may change a[least], which is loaded again
 
@@ -218,3 +220,74 @@ def test_a_counter_is_a_difference_to_what_is_prepared(first: str, steps: int, t
     )
     eliminated = context(text, tmp_path).demanded.eliminated
     assert len(eliminated) == 1 - steps
+
+
+def test_a_bound_that_something_exceeds_is_not_the_largest(tmp_path: Path) -> None:
+    """`i <= n` ends where n is known to be below another number [GCC: simplify_using_initial_values]."""
+    text = (
+        "def f(a: u8[:], n: i32, w: i32) -> i32:\n    s = 0\n    if n < w:\n        for i in range(-n, n + 1):\n"
+        "            if a[i + n] == 3:\n                break\n            s += a[i + n]\n    return s\n"
+    )
+    assert Op.LOOP_SETUP in lowered(text, tmp_path)
+
+
+@pytest.mark.parametrize(("joined", "branches"), [("and", 2), ("or", 2)])
+def test_each_part_of_a_test_is_a_branch(joined: str, branches: int, tmp_path: Path) -> None:
+    """LLVM makes one test of `x < 0 and y < 0`; GCC does not, for a branch is cheap by its reckoning."""
+    text = f"def f(a: i32[:], n: i32, x: i32, y: i32):\n    if x < n {joined} y > n + 7:\n        a[0] = 1\n"
+    found = context(text, tmp_path)
+    tests = [block for block in found.routine.blocks if len(set(block.successors)) == 2]
+    assert len(tests) == branches
+    assert not any(each.opcode in ("select", "and", "or") for block in tests for each in block.instructions)
+
+
+TWO_WAYS_OUT = """def f(a: u8[:], n: i32, most: i32) -> i32:
+    i = 0
+    s = 0
+    while i < n and {}:
+        s += a[i]
+        i += 1
+    return s
+"""
+
+
+@pytest.mark.parametrize(("test", "hardware"), [("s < most", False), ("i < 40", True)])
+def test_the_first_test_of_a_loop_counts_unless_constants_say_that_another_ends_it(
+    test: str, hardware: bool, tmp_path: Path
+) -> None:
+    """A hardware loop ends where its count does [GCC: find_simple_exit]: with `s < most` the count is tested before the end."""
+    found = lowered(TWO_WAYS_OUT.format(test), tmp_path)
+    assert (Op.LOOP_SETUP in found) is hardware
+    assert (Op.NOP in found) is False or hardware
+
+
+@pytest.mark.parametrize(("bound", "likely"), [("n", 0.64), ("n - 1", 0.5)])
+def test_a_counter_below_a_sum_written_in_the_loop_is_no_guess(
+    bound: str, likely: float, tmp_path: Path
+) -> None:
+    """With the types of stdint.h the sum is none of a name for GCC [get_base_value]."""
+    found = context(
+        f"def f(a: u8[:], n: i32, k: i32):\n    for i in range(k, n):\n        if i + 3 < {bound}:\n            a[i] = a[i + 1] + 1\n",
+        tmp_path,
+    )
+    (loop,) = found.flow.loops
+    block = found.flow.blocks[loop.header]
+    stores = next(each for each in block.successors if each != loop.latch)
+    assert found.likelihood.taken[loop.header, stores] == pytest.approx(likely, abs=0.01)
+
+
+def test_a_loop_behind_a_test_is_guessed_to_be_rare(tmp_path: Path) -> None:
+    """Of a loop around it; a test of its own that decides whether it is entered is another matter [GCC: PRED_LOOP_GUARD]."""
+    found = context(
+        "def f(a: u8[:], b: u8[:], n: i32, m: i32):\n    for i in range(n):\n        if a[i] > b[i]:\n"
+        "            for k in range(m):\n                b[k] = b[k] + a[i]\n        a[i] = 3\n",
+        tmp_path,
+    )
+    inner, outer = found.flow.loops
+    test = found.flow.blocks[outer.header]
+    leads = next(
+        each
+        for each in test.successors
+        if inner.header in found.flow.post_dominators[each] or each not in found.flow.dominators[outer.latch]
+    )
+    assert found.likelihood.taken[outer.header, leads] == pytest.approx(0.27, abs=0.01)

@@ -34,6 +34,8 @@ class Context:
         self.code_motion = InvariantCodeMotion(self.flow)
         evaluates = profile.applies(Rule.EVALUATED_LOOPS)
         self.evolution = ScalarEvolution(self.flow, self.code_motion, evaluates=evaluates)
+        for loop in self.flow.loops:
+            loop.counting = self.evolution.counting_exit(loop)
         self.if_conversion = IfConversion(self.flow, profile)
         converted = frozenset({*self.if_conversion.by_label, *self.if_conversion.gone})
         self.ranges = ranges(self.flow, converted, neighbours=profile.applies(Rule.NEIGHBOURS))

@@ -54,6 +54,8 @@ class CounterComparisons:
         if None in gains or len(moving) != 1:
             return None
         counter, other = test.operands[moving[0]], test.operands[1 - moving[0]]
+        if not self.flow.is_invariant(other, loop):
+            return None  # a sum that is written in the loop: with types of stdint.h, it is none of a name [get_base_value]
         gain = gains[moving[0]]
         assert gain is not None
         relation = predicate(test)[-2:]

@@ -11,6 +11,7 @@ from functools import cached_property
 from bfsim.kernel.divisions import FLOOR, SIGNED
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.loops import ControlFlow, Loop
+from bfsim.kernel.lowering.endless_loops import EndlessLoops
 from bfsim.kernel.lowering.folding import NARROW, Folding
 from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
 from bfsim.kernel.lowering.induction_variable_elimination import eliminated_counters
@@ -58,6 +59,7 @@ class DemandedValues(Folding):
             jump_threading,
         )
         self.calling = calling
+        self.endless_loops = EndlessLoops(flow, evolution, induction_variables, profile)
         self.counted = {loop.header for loop in flow.loops if self._iterations_by_counter(loop)}
         eliminates = profile.applies(Rule.ELIMINATED_COUNTERS)
         self.eliminated = (
@@ -81,7 +83,7 @@ class DemandedValues(Folding):
         ) or not self.calling.isdisjoint(loop.blocks)
         iterations = self.evolution.iterations(loop)
         many = iterations is None or iterations > FEWEST_ITERATIONS
-        counted = self.evolution.is_counted(loop) and not self._may_be_endless(loop)
+        counted = self.evolution.is_counted(loop) and not self.endless_loops.may_be(loop)
         return not library and many and counted and (iterations is not None or self._steps_by_power(loop))
 
     def _steps_by_power(self, loop: Loop) -> bool:
@@ -95,70 +97,6 @@ class DemandedValues(Folding):
             else []
         )
         return all(gain is None or abs(gain.constant).bit_count() <= 1 for gain in gains)
-
-    def _may_be_endless(self, loop: Loop) -> bool:
-        """With several exits, the pointer that walks is compared for equality with its end.
-
-        GCC counts such iterations only if the pointer is sure to meet the end: steps of one byte, or a fixed start
-        ["possible infinite iteration case" in loop-doloop.cc of GCC 12]. Nor does it count `i <= n`, which may always hold.
-        """
-        if len(self.flow.exits(loop)) < 2:
-            return False
-        if self._is_inclusive(loop):
-            return True
-        if self.flow.is_split(loop):
-            return not self._steps_by_one(loop)
-        steps = {
-            abs(variable.increment.constant)
-            for variable in self.induction_variables.all
-            if variable.loop is loop
-        }
-        wide = bool(steps) and 1 not in steps
-        fixed = self.profile.applies(Rule.FIXED_STARTS) and self.evolution.starts_fixed(loop)
-        return wide and not fixed and not self._may_not_start(loop) and not self._is_wanted_behind(loop)
-
-    def _is_wanted_behind(self, loop: Loop) -> bool:
-        """Whether the counter is wanted behind the loop, and not as an index alone: then no pointer takes its place."""
-        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
-        waiting = [each for each in test.operands if not self.flow.is_invariant(each, loop)] if test else []
-        seen: set[str] = set()
-        while waiting:
-            name = waiting.pop()
-            seen.add(name)
-            for user in self.flow.users.get(name, []):
-                inside = any(user in self.flow.blocks[label].instructions for label in loop.blocks)
-                if user.opcode == "phi" and (user.result or "") not in seen:
-                    waiting.append(user.result or "")
-                elif not inside and user.opcode not in ("phi", "getelementptr"):
-                    return True
-        return False
-
-    def _may_not_start(self, loop: Loop) -> bool:
-        """Whether a counter that goes down to a constant is tested before the loop.
-
-        Then GCC knows no bound of the iterations that keeps a pointer of wider steps from wrapping, and no pointer takes the
-        counter's place [may_eliminate_iv in tree-ssa-loop-ivopts.cc].
-        """
-        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
-        if test is None or not test.operands[1].lstrip("-").isdigit():
-            return False
-        block = self.flow.blocks[self.flow.entering(loop)]
-        while len(set(block.successors)) == 1 and len(self.flow.predecessors[block.label]) == 1:
-            block = self.flow.blocks[self.flow.predecessors[block.label][0]]
-        guard = self.flow.instruction(block.terminator.operands[0]) if block.terminator.operands else None
-        return guard is not None and guard.opcode == "icmp" and guard.operands[1].lstrip("-").isdigit()
-
-    def _is_inclusive(self, loop: Loop) -> bool:
-        """Whether a loop runs up to `stop + 1`, which C writes as `<= stop`."""
-        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
-        bound = self.flow.instruction(test.operands[1]) if test is not None else None
-        is_next = bound is not None and bound.opcode == "add" and bound.operands[1] == "1"
-        return is_next and self.profile.applies(Rule.INCLUSIVE_LOOPS)
-
-    def _steps_by_one(self, loop: Loop) -> bool:
-        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
-        gain = self.evolution.increment(test.operands[0], loop) if test is not None else None
-        return gain is not None and abs(gain.constant) == 1 and not gain.symbolic
 
     def emits(self, each: Instruction) -> bool:
         """Whether `each` becomes operations."""

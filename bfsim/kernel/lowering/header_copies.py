@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine
+from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, predicate
 from bfsim.kernel.loops import COPIED, ControlFlow, Loop
 from bfsim.kernel.lowering.jump_threading import JumpThreading
 
@@ -120,6 +120,11 @@ class _Rotation:
             if each.result:
                 self.first[each.result] = f"{each.result}{COPIED}"
                 self.last[each.result] = each.result
+        test = self.flow.instruction(self.header.terminator.operands[0])
+        assert test is not None
+        first = [self.first.get(each, each) for each in test.operands[:2]]
+        self.is_sure = _holds(predicate(test), first) is (self.header.successors[0] == self.inside)
+        """Whether constants say that the first test does not leave the loop."""
         self.types = {each.result: _type(each) for each in self.header.instructions if each.result}
 
     def routine(self) -> Routine:
@@ -141,6 +146,8 @@ class _Rotation:
             known = {name: value for name, value in values.items() if name != each.result}
             row = _renamed(each, known)
             rows.append(replace(row, result=values[each.result]) if own and each.result else row)
+        if own and self.is_sure:
+            rows[-1] = replace(rows[-1], text=f"br label %{self.inside}", operands=(), weights=(), hint="")
         return BasicBlock(label, tuple(rows), () if own else self.header.enters)
 
     def _behind(self, block: BasicBlock) -> BasicBlock:
@@ -153,12 +160,14 @@ class _Rotation:
         else:
             names = {}
         rows = [
-            self._phi(each, names) if each.opcode == "phi" else _renamed(each, names)
+            self._phi(each, names, block.label) if each.opcode == "phi" else _renamed(each, names)
             for each in block.instructions
         ]
         if names and block.label in (self.inside, self.way_out):
             chosen = [
-                self._choice(name, names[name]) for name in self.types if self._is_used(name, block.label)
+                self._choice(name, names[name], block.label)
+                for name in self.types
+                if self._is_used(name, block.label)
             ]
             rows = [*chosen, *rows]
         return replace(block, instructions=tuple(rows))
@@ -177,16 +186,22 @@ class _Rotation:
                     return True
         return False
 
-    def _choice(self, name: str, chosen: str) -> Instruction:
-        here, there = self.first[name], self.last[name]
-        text = f"phi {self.types[name]} [ {here}, %{self.copy} ], [ {there}, %{self.header.label} ]"
-        return Instruction(chosen, "phi", text, (here, there), self.header.terminator.line)
+    def _comes_from_copy(self, side: str) -> bool:
+        return side == self.inside or not self.is_sure
 
-    def _phi(self, phi: Instruction, names: dict[str, str]) -> Instruction:
+    def _choice(self, name: str, chosen: str, side: str) -> Instruction:
+        values = {self.copy: self.first[name]} if self._comes_from_copy(side) else {}
+        values[self.header.label] = self.last[name]
+        arms = ", ".join(f"[ {value}, %{label} ]" for label, value in values.items())
+        text = f"phi {self.types[name]} {arms}"
+        return Instruction(chosen, "phi", text, tuple(values.values()), self.header.terminator.line)
+
+    def _phi(self, phi: Instruction, names: dict[str, str], side: str) -> Instruction:
         arms = []
         for value, source in PHI_ARM.findall(phi.text):
             if source[1:] == self.header.label:
-                arms.append((self.first.get(value, value), self.copy))
+                if self._comes_from_copy(side):
+                    arms.append((self.first.get(value, value), self.copy))
                 arms.append((self.last.get(value, value), self.header.label))
             elif self.inside in self.flow.dominators[source[1:]]:
                 arms.append((f"{value}{AGAIN}" if value in self.types else value, source[1:]))
@@ -195,6 +210,21 @@ class _Rotation:
         kind = phi.text.split()[1]
         text = f"phi {kind} " + ", ".join(f"[ {value}, %{label} ]" for value, label in arms)
         return replace(phi, text=text, operands=tuple(value for value, _ in arms))
+
+
+def _holds(relation: str, values: list[str]) -> bool | None:
+    """Whether constants are so related; None if a value is none."""
+    if not all(each.lstrip("-").isdigit() for each in values):
+        return None
+    left, right = (int(each) % (1 << 32) if relation[0] == "u" else int(each) for each in values)
+    return {
+        "eq": left == right,
+        "ne": left != right,
+        "lt": left < right,
+        "le": left <= right,
+        "gt": left > right,
+        "ge": left >= right,
+    }[relation[-2:]]
 
 
 def _renamed(each: Instruction, names: dict[str, str]) -> Instruction:

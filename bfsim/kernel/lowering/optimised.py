@@ -117,6 +117,16 @@ class _OptimisedLowering:
             return False  # the end of the loop is copied behind each exit of the inner one, so there are two ends
         return bool(self.code.of[loop.latch]) or len(before) == 1
 
+    def _ends_in_branch(self, loop: Loop) -> bool:
+        """Whether the last instruction of a hardware loop would be a branch ["bad last insn; replace with nop" in hwloop_optimize]."""
+        (before,) = [*self.flow.predecessors[loop.latch]][:1]
+        return (
+            not self.code.of[loop.latch]
+            and before != loop.latch
+            and len(set(self.flow.blocks[before].successors)) > 1
+            and before not in self.context.if_conversion.by_label
+        )
+
     def _ends_apart(self, inner: Loop, before: list[str]) -> bool:
         """Whether the exits of an inner loop do not meet at once: one of them has a move to make."""
         ends = inner.blocks & set(before)
@@ -333,6 +343,8 @@ class _OptimisedLowering:
             count = [charge(Op.ALU, line), charge(Op.COMPARE, line)]
             again = [*count, charge(Op.BRANCH_TAKEN, line)]
             leaving = [*count, charge(Op.BRANCH_NOT_TAKEN, line)]
+        elif self._ends_in_branch(loop):
+            again = leaving = [charge(Op.NOP, line)]
         ways = self.flow.blocks[label].successors
         out = ways[0] if ways[0] not in loop.blocks else ways[1]
         leaving = leaving + self.layout.on(label, out, line)

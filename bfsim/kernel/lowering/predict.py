@@ -23,6 +23,7 @@ EVEN = 0.5
 LOOP_EXIT = 0.89
 LEAST_EXIT = 0.02  # of a loop with many exits, which share the chance that it ends
 POSITIVE, NOT_EQUAL, CALL = 0.59, 0.66, 0.67
+LOOP_GUARD = 0.73  # a test that decides whether an inner loop is come to fails
 CONTINUE = 0.67  # the surest hint of the source: the side without `continue`
 
 BELOW_ZERO = {("slt", 0), ("slt", 1), ("sle", 0), ("sle", -1), ("slt", -1), ("sle", 1)}
@@ -39,6 +40,7 @@ class Likelihood:
         self.flow, self.second_parts = flow, second_parts or {}
         self.evolution = ScalarEvolution(flow, InvariantCodeMotion(flow))
         compares = Rule.COMPARED_COUNTERS not in without
+        self.guards_loops = Rule.LOOP_GUARDS not in without
         self.comparisons = CounterComparisons(flow, self.evolution).votes if compares else {}
 
     @cached_property
@@ -86,6 +88,7 @@ class Likelihood:
             *self._by_calls(block),
             *_by_hint(block),
             *self.comparisons.get(block.label, ()),
+            *self._by_loops_behind(block),
         ]
         return combined(votes)
 
@@ -122,6 +125,36 @@ class Likelihood:
             if alone and any(each.is_call for each in self.flow.blocks[way].instructions):
                 votes.append(vote)
         return votes
+
+    def _by_loops_behind(self, block: BasicBlock) -> list[float]:
+        """A side that leads to a loop inside the one around the test, and to nothing else, is unlikely [predict_loops]."""
+        around = self.flow.innermost(block.label)
+        if around is None or not self.guards_loops:
+            return []
+        votes = []
+        for loop in around.inner:
+            if self._first_of(loop) in self.flow.dominators[around.latch]:
+                continue
+            leads = [self._first_of(loop) in self.flow.post_dominators[way] for way in block.successors]
+            if leads[0] != leads[1]:
+                votes.append(1 - LOOP_GUARD if leads[0] else LOOP_GUARD)
+        return votes
+
+    def _first_of(self, loop: Loop) -> str:
+        """Where the source begins a loop: at the test that decides whether it is entered, a copy of one that ends it, if there is one."""
+        blocks, before = self.flow.blocks, self.flow.predecessors
+        ends = {blocks[label].terminator.line for label in self.flow.exits(loop)}
+        found = loop.header
+        (label,) = [each for each in before[loop.header] if each not in loop.blocks][:1] or [loop.header]
+        while label not in loop.blocks:
+            if len(set(blocks[label].successors)) > 1:
+                if blocks[label].terminator.line not in ends:
+                    break
+                found = label
+            if len(before[label]) != 1:
+                break
+            (label,) = before[label]
+        return found
 
     def _leaving(self, loop: Loop) -> float:
         """How likely each exit of a loop is; before its first iteration, too, as the test there is a copy of its header's."""

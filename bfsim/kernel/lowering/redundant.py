@@ -65,7 +65,8 @@ def _carried(flow: ControlFlow, loop: Loop, load: Instruction) -> Carried | None
         for value, label in PHI_ARM.findall(merged.text)
     }
     known = {label: value for label, value in values.items() if value is not None}
-    return Carried(loop, load, address, index, merged, known) if len(known) == len(values) else None
+    carried = Carried(loop, load, address, index, merged, known)
+    return carried if len(known) == len(values) and _is_loaded_behind(flow, carried) else None
 
 
 def _loaded(flow: ControlFlow, loop: Loop, load: Instruction, index: str, label: str) -> str | None:
@@ -138,8 +139,8 @@ def _with_addresses(flow: ControlFlow, routine: Routine, carried: Carried) -> Ro
     return replace(routine, blocks=tuple(blocks))
 
 
-def _is_wanted_behind(flow: ControlFlow, carried: Carried) -> bool:
-    """Whether the element that was chosen last is accessed behind the loop."""
+def _addresses_behind(flow: ControlFlow, carried: Carried) -> list[Instruction]:
+    """Addresses of the element that was chosen last, computed behind the loop."""
     array = carried.address.operands[:-1]
     chosen = [
         user.result
@@ -147,7 +148,28 @@ def _is_wanted_behind(flow: ControlFlow, carried: Carried) -> bool:
         if user.opcode == "phi" and flow.defined[user.result or ""][0] not in carried.loop.blocks
     ]
     users = (each for name in chosen for each in flow.users.get(name or "", []))
-    return any(each.opcode == "getelementptr" and each.operands[:-1] == array for each in users)
+    return [each for each in users if each.opcode == "getelementptr" and each.operands[:-1] == array]
+
+
+def _is_wanted_behind(flow: ControlFlow, carried: Carried) -> bool:
+    return bool(_addresses_behind(flow, carried))
+
+
+def _is_loaded_behind(flow: ControlFlow, carried: Carried) -> bool:
+    """Whether the element that was chosen last is loaded behind the loop on every way, too.
+
+    Else the load is not sure to be made where the index is chosen, which -O2 asks for [compute_antic in tree-ssa-pre.cc; partial
+    anticipation is for -O3].
+    """
+    loads = {
+        flow.defined[load.result or ""][0]
+        for address in _addresses_behind(flow, carried)
+        for load in flow.users.get(address.result or "", [])
+        if load.opcode == "load"
+    }
+    blocks = carried.loop.blocks
+    ends = {way for label in blocks for way in flow.blocks[label].successors if way not in blocks}
+    return all(loads & flow.post_dominators[way] for way in ends)
 
 
 def _phi(load: Instruction, result: str, kind: str, arms: dict[str, str]) -> Instruction:

@@ -15,12 +15,14 @@ from bfsim.kernel.lowering.invariant_loads import hoist_loads
 from bfsim.kernel.lowering.merged_stores import merge_stores
 from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.redundant import without_redundant_loads
+from bfsim.kernel.lowering.short_circuits import split_tests
 from bfsim.kernel.lowering.sinking import sink
 from bfsim.kernel.lowering.split_loads import split_loads
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
 REWRITES: tuple[Callable[[Routine], Routine], ...] = (
+    split_tests,
     split_loads,
     merge_stores,
     copy_headers,
@@ -32,6 +34,7 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
 )
 """In this order."""
 SWITCHES = {
+    split_tests: Rule.SPLIT_TESTS,
     split_loads: Rule.MERGED_LOADS,
     without_redundant_loads: Rule.CARRIED_LOADS,
     sink: Rule.SINKING,

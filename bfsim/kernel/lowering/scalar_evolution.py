@@ -129,6 +129,23 @@ class ScalarEvolution:
         test = self.exit_test(loop)
         return test is not None and (self._counts(test, loop) or self._evaluated(test, loop) is not None)
 
+    def counting_exit(self, loop: Loop) -> str:
+        """Return the block whose test counts the iterations of `loop`, and is made in each; empty if none is.
+
+        It is the header's or else the last one of the loop, unless constants say how often it iterates until another one ends it, the
+        fewest times [find_simple_exit in loop-iv.cc, over get_loop_body in cfgloop.cc, of GCC 12].
+        """
+        found, fewest = "", None
+        exits = [] if self.flow.is_split(loop) else self.flow.exits(loop)
+        for label in sorted(exits, key=lambda each: (each != loop.header, -exits.index(each))):
+            test = self.flow.blocks[label].terminator.operands[:1]
+            if not test or not self.flow.every_iteration(label, loop) or not self._counts(test[0], loop):
+                continue
+            iterations = self._iterations(test[0], loop)
+            if not found or (iterations is not None and (fewest is None or iterations < fewest)):
+                found, fewest = label, iterations
+        return found
+
     def _counts(self, test: str, loop: Loop) -> bool:
         each = self.flow.instruction(test)
         if each is None or each.opcode != "icmp":
@@ -141,13 +158,27 @@ class ScalarEvolution:
 
     def iterations(self, loop: Loop) -> int | None:
         """How often `loop` iterates, where constants say so."""
-        test = self.flow.instruction(self.exit_test(loop) or "")
+        test = self.exit_test(loop) or ""
+        found = self._iterations(test, loop)
+        each = self.flow.instruction(test)
+        if (
+            found is not None
+            or each is None
+            or each.opcode != "icmp"
+            or not each.operands[1].lstrip("-").isdigit()
+        ):
+            return found
+        return self._evaluated(test, loop)
+
+    def _iterations(self, name: str, loop: Loop) -> int | None:
+        """How often `loop` iterates until a test ends it, where constants say so."""
+        test = self.flow.instruction(name)
         if test is None or test.opcode != "icmp" or not test.operands[1].lstrip("-").isdigit():
             return None
         gain = self.increment(test.operands[0], loop)
         start = self._start(test.operands[0], loop)
         if gain is None or start is None or not gain.constant or gain.symbolic:
-            return self._evaluated(test.result or "", loop)
+            return None
         return max(0, (int(test.operands[1]) - start) // gain.constant) + 1
 
     def _evaluated(self, test: str, loop: Loop) -> int | None:

@@ -1,0 +1,108 @@
+"""Loops that may be endless, as far as GCC can see: no register counts their iterations ["possible infinite iteration case" in loop-doloop.cc of GCC 12]."""
+
+from __future__ import annotations
+
+from bfsim.kernel.ir_text import predicate
+from bfsim.kernel.loops import ControlFlow, Loop
+from bfsim.kernel.lowering.induction_variables import InductionVariables
+from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
+from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.rules import Rule
+
+
+class EndlessLoops:
+    """Tells which loops of one routine may be endless."""
+
+    def __init__(
+        self,
+        flow: ControlFlow,
+        evolution: ScalarEvolution,
+        induction_variables: InductionVariables,
+        profile: CompilerProfile,
+    ) -> None:
+        self.flow, self.evolution, self.induction_variables, self.profile = (
+            flow,
+            evolution,
+            induction_variables,
+            profile,
+        )
+
+    def may_be(self, loop: Loop) -> bool:
+        """With several exits, the pointer that walks is compared for equality with its end.
+
+        GCC counts such iterations only if the pointer is sure to meet the end: steps of one byte, or a fixed start
+        ["possible infinite iteration case" in loop-doloop.cc of GCC 12]. Nor does it count `i < n + 1`, which is `i <= n` and may always
+        hold.
+        """
+        if len(self.flow.exits(loop)) < 2:
+            return False
+        if self._is_inclusive(loop):
+            return True
+        if self.flow.is_split(loop):
+            return not self._steps_by_one(loop)
+        steps = {
+            abs(variable.increment.constant)
+            for variable in self.induction_variables.all
+            if variable.loop is loop
+        }
+        wide = bool(steps) and 1 not in steps
+        fixed = self.profile.applies(Rule.FIXED_STARTS) and self.evolution.starts_fixed(loop)
+        return wide and not fixed and not self._may_not_start(loop) and not self._is_wanted_behind(loop)
+
+    def _is_wanted_behind(self, loop: Loop) -> bool:
+        """Whether the counter is wanted behind the loop, and not as an index alone: then no pointer takes its place."""
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        waiting = [each for each in test.operands if not self.flow.is_invariant(each, loop)] if test else []
+        seen: set[str] = set()
+        while waiting:
+            name = waiting.pop()
+            seen.add(name)
+            for user in self.flow.users.get(name, []):
+                inside = any(user in self.flow.blocks[label].instructions for label in loop.blocks)
+                if user.opcode == "phi" and (user.result or "") not in seen:
+                    waiting.append(user.result or "")
+                elif not inside and user.opcode not in ("phi", "getelementptr"):
+                    return True
+        return False
+
+    def _may_not_start(self, loop: Loop) -> bool:
+        """Whether a counter that goes down to a constant is tested before the loop.
+
+        Then GCC knows no bound of the iterations that keeps a pointer of wider steps from wrapping, and no pointer takes the
+        counter's place [may_eliminate_iv in tree-ssa-loop-ivopts.cc].
+        """
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        if test is None or not test.operands[1].lstrip("-").isdigit():
+            return False
+        block = self.flow.blocks[self.flow.entering(loop)]
+        while len(set(block.successors)) == 1 and len(self.flow.predecessors[block.label]) == 1:
+            block = self.flow.blocks[self.flow.predecessors[block.label][0]]
+        guard = self.flow.instruction(block.terminator.operands[0]) if block.terminator.operands else None
+        return guard is not None and guard.opcode == "icmp" and guard.operands[1].lstrip("-").isdigit()
+
+    def _is_inclusive(self, loop: Loop) -> bool:
+        """Whether a loop runs up to `stop + 1`, which is `<= stop`, and `stop` may be the largest number there is."""
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        bound = self.flow.instruction(test.operands[1]) if test is not None else None
+        if bound is None or bound.opcode != "add" or bound.operands[1] != "1":
+            return False
+        return self.profile.applies(Rule.INCLUSIVE_LOOPS) and not self._is_exceeded(bound.operands[0], loop)
+
+    def _is_exceeded(self, value: str, loop: Loop) -> bool:
+        """Whether a test before `loop` has found something larger than a value [simplify_using_initial_values in loop-iv.cc]."""
+        above = self.flow.dominators[loop.header]
+        for block in (self.flow.blocks[label] for label in above - loop.blocks):
+            test = self.flow.instruction(block.terminator.operands[0]) if block.terminator.operands else None
+            if test is None or test.opcode != "icmp" or len(set(block.successors)) != 2:
+                continue
+            yes, no = ({each} <= above for each in block.successors)
+            relation = predicate(test)
+            smaller = {"slt": (0, yes), "sgt": (1, yes), "sge": (0, no), "sle": (1, no)}.get(relation)
+            if yes != no and smaller is not None and smaller[1] and test.operands[smaller[0]] == value:
+                return True
+        return False
+
+    def _steps_by_one(self, loop: Loop) -> bool:
+        test = self.flow.instruction(self.evolution.exit_test(loop) or "")
+        gain = self.evolution.increment(test.operands[0], loop) if test is not None else None
+        return gain is not None and abs(gain.constant) == 1 and not gain.symbolic
