@@ -28,6 +28,7 @@ from benchmarks.twins import (
     machines,
     maps,
     masks,
+    messages,
     mixture,
     motion,
     neighbours,
@@ -36,6 +37,9 @@ from benchmarks.twins import (
     patches,
     pictures,
     pixels,
+    planes,
+    plans,
+    profiles,
     protocols,
     regions,
     robots,
@@ -56,15 +60,16 @@ from benchmarks.twins import (
     transforms,
     voices,
     warps,
+    waves,
     words,
 )
 
 SUBJECTS = (
     angles, bits, borders, cameras, codes, contours, controllers, devices, digits, drawing, duties,
     exchanges, fills, filters, fixed_point, gains, grids, heaps, integers, labels, lines, lookups,
-    machines, maps, masks, mixture, motion, neighbours, ordering, packing, patches, pictures,
-    pixels, protocols, regions, robots, rows, samples, searches, shapes, signals, sorted_rows,
-    sorting, stereo, streams, sums, tables, tallies, text, trackers, transforms, voices, warps,
-    words,
+    machines, maps, masks, messages, mixture, motion, neighbours, ordering, packing, patches,
+    pictures, pixels, planes, plans, profiles, protocols, regions, robots, rows, samples, searches,
+    shapes, signals, sorted_rows, sorting, stereo, streams, sums, tables, tallies, text, trackers,
+    transforms, voices, warps, waves, words,
 )  # fmt: skip
 CASES = tuple(case for subject in SUBJECTS for case in subject.CASES)
