@@ -25,9 +25,12 @@ def test_every_twin_leaves_what_its_kernel_leaves() -> None:
     assert found == {name: each.checksum for name, each in measured().items()}
 
 
+@pytest.mark.xfail(
+    strict=True, reason="96.993 %, since kernels without a twin cost more: one more twin is wanted"
+)
 def test_the_twins_are_nearly_all_of_a_frame() -> None:
-    """97.0 % of the issue cycles of both cores, as the page about accuracy says."""
-    assert round(covered(compare("O2"), "O2"), 1) >= 97.0
+    """At least 97 % of the issue cycles of both cores."""
+    assert covered(compare("O2"), "O2") >= 97
 
 
 @pytest.mark.parametrize(
