@@ -66,9 +66,10 @@ def test_arrays_lie_in_the_order_of_the_arguments(order: tuple[int, ...]) -> Non
     space.add(ARRAYS, 4096)
     octets = np.zeros(3 * 256, np.uint8)
     arrays = [octets[256 * each : 256 * each + 100] for each in order]
-    _, addresses = placed(arrays, space)
+    parts, addresses = placed(arrays, [True, False, False], space)
     first = addresses[0]
     assert addresses == [first, first + 112, first + 224]
+    assert [each.is_written for each in parts] == [True, False, False]
 
 
 def test_the_counters_add_up_to_the_cycles_of_a_call() -> None:

@@ -248,7 +248,7 @@ class BoundCall:
         least, largest = ([each[side] for each in words] for side in (0, 1))
         values = [*(head[each] for each in range(HEAD)), *least, *least, *largest]
         for each in parts:
-            values += each.address, each.copy, each.nbytes, each.nbytes * each.is_writeable
+            values += each.address, each.copy, each.nbytes, each.nbytes * each.is_written
         self._block = (ctypes.c_int64 * len(values))(*values)
         self._at = ctypes.addressof(self._block)
         self.arguments: Any = (ctypes.c_int64 * len(words)).from_buffer(self._block, 8 * HEAD)

@@ -132,17 +132,21 @@ class Subroutine:
 class Placed:
     """Memory at an address of the host that has a copy at another one, in the Blackfin's, while a function runs.
 
-    What is not writeable is not copied back.
+    What is not written is not copied back.
     """
 
     address: int
     copy: int
     nbytes: int
-    is_writeable: bool
+    is_written: bool
 
 
-def placed(arrays: Sequence[NDArray[Any]], space: AddressSpace) -> tuple[list[Placed], list[int]]:
+def placed(
+    arrays: Sequence[NDArray[Any]], written: Sequence[bool], space: AddressSpace
+) -> tuple[list[Placed], list[int]]:
     """Give arrays places in the Blackfin's memory; return those and the address of each array. What overlaps here does so there.
+
+    `written`: whether an array may be stored into.
 
     They lie there in the order of the arguments, wherever they are here: code may compare addresses, and its cycles must not depend
     on the host's. Raises KernelError if there is no room for them.
@@ -161,9 +165,9 @@ def placed(arrays: Sequence[NDArray[Any]], space: AddressSpace) -> tuple[list[Pl
             nbytes = high - low
             if address + nbytes > ARRAYS + ARRAYS_BYTES:
                 raise KernelError(f"the arrays of a call must fit into {ARRAYS_BYTES:,} bytes, but do not")
-            within = (each for each, (begin, _) in zip(arrays, ranges, strict=True) if low <= begin < high)
-            is_writeable = all(each.flags.writeable for each in within)
-            parts.append(Placed(low, space.origin + address, nbytes, is_writeable))
+            stores = zip(written, ranges, strict=True)
+            is_written = any(each and low <= begin < high for each, (begin, _) in stores)
+            parts.append(Placed(low, space.origin + address, nbytes, is_written))
             address += nbytes
         addresses.append(place_of[number] + first - low)
     return parts, addresses

@@ -50,7 +50,9 @@ class ObjectCall:
         function = code.function
         self._check, self._access_trace = check, access_trace
         self._kept = arrays  # their places have their addresses only
-        parts, addresses = placed(arrays, code.subroutine.processor.space)
+        named = zip(function.array_names, arrays, strict=True)
+        written = [array.flags.writeable and code.may_write(name) for name, array in named]
+        parts, addresses = placed(arrays, written, code.subroutine.processor.space)
         kinds = [each.type for each in function.parameters]
         self._count = len(kinds)
         self._integers = [position for position, each in enumerate(kinds) if isinstance(each, IntType)]

@@ -43,6 +43,10 @@ class CompiledObject:
         """What is counted, in the order of the totals."""
         return self.program.counters
 
+    def may_write(self, array: str) -> bool:
+        """Whether it may store into an array: of what is not made of Python, nothing is known of that."""
+        return self.places.folder is not None or array in self.function.written
+
     def new_totals(self) -> NDArray[np.int64]:
         """Return zeros for the events of each counter."""
         return np.zeros(max(1, len(self.counters)), np.int64)
