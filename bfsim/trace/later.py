@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
-from typing import Any, Generic, TypeVar, overload
+from typing import Any, TypeVar, overload
 
 Record_co = TypeVar("Record_co", covariant=True)
 
 
-class Later(Sequence[Record_co], Generic[Record_co]):
+class Later(Sequence[Record_co]):
     """A tuple of what `make` yields, which is called once, at first use."""
 
     def __init__(self, make: Callable[[], Iterable[Record_co]]) -> None:

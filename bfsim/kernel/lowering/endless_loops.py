@@ -1,4 +1,4 @@
-"""Loops that may be endless, as far as GCC can see: no register counts their iterations ["possible infinite iteration case" in loop-doloop.cc of GCC 12]."""
+"""Loops that may be endless, as far as GCC can see: no register counts their iterations."""
 
 from __future__ import annotations
 
@@ -20,12 +20,10 @@ class EndlessLoops:
         induction_variables: InductionVariables,
         profile: CompilerProfile,
     ) -> None:
-        self.flow, self.evolution, self.induction_variables, self.profile = (
-            flow,
-            evolution,
-            induction_variables,
-            profile,
-        )
+        self.flow = flow
+        self.evolution = evolution
+        self.induction_variables = induction_variables
+        self.profile = profile
 
     def may_be(self, loop: Loop) -> bool:
         """With several exits, the pointer that walks is compared for equality with its end.
