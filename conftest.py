@@ -19,16 +19,23 @@ from bfsim.__main__ import COLLECT_AFTER
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
     """Return no workers (of `-n auto`, in pyproject.toml) for tests that are named; else leave it to xdist."""
-    return None if config.args_source is pytest.Config.ArgsSource.TESTPATHS else 0
+    return None if is_whole(config) else 0
 
 
 os.environ.setdefault("NUMPY_MADVISE_HUGEPAGE", "0")
 """Thousands of boards are made that hardly touch their memories: with huge pages each touch clears 2 MB. Workers and commands inherit it."""
 
 
-def pytest_configure() -> None:
-    """Look for garbage as seldom as the commands do: what is imported lives as long as the process."""
+def pytest_configure(config: pytest.Config) -> None:
+    """Leave what is exhaustive out of plain `pytest`; look for garbage as seldom as the commands do, for what is imported stays."""
+    if is_whole(config) and not config.option.markexpr:
+        config.option.markexpr = "not exhaustive"
     gc.set_threshold(COLLECT_AFTER)
+
+
+def is_whole(config: pytest.Config) -> bool:
+    """Tell whether no tests are named."""
+    return config.args_source is pytest.Config.ArgsSource.TESTPATHS
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -39,14 +46,14 @@ def pytest_cmdline_main(config: pytest.Config) -> Iterator[None]:
     """
     if hasattr(config, "workerinput"):
         return (yield)
-    is_whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.collectonly
+    plays_whole = is_whole(config) and not config.option.collectonly
     with tempfile.TemporaryDirectory(prefix="bfsim-tests-", ignore_cleanup_errors=True) as folder:
         if "BFSIM_CACHE_DIR" not in os.environ:
             cache = os.environ["BFSIM_CACHE_DIR"] = f"{folder}/kernels"
             with suppress(OSError):  # of somebody who has never run bfsim
-                if is_whole:
+                if plays_whole:
                     shutil.copytree(platformdirs.user_cache_dir("bfsim"), cache)
-        if is_whole:
+        if plays_whole:
             _compile_first(folder)
         return (yield)
 

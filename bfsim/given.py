@@ -131,7 +131,8 @@ def _found(module: str, roots: Sequence[Root]) -> ModuleSpec | None:
     return spec
 
 
-def _imports(text: str | bytes, package: str) -> list[str]:
+@functools.lru_cache(maxsize=1024)
+def _imports(text: str | bytes, package: str) -> tuple[str, ...]:
     """Return all that may be a module in the import statements of a source."""
     names = []
     for node in ast.walk(ast.parse(text)):
@@ -141,4 +142,4 @@ def _imports(text: str | bytes, package: str) -> list[str]:
             base = "." * node.level + (node.module or "")
             base = importlib.util.resolve_name(base, package) if node.level else base
             names += [base, *(f"{base}.{each.name}" for each in node.names)]
-    return names
+    return tuple(names)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.support.ui import WebDriverWait
 
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
-needs_chromium = pytest.mark.skipif(
+_HAS_CHROMIUM = pytest.mark.skipif(
     not (CHROMIUM and DRIVER), reason="Chromium and its driver are not installed"
 )
 
@@ -24,6 +24,12 @@ _FLAGS = (
 """The proxy is where nobody listens: what a page wanted to load would be an error in the console."""
 
 PATIENCE_S = 60
+
+
+def needs_chromium(test: Callable[..., None]) -> Callable[..., None]:
+    """Skip a test where there is none. To start one takes seconds: such tests are exhaustive."""
+    marked: Callable[..., None] = pytest.mark.exhaustive(_HAS_CHROMIUM(test))
+    return marked
 
 
 class Browser:

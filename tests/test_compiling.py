@@ -69,6 +69,7 @@ def test_a_folder_that_is_named_comes_before_the_path(
         assert found and found.identity.version == version
 
 
+@pytest.mark.exhaustive
 def test_what_comes_with_bfsim_is_the_code_of_what_it_is_now() -> None:
     """Kernels of the built-in firmware, and examples: `python -m benchmarks.toolchain.keep` compiles what was changed."""
     in_c = programs()

@@ -141,6 +141,7 @@ def test_both_boards_and_both_feeds_run(report: dict[str, Any]) -> None:
     assert sorted(done + recorded["missed"]) == list(range(8))
 
 
+@pytest.mark.exhaustive
 def test_sanitize_changes_no_cycle() -> None:
     """`--sanitize` checks and reports the same; one frame, since it takes ten times as long."""
     plain, sanitized = (
@@ -238,7 +239,9 @@ def cpu_ticks(pid: int) -> int:
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="a system without /proc")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.exhaustive)]
+)
 def test_a_signal_ends_a_kernel_that_does_not_end(tmp_path: Path, number: signal.Signals) -> None:
     """Python hears nothing while the machine code of a kernel runs; the user needs no `kill`."""
     (tmp_path / "endless.py").write_text(ENDLESS)

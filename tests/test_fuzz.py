@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from benchmarks.fuzz import fuzz
 from benchmarks.fuzzing.inputs import KINDS
 
@@ -9,6 +11,7 @@ MOST = 1000
 MOST_S = 60
 
 
+@pytest.mark.exhaustive
 def test_every_input_is_taken_or_refused_in_a_few_words() -> None:
     """No traceback, no long message, no second spent without an end."""
     tally = fuzz(12, seconds=MOST_S, most=MOST)

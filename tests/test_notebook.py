@@ -20,6 +20,7 @@ nbformat.write(notebook, sys.argv[2])
 """
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("notebook", sorted((ROOT / "examples").glob("*.ipynb")), ids=lambda path: path.stem)
 def test_a_notebook_runs_from_top_to_bottom(notebook: Path, tmp_path: Path) -> None:
     """Every cell, in an empty folder; a run is shown as its screen, in HTML and in one line."""

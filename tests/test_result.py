@@ -79,6 +79,7 @@ def test_reports_stand_beside_a_target() -> None:
         run.report(target="soon")
 
 
+@pytest.mark.exhaustive
 def test_the_page_of_a_run_is_that_of_the_command(tmp_path: Path) -> None:
     """To the last character, of firmware by name and as an object."""
     command = "run", "--frames", "1", "--target", "15Hz", "--html", str(tmp_path / "command.html")

@@ -72,7 +72,9 @@ def test_a_recorded_run_is_played_as_it_was(work: Path, plain: Run) -> None:
     assert differing(plain, simulate(frames=FRAMES, work=work)) <= HOSTS_OWN
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(each, marks=pytest.mark.exhaustive) for each in range(1, 4))]
+)
 def test_it_is_the_run_of_other_hardware(work: Path, plain: Run, seed: int) -> None:
     """Whatever the clocks, the latencies, and the settings of DMA and bus."""
     settings = random_hardware(seed)
@@ -92,6 +94,7 @@ def test_it_is_the_run_of_another_placement(folder: Path, plain: Run) -> None:
         simulate(frames=1, ldf=Path("sdram"), work=path)
 
 
+@pytest.mark.exhaustive
 def test_caches_are_played_with_their_ldf(folder: Path) -> None:
     """Which lines a cache fetches depends on addresses: another board is the same run, another LDF is refused."""
     path, settings = folder / "cache.work", {"sdram.nRP": 5}
@@ -138,20 +141,28 @@ def test_handlers_of_interrupts_are_said(folder: Path) -> None:
         simulate(firmware=firmware, frames=1, work=path)
 
 
+def small(folder: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Path]:
+    """Go where a firmware of one kernel is, `fw_mixed`; return a recording for it, and where to record its work."""
+    (folder / "fw_mixed.py").write_text(FIRMWARE)
+    monkeypatch.chdir(folder)
+    return record(folder / "drive.mcap", FRAMES), folder / "thesis.work"
+
+
 @pytest.mark.parametrize(
     ("what", "said"),
     [
         ({"frames": 1}, r"has 2 frames and must be played for as many, not for 1"),
-        (
-            {"frames": FRAMES, "profile": "gcc-O2"},
-            r"must be recorded with the same compiler, gcc-O2, not with vdsp-O2",
-        ),
+        ({"profile": "gcc-O2"}, r"must be recorded with the same compiler, gcc-O2, not with vdsp-O2"),
     ],
 )
-def test_another_run_is_refused(work: Path, what: dict[str, Any], said: str) -> None:
+def test_another_run_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, what: dict[str, Any], said: str
+) -> None:
     """Frames and compiler must be those of the recorded run."""
+    recording, path = small(tmp_path, monkeypatch)
+    simulate(recording, firmware="fw_mixed:eyes", record_work=path)
     with pytest.raises(WorkError, match=said):
-        simulate(work=work, **what)
+        simulate(recording, firmware="fw_mixed:eyes", work=path, **what)
 
 
 def test_what_needs_more_than_cycles_is_refused(work: Path, folder: Path) -> None:
@@ -231,10 +242,7 @@ def test_what_leaves_l1_is_refused_even_beside_what_was_outside(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A kernel with one array in L2 has accesses on record, but not those to its rows in L1, which `l2` puts outside."""
-    (tmp_path / "fw_mixed.py").write_text(FIRMWARE)
-    monkeypatch.chdir(tmp_path)
-    recording = record(tmp_path / "drive.mcap", 2)
-    path = tmp_path / "thesis.work"
+    recording, path = small(tmp_path, monkeypatch)
     simulate(recording, firmware="fw_mixed:eyes", record_work=path)
     with pytest.raises(WorkError, match=r"ring \(A\), out \(A\) must be in L1"):
         simulate(recording, firmware="fw_mixed:eyes", ldf=Path("l2"), work=path)

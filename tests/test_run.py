@@ -107,6 +107,7 @@ def start(folder: Path, recording: Path, **environment: str) -> subprocess.Popen
     )
 
 
+@pytest.mark.exhaustive
 def test_the_same_run_has_the_same_digests_everywhere(home: Path, tmp_path: Path) -> None:
     """In other processes, under other hash seeds, from another folder, with an empty cache and then with its own; none imports numba."""
     recording = record(home / "drive.mcap", 4)
@@ -226,6 +227,7 @@ def peak_bytes(recording: Path, frames: int) -> int:
     return peak
 
 
+@pytest.mark.exhaustive
 def test_memory_does_not_grow_with_the_pictures(home: Path) -> None:
     """Ten times as many frames need no more memory than their records: a few kB each, where a pair of pictures has 20."""
     recording = record(home / "drive.mcap", 200, width=640, height=8)

@@ -106,6 +106,7 @@ def test_distances_to_segments(example: dict[str, ModuleType]) -> None:
     assert example["particle_filter"].distances(places, segment)[0, :, 0].tolist() == [3.0, 5.0]
 
 
+@pytest.mark.exhaustive
 def test_a_robot_that_begins_anywhere_finds_itself(example: dict[str, ModuleType]) -> None:
     """On the drive of the example, by the lines around it and the goal's line; and again the same way."""
     field, drive = example["field"].soccer_field(), example["drive"].DRIVE

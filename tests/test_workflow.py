@@ -85,6 +85,7 @@ def test_the_workflow_is_one_to_github(tmp_path: Path, word: str, instead: str, 
     assert (done.returncode == 0) == (not word)
 
 
+@pytest.mark.exhaustive
 def test_the_workflow_passes_and_fails_as_it_should(tmp_path: Path, runner: Mapping[str, str]) -> None:
     """Green with the firmware that was measured; red with a slower one, and the summary says why."""
     repository = tmp_path / "repository"

@@ -81,6 +81,7 @@ def test_a_symbol_that_is_not_there_is_told() -> None:
         image.address_of("_nowhere")
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", FILES)
 def test_cut_files_are_refused_or_read(name: str) -> None:
     """Wherever a file ends: what is missing is told, in one paragraph."""
@@ -91,6 +92,7 @@ def test_cut_files_are_refused_or_read(name: str) -> None:
         read_object(octets[:3], name)
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", FILES)
 def test_hostile_files_are_refused_or_read(name: str) -> None:
     """Bytes changed at random, in headers and tables above all: a refusal, or an image of bounded size."""

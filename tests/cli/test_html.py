@@ -50,6 +50,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, o
     return page, json.loads(report.read_text())
 
 
+@pytest.mark.exhaustive
 def test_the_cycles_are_the_same_with_a_page(written: tuple[Path, dict[str, object]]) -> None:
     """Looking costs nothing on the simulated machine."""
     plain = json.loads(bfsim("run", "--json", "-", frames=3).stdout)
@@ -97,6 +98,7 @@ def test_a_target_stands_on_the_screen(full: list[str]) -> None:
     )
 
 
+@pytest.mark.exhaustive
 def test_firmware_without_a_view_has_its_pictures(tmp_path: Path) -> None:
     """The plain ones, and where in them its time went."""
     firmware = tmp_path / "blind.py"

@@ -81,6 +81,7 @@ def test_a_run_that_fails_leaves_nothing(tmp_path: Path) -> None:
     assert not names_in(tmp_path)
 
 
+@pytest.mark.exhaustive
 def test_ctrl_c_leaves_a_whole_file_of_what_was_done(tmp_path: Path) -> None:
     """Interrupted in the middle of a run: the trace is readable to its end, and has the frames that were reported."""
     command = [sys.executable, "-m", "bfsim", "run", *options(tmp_path), "--json", str(tmp_path / "run.json")]

@@ -63,7 +63,12 @@ def check(board: Board, outcome: BoardRecord, left: Bytes, right: Bytes, *clear:
     [(0, 0, 64, 48), (2, 1, 60, 46), (10, 20, 16, 16), (46, 30, 18, 18), (0, 5, 64, 20), (6, 0, 34, 48)],
 )
 @pytest.mark.parametrize(
-    ("firmware", "ldf"), [(tinyphoon, "thesis.ldf"), (tinyphoon, "cache.ldf"), (fast, "cache.ldf")]
+    ("firmware", "ldf"),
+    [
+        (tinyphoon, "thesis.ldf"),
+        pytest.param(tinyphoon, "cache.ldf", marks=pytest.mark.exhaustive),
+        pytest.param(fast, "cache.ldf", marks=pytest.mark.exhaustive),
+    ],
 )
 def test_an_area_is_seen_like_the_cropped_picture(
     firmware: Firmware, area: tuple[int, int, int, int], ldf: str
@@ -86,7 +91,9 @@ def test_areas_follow_each_other(count: int) -> None:
 
 
 @pytest.mark.parametrize("area", [(10, 20, 40, 16), (0, 0, 16, 48), (2, 31, 62, 17), (48, 1, 16, 40)])
-@pytest.mark.parametrize("firmware", [tinyphoon, fast], ids=["plain", "fast"])
+@pytest.mark.parametrize(
+    "firmware", [tinyphoon, pytest.param(fast, marks=pytest.mark.exhaustive)], ids=["plain", "fast"]
+)
 def test_an_area_of_a_rectified_picture(firmware: Firmware, area: tuple[int, int, int, int]) -> None:
     """The same as the area of the picture that is rectified whole."""
     frames = random_frames(64, 48, count=2)

@@ -13,6 +13,7 @@ from bfsim.run import simulate
 FRAMES = 2
 
 
+@pytest.mark.exhaustive
 def test_checks_change_no_cycle_of_the_firmware(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two frames of the built-in recording have the same records with and without checks: cycles, results and messages."""
     checked = simulate(frames=FRAMES)

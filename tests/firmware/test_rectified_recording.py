@@ -56,6 +56,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.exhaustive
 def test_rows_agree_in_what_the_cores_see(recording: Path) -> None:
     """Corners that were pixels apart in height lie in one row of both rectified pictures, to the rounding of the tables."""
     before, after = [], []

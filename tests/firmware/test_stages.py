@@ -35,7 +35,9 @@ from tinyphoon.stages.rosenfeld_hysteresis import rosenfeld_edges
 from tinyphoon.stores.edges import EDGE_CAPACITY
 from tinyphoon.strategy.modes import INDOOR_FIELD
 
-BOTH = pytest.mark.parametrize("firmware", [tinyphoon, fast], ids=["plain", "fast"])
+BOTH = pytest.mark.parametrize(
+    "firmware", [tinyphoon, pytest.param(fast, marks=pytest.mark.exhaustive)], ids=["plain", "fast"]
+)
 """The fast steps leave what the plain ones leave."""
 
 

@@ -246,6 +246,7 @@ def follow_in(folder: Path, *, limit_bytes: int = resource.RLIM_INFINITY) -> Non
     assert (done.stdout, done.stderr) == ("True\n", "")
 
 
+@pytest.mark.exhaustive
 def test_a_damaged_or_full_cache_of_the_follower_is_no_obstacle(folder: Path) -> None:
     """It is compiled again, and kept if there is room."""
     follow_in(folder, limit_bytes=64)

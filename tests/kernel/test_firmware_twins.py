@@ -19,12 +19,14 @@ from tinyphoon.stages.hysteresis import group_edges_row
 from tinyphoon.stages.line_scan import segments_row
 
 
+@pytest.mark.exhaustive
 def test_every_twin_leaves_what_its_kernel_leaves() -> None:
     """On all recorded calls, arrays and results: the Blackfin code in every variant, and the compiled Python."""
     found = {each.name: predict(each, recorded()[each], GCC_O2).checksum for each in TWINS}
     assert found == {name: each.checksum for name, each in measured().items()}
 
 
+@pytest.mark.exhaustive
 @pytest.mark.xfail(
     strict=True, reason="96.993 %, since kernels without a twin cost more: one more twin is wanted"
 )
@@ -33,6 +35,7 @@ def test_the_twins_are_nearly_all_of_a_frame() -> None:
     assert covered(compare("O2"), "O2") >= 97
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("level", "variant", "signed", "by_share"),
     [("O2", "inlined", 3, 5), ("O2", "calls", 2, 5), ("O2", "one_file", 2, 7), ("O0", "O0", 1, 1)],

@@ -22,6 +22,7 @@ MEASURED = measured()
 each_case = pytest.mark.parametrize("case", CASES, ids=[each.name for each in CASES])
 
 
+@pytest.mark.exhaustive
 @each_case
 def test_a_twin_gives_the_checksum_of_the_blackfin_code(case: Case) -> None:
     """Under either profile the Python kernel's output is the C kernel's output on the Blackfin, bit for bit."""
@@ -48,6 +49,7 @@ def _kind(kernel: Measured) -> Role | str:
     return first.commit if first and first.commit in LATE else kernel.role
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("of", "level", "largest_mean", "largest"),
     [

@@ -26,8 +26,20 @@ from bfsim.machine.detailed.sdram import Page, SdramBanks
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import END_OF_TIME, Simulation
 
-each_board = pytest.mark.parametrize("board", BOARDS)
-with_l2 = pytest.mark.parametrize("board", [name for name, each in BOARDS.items() if each.chip.l2])
+IN_EVERY_RUN = ("cm-bf561", "bf561-ezkit", "cm-bf533")
+"""A board of each kind: the others are the first one with other clocks."""
+
+
+def on_boards(names: Iterable[str]) -> pytest.MarkDecorator:
+    """Play a test on each of these."""
+    marked = [
+        pytest.param(each, marks=() if each in IN_EVERY_RUN else pytest.mark.exhaustive) for each in names
+    ]
+    return pytest.mark.parametrize("board", marked)
+
+
+each_board = on_boards(BOARDS)
+with_l2 = on_boards(name for name, each in BOARDS.items() if each.chip.l2)
 MODES = (WovenBus, DetailedBus)
 NBYTES = 1 << 13  # of noise at the beginning of each memory, and of the world outside
 WORD = 4

@@ -32,7 +32,12 @@ def board_of(configuration: Configuration) -> Board:
 
 
 @pytest.fixture(
-    scope="module", params=product(LDFS, Feed, Fidelity), ids=lambda each: "-".join(map(str, each))
+    scope="module",
+    params=[
+        pytest.param(each, marks=pytest.mark.exhaustive if each[2] is Fidelity.DETAILED else ())
+        for each in product(LDFS, Feed, Fidelity)
+    ],
+    ids=lambda each: "-".join(map(str, each)),
 )
 def run(request: Any) -> Told:
     """Its records and its timeline."""

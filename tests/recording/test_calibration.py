@@ -204,6 +204,7 @@ def test_pairs_that_fit_no_other_are_left_out(
     assert report.baseline_mm == pytest.approx(found.report.baseline_mm, rel=0.005)
 
 
+@pytest.mark.exhaustive
 def test_a_grossly_wrong_pair_does_not_end_a_fisheye_calibration() -> None:
     """OpenCV fits no fisheyes at all then: such pairs are left out, those that are a little off as with ordinary lenses."""
     pytest.importorskip("cv2", reason="calibration needs OpenCV")
@@ -285,6 +286,7 @@ def test_a_report_in_another_form_is_refused(text: str) -> None:
         CalibrationReport.from_json(text)
 
 
+@pytest.mark.exhaustive
 def test_larger_chessboards_are_scaled_like_the_recording(chessboards: Path, tmp_path: Path) -> None:
     """A recording may have been imported smaller than its cameras' pictures, and cut to another shape."""
     pytest.importorskip("cv2")

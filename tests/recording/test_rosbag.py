@@ -456,6 +456,7 @@ def test_a_cut_bag_is_refused(kind: str, tmp_path: Path) -> None:
     assert not (tmp_path / "out.mcap").exists()
 
 
+@pytest.mark.exhaustive
 @each_kind
 def test_a_damaged_bag_is_refused_or_read(kind: str, tmp_path: Path) -> None:
     """Some bytes are others: no traceback, and no picture of another size."""
@@ -527,6 +528,7 @@ def test_without_rosbags_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.
         imported(path)
 
 
+@pytest.mark.exhaustive
 def test_memory_does_not_grow_with_the_bag(tmp_path: Path) -> None:
     """Four times as many pictures, the same peak."""
     ros = Ros("ros1")

@@ -185,6 +185,7 @@ def restless(record: FrameRecord) -> list[Span]:
     return [*spans, Span(SpanKind.FRAME, "core A", f"frame {record.index}", begin, end)]
 
 
+@pytest.mark.exhaustive
 def test_a_page_of_a_hundred_full_frames_has_at_most_8_mb(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every picture is as large as it may be, and no slice of time is like the one before."""
     monkeypatch.setattr("bfsim.report.html.pictures.overlay_of", lambda *_: noise(1, 1))

@@ -129,6 +129,7 @@ def test_a_frame_is_drawn_when_the_next_one_is_told_by_all_cores() -> None:
         assert gantts.tracks == ("core A stages", "core B stages")
 
 
+@pytest.mark.exhaustive
 def test_the_charts_of_a_run_hold_its_frames_and_memory_stays_flat() -> None:
     """Of three frames never more than two are in memory; a core's work fills each frame, and a stage has its part of it."""
     most, told = 0, 0

@@ -100,6 +100,7 @@ def test_many_values_are_written_as_they_are() -> None:
     assert [cycle_of(each.begin_ns, Fraction(HZ)) for each in slices] == [each.begin_cclk for each in calls]
 
 
+@pytest.mark.exhaustive
 def test_memory_stays_flat() -> None:
     """Ten times the spans take no more memory."""
     peaks = []
@@ -116,7 +117,7 @@ def test_memory_stays_flat() -> None:
     assert peaks[1] < 1.2 * peaks[0]
 
 
-@pytest.mark.parametrize("feed", [Feed.DEMAND, Feed.RECORDED])
+@pytest.mark.parametrize("feed", [Feed.DEMAND, pytest.param(Feed.RECORDED, marks=pytest.mark.exhaustive)])
 def test_a_trace_of_the_built_in_firmware_adds_up_to_its_budget(feed: Feed) -> None:
     """Slices of each core, read back from the file alone: their cycles are the rows of the budget, and each reason its stalls."""
     stream = io.BytesIO()

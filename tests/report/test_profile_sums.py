@@ -17,8 +17,6 @@ from tests.machine.test_timeline import LDFS, STEPS, Step, main_of
 from tests.report.profile_sums import assert_profile_adds_up
 from tests.report.records import IDENTITY, run_of
 
-SHIPPED = "thesis", "l2", "sdram", "cache"
-
 
 def run_from(outcome: BoardRecord) -> RunRecord:
     """The records of a board's run; the second stage is a part of the first."""
@@ -44,7 +42,10 @@ def test_rows_of_chance_firmware_add_up(
     assert_profile_adds_up(run_from(play(*mains, frames=frames, ldf=LDFS[ldf])))
 
 
-@pytest.mark.parametrize("ldf", SHIPPED)
+@pytest.mark.parametrize(
+    "ldf",
+    ["thesis", *(pytest.param(each, marks=pytest.mark.exhaustive) for each in ("l2", "sdram", "cache"))],
+)
 def test_rows_of_the_built_in_firmware_add_up(ldf: str) -> None:
     """Two frames of the built-in recording, with the start-up told apart."""
     assert_profile_adds_up(simulate(ldf=Path(ldf), frames=2))

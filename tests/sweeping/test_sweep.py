@@ -115,6 +115,7 @@ def test_rows_say_what_a_point_is(tmp_path: Path) -> None:
     assert [each and each > 0 for each in columns["frame_rate Hz"]] == [True, None, True, None]
 
 
+@pytest.mark.exhaustive
 def test_a_sweep_that_is_killed_loses_nothing(file: Path) -> None:
     """At any moment: what was kept is never run again, and in the end it is what an undisturbed one finds."""
     file.write_text(FILE.replace("[2, 4]", "[2, 3, 4, 5, 6, 7]"))
