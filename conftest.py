@@ -40,35 +40,36 @@ def is_whole(config: pytest.Config) -> bool:
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_cmdline_main(config: pytest.Config) -> Iterator[None]:
-    """Keep compiled kernels where BFSIM_CACHE_DIR says; without it in a folder of this run, which its workers share.
+    """Keep compiled kernels where BFSIM_CACHE_DIR says; without it in pytest's own cache, from run to run, which workers share.
 
     That starts with what the user has. Before all of the tests commands add what workers would compile at the same time.
     """
     if hasattr(config, "workerinput"):
         return (yield)
     plays_whole = is_whole(config) and not config.option.collectonly
-    with tempfile.TemporaryDirectory(prefix="bfsim-tests-", ignore_cleanup_errors=True) as folder:
-        if "BFSIM_CACHE_DIR" not in os.environ:
-            cache = os.environ["BFSIM_CACHE_DIR"] = f"{folder}/kernels"
+    if "BFSIM_CACHE_DIR" not in os.environ:
+        cache = config.rootpath / config.getini("cache_dir") / "d" / "kernels"
+        os.environ["BFSIM_CACHE_DIR"] = str(cache)
+        if plays_whole and not cache.exists():
             with suppress(OSError):  # of somebody who has never run bfsim
-                if plays_whole:
-                    shutil.copytree(platformdirs.user_cache_dir("bfsim"), cache)
-        if plays_whole:
-            _compile_first(folder)
-        return (yield)
+                shutil.copytree(platformdirs.user_cache_dir("bfsim"), cache)
+    if plays_whole:
+        _compile_first()
+    return (yield)
 
 
 OF_MANY_TESTS = ((), ("--ldf", "l2"), ("--profile", "gcc"))
 """Runs of the built-in firmware whose kernels many tests need."""
 
 
-def _compile_first(folder: str) -> None:
+def _compile_first() -> None:
     """Let commands compile them, side by side. If one fails, the tests say why."""
     command = [sys.executable, "-m", "bfsim", "run", "--frames", "1"]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    started = [
-        subprocess.Popen([*command, *options], cwd=folder, **quiet)  # noqa: S603  # this Python, this module
-        for options in OF_MANY_TESTS
-    ]
-    for each in started:
-        each.wait()
+    with tempfile.TemporaryDirectory(prefix="bfsim-tests-") as folder:
+        started = [
+            subprocess.Popen([*command, *options], cwd=folder, **quiet)  # noqa: S603  # this Python, this module
+            for options in OF_MANY_TESTS
+        ]
+        for each in started:
+            each.wait()

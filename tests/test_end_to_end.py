@@ -24,6 +24,7 @@ from bfsim.cli.main import main
 from bfsim.recording import RecordingWriter
 from bfsim.run import BUILT_IN_RECORDING
 from tests.test_run import FIRMWARE, record
+from tests.tiers import exhaustive
 
 
 def bfsim(*arguments: object, cwd: Path | None = None, **environment: str) -> Result:
@@ -239,9 +240,7 @@ def cpu_ticks(pid: int) -> int:
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="a system without /proc")
-@pytest.mark.parametrize(
-    "number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.exhaustive)]
-)
+@pytest.mark.parametrize("number", [signal.SIGINT, *exhaustive(signal.SIGTERM)])
 def test_a_signal_ends_a_kernel_that_does_not_end(tmp_path: Path, number: signal.Signals) -> None:
     """Python hears nothing while the machine code of a kernel runs; the user needs no `kill`."""
     (tmp_path / "endless.py").write_text(ENDLESS)
@@ -403,6 +402,7 @@ def test_the_strategy_unit_orders_modes_and_models(tmp_path: Path) -> None:
     assert all(abs(each / spent[0] - share) < 0.03 for each in spent[2:])
 
 
+@pytest.mark.exhaustive
 def test_small_pictures_run_three_times_as_fast(tmp_path: Path) -> None:
     """160x120 against 320x240 (T §6.6); the change takes effect in the pictures that the cameras begin after it."""
     script = tmp_path / "small.toml"

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from bfsim.endings import FAULT
+from tests.tiers import exhaustive
 
 # a run that is in the midst of a drawing when the signal comes, however late that is
 SLOW = """
@@ -88,8 +89,7 @@ def test_a_fault_of_bfsim_is_no_broken_limit() -> None:
     ("number", "code"),
     [
         (signal.SIGTERM, 143),
-        pytest.param(signal.SIGHUP, 129, marks=pytest.mark.exhaustive),
-        pytest.param(signal.SIGINT, 130, marks=pytest.mark.exhaustive),
+        *exhaustive((signal.SIGHUP, 129), (signal.SIGINT, 130)),
     ],
 )
 def test_a_signal_leaves_nothing_behind(tmp_path: Path, number: signal.Signals, code: int) -> None:
@@ -119,10 +119,15 @@ def test_a_signal_leaves_nothing_behind(tmp_path: Path, number: signal.Signals, 
     "arguments",
     [
         ("ldf", "/dev/zero"),
-        ("run", "--ldf", "/dev/zero"),
-        ("check", "--baseline", "/dev/zero"),
-        ("sweep", "/dev/zero"),
-        ("diff", "/dev/zero", "/dev/zero"),
+        *(
+            pytest.param(each, marks=pytest.mark.exhaustive)
+            for each in (
+                ("run", "--ldf", "/dev/zero"),
+                ("check", "--baseline", "/dev/zero"),
+                ("sweep", "/dev/zero"),
+                ("diff", "/dev/zero", "/dev/zero"),
+            )
+        ),
     ],
 )
 def test_a_device_without_an_end_is_no_file_to_read(arguments: tuple[str, ...]) -> None:

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.tiers import exhaustive
+
 ROOT = Path(__file__).parent.parent
 SUITE = """
 import pytest
@@ -73,7 +75,7 @@ def suite(folder: Path, *options: str) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize("options", [["-n0"], pytest.param(["-n2"], marks=pytest.mark.exhaustive)])
+@pytest.mark.parametrize("options", [["-n0"], *exhaustive(["-n2"])])
 def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     """The text of the failure is what broke, stages, kernels and lines, and the screen; in one process and in two workers."""
     told = suite(tmp_path, *options)

@@ -19,6 +19,7 @@ from bfsim.result import Run
 from bfsim.run import Feed, Fidelity, simulate
 from bfsim.work_file import FORMAT
 from tests.test_run import FIRMWARE, record
+from tests.tiers import exhaustive
 
 FRAMES = 2
 HOSTS_OWN = {"events"}
@@ -72,9 +73,7 @@ def test_a_recorded_run_is_played_as_it_was(work: Path, plain: Run) -> None:
     assert differing(plain, simulate(frames=FRAMES, work=work)) <= HOSTS_OWN
 
 
-@pytest.mark.parametrize(
-    "seed", [0, *(pytest.param(each, marks=pytest.mark.exhaustive) for each in range(1, 4))]
-)
+@pytest.mark.parametrize("seed", [0, *exhaustive(1, 2, 3)])
 def test_it_is_the_run_of_other_hardware(work: Path, plain: Run, seed: int) -> None:
     """Whatever the clocks, the latencies, and the settings of DMA and bus."""
     settings = random_hardware(seed)
@@ -83,6 +82,7 @@ def test_it_is_the_run_of_other_hardware(work: Path, plain: Run, seed: int) -> N
     assert differing(there, simulate(frames=FRAMES, work=work, settings=settings)) <= HOSTS_OWN
 
 
+@pytest.mark.exhaustive
 def test_it_is_the_run_of_another_placement(folder: Path, plain: Run) -> None:
     """What was recorded with buffers outside of L1 is played where they are in L1; the reverse is refused, with a buffer's name."""
     path = folder / "l2.work"

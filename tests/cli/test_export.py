@@ -17,6 +17,7 @@ def ran(*arguments: object) -> tuple[int, str]:
     return result.exit_code, result.output
 
 
+@pytest.mark.exhaustive
 @needs_compiler
 def test_the_built_in_firmware_compiles_without_a_warning(tmp_path: Path) -> None:
     """Every kernel of the firmware, as C99, by this machine's compiler."""

@@ -88,6 +88,7 @@ def test_findings_do_not_fail() -> None:
     assert "\nSymbols" not in done.output
 
 
+@pytest.mark.exhaustive
 def test_size_and_profile_count() -> None:
     """Larger pictures take larger rings, and unoptimised code is longer."""
     small, large, unoptimised = (

@@ -14,6 +14,7 @@ from bfsim import __version__
 from bfsim.cli.main import main
 from bfsim.cli.record import SOURCE_FORMATS
 from bfsim.recording import sources
+from tests.tiers import exhaustive
 
 
 def call(*arguments: str) -> Result:
@@ -126,7 +127,7 @@ def test_place_of_the_json_is_tried_before_the_run(tmp_path: Path) -> None:
     assert "missing must exist to write a file there" in result.stderr
 
 
-@pytest.mark.parametrize("command", [["boards"], ["explain", "isqrt32", "--json"], ["ldf"]])
+@pytest.mark.parametrize("command", [["boards"], *exhaustive(["explain", "isqrt32", "--json"], ["ldf"])])
 def test_a_full_disk_behind_standard_output(command: list[str]) -> None:
     """One sentence, and the exit code of a mistake: 1 is for broken limits."""
     with Path("/dev/full").open("w") as full:

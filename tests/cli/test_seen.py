@@ -80,6 +80,7 @@ def test_features_in_the_json() -> None:
     assert "--features must come with --json" in refused("--features")
 
 
+@pytest.mark.exhaustive
 def test_show_opens_the_picture_where_there_is_a_display(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -120,6 +121,7 @@ def test_mistakes_are_told_before_the_run(tmp_path: Path) -> None:
     assert [each.name for each in tmp_path.iterdir()] == ["thesis.tex"]
 
 
+@pytest.mark.exhaustive
 def test_firmware_without_a_view_shows_pictures_and_numbers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -136,6 +138,7 @@ def test_firmware_without_a_view_shows_pictures_and_numbers(
     assert "--features must go with firmware that has a view to tell what it sees" in message
 
 
+@pytest.mark.exhaustive
 def test_a_frame_in_which_nothing_was_seen_has_no_costs_either(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -179,6 +182,7 @@ def test_ctrl_c_before_the_first_frame_is_seen(tmp_path: Path, monkeypatch: pyte
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.exhaustive
 def test_heat_is_drawn_and_told_and_changes_nothing(tmp_path: Path) -> None:
     """A picture with it is larger by its bars and legend; the MCAP file has it; the numbers are those without."""
     plain, heat, mcap = tmp_path / "plain", tmp_path / "heat", tmp_path / "seen.mcap"

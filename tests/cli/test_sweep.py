@@ -104,6 +104,7 @@ def test_parquet_and_plots(file: Path) -> None:
     assert "must be x=COLUMN,y=COLUMN" in wrong.output
 
 
+@pytest.mark.exhaustive
 def test_many_recordings_are_a_line_for_each_setting(file: Path) -> None:
     """The least frame rate of all recordings, and how many they were; the table has each."""
     for name in ("b", "c"):
@@ -134,6 +135,7 @@ def test_what_cannot_work_is_told_at_once(file: Path, monkeypatch: pytest.Monkey
     assert "--strict: 4 of 8 points can never work:" in strict.output
 
 
+@pytest.mark.exhaustive
 def test_ctrl_c_ends_it_cleanly(tmp_path: Path) -> None:
     """What is done is reported and kept, no process is left, and the same command goes on."""
     file = home_in(tmp_path, FILE.replace("[2, 4]", "[2, 3, 4, 5, 6, 7]"))

@@ -13,6 +13,7 @@ import pytest
 
 from tests.cli.test_main import call
 from tests.report.perfetto_files import tracks_of
+from tests.tiers import exhaustive
 
 A_FRAME_BYTES = 150_000  # and some more
 FILES = ("run.pftrace", "run.speedscope.json")
@@ -28,7 +29,7 @@ def names_in(folder: Path) -> list[str]:
     return sorted(each.name for each in folder.iterdir())
 
 
-@pytest.mark.parametrize("command", ["run", "profile"])
+@pytest.mark.parametrize("command", ["run", *exhaustive("profile")])
 def test_both_files_are_written_and_the_report_is_the_same(command: str, tmp_path: Path) -> None:
     """Looking changes no cycle."""
     plain = call(command, "--frames", "1")
@@ -42,6 +43,7 @@ def test_both_files_are_written_and_the_report_is_the_same(command: str, tmp_pat
     assert [each["name"] for each in flame["profiles"]] == ["core A, cycles", "core B, cycles"]
 
 
+@pytest.mark.exhaustive
 def test_a_second_run_replaces_the_files(tmp_path: Path) -> None:
     """By the same bytes."""
     call("run", "--frames", "1", *options(tmp_path))

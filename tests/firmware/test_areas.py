@@ -24,6 +24,7 @@ from tests.firmware.pictures import Bytes
 from tests.firmware.test_rectification import tables
 from tests.firmware.whole_pictures import buffer, check_core, random_frames
 from tests.machine.placements import shipped
+from tests.tiers import exhaustive
 from tinyphoon import fast, tinyphoon
 from tinyphoon.areas import Area, area_in, principal_shift
 from tinyphoon.strategy_unit.unit import StrategyUnit
@@ -66,8 +67,7 @@ def check(board: Board, outcome: BoardRecord, left: Bytes, right: Bytes, *clear:
     ("firmware", "ldf"),
     [
         (tinyphoon, "thesis.ldf"),
-        pytest.param(tinyphoon, "cache.ldf", marks=pytest.mark.exhaustive),
-        pytest.param(fast, "cache.ldf", marks=pytest.mark.exhaustive),
+        *exhaustive((tinyphoon, "cache.ldf"), (fast, "cache.ldf")),
     ],
 )
 def test_an_area_is_seen_like_the_cropped_picture(
@@ -91,9 +91,7 @@ def test_areas_follow_each_other(count: int) -> None:
 
 
 @pytest.mark.parametrize("area", [(10, 20, 40, 16), (0, 0, 16, 48), (2, 31, 62, 17), (48, 1, 16, 40)])
-@pytest.mark.parametrize(
-    "firmware", [tinyphoon, pytest.param(fast, marks=pytest.mark.exhaustive)], ids=["plain", "fast"]
-)
+@pytest.mark.parametrize("firmware", [tinyphoon, *exhaustive(fast)], ids=["plain", "fast"])
 def test_an_area_of_a_rectified_picture(firmware: Firmware, area: tuple[int, int, int, int]) -> None:
     """The same as the area of the picture that is rectified whole."""
     frames = random_frames(64, 48, count=2)

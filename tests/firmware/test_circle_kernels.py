@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from tests.firmware import circle_references as expected
 from tests.firmware.circle_references import Edge
 from tests.firmware.pictures import random_uyvy
+from tests.tiers import exhaustive
 from tinyphoon.stages.circle_consensus import agree_on_side, find_consensus
 from tinyphoon.stages.circle_detection import share_of, sixteenths
 from tinyphoon.stages.circle_edges import (
@@ -320,7 +321,7 @@ def test_the_image_of_a_sphere(x_px: float, y_px: float, seen: tuple[float, floa
     assert np.hypot(*(fit[:2] / 64 - middle)) < 0.4
 
 
-@pytest.mark.parametrize("off", [1, 64, 148, 250])
+@pytest.mark.parametrize("off", [250, *exhaustive(1, 64, 148)])
 def test_sums_of_the_largest_picture_stay_in_32_bits(off: int) -> None:
     """All edges that a picture 640 wide has room for, outside a circle as far as it can be, with nearly the largest weight."""
     count = 1920

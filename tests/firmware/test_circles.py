@@ -137,6 +137,7 @@ def golf_ball(dimples: int = 5) -> Seen:
     return seen(drawing.uyvy())
 
 
+@pytest.mark.exhaustive
 def test_filter_1_removes_the_edges_of_a_golf_ball() -> None:
     """Of its dimples hardly an edge is left, and the outline stays; without its colour they all come."""
     picture = golf_ball()
@@ -186,6 +187,7 @@ def test_what_most_edges_agree_on_is_a_circle() -> None:
     assert checked(ball, replace(strict, consensus_share=256)).tests == [FAILED]
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("lean", [0.0, 0.35, 0.785])
 @pytest.mark.parametrize("sides", [(60, 9), (30, 20), (20, 20), (14, 14), (25, 10)])
 def test_bars_and_squares_are_no_consensus(sides: tuple[int, int], lean: float) -> None:

@@ -46,6 +46,7 @@ def ratio(seen: Sequence[Seen], stage: str) -> float:
     return max(cycles) / min(cycles)
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("stage", "most"), [("Edge detection", 1.01), ("Open & closing", 1.005), ("Blob detection", 1.05)]
 )
@@ -54,6 +55,7 @@ def test_steady_stages_over_the_built_in_recording(shipped: list[Seen], stage: s
     assert ratio(shipped, stage) < most
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("stage", "most"), [("Edge detection", 1.5), ("Open & closing", 1.005), ("Blob detection", 3.4)]
 )

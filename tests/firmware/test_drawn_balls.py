@@ -73,6 +73,7 @@ def test_a_drawn_ball_is_the_image_of_a_sphere() -> None:
     assert short == pytest.approx(across, abs=0.03)
 
 
+@pytest.mark.exhaustive
 def test_the_same_numbers_draw_the_same_frame() -> None:
     """And each camera has balls of its own."""
     one, other = (frame_of(CONDITIONS[0], 4, 40, 3) for _ in range(2))

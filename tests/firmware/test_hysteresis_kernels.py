@@ -100,6 +100,7 @@ def check(edges: Bytes, *, capacity: int = 4096, labels: int = 1024) -> None:
     assert (lost, sharing) == (expected.lost, expected.sharing)
 
 
+@pytest.mark.exhaustive
 @settings(max_examples=300)
 @given(st.data())
 def test_any_edges(data: st.DataObject) -> None:

@@ -141,6 +141,7 @@ rows_of_edges = st.lists(
 )
 
 
+@pytest.mark.exhaustive
 @settings(max_examples=150)
 @given(st.lists(st.tuples(lines, lines), max_size=5), rows_of_edges, st.integers(1, 256))
 def test_as_the_reference(pairs: list[tuple[Words, Words]], rows: list[Partners], edge_range: int) -> None:

@@ -16,6 +16,7 @@ from bfsim.run import BUILT_IN_RECORDING
 from tests.firmware.lenses import bilinear, nearest, rectified, sighted, source_points
 from tests.firmware.pictures import random_uyvy
 from tests.firmware.whole_pictures import buffer, check_core, random_frames, run
+from tests.tiers import exhaustive
 from tinyphoon import tinyphoon
 from tinyphoon.stages.rectification import (
     BLACK_PAIR,
@@ -94,7 +95,7 @@ def tables(width: int, height: int) -> Mapping[str, SourcePixels]:
     }
 
 
-@pytest.mark.parametrize(("width", "height"), [(6, 4), (34, 50), (160, 121), (640, 16)])
+@pytest.mark.parametrize(("width", "height"), [(6, 4), (34, 50), *exhaustive((160, 121), (640, 16))])
 def test_stages_see_the_rectified_picture(width: int, height: int) -> None:
     """On the board both cores rectify by their own tables, and all that follows is of the rectified pictures."""
     frames = random_frames(width, height, count=2)
@@ -107,7 +108,7 @@ def test_stages_see_the_rectified_picture(width: int, height: int) -> None:
         check_core(board, core, expected, results, sighted(sources[core]))
 
 
-@pytest.mark.parametrize(("width", "height"), [(320, 240), (640, 480)])
+@pytest.mark.parametrize(("width", "height"), [(320, 240), *exhaustive((640, 480))])
 def test_rectification_needs_few_cycles(width: int, height: int) -> None:
     """It has a row of its own, and its window never lies in SDRAM: where L1 is full, the LDF has it spill to L2."""
     frames = random_frames(width, height, count=1)

@@ -41,7 +41,9 @@ def edges_of(board: Board, core: str) -> plain.Edges:
     return [[(word & 255, word >> 8 & 255, word >> 16) for word in row] for row in rows]
 
 
-@pytest.mark.parametrize("area", [(0, 0, WIDTH, HEIGHT), (20, 31, 100, 70)])
+@pytest.mark.parametrize(
+    "area", [(20, 31, 100, 70), pytest.param((0, 0, WIDTH, HEIGHT), marks=pytest.mark.exhaustive)]
+)
 def test_features_are_those_of_the_camera_moved(area: tuple[int, int, int, int]) -> None:
     """Of an area those that lie in it after that: edges to the pixel, lines to the bit."""
     x, y, width, height = area

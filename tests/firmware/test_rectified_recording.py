@@ -21,6 +21,8 @@ from tests.firmware.lenses import rectified, sighted
 from tests.firmware.whole_pictures import buffer, check_core, run
 from tinyphoon import tinyphoon
 
+pytestmark = pytest.mark.exhaustive
+
 GEOMETRY = StereoGeometry(focal_px=386.0, baseline_mm=30.47, height_mm=120.0, tilt_deg=10.0)
 MISFIT = Misfit(Lens(-0.25, 0.08, 0.001, -0.0008), (0.8, -1.2, 0.6), (0.3, 0.5, -0.4))
 CORNERS = (9, 6)
@@ -56,7 +58,6 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.exhaustive
 def test_rows_agree_in_what_the_cores_see(recording: Path) -> None:
     """Corners that were pixels apart in height lie in one row of both rectified pictures, to the rounding of the tables."""
     before, after = [], []

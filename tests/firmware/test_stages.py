@@ -27,6 +27,7 @@ from tests.firmware.whole_pictures import (
     run,
     stereo,
 )
+from tests.tiers import exhaustive
 from tinyphoon import fast, thesis, tinyphoon
 from tinyphoon.areas import WHOLE_PICTURE
 from tinyphoon.stages.edge_detection import edge_detection
@@ -35,13 +36,11 @@ from tinyphoon.stages.rosenfeld_hysteresis import rosenfeld_edges
 from tinyphoon.stores.edges import EDGE_CAPACITY
 from tinyphoon.strategy.modes import INDOOR_FIELD
 
-BOTH = pytest.mark.parametrize(
-    "firmware", [tinyphoon, pytest.param(fast, marks=pytest.mark.exhaustive)], ids=["plain", "fast"]
-)
+BOTH = pytest.mark.parametrize("firmware", [tinyphoon, *exhaustive(fast)], ids=["plain", "fast"])
 """The fast steps leave what the plain ones leave."""
 
 
-@pytest.mark.parametrize(("firmware", "count"), [(tinyphoon, 1), (tinyphoon, 2), (fast, 2)])
+@pytest.mark.parametrize(("firmware", "count"), [*exhaustive((tinyphoon, 1)), (tinyphoon, 2), (fast, 2)])
 def test_built_in_recording(firmware: Firmware, count: int) -> None:
     """The first and the second frame of the soccer scene come out as in numpy, on both cores."""
     with RecordingReader(BUILT_IN_RECORDING) as reader:
@@ -62,7 +61,8 @@ def test_given_recordings(given_recording: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("width", "height"), [(4, 3), (4, 1), (6, 2), (6, 4), (10, 5), (62, 7), (34, 50), (160, 121), (640, 16)]
+    ("width", "height"),
+    [(4, 3), (4, 1), (6, 2), (6, 4), (10, 5), (62, 7), (34, 50), *exhaustive((160, 121), (640, 16))],
 )
 @BOTH
 def test_pictures_of_any_size(firmware: Firmware, width: int, height: int) -> None:
@@ -89,6 +89,7 @@ OVERFLOWS = {
 """Pictures with more than there is room for, and what they must say of it."""
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", OVERFLOWS)
 def test_overflow_is_counted(name: str) -> None:
     """What has no room is left out as in the references, and counted, on each core for itself."""
@@ -107,6 +108,7 @@ def test_flat_pictures_have_no_edges(value: int) -> None:
     assert set(outcome.frames[0].results.values()) == {0}
 
 
+@pytest.mark.exhaustive
 def test_more_edges_than_have_room_thin_out_in_every_part_of_the_picture() -> None:
     """What is left out is counted, each core for itself, and no band of rows keeps a larger part of its edges than another."""
     noise = np.random.default_rng(5).integers(0, 256, (240, 640), np.uint8)
@@ -121,6 +123,7 @@ def test_more_edges_than_have_room_thin_out_in_every_part_of_the_picture() -> No
     assert (results["edges_B"], results["edges_lost_B"]) == (0, 0)
 
 
+@pytest.mark.exhaustive
 def test_noise_leaves_room_for_what_comes_below() -> None:
     """Weak edges that would fill the store: the edge of a bright field below them is seen all the same."""
     noise = np.random.default_rng(1).integers(0, 30, (240, 640), np.uint8)
@@ -134,7 +137,7 @@ def test_noise_leaves_room_for_what_comes_below() -> None:
     [(tinyphoon, edge_detection), (fast, fast_edge_detection), (thesis, rosenfeld_edges)],
     ids=["plain", "fast", "thesis"],
 )
-@pytest.mark.parametrize(("width", "height"), [(6, 4), (34, 50), (160, 121)])
+@pytest.mark.parametrize(("width", "height"), [(6, 4), (34, 50), *exhaustive((160, 121))])
 def test_larger_gauss(
     firmware: Firmware, detected: Callable[..., Generator[Any, Any, int]], width: int, height: int
 ) -> None:

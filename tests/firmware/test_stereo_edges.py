@@ -98,6 +98,7 @@ edges = st.dictionaries(
 ).map(lambda row: [(x, *rest) for x, rest in sorted(row.items())])
 
 
+@pytest.mark.exhaustive
 @settings(max_examples=150)
 @given(st.lists(st.tuples(edges, edges), min_size=1, max_size=4), st.data())
 def test_any_edges(pairs: list[tuple[Row, Row]], data: st.DataObject) -> None:
@@ -336,6 +337,7 @@ def test_random_pictures(width: int, height: int) -> None:
     check_board(random_frames(width, height, count=2), width, height)
 
 
+@pytest.mark.exhaustive
 def test_more_3d_edges_than_room_are_counted() -> None:
     """Stripes of any grey levels, so that each edge is unlike the others, 20 px to the left in the right picture."""
     stripes = np.random.default_rng(5).permutation(np.linspace(0, 255, 34)).astype(np.uint8)

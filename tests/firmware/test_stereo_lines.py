@@ -107,6 +107,7 @@ def seen_from_the_right(draw: st.DrawFn, left: Sequence[Words]) -> list[Words]:
     return [*draw(st.permutations(lines)), *draw(st.lists(any_line, max_size=3))]
 
 
+@pytest.mark.exhaustive
 @settings(max_examples=200)
 @given(st.data(), st.sampled_from(Correspondence))
 def test_any_lines(data: st.DataObject, correspondence: Correspondence) -> None:
@@ -217,6 +218,7 @@ def test_depths_that_contradict_each_other_are_refused() -> None:
         replace(MODE, nearest_mm=11, farthest_mm=10)
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("mode", BOTH)
 def test_rendered_lines(mode: StereoLineThresholds) -> None:
     """On the board: the 3-D lines of a rendered scene are those of the lines that both cores left."""

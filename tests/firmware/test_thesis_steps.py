@@ -16,6 +16,7 @@ from bfsim.run import BUILT_IN_RECORDING
 from tests.firmware.lenses import nearest, source_points
 from tests.firmware.pictures import EXTREMES, grey_uyvy
 from tests.firmware.whole_pictures import buffer, random_frames, run, stereo
+from tests.tiers import exhaustive
 from tinyphoon import thesis, tinyphoon
 from tinyphoon.areas import WHOLE_PICTURE
 from tinyphoon.features import PLAIN, Steps
@@ -95,12 +96,13 @@ def check_same(frames: Sequence[StereoFrame], calibration: Calibration = RECTIFI
     return found
 
 
-@pytest.mark.parametrize(("width", "height"), [(4, 3), (10, 5), (34, 50), (160, 121)])
+@pytest.mark.parametrize(("width", "height"), [(4, 3), (10, 5), (34, 50), *exhaustive((160, 121))])
 def test_pictures_of_any_size(width: int, height: int) -> None:
     """Coloured squares: many groups of edges and blobs of all colours, after another frame."""
     check_same(random_frames(width, height, count=2))
 
 
+@pytest.mark.exhaustive
 def test_the_built_in_recording() -> None:
     """Its second frame: the ball is in it."""
     with RecordingReader(BUILT_IN_RECORDING) as reader:
@@ -109,7 +111,7 @@ def test_the_built_in_recording() -> None:
         )
 
 
-@pytest.mark.parametrize("width", [6, 34, 160])
+@pytest.mark.parametrize("width", [6, 34, *exhaustive(160)])
 def test_pictures_that_a_table_rectifies(width: int) -> None:
     """Tables with pixels from nowhere; each core has its own."""
     sources = {

@@ -20,6 +20,7 @@ from tests.kernel.host_c import call, compiled, copies, exported, needs_compiler
 from tests.kernel.modules import import_text
 from tests.kernel.programs import programs
 from tests.kernel.test_semantics import arrays_of
+from tests.tiers import tried
 
 WRAPS = "-fwrapv"  # what is drawn overflows on purpose
 KERNELS = [each for each in vars(c_kernels).values() if isinstance(each, Kernel)]
@@ -64,26 +65,33 @@ def test_c_computes_what_the_kernel_computes(kernel: Kernel, library: tuple[CPro
 
 
 @needs_compiler
-@settings(max_examples=10, deadline=None, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
-@given(
-    text=programs(),
-    seed=st.integers(0, 1000),
-    x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
-    y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
-)
+@tried(3, 10)
 def test_random_programs_compute_in_c_what_they_compute_here(
-    text: str, seed: int, x: int, y: int, tmp_path_factory: pytest.TempPathFactory
+    examples: int, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     """A random kernel leaves the same arrays and value as its C, in whatever order C evaluates."""
-    folder = tmp_path_factory.mktemp("program")
-    module = import_text(text, folder)
-    program = exported([module.program], folder)
-    library = compiled(program, folder, WRAPS, "-w")  # what is drawn may compare a value with itself
-    expected, found = arrays_of(seed), arrays_of(seed)
-    value = module.program(*expected.values(), x, y)
-    assert call(library, program, module.program, *found.values(), x, y) == value
-    for name, array in expected.items():
-        np.testing.assert_array_equal(found[name], array, err_msg=name)
+
+    @settings(
+        max_examples=examples, deadline=None, phases=[Phase.generate], suppress_health_check=list(HealthCheck)
+    )
+    @given(
+        text=programs(),
+        seed=st.integers(0, 1000),
+        x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
+        y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
+    )
+    def holds(text: str, seed: int, x: int, y: int) -> None:
+        folder = tmp_path_factory.mktemp("program")
+        module = import_text(text, folder)
+        program = exported([module.program], folder)
+        library = compiled(program, folder, WRAPS, "-w")  # what is drawn may compare a value with itself
+        expected, found = arrays_of(seed), arrays_of(seed)
+        value = module.program(*expected.values(), x, y)
+        assert call(library, program, module.program, *found.values(), x, y) == value
+        for name, array in expected.items():
+            np.testing.assert_array_equal(found[name], array, err_msg=name)
+
+    holds()
 
 
 TEXT = '''

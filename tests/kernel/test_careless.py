@@ -16,6 +16,7 @@ from tests.kernel.modules import import_text
 from tests.kernel.programs import programs
 from tests.kernel.test_semantics import arrays_of, plain_run
 from tests.kernel.words import Undefined
+from tests.tiers import tried
 
 MARGIN, FILL = 16, 99
 Arrays = dict[str, NDArray[Any]]
@@ -51,36 +52,41 @@ def told(text: str, arrays: Arrays, x: int, y: int) -> tuple[int | None, str]:
         return None, "is undefined in kernel"
 
 
-@settings(max_examples=20, suppress_health_check=list(HealthCheck))
-@given(
-    text=programs(careless=True),
-    seed=st.integers(0, 1000),
-    x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
-    y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
-)
+@tried(4, 20)
 def test_a_careless_program_fails_where_plain_python_does(
-    text: str, seed: int, x: int, y: int, tmp_path_factory: pytest.TempPathFactory
+    examples: int, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     """As it is written, a kernel fails at the same index or divisor; as compiled, only if it is wrong; no memory is hurt."""
-    program: Kernel = import_text(text, tmp_path_factory.mktemp("program")).program
-    expected = arrays_of(seed)
-    value, wrong = told(text, expected, x, y)
-    arrays = with_margins(arrays_of(seed))
-    if wrong:
-        with pytest.raises(KernelError) as caught:
+
+    @settings(max_examples=examples, suppress_health_check=list(HealthCheck))
+    @given(
+        text=programs(careless=True),
+        seed=st.integers(0, 1000),
+        x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
+        y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
+    )
+    def holds(text: str, seed: int, x: int, y: int) -> None:
+        program: Kernel = import_text(text, tmp_path_factory.mktemp("program")).program
+        expected = arrays_of(seed)
+        value, wrong = told(text, expected, x, y)
+        arrays = with_margins(arrays_of(seed))
+        if wrong:
+            with pytest.raises(KernelError) as caught:
+                program.sanitize((*arrays.values(), x, y))
+            assert wrong in str(caught.value)
+        else:
             program.sanitize((*arrays.values(), x, y))
-        assert wrong in str(caught.value)
-    else:
-        program.sanitize((*arrays.values(), x, y))
-    for name, each in arrays_of(seed).items():
-        np.testing.assert_array_equal(arrays[name], each, err_msg=name)
-    try:
-        found = program(*arrays.values(), x, y)
-    except KernelError:
-        assert wrong
-    else:
-        if not wrong:
-            assert found == value
-            for name, each in expected.items():
-                np.testing.assert_array_equal(arrays[name], each, err_msg=name)
-    assert margins(arrays) == {FILL}
+        for name, each in arrays_of(seed).items():
+            np.testing.assert_array_equal(arrays[name], each, err_msg=name)
+        try:
+            found = program(*arrays.values(), x, y)
+        except KernelError:
+            assert wrong
+        else:
+            if not wrong:
+                assert found == value
+                for name, each in expected.items():
+                    np.testing.assert_array_equal(arrays[name], each, err_msg=name)
+        assert margins(arrays) == {FILL}
+
+    holds()

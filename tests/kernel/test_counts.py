@@ -20,6 +20,7 @@ from tests.kernel.programs import programs
 from tests.kernel.running import CALLING_VDSP
 from tests.kernel.test_semantics import arrays_of
 from tests.kernel.words import NAMES, Row, Word
+from tests.tiers import tried
 
 OFFSET = 1  # of the line that makes annotations strings
 
@@ -71,24 +72,29 @@ def simple_statements(text: str) -> tuple[int, list[int]]:
     return definition.decorator_list[0].lineno, lines
 
 
-@settings(max_examples=40, suppress_health_check=list(HealthCheck))
-@given(
-    text=programs(),
-    seed=st.integers(0, 1000),
-    x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
-    y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
-)
+@tried(6, 40)
 def test_every_statement_of_a_random_program_is_counted_as_often_as_it_ran(
-    text: str, seed: int, x: int, y: int, tmp_path_factory: pytest.TempPathFactory
+    examples: int, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     """The blocks that are costed are the statements that ran: the counts are those of a traced run by Python."""
-    program: Kernel = import_text(text, tmp_path_factory.mktemp("program")).program
-    first, statements = simple_statements(text)
-    expected = plain_lines(text, arrays_of(seed), x, y)
-    found = counted_lines(program, arrays_of(seed), x, y)
-    assert statements
-    for line in statements:
-        assert found.get(line - first + 1, 0) == expected[line], text.splitlines()[line - 1]
+
+    @settings(max_examples=examples, suppress_health_check=list(HealthCheck))
+    @given(
+        text=programs(),
+        seed=st.integers(0, 1000),
+        x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
+        y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
+    )
+    def holds(text: str, seed: int, x: int, y: int) -> None:
+        program: Kernel = import_text(text, tmp_path_factory.mktemp("program")).program
+        first, statements = simple_statements(text)
+        expected = plain_lines(text, arrays_of(seed), x, y)
+        found = counted_lines(program, arrays_of(seed), x, y)
+        assert statements
+        for line in statements:
+            assert found.get(line - first + 1, 0) == expected[line], text.splitlines()[line - 1]
+
+    holds()
 
 
 def test_a_traced_run_sees_both_sides_of_a_test() -> None:

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.tiers import exhaustive
+
 KERNELS = """
 import os, signal, sys, threading
 import numpy as np
@@ -70,7 +72,7 @@ def test_an_access_that_nobody_checked_names_the_kernel(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize("name", ["SIGFPE", "SIGBUS", "SIGILL"])
+@pytest.mark.parametrize("name", ["SIGFPE", *exhaustive("SIGBUS", "SIGILL")])
 def test_every_signal_of_a_crash_names_the_kernel(name: str, tmp_path: Path) -> None:
     """Whatever the processor complains about, it is told, and hits the kernel that runs, not the one that ran last."""
     number, said = crash(tmp_path, BY_SIGNAL.format(name))

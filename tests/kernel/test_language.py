@@ -13,6 +13,7 @@ from bfsim.errors import KernelError
 from bfsim.kernel import VDSP_O2, Kernel, kernel
 from tests.kernel.conftest import ImportText
 from tests.kernel.modules import HEADER_LINES, import_text
+from tests.tiers import exhaustive
 
 BEFORE = """
 SIZE = 4
@@ -262,7 +263,7 @@ def test_odd_functions_are_refused_and_nothing_else(text: str, tmp_path: Path) -
         "@kernel\ndef f(x: i32) -> None:\n    return",
         "@kernel\ndef f(x: i32) -> i32:\n    while True:\n        x += 1\n        if x > 9:\n            return x",
         "@kernel\ndef f(entry: i32, label: i32, bf: i32, then: u8[:]) -> i32:\n    return entry // label + bf + then[0]",
-        "@kernel\ndef f(x: i32) -> i32:\n" + "".join(f"    if x == {i}:\n        x += {i}\n" for i in range(300)) + "    return x",
+        *exhaustive("@kernel\ndef f(x: i32) -> i32:\n" + "".join(f"    if x == {i}:\n        x += {i}\n" for i in range(300)) + "    return x"),
         "@kernel\ndef f(x: i32) -> i32:\n    if x < 0:\n        return 0\n"
         + "".join(f"    elif x == {i}:\n        return {i * i % 7}\n" for i in range(60)) + "    return x",
     ],

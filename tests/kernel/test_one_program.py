@@ -23,6 +23,7 @@ from tests.kernel.modules import import_text
 from tests.kernel.programs import programs
 from tests.kernel.running import CALLING_VDSP
 from tests.kernel.test_semantics import arrays_of
+from tests.tiers import tried
 
 ROOM = 1 << 16
 HANDED_ON = {"row": "a"}  # by the random programs, to `mix`
@@ -180,16 +181,21 @@ def test_what_only_one_side_needs_is_loaded_there(profile: CompilerProfile, tmp_
     assert run.traced == {("row", "load"): 16, ("table", "load"): 1, ("out", "store"): 1}
 
 
-@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(text=programs(), x=st.sampled_from([0, 3, 900, -7]), y=st.integers(0, 70))
-def test_a_random_program_makes_the_accesses_that_it_is_costed_with(
-    text: str, x: int, y: int, tmp_path: Path
-) -> None:
+@tried(3, 15)
+def test_a_random_program_makes_the_accesses_that_it_is_costed_with(examples: int, tmp_path: Path) -> None:
     """Array by array, loads and stores, in every profile; whatever the compiler moves, leaves out or repeats."""
-    program = import_text(text, tmp_path).program
-    for profile in (GCC_O0, GCC_O2, CALLING_VDSP):
-        run = Run(program, profile, arrays_of(0), (x, y))
-        assert run.traced == run.costed
+
+    @settings(
+        max_examples=examples, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    )
+    @given(text=programs(), x=st.sampled_from([0, 3, 900, -7]), y=st.integers(0, 70))
+    def holds(text: str, x: int, y: int) -> None:
+        program = import_text(text, tmp_path).program
+        for profile in (GCC_O0, GCC_O2, CALLING_VDSP):
+            run = Run(program, profile, arrays_of(0), (x, y))
+            assert run.traced == run.costed
+
+    holds()
 
 
 O0_TEXTS = {

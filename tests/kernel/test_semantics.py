@@ -14,6 +14,7 @@ from bfsim.kernel import Kernel
 from tests.kernel.modules import import_text
 from tests.kernel.programs import ARRAYS, ELEMENTS, programs
 from tests.kernel.words import NAMES, Row, Word
+from tests.tiers import tried
 
 
 def arrays_of(seed: int) -> dict[str, NDArray[Any]]:
@@ -33,20 +34,25 @@ def plain_run(text: str, arrays: dict[str, NDArray[Any]], x: int, y: int) -> int
     return int(names["program"](*rows, Word(x, signed=True), Word(y, signed=False)))
 
 
-@settings(max_examples=40, suppress_health_check=list(HealthCheck))
-@given(
-    text=programs(),
-    seed=st.integers(0, 1000),
-    x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
-    y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
-)
+@tried(10, 40)
 def test_random_programs_compute_what_plain_python_computes(
-    text: str, seed: int, x: int, y: int, tmp_path_factory: pytest.TempPathFactory
+    examples: int, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     """A random kernel leaves the same arrays and value as its text run by Python on wrapping integers."""
-    program: Kernel = import_text(text, tmp_path_factory.mktemp("program")).program
-    expected, found = arrays_of(seed), arrays_of(seed)
-    value = plain_run(text, expected, x, y)
-    assert program(*found.values(), x, y) == value
-    for name, array in expected.items():
-        np.testing.assert_array_equal(found[name], array, err_msg=name)
+
+    @settings(max_examples=examples, suppress_health_check=list(HealthCheck))
+    @given(
+        text=programs(),
+        seed=st.integers(0, 1000),
+        x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
+        y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
+    )
+    def holds(text: str, seed: int, x: int, y: int) -> None:
+        program: Kernel = import_text(text, tmp_path_factory.mktemp("program")).program
+        expected, found = arrays_of(seed), arrays_of(seed)
+        value = plain_run(text, expected, x, y)
+        assert program(*found.values(), x, y) == value
+        for name, array in expected.items():
+            np.testing.assert_array_equal(found[name], array, err_msg=name)
+
+    holds()

@@ -117,6 +117,7 @@ def test_what_no_file_can_be_called(tmp_path: Path, include: str) -> None:
         parse_ldf(text_of(tmp_path / "a.ldf", include), include_dirs=[tmp_path])
 
 
+@pytest.mark.exhaustive
 def test_time_grows_with_the_length(parse: Parse) -> None:
     """2,000 segments, each with a reserve and an output section, take a few seconds and not minutes."""
     count = 2000

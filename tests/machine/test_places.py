@@ -15,6 +15,7 @@ from tests.machine.made_boards import made_board
 from tests.machine.rig import SIZE, STAGES, Play, cycles_of, every_frame, run
 from tests.machine.test_timeline import EVERYTHING, LDFS, handler, main_of
 from tests.machine.timelines import told
+from tests.tiers import exhaustive
 
 HEIGHT = SIZE.height_px
 
@@ -36,7 +37,7 @@ def places_of(body: Any, **how: Any) -> list[Place | None]:
 
 
 @pytest.mark.parametrize("ldf", LDFS)
-@pytest.mark.parametrize("fidelity", Fidelity)
+@pytest.mark.parametrize("fidelity", [Fidelity.FAST, *exhaustive(Fidelity.DETAILED)])
 def test_all_places_of_a_stage_together_are_its_budget(ldf: str, fidelity: Fidelity) -> None:
     """To the cycle, under every placement: stalls and waits included, with interrupts between."""
     mains = main_of(EVERYTHING, handles=True), main_of(EVERYTHING[::-1], handles=True)

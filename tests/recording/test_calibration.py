@@ -188,6 +188,7 @@ def test_output_leaves_the_recording_alone(chessboards: Path, recording: Path, t
         assert reader.rectification is not None
 
 
+@pytest.mark.exhaustive
 def test_pairs_that_fit_no_other_are_left_out(
     chessboards: Path, found: StereoCalibration, tmp_path: Path
 ) -> None:
@@ -360,6 +361,7 @@ class TestBadPictures:
             calibrate(pictures, SIZE, corners=corners, square_mm=SQUARE_MM)
         return str(error.value)
 
+    @pytest.mark.exhaustive
     def test_some_are_skipped(self, pictures: Path) -> None:
         """Without a board, of another size, without the other camera's, or no picture at all: listed, and left."""
         Image.new("L", SIZE, 80).save(pictures / "right_03.png")
@@ -379,6 +381,7 @@ class TestBadPictures:
         assert len(report.used) == 23
         assert report.reprojection_px < 0.2
 
+    @pytest.mark.exhaustive
     def test_other_chessboard(self, pictures: Path) -> None:
         for k in range(2, 27):
             (pictures / f"left_{k:02}.png").unlink()

@@ -136,6 +136,7 @@ def test_same_input_gives_same_bytes(tmp_path: Path) -> None:
     assert write(tmp_path / "a.mcap").read_bytes() == write(tmp_path / "b.mcap").read_bytes()
 
 
+@pytest.mark.exhaustive
 def test_memory_does_not_grow_with_length(tmp_path: Path) -> None:
     """Reading 400 frames takes no more memory than 40 (several chunks each)."""
     peaks = []

@@ -11,6 +11,7 @@ from bfsim.errors import ConfigError
 from bfsim.report.overlay.files import ENCODERS, FRAME_MS, OverlayWriter
 from bfsim.seen import Seen
 from tests import seen_frames as made
+from tests.tiers import exhaustive
 
 
 def draw(path: Path, *indices: int) -> None:
@@ -64,7 +65,7 @@ def test_an_error_leaves_nothing(tmp_path: Path) -> None:
     assert names(tmp_path / "old") == ["frame-0000.png"]
 
 
-@pytest.mark.parametrize("suffix", [".gif", ".webp", ".apng"])
+@pytest.mark.parametrize("suffix", [".gif", *exhaustive(".webp", ".apng")])
 def test_an_animated_file_shows_all_frames(tmp_path: Path, suffix: str) -> None:
     """One after the other, for ever; an earlier file is replaced."""
     path = tmp_path / f"seen{suffix}"

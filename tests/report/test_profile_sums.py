@@ -16,6 +16,7 @@ from tests.machine.rig import STAGES
 from tests.machine.test_timeline import LDFS, STEPS, Step, main_of
 from tests.report.profile_sums import assert_profile_adds_up
 from tests.report.records import IDENTITY, run_of
+from tests.tiers import exhaustive
 
 
 def run_from(outcome: BoardRecord) -> RunRecord:
@@ -44,7 +45,7 @@ def test_rows_of_chance_firmware_add_up(
 
 @pytest.mark.parametrize(
     "ldf",
-    ["thesis", *(pytest.param(each, marks=pytest.mark.exhaustive) for each in ("l2", "sdram", "cache"))],
+    ["thesis", *exhaustive("l2", "sdram", "cache")],
 )
 def test_rows_of_the_built_in_firmware_add_up(ldf: str) -> None:
     """Two frames of the built-in recording, with the start-up told apart."""

@@ -15,6 +15,8 @@ from bfsim.sweeping.cluster import Cluster
 from tests.sweeping.rig import BASE, Forgetful, home_in, planned, swept
 from tests.test_run import FIRMWARE
 
+pytestmark = pytest.mark.exhaustive
+
 distributed = pytest.importorskip("distributed")
 
 DIES_ONCE = FIRMWARE.replace(
@@ -52,7 +54,6 @@ def address() -> Iterator[str]:
             yield cluster.scheduler_address
 
 
-@pytest.mark.exhaustive
 def test_a_worker_that_is_killed_takes_nothing_along(address: str, tmp_path: Path) -> None:
     """Its point goes to another one; all figures are those of a sweep without a cluster."""
     file = home_in(tmp_path / "cluster", f"{BASE}[axes]\nframes = [1, 2]\nset.sdram.nRP = [2, 3, 4]\n")
@@ -96,7 +97,6 @@ def test_a_worker_with_another_bfsim_is_refused(address: str) -> None:
     assert not outcome.is_final
 
 
-@pytest.mark.exhaustive
 @pytest.mark.parametrize("address", ["nowhere", "tcp://127.0.0.1:1", "tcp://", ""])
 def test_an_address_without_a_scheduler(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """In a sentence."""

@@ -53,6 +53,7 @@ def test_every_point_is_run_once(file: Path) -> None:
     assert swept(file) == (outcomes, [])
 
 
+@pytest.mark.exhaustive
 def test_what_is_new_or_changed_is_run(file: Path) -> None:
     """More points; edited firmware; another recording under the same name. Back again, nothing is."""
     swept(file)
@@ -215,6 +216,7 @@ def test_points_that_differ_in_the_board_are_played(file: Path, monkeypatch: pyt
     }
 
 
+@pytest.mark.exhaustive
 def test_a_process_that_dies_takes_its_call_along_and_nothing_else() -> None:
     """The next call gets a new process; none outlives the pool."""
     pool = Pool(2)

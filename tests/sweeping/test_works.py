@@ -86,6 +86,7 @@ def test_a_point_that_dies_as_it_records_is_run(sweep: Sweep) -> None:
         assert all(works.order(each) is None for each in (second, *rest))
 
 
+@pytest.mark.exhaustive
 def test_works_of_a_killed_sweep_are_removed_and_those_of_another_one_stay(sweep: Sweep) -> None:
     """Whoever runs has a claim on its folder, which ends with the process."""
     folder = sweep.store.folder / WORKS

@@ -1,0 +1,20 @@
+"""Cases that plain `pytest` leaves out: `pytest -m exhaustive` has them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+
+def exhaustive(*cases: Any) -> list[Any]:
+    """Return cases of a parameter, or of several as tuples, with the mark."""
+    return [
+        pytest.param(*(each if isinstance(each, tuple) else (each,)), marks=pytest.mark.exhaustive)
+        for each in cases
+    ]
+
+
+def tried(few: int, many: int) -> pytest.MarkDecorator:
+    """Call a test with how many `examples` to try of a property that is slow to try."""
+    return pytest.mark.parametrize("examples", [few, *exhaustive(many)])
