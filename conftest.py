@@ -27,10 +27,15 @@ os.environ.setdefault("NUMPY_MADVISE_HUGEPAGE", "0")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Leave what is exhaustive out of plain `pytest`; look for garbage as seldom as the commands do, for what is imported stays."""
+    """Leave what is exhaustive out of plain `pytest`; look for garbage as seldom as the commands do."""
     if is_whole(config) and not config.option.markexpr:
         config.option.markexpr = "not exhaustive"
     gc.set_threshold(COLLECT_AFTER)
+
+
+def pytest_collection_finish() -> None:
+    """Look for no garbage in what was imported: it lives as long as the process, and to go through it takes seconds."""
+    gc.freeze()
 
 
 def is_whole(config: pytest.Config) -> bool:

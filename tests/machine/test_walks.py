@@ -13,6 +13,7 @@ from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.transfer_plans import Walk
 from tests.machine.rig import Bench
+from tests.tiers import tried
 
 # From the middle of each of these the longest walk stays within it.
 ROOM = 8192
@@ -64,31 +65,36 @@ def copies(draw: st.DrawFn) -> tuple[Side, Side, int]:
     return source, target, count
 
 
-@settings(max_examples=200)
-@given(
-    walks=copies(), size=st.sampled_from([1, 2, 4]), master=st.sampled_from([w.MDMA1_0, w.MDMA2_1, w.IMDMA_0])
-)
-def test_every_element_arrives_and_nothing_else_changes(
-    walks: tuple[Side, Side, int], size: int, master: int
-) -> None:
+@tried(60, 200)
+def test_every_element_arrives_and_nothing_else_changes(examples: int) -> None:
     """Of 1, 2 or 4 bytes, by any strides, from any memory to any other: compared with a copy in plain Python."""
-    bench = Bench()
-    source, target, count = walks
-    inward, outward = source.walk(bench, size), target.walk(bench, size)
-    around = bench.row(PLACES[target.place], ROOM)
-    expected = around.array.copy()
-    for one, other in zip(offsets(inward, count), offsets(outward, count), strict=True):
-        at = other - around.offset
-        expected[at : at + size] = bench.memories.bytes_from(one, size)
-    plan = bench.bus.planner.copy(master, inward, outward, count, element_bytes=size, setup=0)
-    (end,) = bench.ends(bench.bus.post(plan))
-    assert np.array_equal(around.array, expected)
-    assert end >= count * (bench.cclk(2) if master == w.IMDMA_0 else bench.sclk(1))
-    in_sdram, in_l2 = (bench.traffic(master, each) for each in (w.NO_BUFFER_IN_SDRAM, w.NO_BUFFER_IN_L2))
-    assert in_sdram.read_bytes == count * size * (source.place == "SDRAM")
-    assert in_l2.read_bytes == count * size * (source.place == "L2")
-    assert in_sdram.written_bytes == count * size * (target.place == "another bank")
-    assert in_l2.written_bytes == 0
+
+    @settings(max_examples=examples)
+    @given(
+        walks=copies(),
+        size=st.sampled_from([1, 2, 4]),
+        master=st.sampled_from([w.MDMA1_0, w.MDMA2_1, w.IMDMA_0]),
+    )
+    def holds(walks: tuple[Side, Side, int], size: int, master: int) -> None:
+        bench = Bench()
+        source, target, count = walks
+        inward, outward = source.walk(bench, size), target.walk(bench, size)
+        around = bench.row(PLACES[target.place], ROOM)
+        expected = around.array.copy()
+        for one, other in zip(offsets(inward, count), offsets(outward, count), strict=True):
+            at = other - around.offset
+            expected[at : at + size] = bench.memories.bytes_from(one, size)
+        plan = bench.bus.planner.copy(master, inward, outward, count, element_bytes=size, setup=0)
+        (end,) = bench.ends(bench.bus.post(plan))
+        assert np.array_equal(around.array, expected)
+        assert end >= count * (bench.cclk(2) if master == w.IMDMA_0 else bench.sclk(1))
+        in_sdram, in_l2 = (bench.traffic(master, each) for each in (w.NO_BUFFER_IN_SDRAM, w.NO_BUFFER_IN_L2))
+        assert in_sdram.read_bytes == count * size * (source.place == "SDRAM")
+        assert in_l2.read_bytes == count * size * (source.place == "L2")
+        assert in_sdram.written_bytes == count * size * (target.place == "another bank")
+        assert in_l2.written_bytes == 0
+
+    holds()
 
 
 def test_a_picture_is_cut_out_turned_round_and_put_elsewhere() -> None:

@@ -19,7 +19,6 @@ from bfsim.run import Feed, simulate
 from bfsim.spans import Span, SpanKind
 from bfsim.trace import StallReason
 from tests.report.perfetto_files import Slice, flows_of, tracks_of
-from tests.tiers import exhaustive
 
 HZ = 600_000_000
 CLOCKS = sorted({each.clocks.cclk_hz for each in BOARDS.values()})
@@ -119,7 +118,8 @@ def test_memory_stays_flat() -> None:
     assert peaks[1] < 1.2 * peaks[0]
 
 
-@pytest.mark.parametrize("feed", [Feed.DEMAND, *exhaustive(Feed.RECORDED)])
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("feed", [Feed.DEMAND, Feed.RECORDED])
 def test_a_trace_of_the_built_in_firmware_adds_up_to_its_budget(feed: Feed) -> None:
     """Slices of each core, read back from the file alone: their cycles are the rows of the budget, and each reason its stalls."""
     stream = io.BytesIO()
