@@ -119,14 +119,11 @@ def test_a_signal_leaves_nothing_behind(tmp_path: Path, number: signal.Signals, 
     "arguments",
     [
         ("ldf", "/dev/zero"),
-        *(
-            pytest.param(each, marks=pytest.mark.exhaustive)
-            for each in (
-                ("run", "--ldf", "/dev/zero"),
-                ("check", "--baseline", "/dev/zero"),
-                ("sweep", "/dev/zero"),
-                ("diff", "/dev/zero", "/dev/zero"),
-            )
+        *exhaustive(
+            (("run", "--ldf", "/dev/zero"),),
+            (("check", "--baseline", "/dev/zero"),),
+            (("sweep", "/dev/zero"),),
+            (("diff", "/dev/zero", "/dev/zero"),),
         ),
     ],
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,7 @@ from bfsim.verifying.verify import compared
 from tests.kernel import c_kernels
 from tests.kernel.host_c import COMPILER, needs_compiler
 from tests.kernel.test_c import drawn
+from tests.test_run import FIRMWARE, record
 
 WITHOUT_OVERFLOW = ("last_of_loop", "moving_stop", "left_first", "sometimes", "floats", "choices", "unsigned")
 SANITIZED = ("-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
@@ -155,6 +157,25 @@ def test_a_missing_toolchain_is_told_before_the_run(command: str, tmp_path: Path
     assert f"{GCC} must be in {tmp_path}" in " ".join(result.output.split())
 
 
+@needs_compiler
+def test_the_command_compares_the_kernels_of_a_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a firmware of one kernel; this machine's compiler stands in for the Blackfin's, and takes no cycles."""
+    tools = Toolchain((COMPILER or "",))
+    monkeypatch.setattr("bfsim.compiling.toolchain.blackfin_compiler", lambda: tools)
+    module = importlib.import_module("bfsim.verifying.verify")
+    monkeypatch.setattr(module, "translated", lambda sampler, code: simulated(sampler, code, tools))
+    (tmp_path / "fw_eyes.py").write_text(FIRMWARE)
+    what = ["verify", str(record(tmp_path / "drive.mcap", 2)), "--firmware", f"{tmp_path}/fw_eyes.py:eyes"]
+    result = CliRunner().invoke(main, [*what, "--calls", "5", "--json", str(tmp_path / "found.json")])
+    assert result.exit_code == 0, result.output
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert (found["schema"], found["different"]) == ("bfsim.verify/1", 0)
+    assert [(each["kernel"], each["calls"], each["played"]) for each in found["kernels"]] == [
+        ("threshold", 32, 4)
+    ]
+
+
+@pytest.mark.exhaustive
 def test_the_command_needs_no_toolchain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The code of the built-in firmware comes with bfsim and is translated: the JSON has every kernel, no bit is different."""
     monkeypatch.setenv("PATH", str(tmp_path))

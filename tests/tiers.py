@@ -8,7 +8,7 @@ import pytest
 
 
 def exhaustive(*cases: Any) -> list[Any]:
-    """Return cases of a parameter, or of several as tuples, with the mark."""
+    """Return cases of a parameter, or of several as tuples, with the mark; a tuple of one is that one."""
     return [
         pytest.param(*(each if isinstance(each, tuple) else (each,)), marks=pytest.mark.exhaustive)
         for each in cases

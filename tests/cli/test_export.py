@@ -10,6 +10,7 @@ from click.testing import CliRunner
 
 from bfsim.cli.main import main
 from tests.kernel.host_c import COMPILER, STRICT, needs_compiler
+from tests.test_run import FIRMWARE
 
 
 def ran(*arguments: object) -> tuple[int, str]:
@@ -31,16 +32,25 @@ def test_the_built_in_firmware_compiles_without_a_warning(tmp_path: Path) -> Non
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_nothing_is_overwritten_unless_asked(tmp_path: Path) -> None:
+@pytest.fixture
+def eyes(tmp_path: Path) -> str:
+    """Firmware of one kernel."""
+    file = tmp_path / "fw_eyes.py"
+    file.write_text(FIRMWARE)
+    return f"{file}:eyes"
+
+
+def test_nothing_is_overwritten_unless_asked(eyes: str, tmp_path: Path) -> None:
     """A second export stops before it writes; --force writes."""
-    assert ran("one_eye", tmp_path)[0] == 0
-    (tmp_path / "kernels.h").write_text("mine")
-    code, output = ran("one_eye", tmp_path)
+    folder = tmp_path / "c"
+    assert ran(eyes, folder)[0] == 0
+    (folder / "kernels.h").write_text("mine")
+    code, output = ran(eyes, folder)
     assert code == 2
     assert "--force" in output
-    assert (tmp_path / "kernels.h").read_text() == "mine"
-    assert ran("one_eye", tmp_path, "--force")[0] == 0
-    assert (tmp_path / "kernels.h").read_text() != "mine"
+    assert (folder / "kernels.h").read_text() == "mine"
+    assert ran(eyes, folder, "--force")[0] == 0
+    assert (folder / "kernels.h").read_text() != "mine"
 
 
 @pytest.mark.parametrize("wrong", ["nosuch", "nosuch.py:firmware"])
@@ -52,9 +62,9 @@ def test_firmware_that_is_not_there_is_named(wrong: str, tmp_path: Path) -> None
     assert not (tmp_path / "c").exists()
 
 
-def test_a_file_in_the_folder_s_place(tmp_path: Path) -> None:
+def test_a_file_in_the_folder_s_place(eyes: str, tmp_path: Path) -> None:
     """A folder cannot be made where a file lies."""
     (tmp_path / "c").write_text("")
-    code, output = ran("one_eye", tmp_path / "c")
+    code, output = ran(eyes, tmp_path / "c")
     assert code == 2
     assert "must be" in output

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from bfsim.api import Frame
 from tests.firmware import refinement_references as references
 from tests.firmware.line_rig import BareCore, edges_of, find_lines
+from tests.tiers import exhaustive
 from tinyphoon.stages.line_refinement import RefinementThresholds, line_refinement
 from tinyphoon.stages.line_segments import SEGMENT_WORDS
 from tinyphoon.stores.lines import LINE_WORDS
@@ -104,7 +105,7 @@ def off_px(picture: np.ndarray, column: float, lean: float, *, is_refined: bool)
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("contrast", [(60, 180), (180, 60), (100, 125)])
+@pytest.mark.parametrize("contrast", [(60, 180), *exhaustive(((180, 60),), ((100, 125),))])
 @pytest.mark.parametrize("lean", [0.0, 0.013, -0.11, 0.4])
 def test_edges_anywhere_in_a_pixel(lean: float, contrast: tuple[int, int]) -> None:
     """To a sixteenth of a pixel and the rounding of both ends, wherever in its pixel the edge is."""

@@ -12,6 +12,7 @@ from tests.firmware.lenses import nearest, rectified, source_points
 from tests.firmware.pictures import grey_uyvy, random_uyvy
 from tests.firmware.test_areas import run
 from tests.firmware.whole_pictures import buffer, random_frames, stereo
+from tests.tiers import exhaustive
 from tinyphoon import rectified_features
 from tinyphoon.areas import Area
 from tinyphoon.stages.rectified_lines import rectify_lines
@@ -41,9 +42,7 @@ def edges_of(board: Board, core: str) -> plain.Edges:
     return [[(word & 255, word >> 8 & 255, word >> 16) for word in row] for row in rows]
 
 
-@pytest.mark.parametrize(
-    "area", [(20, 31, 100, 70), pytest.param((0, 0, WIDTH, HEIGHT), marks=pytest.mark.exhaustive)]
-)
+@pytest.mark.parametrize("area", [(20, 31, 100, 70), *exhaustive(((0, 0, WIDTH, HEIGHT),))])
 def test_features_are_those_of_the_camera_moved(area: tuple[int, int, int, int]) -> None:
     """Of an area those that lie in it after that: edges to the pixel, lines to the bit."""
     x, y, width, height = area

@@ -324,6 +324,7 @@ def check_board(frames, width: int, height: int) -> dict[str, int]:
     return results
 
 
+@pytest.mark.exhaustive
 def test_rendered_edges() -> None:
     """The second frame of the built-in recording."""
     with RecordingReader(BUILT_IN_RECORDING) as reader:
