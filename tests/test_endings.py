@@ -85,11 +85,13 @@ def test_a_fault_of_bfsim_is_no_broken_limit() -> None:
     assert "fault of bfsim" in done.stderr
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("number", "code"),
     [
         (signal.SIGTERM, 143),
-        *exhaustive((signal.SIGHUP, 129), (signal.SIGINT, 130)),
+        (signal.SIGHUP, 129),
+        (signal.SIGINT, 130),
     ],
 )
 def test_a_signal_leaves_nothing_behind(tmp_path: Path, number: signal.Signals, code: int) -> None:

@@ -90,6 +90,7 @@ def test_the_page_of_a_run_is_that_of_the_command(tmp_path: Path) -> None:
         assert path.read_text() == (tmp_path / "command.html").read_text()
 
 
+@pytest.mark.exhaustive
 def test_a_page_that_cannot_be_is_refused(tmp_path: Path) -> None:
     """Of records that nobody can make again, where there is no folder, and where the run does not come out as before."""
     with pytest.raises(ConfigError, match=r"must come from simulate\(\)"):

@@ -14,6 +14,7 @@ import yaml
 
 from tests.pages import ROOT, blocks_of
 from tests.test_run import FIRMWARE, record
+from tests.tiers import exhaustive
 
 FILE = ".github/workflows/frame-rate.yml"
 SLOWER = FIRMWARE.replace("        out[x] = 0\n", "        out[x] = x * 7919 // (line[x] + 1)\n")
@@ -70,9 +71,11 @@ def played(folder: Path, environment: Mapping[str, str]) -> int:
     ("word", "instead", "said"),
     [
         ("", "", "ok -- validation done"),
-        ("runs-on", "runs-in", "'runs-on' is a required property"),
-        ("on: [push, pull_request]", "on: [push, pull_requests]", "'pull_requests' is not one of"),
-        ("- uses: actions/checkout@v4", "- use: actions/checkout@v4", "under any of the given schemas"),
+        *exhaustive(
+            ("runs-on", "runs-in", "'runs-on' is a required property"),
+            ("on: [push, pull_request]", "on: [push, pull_requests]", "'pull_requests' is not one of"),
+            ("- uses: actions/checkout@v4", "- use: actions/checkout@v4", "under any of the given schemas"),
+        ),
     ],
 )
 def test_the_workflow_is_one_to_github(tmp_path: Path, word: str, instead: str, said: str) -> None:

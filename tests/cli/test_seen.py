@@ -163,6 +163,7 @@ def test_layers_are_some_of_what_is_drawn(tmp_path: Path) -> None:
     assert "--layers must come with --overlay" in refused("--layers", "edges")
 
 
+@pytest.mark.exhaustive
 def test_a_view_that_fails_is_told_with_its_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """And nothing is left of what was to be written."""
     (tmp_path / "dazed_firmware.py").write_text(BLIND)

@@ -84,6 +84,7 @@ def test_the_walk_of_a_student(file: Path) -> None:
     assert "0 of 4 points to run, 0 frames: about 0 s." in call(file, "--dry-run").output
 
 
+@pytest.mark.exhaustive
 def test_parquet_and_plots(file: Path) -> None:
     """Numbers are numbers; any two columns, also of text; a column that is not there is told after the rest."""
     parquet = pytest.importorskip("pyarrow.parquet")

@@ -36,6 +36,7 @@ def errors(found: Circles, *truth: tuple[float, float, float]) -> tuple[float, f
     return float(np.hypot(off[:, 0], off[:, 1]).max()), float(off[:, 2].max())
 
 
+@pytest.mark.exhaustive
 @settings(max_examples=12)
 @given(st.floats(36, 60), st.floats(36, 60), st.floats(5, 30), st.integers(0, 99))
 def test_discs_anywhere(x: float, y: float, radius: float, seed: int) -> None:

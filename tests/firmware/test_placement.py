@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from bfsim.chip.bf561 import BF561
 from bfsim.run import DEFAULT_LDF, simulate
 from bfsim.trace import StallReason
@@ -31,6 +33,7 @@ def test_rows_in_l2_stall_for_every_read() -> None:
         assert [each.issue_cclk for each in core.stages] == [each.issue_cclk for each in home.stages]
 
 
+@pytest.mark.exhaustive
 def test_rows_in_sdram_stall_more_than_in_l2() -> None:
     """SDRAM is the slowest place, and its reasons are told apart: pages, and the bus that both cores want."""
     l2, sdram = (simulate(frames=1, ldf=PLACEMENTS / name) for name in ("l2.ldf", "sdram.ldf"))

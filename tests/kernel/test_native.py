@@ -15,7 +15,6 @@ from bfsim import kernel, store
 from bfsim.errors import BfsimError
 from bfsim.kernel.native_sources import source_of
 from tests.kernel.modules import import_text
-from tests.tiers import exhaustive
 
 PACKAGE = Path(kernel.__file__).parent.parent
 
@@ -121,7 +120,8 @@ print("IndexError" in pick.ir(), len(pick.ir()) > 0)
 """
 
 
-@pytest.mark.parametrize("name", ["NUMBA_BOUNDSCHECK", *exhaustive("NUMBA_DISABLE_JIT")])
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("name", ["NUMBA_BOUNDSCHECK", "NUMBA_DISABLE_JIT"])
 def test_what_is_compiled_is_the_same_in_any_environment(name: str) -> None:
     """What somebody has set to look for mistakes in code of their own ended bfsim, from the cache also without it."""
     done = subprocess.run(

@@ -22,6 +22,7 @@ from tests.machine.made_boards import in_work, play
 from tests.machine.owners import assert_owned
 from tests.machine.rig import WORDS, Play, cycles_of, every_frame
 from tests.machine.test_timeline import LDFS, STEPS, Step, main_of
+from tests.tiers import exhaustive
 
 
 @given(STEPS, STEPS, st.booleans(), st.sampled_from(list(LDFS)))
@@ -35,7 +36,7 @@ def test_owners_of_chance_firmware_fill_every_stage(
 
 
 @pytest.mark.parametrize("ldf", sorted(set(LDFS) - {"sdram"}))  # where the internal DMA reaches nothing
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [0, *exhaustive(1)])
 def test_owners_of_random_traffic_fill_every_stage(seed: int, ldf: str) -> None:
     """Firmware that hammers SDRAM and L2 from both cores, while rings and cameras run."""
     firmware = hammer(seed)

@@ -19,6 +19,7 @@ from tests.machine.stream_rig import MORE, NBYTES, READ, WRITE, linear
 from tests.machine.test_spi import MORE as MESSAGES
 from tests.machine.test_spi import Talker
 from tests.machine.timelines import assert_flows, assert_orderly, by_track, told
+from tests.tiers import exhaustive
 
 LINE_BYTES = 2 * SIZE.width_px
 both_fidelities = pytest.mark.parametrize("fidelity", Fidelity)
@@ -162,7 +163,7 @@ def test_the_fill_of_a_ring_says_whether_dma_keeps_up() -> None:
         assert [each.value for each in by_track(spans)["core A", "ring in_ring"]] == values
 
 
-@both_fidelities
+@pytest.mark.parametrize("fidelity", [Fidelity.FAST, *exhaustive(Fidelity.DETAILED)])
 def test_the_load_of_a_bus_is_its_busy_time(fidelity: Fidelity) -> None:
     """A core that reads SDRAM and nothing else: the levels, by the time that they stood, are the busy cycles of the records."""
 

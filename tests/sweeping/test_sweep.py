@@ -88,6 +88,7 @@ def test_a_failing_point_is_told_and_the_rest_goes_on(tmp_path: Path) -> None:
     assert swept(file) == (outcomes, [])
 
 
+@pytest.mark.exhaustive
 def test_firmware_that_changes_under_the_sweep_is_told_and_not_kept(
     file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
