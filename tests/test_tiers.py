@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -12,15 +13,29 @@ import pytest
 from tests.pages import ROOT
 
 SUITE = """
+import os
 import pytest
 
 def test_plain():
-    pass
+    assert os.environ["BFSIM_CACHE_DIR"] == os.path.abspath(".pytest_cache/d/kernels")
 
 @pytest.mark.exhaustive
 def test_exhaustive():
     pass
 """
+
+
+def ran(folder: Path, *options: str) -> str:
+    """Run this suite with the settings of the project; return what is printed."""
+    for name in ("conftest.py", "pyproject.toml"):
+        shutil.copy(ROOT / name, folder)
+    (folder / "tests").mkdir()
+    (folder / "tests" / "test_both.py").write_text(SUITE)
+    environment = {name: each for name, each in os.environ.items() if name != "BFSIM_CACHE_DIR"}
+    command = [sys.executable, "-m", "pytest", "-q", *options]
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
 
 
 @pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md"])
@@ -41,11 +56,10 @@ def test_what_is_exhaustive_is_left_out_unless_asked_or_named(
     tmp_path: Path, options: list[str], found: set[str]
 ) -> None:
     """The two commands have every test once; whoever names a file gets all of it."""
-    for name in ("conftest.py", "pyproject.toml"):
-        shutil.copy(ROOT / name, tmp_path)
-    (tmp_path / "tests").mkdir()
-    (tmp_path / "tests" / "test_both.py").write_text(SUITE)
-    command = [sys.executable, "-m", "pytest", "--collect-only", "-q", *options]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert {line.partition("::test_")[2] for line in done.stdout.splitlines() if "::" in line} == found
+    printed = ran(tmp_path, "--collect-only", *options)
+    assert {line.partition("::test_")[2] for line in printed.splitlines() if "::" in line} == found
+
+
+def test_compiled_kernels_stay_in_the_cache_of_pytest(tmp_path: Path) -> None:
+    """From run to run, unless somebody says where else."""
+    assert "2 passed" in ran(tmp_path, "tests/test_both.py")
