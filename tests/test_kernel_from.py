@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from mmap import mmap
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +14,12 @@ from bfsim.blackfin.address_space import AddressSpace
 from bfsim.blackfin.linking import link
 from bfsim.blackfin.objects import read_object
 from bfsim.blackfin.subroutines import ARRAYS, LoadedImage, placed
+from bfsim.chip.boards import CM_BF561
 from bfsim.compiling import file_code
 from bfsim.errors import ConfigError, KernelError
 from bfsim.explain import explain
 from bfsim.kernel import GCC_O2
+from bfsim.machine.memories import Memories
 
 DATA = Path(__file__).parent / "blackfin" / "data"
 ROW = np.arange(0, 96, 3, dtype=np.uint8)
@@ -70,6 +73,42 @@ def test_arrays_lie_in_the_order_of_the_arguments(order: tuple[int, ...]) -> Non
     first = addresses[0]
     assert addresses == [first, first + 112, first + 224]
     assert [each.is_written for each in parts] == [True, False, False]
+
+
+def test_arrays_in_the_memory_of_a_board_are_not_copied() -> None:
+    """The code sees what is stored there, stores there, and takes the cycles that it takes on copies."""
+    kernel, totals = sums(), []
+    code = kernel.compile(GCC_O2)
+    memory = Memories(CM_BF561).arena
+    row, out = memory[4096 : 4096 + len(ROW)], memory[8192 : 8192 + 4 * len(ROW)].view(np.int32)
+    calls = [kernel.prepare(code, [ROW, np.zeros(len(ROW), np.int32)], code.new_totals())]
+    calls.append(kernel.prepare(code, [row, out], code.new_totals(), memory=memory))
+    row[:] = ROW
+    for each in calls:
+        work = each.run([None, None, len(ROW), 2])
+        totals.append((work.issue_cclk, work.stall_cclk, work.value))
+    assert totals[0] == totals[1]
+    assert (out == expected(ROW)).all()
+    space = code.subroutine.processor.space
+    assert (space.at(space.window(memory) + 4096, len(ROW)) == ROW).all()
+
+
+def test_a_window_is_there_for_as_long_as_its_memory() -> None:
+    """Two memories have windows of their own; the next one takes the place of one that is gone."""
+    space = AddressSpace()
+    first, second = (np.frombuffer(mmap(-1, 8192), np.uint8) for _ in range(2))
+    first[5], second[5] = 1, 2
+    there = space.window(first)
+    assert space.window(first) == there
+    assert space.window(second) == there + 8192
+    assert [int(space.at(each + 5, 1)[0]) for each in (there, there + 8192)] == [1, 2]
+    del first
+    third = np.frombuffer(mmap(-1, 4096), np.uint8)
+    third[5] = 3
+    assert space.window(third) == there
+    assert space.at(there + 5, 1) == 3
+    with pytest.raises(ConfigError, match="but there is none"):
+        space.at(there + 4096, 1)
 
 
 def test_the_counters_add_up_to_the_cycles_of_a_call() -> None:

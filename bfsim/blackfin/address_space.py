@@ -1,4 +1,7 @@
-"""The Blackfin's address space of 4 GB, in this process: memories where it has some, and nothing elsewhere."""
+"""The Blackfin's address space of 4 GB, in this process: memories where it has some, and nothing elsewhere.
+
+A memory is one of its own, or a window: memory that others have, too, such as that of a simulated board.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ import ctypes
 import mmap
 from dataclasses import dataclass, field
 from typing import Any
+from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +19,20 @@ from bfsim.errors import ConfigError
 SPAN_BYTES = 1 << 32
 NO_ACCESS = 0
 """Of the host's pages: an access is a fault."""
+WINDOWS = 0x20000000
+"""[HRM] Asynchronous memory, which programs are not linked to: where windows are, and behind it if that is full."""
+MAP_FIXED, MREMAP_MAYMOVE, MREMAP_FIXED = 0x10, 1, 2
+"""Linux: pages are laid at an address, whatever is there."""
+FAILED = ctypes.c_void_p(-1).value
 
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """A memory at an address; its size is in whole pages of the host."""
+    """A memory at an address; its size is in whole pages of the host. `shared`: what it is a window on, for as long as that is there."""
 
     base: int
     octets: NDArray[np.uint8]
+    shared: ref[NDArray[np.uint8]] | None = None
 
     @property
     def end(self) -> int:
@@ -75,6 +85,40 @@ class AddressSpace:
         self.memories.append(Memory(start, octets))
         return self.memories[-1]
 
+    def window(self, shared: NDArray[np.uint8]) -> int:
+        """Return the address at which the space has memory of the host, the same bytes: whole pages that may be `shared`."""
+        for each in self.memories:
+            if each.shared and each.shared() is shared:
+                return each.base
+        self._close_windows()
+        base = self._gap(len(shared))
+        _lay(shared.ctypes.data, len(shared), self.origin + base)
+        octets = np.asarray(_Pages(self._map, self.origin + base, len(shared)))
+        self.memories.append(Memory(base, octets, ref(shared)))
+        return base
+
+    def _close_windows(self) -> None:
+        """Give up windows whose memory is gone."""
+        kept = []
+        for each in self.memories:
+            if each.shared and each.shared() is None:
+                _reserve(self.origin + each.base, len(each.octets))
+            else:
+                kept.append(each)
+        self.memories = kept
+
+    def _gap(self, nbytes: int) -> int:
+        """Return the first address for a window of so many bytes. Raises ConfigError where there is none."""
+        start = WINDOWS
+        for each in sorted(self.memories, key=lambda each: each.base):
+            if each.base < start + nbytes and start < each.end:
+                start = each.end
+        if start + nbytes > SPAN_BYTES:
+            raise ConfigError(
+                f"an address space must have room for {nbytes:,} bytes of a board's memory, but has none"
+            )
+        return start
+
     def at(self, address: int, nbytes: int) -> NDArray[np.uint8]:
         """Return the bytes at an address, to read and to write. Raises ConfigError where there is no memory."""
         for each in self.memories:
@@ -94,3 +138,22 @@ def _protect(address: int, nbytes: int, access: int) -> None:
     protect = ctypes.CDLL(None, use_errno=True).mprotect
     if protect(ctypes.c_void_p(address), ctypes.c_size_t(nbytes), access):
         raise OSError(ctypes.get_errno(), "the host does not protect memory")
+
+
+def _reserve(address: int, nbytes: int) -> None:
+    """Have nothing at addresses that stay reserved."""
+    flags = mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS | MAP_FIXED
+    _host("mmap", address, nbytes, NO_ACCESS, flags, -1, 0)
+
+
+def _lay(source: int, nbytes: int, target: int) -> None:
+    """Have the pages of a shared mapping at a second address: Linux does so if it is to move the first 0 bytes of them."""
+    _host("mremap", source, 0, nbytes, MREMAP_MAYMOVE | MREMAP_FIXED, target)
+
+
+def _host(name: str, address: int, *words: int) -> None:
+    """Call a function of the C library that lays out pages."""
+    call = getattr(ctypes.CDLL(None, use_errno=True), name)
+    call.restype = ctypes.c_void_p
+    if call(ctypes.c_void_p(address), *map(ctypes.c_ssize_t, words)) == FAILED:
+        raise OSError(ctypes.get_errno(), "the host does not lay out memory")

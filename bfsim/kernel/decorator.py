@@ -136,17 +136,19 @@ class Kernel:
         access_trace: AccessTrace | None = None,
         first_site: int = 0,
         stack: NDArray[np.uint8] | None = None,
+        memory: NDArray[np.uint8] | None = None,
     ) -> RunnableCall:
         """Bind `arrays`, in the order of the array parameters. Raises KernelError when one does not fit its type.
 
         `first_site`: what the access trace calls the first site of the program. `stack`: memory whose accesses object code reports, too.
+        `memory`: of the board, where object code finds arrays that lie in it without a copy.
         """
         for position, array in zip(self.array_positions, arrays, strict=True):
             self.check_array(position, array)
         if not isinstance(code, CompiledKernel):
             from bfsim.kernel.objects.calls import ObjectCall  # most firmware is Python
 
-            return ObjectCall(code, arrays, self.check, totals, access_trace, first_site, stack)
+            return ObjectCall(code, arrays, self.check, totals, access_trace, first_site, stack, memory)
         self._check_overlaps(arrays)
         slots = self._slots()
         bound = [(slots[position], each) for position, each in zip(self.array_positions, arrays, strict=True)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from mmap import mmap
 from typing import Any
 
 import numpy as np
@@ -46,7 +47,7 @@ class Row:
 
 
 class Memories:
-    """All memories of one board, zeroed. What is never touched costs the host nothing.
+    """All memories of one board, zeroed. What is never touched costs the host nothing; others may have them at addresses of their own, too.
 
     In the arena SDRAM comes first, then L2, then what cameras and links keep of the world outside and the registers that
     descriptors are fetched into, then the cores' own.
@@ -71,7 +72,7 @@ class Memories:
                 self.sdram_end = end
             elif memory == "L2":
                 self.l2_end = end
-        self.arena: NDArray[np.uint8] = np.zeros(end, np.uint8)
+        self.arena: NDArray[np.uint8] = np.frombuffer(mmap(-1, end), np.uint8)
 
     def bytes_from(self, offset: int, nbytes: int) -> NDArray[np.uint8]:
         """Return `nbytes` of the arena from `offset`, to be read and written."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from bfsim.blackfin.calling import ISSUE_MASK, STALL_SHIFT, BoundCall, Counts
 from bfsim.blackfin.guard import catch_always
-from bfsim.blackfin.subroutines import STACK, STACK_BYTES, placed
+from bfsim.blackfin.subroutines import STACK, STACK_BYTES, Placed, placed
 from bfsim.blackfin.tracing import Followed, block_of
 from bfsim.kernel import crashes
 from bfsim.kernel.access_trace import AccessTrace
@@ -30,7 +30,10 @@ IN_MEMORY = {
 
 
 class ObjectCall:
-    """A kernel's object code bound to its arrays, which are copied to the Blackfin's memory for each call, and back."""
+    """A kernel's object code bound to its arrays.
+
+    The Blackfin's memory has a window on that of a board; other arrays are copied there for each call, and back.
+    """
 
     def __init__(
         self,
@@ -41,18 +44,25 @@ class ObjectCall:
         access_trace: AccessTrace | None = None,
         first_site: int = 0,
         stack: NDArray[np.uint8] | None = None,
+        memory: NDArray[np.uint8] | None = None,
     ) -> None:
         """`arrays`: in the order of the array parameters. `check` raises the error when the arguments of a call are wrong.
 
         `access_trace` is told of accesses to arrays, by traced code; it calls the code's first site `first_site`. `stack`: where the
-        stack is, if its accesses are told, too.
+        stack is, if its accesses are told, too. `memory`: that of the board, if all arrays lie in it.
         """
         function = code.function
         self._check, self._access_trace = check, access_trace
-        self._kept = arrays  # their places have their addresses only
-        named = zip(function.array_names, arrays, strict=True)
-        written = [array.flags.writeable and code.may_write(name) for name, array in named]
-        parts, addresses = placed(arrays, written, code.subroutine.processor.space)
+        self._kept = arrays, memory  # their places have their addresses only
+        space = code.subroutine.processor.space
+        parts: Sequence[Placed] = ()
+        if memory is None:
+            named = zip(function.array_names, arrays, strict=True)
+            written = [array.flags.writeable and code.may_write(name) for name, array in named]
+            parts, addresses = placed(arrays, written, space)
+        else:
+            from_host = space.window(memory) - memory.ctypes.data
+            addresses = [each.ctypes.data + from_host for each in arrays]
         kinds = [each.type for each in function.parameters]
         self._count = len(kinds)
         self._integers = [position for position, each in enumerate(kinds) if isinstance(each, IntType)]

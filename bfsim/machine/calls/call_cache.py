@@ -103,12 +103,13 @@ class CallCache:
         owners: MemoryOwners,
         ledger: Ledger,
         *,
+        memory: NDArray[np.uint8],
         stack: NDArray[np.uint8] | None = None,
         own: Collection[str],
         handed_over: Collection[str],
         before_call: tuple[BeforeCall, ...],
     ) -> None:
-        """`stack`: the memory of the core's stack if it is outside of L1. `own`: the buffers that only this core works on.
+        """`memory`: where all rows lie. `stack`: the memory of the core's stack if it is outside of L1. `own`: the buffers that only this core works on.
 
         `handed_over`: those of which that holds at a time.
         """
@@ -122,6 +123,7 @@ class CallCache:
         self._before_call = before_call
         self._owners = owners
         self._ledger = ledger
+        self._memory = memory
         self._stack = stack
         self._groups: dict[tuple[str, Kernel, tuple[int, ...]], CallGroup] = {}
         self._in_stage: dict[str, StageGroups] = {}
@@ -206,7 +208,13 @@ class CallCache:
             seen.update(self._subbanks.of(row))
         access_trace = self._access_trace if traced else None
         call: BoundCall = kernel.prepare(
-            group.code, [each.array for each in rows], group.totals, access_trace, group.first_site, stack
+            group.code,
+            [each.array for each in rows],
+            group.totals,
+            access_trace,
+            group.first_site,
+            stack,
+            self._memory,
         )
         if group.fetched:
             call = FetchedCall(call, group, self._code, self._access_trace)
