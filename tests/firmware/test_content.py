@@ -12,6 +12,8 @@ from bfsim.run import BUILT_IN_RECORDING
 from tests.firmware.pictures import Bytes, grey_uyvy, random_uyvy, stripes
 from tests.firmware.whole_pictures import stereo
 
+pytestmark = pytest.mark.exhaustive
+
 WIDTH, HEIGHT = 320, 240
 STEADY = ("Edge detection", "Open & closing", "Blob detection")
 
@@ -46,7 +48,6 @@ def ratio(seen: Sequence[Seen], stage: str) -> float:
     return max(cycles) / min(cycles)
 
 
-@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("stage", "most"), [("Edge detection", 1.01), ("Open & closing", 1.005), ("Blob detection", 1.05)]
 )
@@ -55,7 +56,6 @@ def test_steady_stages_over_the_built_in_recording(shipped: list[Seen], stage: s
     assert ratio(shipped, stage) < most
 
 
-@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("stage", "most"), [("Edge detection", 1.5), ("Open & closing", 1.005), ("Blob detection", 3.4)]
 )

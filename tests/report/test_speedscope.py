@@ -25,7 +25,6 @@ def run() -> RunRecord:
     return simulate(frames=2, ldf=Path("sdram"))
 
 
-@pytest.mark.exhaustive
 def test_a_file_is_of_the_schema(run: RunRecord) -> None:
     """Of speedscope's; and every frame that a sample names is there."""
     for each in (run, edge_run(3_000_000, 3_100_000)):
