@@ -1,6 +1,6 @@
 """Where the time of a frame goes: the simulator's own, in µs by part, as docs/architecture.md has it.
 
-    python benchmarks/frame_time.py [--frames 48]
+    python benchmarks/frame_time.py [--frames 48] [--profile gcc-adi]
 
 Compiled code is timed at each call; what Python does between is sampled each millisecond of processor time, in a run of its
 own. Compare the parts with each other: all of them are as fast as the machine is just then.
@@ -25,12 +25,18 @@ import bfsim
 import tinyphoon
 from benchmarks.native_time import Stopwatch, native_time
 from bfsim.api import FrameSize
+from bfsim.building import build_for
 from bfsim.chip.boards import CM_BF561
+from bfsim.kernel import VDSP_O2
+from bfsim.kernel.build import ESTIMATED, Build
+from bfsim.kernel.profile import profile_named
 from bfsim.linker import link, parse_ldf
+from bfsim.loading import load_firmware
 from bfsim.machine.board import Board
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.run import BUILT_IN_RECORDING, DEFAULT_LDF
+from bfsim.shipped import FIRMWARE
 
 INTERVAL_S = 0.001
 SIMULATOR = Path(bfsim.__file__).parent
@@ -38,6 +44,7 @@ KERNELS, WEAVE = "calls of kernels", "buses, machine code and Python"
 PARTS = {
     Path(tinyphoon.__file__).parent: "main loops and stages of the firmware",
     SIMULATOR / "kernel": KERNELS,
+    SIMULATOR / "blackfin": KERNELS,
     SIMULATOR / "machine" / "calls": KERNELS,
     SIMULATOR / "machine" / "bus": WEAVE,
     SIMULATOR / "machine" / "dma": "rings and DMA",
@@ -55,7 +62,14 @@ def frames_of(number: int) -> list[StereoFrame]:
         return list(islice(cycle(list(reader.frames())), number))
 
 
-def run(frames: Sequence[StereoFrame]) -> float:
+def build_of(profile: str) -> Build:
+    """Return how `bfsim run --profile` builds the kernels of the built-in firmware."""
+    loaded = load_firmware(FIRMWARE[0])
+    with loaded.own.named():
+        return build_for(loaded, profile_named(profile))
+
+
+def run(frames: Sequence[StereoFrame], build: Build = ESTIMATED) -> float:
     """Run the built-in firmware on the simulated board; return the processor time, in seconds."""
     size = FrameSize(320, 240)
     board = Board(
@@ -63,6 +77,7 @@ def run(frames: Sequence[StereoFrame]) -> float:
         tinyphoon.tinyphoon,
         size,
         link(parse_ldf(DEFAULT_LDF), symbols_of(tinyphoon.tinyphoon, size)),
+        build=build,
     )
     begin = process_time()
     board.run(iter(frames))
@@ -87,16 +102,16 @@ def sampled(parts: Counter[str]) -> Iterator[None]:
     signal.signal(signal.SIGPROF, before)
 
 
-def measure(number: int) -> dict[str, float]:
+def measure(number: int, build: Build) -> dict[str, float]:
     """Return the time of each part, in µs a frame: Python's by its share of the samples, without the compiled code it calls."""
     frames = frames_of(number)
-    run(frames)  # compiles
+    run(frames, build)  # compiles
     kernels = Stopwatch()
     with native_time(kernels, Stopwatch()):
-        run(frames)
+        run(frames, build)
     samples = Counter[str]()
     with sampled(samples):
-        whole = run(frames)
+        whole = run(frames, build)
     native = {KERNELS: kernels.seconds}  # of the buses Python has less than a sample's error
     parts = {
         part: whole * count / samples.total() - native.get(part, 0) for part, count in samples.most_common()
@@ -113,8 +128,10 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--frames", type=int, default=48, help="how many (default: 48)")
+    parser.add_argument("--profile", default=VDSP_O2.name, help=f"compiler profile (default: {VDSP_O2.name})")
+    given = parser.parse_args()
     print("| part | µs |\n|---|---|")
-    for part, us in measure(parser.parse_args().frames).items():
+    for part, us in measure(given.frames, build_of(given.profile)).items():
         print(f"| {part} | {us:,.0f} |")
 
 

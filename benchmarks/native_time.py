@@ -10,6 +10,7 @@ from time import thread_time_ns
 from typing import Any
 from unittest.mock import patch
 
+from bfsim.kernel.objects.calls import ObjectCall
 from bfsim.kernel.work import PreparedCall
 from bfsim.machine.bus.woven_bus import WovenBus
 
@@ -54,6 +55,7 @@ def native_time(kernels: Stopwatch, weave: Stopwatch) -> Iterator[None]:
     """Take the time of kernels and of the weave, in boards that are made inside."""
     with (
         patch.object(PreparedCall, "__init__", _after(PreparedCall, "_entry", kernels)),
+        patch.object(ObjectCall, "__init__", _after(ObjectCall, "_entry", kernels)),
         patch.object(WovenBus, "__init__", _after(WovenBus, "_advance", weave)),
     ):
         yield

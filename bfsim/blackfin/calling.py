@@ -188,18 +188,18 @@ take:
 
 
 class _Entry(NamedTuple):
-    """`call()` makes the call whose block `block` has the address of."""
+    """`call()` makes the call whose block `cell` has the address of."""
 
     call: Callable[[], int]
-    block: ctypes.c_int64
+    cell: ctypes.c_int64
 
 
 @cache
 def _entry() -> _Entry:
     machine_code.add(native_code(MODULE))
     kind = ctypes.CFUNCTYPE(ctypes.c_int64)
-    block = ctypes.c_int64.from_address(machine_code.address_of(BLOCK))
-    return _Entry(kind(machine_code.address_of(ENTRY)), block)
+    cell = ctypes.c_int64.from_address(machine_code.address_of(BLOCK))
+    return _Entry(kind(machine_code.address_of(ENTRY)), cell)
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,9 +211,11 @@ class Counts:
 
 
 class BoundCall:
-    """A subroutine bound to its memory. `arguments`: its words, of which the lower 32 bits count; what may have one value alone has it.
+    """A subroutine bound to its memory: `entry()` calls it if `cell` has the address `at`.
 
-    `result`: the address of what a call leaves in R0.
+    It returns the cycles without waits, and those of waits `STALL_SHIFT` bits above; less than 0 if it did not return.
+    `arguments`: its words, of which the lower 32 bits count; what may have one value alone has it. `result`: the address of what
+    a call leaves in R0.
     """
 
     def __init__(
@@ -250,16 +252,11 @@ class BoundCall:
         for each in parts:
             values += each.address, each.copy, each.nbytes, each.nbytes * each.is_written
         self._block = (ctypes.c_int64 * len(values))(*values)
-        self._at = ctypes.addressof(self._block)
+        self.at = ctypes.addressof(self._block)
         self.arguments: Any = (ctypes.c_int64 * len(words)).from_buffer(self._block, 8 * HEAD)
         self.result = head[STATE] + 8 * SLOTS[RESULT]
-        self._call, self._current = _entry()
-
-    def run(self) -> int:
-        """Call it. Returns its cycles without waits, and those of waits `STALL_SHIFT` bits above; less than 0 if it did not return."""
-        self._current.value = self._at
-        return self._call()
+        self.entry, self.cell = _entry()
 
     def refuse(self, outcome: int) -> NoReturn:
-        """Raise KernelError for what `run` has returned of a call that did not return."""
+        """Raise KernelError for what `entry` has returned of a call that did not return."""
         self._subroutine.refuse(Event(-1 - outcome))

@@ -140,8 +140,12 @@ class PreparedCall:
 
     def run(self, arguments: Sequence[Any]) -> Work:
         """Run the kernel now and say what it cost, until the next run. Of `arguments`, only the numbers are read."""
-        if self._integers:
-            self._put(arguments)
+        block = self._block
+        try:
+            for word, position in self._integers:
+                block[word] = arguments[position]
+        except (TypeError, IndexError):
+            self._put_as_integers(arguments)
         if self._floats:
             self._put_floats(arguments)
         self._cell.value = self._at
@@ -154,7 +158,7 @@ class PreparedCall:
         work.stall_cclk = cycles >> STALL_SHIFT
         work.accesses = self._access_trace.take_count() if self._access_trace else 0
         if self._value_word:
-            work.value = self._block[self._value_word]
+            work.value = block[self._value_word]
             if self._is_float:
                 work.value = FLOAT.unpack(BITS.pack(work.value))[0]
         return work
@@ -167,12 +171,8 @@ class PreparedCall:
         except (struct.error, OverflowError, IndexError):
             self._check(arguments)
 
-    def _put(self, arguments: Sequence[Any]) -> None:
-        """Put the integers where the kernel finds them; it refuses those that do not fit."""
-        try:
-            for word, position in self._integers:
-                self._block[word] = arguments[position]
-        except (TypeError, IndexError):
-            self._check(arguments)
-            for word, position in self._integers:
-                self._block[word] = int(arguments[position])
+    def _put_as_integers(self, arguments: Sequence[Any]) -> None:
+        """Put numbers that are none of Python's ints where the kernel finds them; what is no integer is refused."""
+        self._check(arguments)
+        for word, position in self._integers:
+            self._block[word] = int(arguments[position])

@@ -79,6 +79,7 @@ class ObjectCall:
         _catch_faults()
         counts = Counts(totals[: len(code.order)], code.order)
         self._call = BoundCall(code.subroutine, _bounds(function, arrays, addresses), parts, counts, trace)
+        self._entry, self._cell, self._at = self._call.entry, self._call.cell, self._call.at
         self._words = self._call.arguments
         self._result: Any = (
             IN_MEMORY[str(function.result)].from_address(self._call.result) if function.result else None
@@ -92,11 +93,16 @@ class ObjectCall:
 
     def run(self, arguments: Sequence[Any]) -> Work:
         """Run the code now and say what it cost, until the next run. Of `arguments`, only the numbers are read."""
-        if self._integers:
-            self._put(arguments)
+        words = self._words
+        try:
+            for position in self._integers:
+                words[position] = arguments[position]
+        except (TypeError, IndexError):
+            self._put_as_integers(arguments)
         if self._floats:
             self._put_floats(arguments)
-        outcome = self._call.run()
+        self._cell.value = self._at
+        outcome = self._entry()
         if outcome < 0 or len(arguments) != self._count:
             self._check(arguments)
             self._call.refuse(outcome)
@@ -108,15 +114,11 @@ class ObjectCall:
             work.value = self._result.value
         return work
 
-    def _put(self, arguments: Sequence[Any]) -> None:
-        """Put the integers where the code finds them; those that do not fit are refused there."""
-        try:
-            for position in self._integers:
-                self._words[position] = arguments[position]
-        except (TypeError, IndexError):
-            self._check(arguments)
-            for position in self._integers:
-                self._words[position] = int(arguments[position])
+    def _put_as_integers(self, arguments: Sequence[Any]) -> None:
+        """Put numbers that are none of Python's ints where the code finds them; what is no integer is refused."""
+        self._check(arguments)
+        for position in self._integers:
+            self._words[position] = int(arguments[position])
 
     def _put_floats(self, arguments: Sequence[Any]) -> None:
         """Put the bits of the floats there; what is no number is refused."""
