@@ -19,7 +19,7 @@ from bfsim.errors import ConfigError, FirmwareError, RecordingError, shown
 from bfsim.given import given_firmware
 from bfsim.hardware import find_board, find_profile
 from bfsim.identifying import DigestedFrames, identity_of, recording_digest, written
-from bfsim.kernel import VDSP_O2
+from bfsim.kernel.profile import DEFAULT
 from bfsim.linker import LinkerScript, LinkMap
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Fidelity
@@ -85,7 +85,7 @@ def simulate(
     feed: Feed | str = Feed.DEMAND,
     fidelity: Fidelity | str = Fidelity.FAST,
     sanitize: bool = False,
-    profile: str = VDSP_O2.name,
+    profile: str = DEFAULT.name,
     script: Path | str | None = None,
     record_work: Path | str | None = None,
     work: Path | str | None = None,

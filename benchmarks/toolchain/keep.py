@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 
 from bfsim.compiling.file_code import SOURCES, recipe_of_source
-from bfsim.compiling.object_code import LEVELS, InC, recipe_of, written
+from bfsim.compiling.object_code import LEVELS, PROGRAMS, InC, recipe_of, written
 from bfsim.compiling.recipes import KEPT_COMPILER, Recipe
 from bfsim.compiling.toolchain import blackfin_toolchain
 from bfsim.loading import entries_of, kernels_of, load_firmware
@@ -54,6 +54,7 @@ def main() -> None:
     wanted = {each.digest(KEPT_COMPILER): each for each in recipes(in_c.values())}
     for old in {each.name for each in FOLDER.iterdir()} - wanted.keys():
         (FOLDER / old).unlink()
+    (FOLDER / PROGRAMS).write_bytes(zlib.compress("\n".join(in_c).encode(), 9))
     for name, program in in_c.items():
         (FOLDER / name).write_bytes(zlib.compress(json.dumps(asdict(program)).encode(), 9))
     for name, each in wanted.items():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
+from functools import cache
 from typing import Any
 
 from bfsim import store
@@ -14,6 +15,8 @@ from bfsim.errors import ConfigError
 from bfsim.kernel import CompilerProfile, Kernel, keys
 from bfsim.kernel.function import Function
 
+PROGRAMS = "programs"
+"""What comes with bfsim under this name: the names under which its firmware is kept as C."""
 LEVELS = {"gcc-O2": "-O2", "gcc-O0": "-O0", "gcc": "-O2", "gcc-adi": "-O2"}
 """What the compiler is told, for each profile that stands for it."""
 
@@ -70,6 +73,22 @@ def object_code_at_hand(
     files, names = _in_c(kernels, entries)
     found = code_at_hand(recipe_of(files, level_of(profile)), toolchain)
     return found and ObjectCode(*found, names)
+
+
+def shipped_code(kernel: Kernel, profile: CompilerProfile, toolchain: Toolchain | None) -> ObjectCode | None:
+    """Return the code of the built-in firmware that a kernel belongs to, or None where it belongs to none."""
+    functions = _by_symbol([kernel])
+    for program in _shipped_programs():
+        if kernel.function.symbol in program.names:
+            names = {functions[each]: program.names[each] for each in functions}
+            return ObjectCode(*code_of(recipe_of(program.files, level_of(profile)), toolchain), names)
+    return None
+
+
+@cache
+def _shipped_programs() -> tuple[InC, ...]:
+    names = (store.shipped(__package__, PROGRAMS) or b"").decode().split()
+    return tuple(InC(**json.loads(found)) for each in names if (found := store.shipped(__package__, each)))
 
 
 def recipe_of(files: Mapping[str, str], level: str) -> Recipe:

@@ -10,6 +10,7 @@ from bfsim.kernel import CompilerProfile, Kernel
 from bfsim.kernel import kernel as estimated_kernel
 
 if TYPE_CHECKING:
+    from bfsim.compiling.loaded_code import LoadedCode
     from bfsim.kernel.objects.compiled import CompiledObject
 
 
@@ -28,24 +29,31 @@ _found: dict[tuple[Kernel, str], CompiledObject] = {}
 def own_code(kernel: Kernel, profile: CompilerProfile) -> CompiledObject | None:
     """Return the code that a profile's compiler makes of a kernel, or None where none is kept and no compiler is on the PATH.
 
-    It is compiled with all kernels of its file, as in a run: which calls are inlined depends on them. Raises ConfigError with what the
-    compiler says if it refuses.
+    A kernel of the built-in firmware has the code that it has there; others are compiled with all kernels of their file, as in a run:
+    which calls are inlined depends on them. Raises ConfigError with what the compiler says if it refuses.
     """
-    if (kernel, profile.name) in _found:
-        return _found[kernel, profile.name]
+    if (kernel, profile.name) not in _found:
+        code = _code_with(kernel, profile)
+        if code is None:
+            return None
+        _found[kernel, profile.name] = code.compiled(kernel.function)
+    return _found[kernel, profile.name]
+
+
+def _code_with(kernel: Kernel, profile: CompilerProfile) -> LoadedCode | None:
     from bfsim.compiling.loaded_code import LoadedCode  # most kernels are never asked
-    from bfsim.compiling.object_code import object_code_at_hand
+    from bfsim.compiling.object_code import object_code_at_hand, shipped_code
     from bfsim.compiling.toolchain import blackfin_compiler
     from bfsim.kernel.objects.timing import timing_of
 
-    function = kernel.function
+    function, timing, compiler = kernel.function, timing_of(profile), blackfin_compiler()
+    shipped = shipped_code(kernel, profile, compiler)
+    if shipped and (whole := LoadedCode(shipped, timing)).has(function):
+        return whole
     beside = {
         each
         for each in function.names.values()
         if isinstance(each, Kernel) and each.object_code is None and each.function.file == function.file
     }
-    code = object_code_at_hand({*beside, kernel}, {kernel}, profile, blackfin_compiler())
-    if code is None:
-        return None
-    found = _found[kernel, profile.name] = LoadedCode(code, timing_of(profile)).compiled(function)
-    return found
+    code = object_code_at_hand({*beside, kernel}, {kernel}, profile, compiler)
+    return code and LoadedCode(code, timing)

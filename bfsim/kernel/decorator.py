@@ -21,7 +21,7 @@ from bfsim.kernel.counters import Counter
 from bfsim.kernel.entry import FIRST_ARGUMENT
 from bfsim.kernel.function import Function
 from bfsim.kernel.jit import CompiledKernel, compile_kernel
-from bfsim.kernel.profile import GCC_O0, RUN_AS_COMPILED, VDSP_O2, CompilerProfile, profile_named
+from bfsim.kernel.profile import DEFAULT, GCC_O0, RUN_AS_COMPILED, CompilerProfile, profile_named
 from bfsim.kernel.reading import read_kernel
 from bfsim.kernel.types import ArrayType, FloatType, IntType
 from bfsim.kernel.work import PreparedCall, Work, is_single
@@ -286,9 +286,9 @@ class Kernel:
             raise KernelError(
                 f"{self.name} must get {names} by their places, not {', '.join(named)} by name ({self.place})"
             )
-        return self._call(arguments, VDSP_O2).value
+        return self._call(arguments, DEFAULT).value
 
-    def cost(self, *arguments: Any, profile: str = VDSP_O2.name) -> int:
+    def cost(self, *arguments: Any, profile: str = DEFAULT.name) -> int:
         """Run as a call does, and return its CCLK cycles: those of its operations, callees included, and their interlocks.
 
         It is what the call takes with code and arrays in L1, without waits for memory: for a unit test. `profile` names

@@ -180,6 +180,8 @@ GCC_ADI = replace(
 )  # fmt: skip
 """The same code on Analog Devices' documented pipeline, with their library."""
 PROFILES = {each.name: each for each in (GCC_O0, GCC_O2, GCC, GCC_ADI, VDSP_O2)}
+DEFAULT = GCC_ADI
+"""What is taken where no profile is named: real code where there is some, and documented times."""
 RUN_AS_COMPILED = {GCC.name, GCC_ADI.name}
 """Profiles whose kernels run as their compiler's own code where there is some."""
 

@@ -10,8 +10,8 @@ OF_FILES = "object code of files"
 def code_in_words(run: RunRecord) -> str:
     """Say whose object code ran, for which part of the issue cycles; nothing where all was estimated as was asked for."""
     share = run.object_share
-    if not share and not run.identity.code:
-        return ""
+    if not share:
+        return run.identity.code
     whose = run.identity.code or OF_FILES
     if share == 1:
         return f"{whose}: all issue cycles"

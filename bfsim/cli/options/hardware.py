@@ -54,11 +54,11 @@ COMPILER_OPTIONS = (
     click.option(
         "--profile",
         metavar="NAME",
-        default="vdsp-O2",
+        default="gcc-adi",
         show_default=True,
-        help="Compiler whose code is costed: vdsp-O2, gcc-O2 and gcc-O0 are estimates; gcc runs the code that GCC makes of the kernels, "
-        "where there is some, as the GNU simulator times it, and gcc-adi the same code as Analog Devices documents its time; or one of "
-        "yours, FILE.py:NAME or PACKAGE:NAME.",
+        help="Compiler whose code is costed: gcc-adi runs the code that GCC makes of the kernels, where there is some, as Analog Devices "
+        "documents its time, and gcc as the GNU simulator times it; gcc-O2, gcc-O0 and vdsp-O2 are estimates; or one of yours, "
+        "FILE.py:NAME or PACKAGE:NAME.",
     ),
     click.option(
         "--toolchain",
