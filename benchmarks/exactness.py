@@ -64,7 +64,7 @@ def twins() -> Iterator[Set]:
             if not VARIANTS[variant].one_file:
                 sources = [str(each) for each in sorted(WRITTEN.glob("*.c"))]
                 made = toolchain.build_object(Path(name), sources, options_of(variant)).read_bytes()
-                code = ObjectCode(made, toolchain.identity.version, names)
+                code = ObjectCode(made, toolchain.identity.version, names, is_shipped=False)
                 yield f"firmware twins by hand, {variant}", Sampler(CALLS, sample), code
 
 

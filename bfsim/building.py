@@ -9,12 +9,7 @@ from bfsim.kernel.build import Build
 from bfsim.kernel.profile import RUN_AS_COMPILED
 from bfsim.loading import LoadedFirmware, entries_of, kernels_of
 
-MODEL_ERROR_PERCENT = 13
-"""Of a kernel that the model never saw, on average. [measured] docs/accuracy.md"""
-NOTHING_AT_HAND = (
-    f"estimated, some {MODEL_ERROR_PERCENT} % off a kernel: no code of GCC is kept for this firmware, and bfin-elf-gcc is not on "
-    "the PATH"
-)
+NOTHING_AT_HAND = "estimated, for bfin-elf-gcc is not on the PATH"
 
 
 def build_for(loaded: LoadedFirmware, profile: CompilerProfile) -> Build:
@@ -43,4 +38,5 @@ def build_for(loaded: LoadedFirmware, profile: CompilerProfile) -> Build:
         {each: there for each in code.names if there.has(each)},
         f"GCC {code.compiler} {level_of(profile)}, timing {there.timing.name}",
         hashlib.sha256(code.octets).hexdigest(),
+        is_tried=code.is_shipped,
     )

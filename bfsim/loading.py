@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import sys
 from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
@@ -145,10 +146,10 @@ def load_kernel(name: str, firmware: str) -> Kernel:
 
 
 def kernels_of(own: OwnModules) -> set[Kernel]:
-    """Return every kernel that modules name."""
-    return {
-        each for module in own.modules.values() for each in vars(module).values() if isinstance(each, Kernel)
-    }
+    """Return every kernel that modules name; of firmware that others have imported, that theirs do."""
+    others = (module for name in own.sources if (module := sys.modules.get(name)))
+    modules = own.modules.values() or others
+    return {each for module in modules for each in vars(module).values() if isinstance(each, Kernel)}
 
 
 def entries_of(firmware: Firmware) -> set[Kernel]:

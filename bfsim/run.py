@@ -24,7 +24,7 @@ from bfsim.linker import LinkerScript, LinkMap
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.buffers import FrameSize
-from bfsim.machine.calls.call_cache import BeforeCall, sanitized
+from bfsim.machine.calls.call_cache import BeforeCall, Sanitizer
 from bfsim.machine.cameras.capture import Feed
 from bfsim.machine.peripherals.device import Device
 from bfsim.machine.peripherals.table import devices_of, makers_of
@@ -105,8 +105,8 @@ def simulate(
     by their paths, such as {"sdram.nRP": 3}; see `bfsim.chip.settings`. `profile` names the compiler whose code is costed
     in the same ways. Without `recording` and `ldf` the built-in ones are taken; `ldf` may also be the name of a shipped one, `defines`
     are macros for it, and `include_dirs` folders that it may include files from; `frames` stops early. What the code of
-    kernels does is always checked; `sanitize` runs each kernel as it is written first, to find what is wrong even where the
-    compiler would leave it out. `before` is called with what will run and how many frames of it, before the first one does,
+    estimated kernels does is always checked; `sanitize` runs each kernel as it is written first, to find what is wrong even where the
+    compiler would leave it out, and so does the first frame where kernels run as the code that a compiler made of them just now. `before` is called with what will run and how many frames of it, before the first one does,
     and may raise; the digest of the recording is not known then. `progress` is called with
     (frames done, frames in all); `script` is a JSON or TOML file
     that tells the firmware's devices what to do; `record_work` is a file to record what the cores do in, and `work` such a
@@ -137,13 +137,15 @@ def simulate(
         program = loaded.firmware.calibrated(calibration)
         build = build_for(loaded, found_compiler.value)
         link_map = place(loaded.firmware, calibration, size, placement, spec, build)
+        sanitizer = Sanitizer(goes_on=sanitize)
+        is_sanitized = sanitize or not build.is_tried
         machine = Board(
             spec,
             program,
             size,
             link_map,
             feed=feed,
-            before_call=(*((sanitized,) if sanitize else ()), *((on_call,) if on_call else ())),
+            before_call=(*((sanitizer,) if is_sanitized else ()), *((on_call,) if on_call else ())),
             build=build,
             devices=devices,
             fidelity=fidelity,
@@ -173,6 +175,7 @@ def simulate(
         def count(_frame: object) -> None:
             nonlocal done
             done += 1
+            sanitizer.is_past_first = True
             if progress:
                 progress(done, total)
 

@@ -10,7 +10,7 @@ import pytest
 from benchmarks.toolchain.keep import FOLDER, programs, recipes
 from bfsim import compiling, store
 from bfsim.blackfin.objects import read_object
-from bfsim.compiling.object_code import InC, object_code
+from bfsim.compiling.object_code import PROGRAMS, InC, object_code
 from bfsim.compiling.recipes import KEPT_COMPILER
 from bfsim.compiling.toolchain import Toolchain, blackfin_compiler, prefer
 from bfsim.errors import ConfigError
@@ -74,7 +74,8 @@ def test_what_comes_with_bfsim_is_the_code_of_what_it_is_now() -> None:
     """Kernels of the built-in firmware, and examples: `python -m benchmarks.toolchain.keep` compiles what was changed."""
     in_c = programs()
     compiled = {each.digest(KEPT_COMPILER) for each in recipes(in_c.values())}
-    assert {each.name for each in FOLDER.iterdir()} == compiled | in_c.keys()
+    assert {each.name for each in FOLDER.iterdir()} == compiled | in_c.keys() | {PROGRAMS}
+    assert (store.shipped(compiling.__name__, PROGRAMS) or b"").decode().split() == [*in_c]
     for name, each in in_c.items():
         assert InC(**json.loads(store.shipped(compiling.__name__, name) or b"{}")) == each
     for each in compiled:

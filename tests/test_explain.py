@@ -71,7 +71,7 @@ def test_without_optimisation_every_variable_is_on_the_stack() -> None:
 
 def test_totals_are_those_of_the_records(run: RunRecord) -> None:
     """After a run, the lines' cycles add up to the kernel's issue and stall cycles, and the calls are the records'."""
-    explanation = explain_named("sobel_row", "tinyphoon", "vdsp-O2", run)
+    explanation = explain_named("sobel_row", "tinyphoon", "gcc-adi", run)
     records = [each for each in run.kernels if each.kernel == "sobel_row"]
     expected = sum(
         line.issue_cclk + line.stall_cclk.get(StallReason.INTERLOCK, 0)

@@ -15,7 +15,7 @@ from bfsim.chip.boards import BOARDS, CM_BF561
 from bfsim.cli.main import main
 from bfsim.errors import ConfigError
 from bfsim.hardware import find_board, find_profile
-from bfsim.kernel import VDSP_O2
+from bfsim.kernel.profile import DEFAULT
 from bfsim.run import simulate
 from tests.test_run import FIRMWARE, record
 
@@ -158,7 +158,7 @@ def test_a_run_has_them_in_its_identity(write: Write, tmp_path: Path) -> None:
     write("fw_eyes.py", FIRMWARE)
     how = {"recording": record(tmp_path / "drive.mcap", 1), "firmware": "fw_eyes:eyes"}
     usual = simulate(**how)
-    assert (usual.identity.board, usual.identity.compiler) == ("cm-bf561", VDSP_O2.name)
+    assert (usual.identity.board, usual.identity.compiler) == ("cm-bf561", DEFAULT.name)
     assert (usual.identity.board_files, usual.identity.compiler_files) == ((), ())
     own = simulate(**how, board="mine.py:FAST", profile="mine.py:PLAIN", settings={"pll.ssel": 10})
     identity = own.identity

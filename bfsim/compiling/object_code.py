@@ -9,7 +9,7 @@ from functools import cache
 from typing import Any
 
 from bfsim import store
-from bfsim.compiling.recipes import Recipe, code_at_hand, code_of
+from bfsim.compiling.recipes import Recipe, code_at_hand, code_of, is_shipped
 from bfsim.compiling.toolchain import Toolchain
 from bfsim.errors import ConfigError
 from bfsim.kernel import CompilerProfile, Kernel, keys
@@ -25,12 +25,13 @@ LEVELS = {"gcc-O2": "-O2", "gcc-O0": "-O0", "gcc": "-O2", "gcc-adi": "-O2"}
 class ObjectCode:
     """Kernels as one relocatable ELF file, with the parts of the libraries that they call.
 
-    `names`: what each kernel is called in C. `compiler`: its version.
+    `names`: what each kernel is called in C. `compiler`: its version. `is_shipped`: whether it comes with bfsim.
     """
 
     octets: bytes
     compiler: str
     names: Mapping[Function, str]
+    is_shipped: bool
 
     def symbol_of(self, function: Function) -> str:
         """Return the symbol of a kernel in the file."""
@@ -60,7 +61,8 @@ def object_code(
     level, (files, names) = level_of(profile), _in_c(kernels, entries)
     if not names:
         raise ConfigError("the run must call a kernel for there to be real code, but calls none")
-    return ObjectCode(*code_of(recipe_of(files, level), toolchain), names)
+    recipe = recipe_of(files, level)
+    return ObjectCode(*code_of(recipe, toolchain), names, is_shipped(recipe))
 
 
 def object_code_at_hand(
@@ -71,8 +73,9 @@ def object_code_at_hand(
 ) -> ObjectCode | None:
     """Return what `object_code` does, or None where there is neither kept code nor a compiler."""
     files, names = _in_c(kernels, entries)
-    found = code_at_hand(recipe_of(files, level_of(profile)), toolchain)
-    return found and ObjectCode(*found, names)
+    recipe = recipe_of(files, level_of(profile))
+    found = code_at_hand(recipe, toolchain)
+    return found and ObjectCode(*found, names, is_shipped(recipe))
 
 
 def shipped_code(kernel: Kernel, profile: CompilerProfile, toolchain: Toolchain | None) -> ObjectCode | None:
@@ -81,7 +84,8 @@ def shipped_code(kernel: Kernel, profile: CompilerProfile, toolchain: Toolchain 
     for program in _shipped_programs():
         if kernel.function.symbol in program.names:
             names = {functions[each]: program.names[each] for each in functions}
-            return ObjectCode(*code_of(recipe_of(program.files, level_of(profile)), toolchain), names)
+            recipe = recipe_of(program.files, level_of(profile))
+            return ObjectCode(*code_of(recipe, toolchain), names, is_shipped(recipe))
     return None
 
 

@@ -60,6 +60,11 @@ def code_of(recipe: Recipe, toolchain: Toolchain | None) -> tuple[bytes, str]:
     return found
 
 
+def is_shipped(recipe: Recipe) -> bool:
+    """Whether the code of a recipe comes with bfsim."""
+    return store.shipped(__package__, recipe.digest(KEPT_COMPILER)) is not None
+
+
 def code_at_hand(recipe: Recipe, toolchain: Toolchain | None) -> tuple[bytes, str] | None:
     """Return what `code_of` does, or None where there is neither kept code nor a compiler."""
     compiler = toolchain.identity if toolchain else KEPT_COMPILER

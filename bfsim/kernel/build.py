@@ -32,13 +32,15 @@ class Build:
 
     `objects`: kernels whose object code there is, others are as `profile` estimates them.
     `code`: whose code it is, and which timing counts its cycles, in words, or why there is none; empty where `profile` is an
-    estimate. `digest`: of that code.
+    estimate. `digest`: of that code. `is_tried`: whether its kernels have been run with every index checked before; object code checks
+    none.
     """
 
     profile: CompilerProfile
     objects: Mapping[Function, Ready] = field(default_factory=dict)
     code: str = ""
     digest: str = ""
+    is_tried: bool = True
 
     def has_code(self, kernel: Kernel) -> bool:
         """Whether a kernel runs as object code."""

@@ -286,7 +286,8 @@ class Kernel:
             raise KernelError(
                 f"{self.name} must get {names} by their places, not {', '.join(named)} by name ({self.place})"
             )
-        return self._call(arguments, DEFAULT).value
+        self.check(arguments)
+        return self._run(arguments, self.compile(DEFAULT)).value
 
     def cost(self, *arguments: Any, profile: str = DEFAULT.name) -> int:
         """Run as a call does, and return its CCLK cycles: those of its operations, callees included, and their interlocks.
@@ -295,13 +296,13 @@ class Kernel:
         the compiler; with `gcc` and `gcc-adi` it is the cost of the code that GCC makes of the kernel, or with a warning an estimate where
         there is none. Raises KernelError for arguments that do not fit, and ConfigError with what GCC says if it refuses.
         """
-        work = self._call(arguments, profile_named(profile))
+        self.check(arguments)
+        compiler = profile_named(profile)
+        work = self._run(arguments, self._own(compiler) or self.compile(compiler))
         return work.issue_cclk + work.stall_cclk
 
-    def _call(self, arguments: Sequence[Any], profile: CompilerProfile) -> Work:
-        self.check(arguments)
+    def _run(self, arguments: Sequence[Any], code: CompiledKernel | CompiledObject) -> Work:
         arrays = [arguments[each] for each in self.array_positions]
-        code = self._own(profile) or self.compile(profile)
         return self.prepare(code, arrays, code.new_totals()).run(arguments)
 
     def _own(self, profile: CompilerProfile) -> CompiledObject | None:
@@ -314,7 +315,7 @@ class Kernel:
                 f"the cost of {self.name} in {profile.name} is an estimate: no code of GCC is kept for it, and GCC is not on the PATH "
                 f"({self.place})",
                 BfsimWarning,
-                stacklevel=4,
+                stacklevel=3,
             )
         return code
 

@@ -245,7 +245,7 @@ def test_code_of_another_gcc_is_refused(repository: Path, monkeypatch: pytest.Mo
     Path("fw_eyes.py").write_text(SLOWER)
     assert call(*what).exit_code == 1
     text = Path("limits.toml").read_text()
-    (was,) = re.findall(r'\bcode = "(.+?)"', text)
+    was = re.findall(r'\bcode = "(.+?)"', text)[-1]
     Path("limits.toml").write_text(text.replace(was, "GCC 3.0 -O2"))
     monkeypatch.setattr("bfsim.machine.board.Board.run", None)
     assert f"code was 'GCC 3.0 -O2' when the limits were measured, and is {was!r}" in refused(*what)

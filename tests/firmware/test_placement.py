@@ -15,10 +15,13 @@ SEMAPHORES_OF_FIRST_FRAME = (
 
 
 def test_rows_in_l2_stall_for_every_read() -> None:
-    """Pixels and issue cycles stay; each read of a kernel waits the latency of L2, less the cycle of its own."""
+    """Pixels and issue cycles stay; each read of a kernel waits the latency of L2, less the cycle of its own.
+
+    Of estimated code: of object code, functions that get arrays of several memories count a half of their reads for each.
+    """
     assert BF561.l2
-    at_home = simulate(frames=1)
-    moved = simulate(frames=1, ldf=PLACEMENTS / "l2.ldf")
+    at_home = simulate(frames=1, profile="vdsp-O2")
+    moved = simulate(frames=1, ldf=PLACEMENTS / "l2.ldf", profile="vdsp-O2")
     assert moved.frames[0].results == at_home.frames[0].results
     memory_of = {each.buffer: each.memory for each in moved.buffers}
     for core, home in zip(moved.frames[0].cores, at_home.frames[0].cores, strict=True):

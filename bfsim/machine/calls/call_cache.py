@@ -39,9 +39,21 @@ def _nobody(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
     """Care for no call."""
 
 
-def sanitized(kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
-    """Run a kernel as it is written, on copies. Raises KernelError for a wrong index or divisor."""
-    kernel.sanitize([each.array if isinstance(each, Row) else each for each in arguments])
+@dataclass(slots=True)
+class Sanitizer:
+    """Runs each kernel as it is written before it is called, on copies: in the first frame, or if it `goes_on`, in all.
+
+    A call raises KernelError for a wrong index or divisor.
+    """
+
+    goes_on: bool
+    is_past_first: bool = False
+    """Whether the first frame is done."""
+
+    def __call__(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> None:
+        """Run `kernel`."""
+        if self.goes_on or not self.is_past_first:
+            kernel.sanitize([each.array if isinstance(each, Row) else each for each in arguments])
 
 
 @dataclass(frozen=True, slots=True)
