@@ -42,6 +42,8 @@ COLUMNS: Mapping[str, tuple[str, tuple[float, ...]]] = {
 FITTED = "ball-beside-goal"
 FRAME = "Frame"
 
+COMPILER = "vdsp-O2"
+"""An estimate of what compiled the robot's firmware: VisualDSP (T 5.1.3)."""
 DEFAULT = "cm-bf561"
 CLOCKS = (DEFAULT, "cm-bf561-525-131", "cm-bf561-500-125", "cm-bf561-550-110", "cm-bf561-500-100")
 """Boards that differ by their clocks: HARDWARE 2.1."""
@@ -120,7 +122,14 @@ def times(
 ) -> Times:
     """Return core A's median ms of each row, and their sum, from frame 1 on if there are more: beside frame 0 no next picture comes in."""
     board, numbers = setting.board, setting.numbers
-    run = simulate(recording, firmware=firmware, board=board, settings=numbers, frames=frames, **options)
+    run = simulate(
+        recording,
+        firmware=firmware,
+        board=board,
+        settings=numbers,
+        frames=frames,
+        **{"profile": COMPILER, **options},
+    )
     per_ms = run.identity.cclk_hz / 1e3
     row_of = {each.stage: each.within or each.stage for each in run.rows}
     measured = run.frames[1:] or run.frames

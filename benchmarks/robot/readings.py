@@ -74,6 +74,7 @@ def other_programs(code_in_l2: Path) -> Iterator[Reading]:
     yield Reading(title="`tinyphoon`, buffers in SDRAM", firmware=tinyphoon, options={"ldf": "sdram"})
     yield Reading(title="`tinyphoon`, not optimised", firmware=tinyphoon, options={"profile": "gcc-O0"})
     yield Reading(title="`thesis`, not optimised", firmware=thesis, options={"profile": "gcc-O0"})
+    yield Reading(title="`thesis`, the code GCC makes of it", firmware=thesis, options={"profile": "gcc-adi"})
     yield Reading(title="`thesis` at 500/100 MHz", firmware=thesis, setting=Setting(SLOWER, {}))
 
 
