@@ -56,4 +56,4 @@ def _code_with(kernel: Kernel, profile: CompilerProfile) -> LoadedCode | None:
         if isinstance(each, Kernel) and each.object_code is None and each.function.file == function.file
     }
     code = object_code_at_hand({*beside, kernel}, {kernel}, profile, compiler)
-    return code and LoadedCode(code, timing)
+    return LoadedCode(code, timing) if code else None
