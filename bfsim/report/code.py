@@ -20,5 +20,5 @@ def code_in_words(run: RunRecord) -> str:
         )
     whose = run.identity.code or OF_FILES
     if share == 1:
-        return f"{whose}: all issue cycles"
+        return whose
     return f"{whose}: {100 * share:.2f} % of the issue cycles; all others are estimated"

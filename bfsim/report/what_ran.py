@@ -15,12 +15,15 @@ DIGITS_TOLD = 12
 
 def what_ran(run: RunRecord) -> Iterator[tuple[str, str]]:
     """Yield whose code it was, the names of what ran, and the digests of that and of its cycles."""
-    if code := code_in_words(run):
-        yield "Code", code
     identity = run.identity
+    compiler = identity.compiler
+    if run.object_share == 1:
+        compiler += f" ({code_in_words(run)})"
+    elif code := code_in_words(run):
+        yield "Code", code
     size = f"{identity.width_px}x{identity.height_px}"
     board = f"{identity.board} ({mhz(identity.cclk_hz)}, SCLK {mhz(identity.sclk_hz)})"
-    extras = [identity.ldf, identity.compiler, f"feed {identity.feed}"]
+    extras = [identity.ldf, compiler, f"feed {identity.feed}"]
     if identity.fidelity != "fast":
         extras.append(f"fidelity {identity.fidelity}")
     yield "Run", f"{identity.recording} {size}, {identity.firmware}, {board}, {', '.join(extras)}"

@@ -16,6 +16,7 @@ import pytest
 from bfsim import store
 from bfsim.errors import BfsimWarning
 from bfsim.kernel import VDSP_O2, Kernel, costing, instrument
+from bfsim.kernel.profile import DEFAULT
 from tests.kernel.modules import HEADER, import_text
 from tests.kernel.running import CALLING_VDSP, cclk
 
@@ -145,8 +146,8 @@ def test_a_changed_callee_profile_or_variant_is_compiled_again(
         module = import_text(text, tmp_path, "same")
         assert module.f(5) == 5 * factor
     module.f.compile(CALLING_VDSP)
-    module.f.compile(VDSP_O2, counted=False)
-    module.f.compile(VDSP_O2, traced=True)
+    module.f.compile(DEFAULT, counted=False)
+    module.f.compile(DEFAULT, traced=True)
     assert compiles == ["f"] * 5
     assert costings == ["same_f"] * 2 + ["same_g", "same_f"]
     estimates = 2 * 2  # of both kernels with either factor, from which it is decided what is inlined
