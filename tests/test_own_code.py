@@ -28,6 +28,7 @@ from bfsim.run import simulate
 from bfsim.seen import SeenFrame
 from bfsim.shipped import FIRMWARE
 from bfsim.verifying import Sampler, verify
+from tests.kernel import cost_kernels
 from tests.machine.owners import assert_owned
 
 FEW_CALLED = ("suppress_row", "gauss3_row", "clear_segments")
@@ -172,9 +173,26 @@ def test_explain_shows_the_own_code() -> None:
 @pytest.mark.usefixtures("_nothing_at_hand")
 def test_a_cost_without_a_compiler_is_an_estimate() -> None:
     """And is said to be."""
-    kernel = load_kernel("isqrt32", FIRMWARE[0])
-    with pytest.warns(BfsimWarning, match="the cost of isqrt32 in gcc is an estimate: no code of GCC"):
-        assert kernel.cost(100, profile="gcc") == kernel.cost(100, profile="gcc-O2")
+    kernel, rows = cost_kernels.copy_words, np.zeros((2, 8), np.uint32)
+    with pytest.warns(BfsimWarning, match="the cost of copy_words in gcc is an estimate: no code of GCC"):
+        assert kernel.cost(*rows, profile="gcc") == kernel.cost(*rows, profile="gcc-O2")
+
+
+def test_the_cost_of_a_built_in_kernel_is_that_of_its_code(
+    runs: dict[str, Run], recwarn: pytest.WarningsRecorder
+) -> None:
+    """Each call of `clear_labels` costs the same in a run, and as much by itself, without a compiler."""
+    kernel = load_kernel("tinyphoon.stages.blob_detection:clear_labels", FIRMWARE[0])
+    records = [
+        each
+        for each in runs["gcc"].kernels
+        if each.first_line == kernel.function.first_line and each.kernel == kernel.name
+    ]
+    calls = sum(each.calls for each in records)
+    assert kernel.cost(np.zeros(320, np.uint8), profile="gcc") * calls == sum(
+        each.issue_cclk for each in records
+    )
+    assert not recwarn.list
 
 
 @pytest.mark.toolchain

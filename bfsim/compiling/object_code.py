@@ -85,7 +85,8 @@ def shipped_code(kernel: Kernel, profile: CompilerProfile, toolchain: Toolchain 
         if kernel.function.symbol in program.names:
             names = {functions[each]: program.names[each] for each in functions}
             recipe = recipe_of(program.files, level_of(profile))
-            return ObjectCode(*code_of(recipe, toolchain), names, is_shipped(recipe))
+            found = code_at_hand(recipe, toolchain)
+            return found and ObjectCode(*found, names, is_shipped(recipe))
     return None
 
 
