@@ -15,10 +15,10 @@ Given = Mapping[str, int | str]
 class Beside(Enum):
     """Which places in a bundle of a 32-bit DSP instruction and two 16-bit ones an instruction may take."""
 
-    ALONE = ()
-    DSP = (0,)
-    FIRST = (1,)
-    EITHER = (1, 2)
+    ALONE = frozenset[int]()
+    DSP = frozenset({0})
+    FIRST = frozenset({1})
+    EITHER = frozenset({1, 2})
 
 
 @dataclass(frozen=True, slots=True)

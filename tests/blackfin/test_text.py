@@ -8,6 +8,7 @@ from pathlib import Path
 
 from benchmarks.instructions.printed import plain
 from bfsim.blackfin.decode import InstructionError, decode
+from bfsim.blackfin.form import Beside
 from bfsim.blackfin.forms import TABLE
 from bfsim.blackfin.text import text
 
@@ -32,3 +33,10 @@ def test_bytes_are_an_instruction_or_refused() -> None:
         except InstructionError:
             refused += 1
     assert 0 < refused < 1 << 15
+
+
+def test_places_in_a_bundle_are_sets() -> None:
+    """Python 3.11.2 makes an `object()` of an enumeration's empty tuple, in which nothing can be looked for."""
+    firsts = [1 in each.value for each in (Beside.ALONE, Beside.DSP, Beside.FIRST, Beside.EITHER)]
+    assert firsts == [False, False, True, True]
+    assert all(isinstance(each.value, frozenset) for each in Beside)
