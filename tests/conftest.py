@@ -12,13 +12,22 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from tests.pages import path_without_compiler
+
 # no deadline, for the first example compiles kernels, and machines are busy
 settings.register_profile("bfsim", deadline=None, derandomize=True)  # the same examples every time
 settings.register_profile("search", deadline=None)  # others every time
 settings.load_profile("bfsim")
 
+PATH = os.environ["PATH"]
 WHOLE_COMMANDS = (Path(__file__).parent, Path(__file__).parent / "cli")
 """Folders of tests that do what users do."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Run what does not ask for a Blackfin's compiler as where there is none: with one, kernels would take other cycles."""
+    os.environ["PATH"] = PATH if item.get_closest_marker("toolchain") else path_without_compiler()
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -23,6 +23,7 @@ import pytest
 from click.testing import CliRunner
 
 from bfsim.cli.main import main
+from bfsim.compiling.toolchain import GCC
 
 ROOT = Path(__file__).parent.parent
 PAGES = (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
@@ -74,6 +75,12 @@ def blocks_of(page: Path) -> list[Block]:
     ]
 
 
+def path_without_compiler() -> str:
+    """Return the PATH of somebody without GCC for the Blackfin."""
+    folders = os.environ["PATH"].split(os.pathsep)
+    return os.pathsep.join(each for each in folders if not (Path(each) / GCC).exists())
+
+
 @contextmanager
 def reader() -> Iterator[Reader]:
     """Yield somebody with an empty folder and an installed `bfsim`, also where only the sources are on the path."""
@@ -87,7 +94,7 @@ def reader() -> Iterator[Reader]:
         folder.mkdir()
         environment = {
             **os.environ,
-            "PATH": f"{command.parent}:{Path(sys.executable).parent}:{os.environ['PATH']}",
+            "PATH": f"{command.parent}:{Path(sys.executable).parent}:{path_without_compiler()}",
             "PYTHONPATH": f"{ROOT}:{ROOT / 'firmware'}",
             "COLUMNS": "80",
         }
