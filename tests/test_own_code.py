@@ -22,11 +22,11 @@ from bfsim.kernel import GCC_O2, CompilerProfile, Kernel
 from bfsim.kernel.profile import GCC, GCC_ADI
 from bfsim.loading import entries_of, kernels_of, load_firmware, load_kernel
 from bfsim.machine.memories import Row
-from bfsim.report.code import code_in_words
+from bfsim.report.code import MODEL_ERROR_PERCENT, code_in_words
 from bfsim.result import Run
 from bfsim.run import simulate
 from bfsim.seen import SeenFrame
-from bfsim.shipped import FIRMWARE
+from bfsim.shipped import FIRMWARE, accuracy_on
 from bfsim.verifying import Sampler, verify
 from tests.kernel import cost_kernels
 from tests.machine.owners import assert_owned
@@ -138,6 +138,12 @@ def test_the_run_says_whose_code_and_for_how_much(runs: dict[str, Run]) -> None:
     told = f"{100 * of_objects / issue:.2f} % of the issue cycles; all others are estimated"
     assert told in code_in_words(part)
     assert code_in_words(estimated) == ""
+    lacking = replace(estimated, identity=replace(estimated.identity, code=building.NOTHING_AT_HAND))
+    off = f"{MODEL_ERROR_PERCENT} %"
+    assert code_in_words(lacking) == f"{building.NOTHING_AT_HAND}; a kernel is off by some {off}"
+    told = "object code of files: 25.00 % of the issue cycles; all others are " + building.NOTHING_AT_HAND
+    assert code_in_words(replace(lacking, object_share=0.25)) == told
+    assert f"Expect {off}:" in accuracy_on("In short")
     assert "gcc (GCC 12.2.0 -O2, timing gnu)" in " ".join(exact.report().split())
     assert "timing gnu" in exact.report()
 

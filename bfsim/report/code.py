@@ -11,14 +11,12 @@ OF_FILES = "object code of files"
 
 def code_in_words(run: RunRecord) -> str:
     """Say whose object code ran, for which part of the issue cycles; nothing where all was estimated as was asked for."""
-    share = run.object_share
-    if not share:
-        return (
-            f"{run.identity.code}; a kernel is off by some {MODEL_ERROR_PERCENT} %"
-            if run.identity.code
-            else ""
-        )
-    whose = run.identity.code or OF_FILES
+    share, code = run.object_share, run.identity.code
+    has_code = bool(run.identity.code_digest)
+    if not (share or has_code):
+        return f"{code}; a kernel is off by some {MODEL_ERROR_PERCENT} %" if code else ""
+    whose = code if has_code else OF_FILES
     if share == 1:
         return whose
-    return f"{whose}: {100 * share:.2f} % of the issue cycles; all others are estimated"
+    others = "estimated" if has_code else code or "estimated"
+    return f"{whose}: {100 * share:.2f} % of the issue cycles; all others are {others}"

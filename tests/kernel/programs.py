@@ -6,6 +6,12 @@ from hypothesis import strategies as st
 
 ELEMENTS = 16
 SIGNED, UNSIGNED = "i32", "u32"
+ARGUMENTS = {
+    "seed": st.integers(0, 1000),
+    "x": st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
+    "y": st.integers(0, 2**32 - 1) | st.integers(0, 20),
+}
+"""What to call a program with: the seed of what its arrays hold, and its numbers."""
 ARRAYS = {"a": "u8", "b": "i8", "c": "u16", "d": "i16", "e": "u32", "f": "i32"}
 LOCALS = {SIGNED: ("p", "q", "r"), UNSIGNED: ("v", "w")}
 EDGES = {

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
-from hypothesis import strategies as st
 
 from bfsim.kernel import Kernel
 from bfsim.kernel.c import CProgram, c_program, in_python
@@ -18,7 +17,7 @@ from bfsim.kernel.types import ArrayType, FloatType
 from tests.kernel import c_kernels
 from tests.kernel.host_c import call, compiled, copies, exported, needs_compiler
 from tests.kernel.modules import import_text
-from tests.kernel.programs import programs
+from tests.kernel.programs import ARGUMENTS, programs
 from tests.kernel.test_semantics import arrays_of
 from tests.tiers import tried
 
@@ -74,12 +73,7 @@ def test_random_programs_compute_in_c_what_they_compute_here(
     @settings(
         max_examples=examples, deadline=None, phases=[Phase.generate], suppress_health_check=list(HealthCheck)
     )
-    @given(
-        text=programs(),
-        seed=st.integers(0, 1000),
-        x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
-        y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
-    )
+    @given(text=programs(), **ARGUMENTS)
     def holds(text: str, seed: int, x: int, y: int) -> None:
         folder = tmp_path_factory.mktemp("program")
         module = import_text(text, folder)

@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from bfsim.errors import KernelError
 from bfsim.kernel import Kernel
 from tests.kernel.modules import import_text
-from tests.kernel.programs import programs
+from tests.kernel.programs import ARGUMENTS, programs
 from tests.kernel.test_semantics import arrays_of, plain_run
 from tests.kernel.words import Undefined
 from tests.tiers import tried
@@ -59,12 +58,7 @@ def test_a_careless_program_fails_where_plain_python_does(
     """As it is written, a kernel fails at the same index or divisor; as compiled, only if it is wrong; no memory is hurt."""
 
     @settings(max_examples=examples, suppress_health_check=list(HealthCheck))
-    @given(
-        text=programs(careless=True),
-        seed=st.integers(0, 1000),
-        x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
-        y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
-    )
+    @given(text=programs(careless=True), **ARGUMENTS)
     def holds(text: str, seed: int, x: int, y: int) -> None:
         program: Kernel = import_text(text, tmp_path_factory.mktemp("program")).program
         expected = arrays_of(seed)

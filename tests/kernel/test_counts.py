@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from bfsim.kernel import GCC_O0, Kernel, instrument
 from tests.kernel.modules import import_text
-from tests.kernel.programs import programs
+from tests.kernel.programs import ARGUMENTS, programs
 from tests.kernel.running import CALLING_VDSP
 from tests.kernel.test_semantics import arrays_of
 from tests.kernel.words import NAMES, Row, Word
@@ -79,12 +78,7 @@ def test_every_statement_of_a_random_program_is_counted_as_often_as_it_ran(
     """The blocks that are costed are the statements that ran: the counts are those of a traced run by Python."""
 
     @settings(max_examples=examples, suppress_health_check=list(HealthCheck))
-    @given(
-        text=programs(),
-        seed=st.integers(0, 1000),
-        x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
-        y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
-    )
+    @given(text=programs(), **ARGUMENTS)
     def holds(text: str, seed: int, x: int, y: int) -> None:
         program: Kernel = import_text(text, tmp_path_factory.mktemp("program")).program
         first, statements = simple_statements(text)

@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from bfsim.kernel import Kernel
 from tests.kernel.modules import import_text
-from tests.kernel.programs import ARRAYS, ELEMENTS, programs
+from tests.kernel.programs import ARGUMENTS, ARRAYS, ELEMENTS, programs
 from tests.kernel.words import NAMES, Row, Word
 from tests.tiers import tried
 
@@ -41,12 +40,7 @@ def test_random_programs_compute_what_plain_python_computes(
     """A random kernel leaves the same arrays and value as its text run by Python on wrapping integers."""
 
     @settings(max_examples=examples, suppress_health_check=list(HealthCheck))
-    @given(
-        text=programs(),
-        seed=st.integers(0, 1000),
-        x=st.integers(-(2**31), 2**31 - 1) | st.integers(-20, 20),
-        y=st.integers(0, 2**32 - 1) | st.integers(0, 20),
-    )
+    @given(text=programs(), **ARGUMENTS)
     def holds(text: str, seed: int, x: int, y: int) -> None:
         program: Kernel = import_text(text, tmp_path_factory.mktemp("program")).program
         expected, found = arrays_of(seed), arrays_of(seed)

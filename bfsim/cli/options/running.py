@@ -65,7 +65,8 @@ _RUN_PARAMETERS = (
         "--sanitize",
         is_flag=True,
         help="Run every kernel twice, first as it is written: an index outside an array or a division by zero is then an "
-        "error even where the compiler would leave it out. Without it, what the compiled code does is checked. Slower.",
+        "error even where the compiler would leave it out. Without it, what estimated code does is checked; where the "
+        "compiler's own code runs that does not come with bfsim, the first frame is run twice. Slower.",
     ),
 )
 

@@ -47,9 +47,8 @@ class Places:
         if line is not None and line.file in self.of_file:
             function = self.of_file[line.file]
             self.functions[function.symbol] = function
-            last = len(
-                function.source.splitlines()
-            )  # what leaves it has the line of the C's brace, which is behind
+            # what leaves it has the line of the C's closing brace, which is behind the Python
+            last = len(function.source.splitlines())
             return SourceLine(function.symbol, min(line.line, last))
         function, source = self._source(self._routine(address))
         return SourceLine(function.symbol, source.lines.get(address, 1))
