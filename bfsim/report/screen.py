@@ -138,7 +138,7 @@ def _facts(run: RunRecord, budget: Budget, bound: Bound) -> Iterator[tuple[str, 
         )
         yield (
             "Stalls",
-            f"core {bound.core.core}, ms: {told}{', …' if len(stalls) > REASONS_TOLD else ''}",
+            f"core {bound.core.core}, ms/frame: {told}{', …' if len(stalls) > REASONS_TOLD else ''}",
         )
     if run.reference is not None:
         yield run.reference.name, run.reference.about
