@@ -56,32 +56,32 @@ class _Preprocessor:
     def pieces(self, file: File, active: tuple[Path, ...]) -> Iterator[Text]:
         """Yield the expanded text of a file, which the files `active` include."""
         written, conditions, position = file.written, list[_Condition](), 0
+        copied = 0  # up to where the text is yielded, or left out
         while (match := TOKEN.search(written, position)) is not None:
-            start = match.start()
+            start, position, kind = match.start(), match.end(), match.lastgroup
+            if kind == "unclosed":
+                raise file.error_at(start, "comment must end with */ before the file does")
             is_taken = not conditions or conditions[-1].is_taken
+            is_macro = is_taken and kind == "word" and match.group() in self.macros
+            command = None if is_macro or not is_taken else _INCLUDE_COMMAND.match(written, start)
+            if not (is_macro or command or kind in ("directive", "comment")):
+                continue
             if is_taken:
-                yield written[position:start], file, position, True
-            position = match.end()
-            match match.lastgroup:
-                case "directive":
-                    yield from self._obey(file, match, conditions, active)
-                case "unclosed":
-                    raise file.error_at(start, "comment must end with */ before the file does")
-                case _ if not is_taken:
-                    continue
-                case "comment":
-                    yield " ", file, start, False
-                case "word" if match.group() in self.macros:
-                    text, position = self._expanded(file, match)
-                    yield text, file, start, False
-                case _ if command := _INCLUDE_COMMAND.match(written, start):
-                    position = command.end()
-                    yield from self._include(file, start, command["beside"], is_beside=True, active=active)
-                case _:
-                    yield match.group(), file, start, True
+                yield written[copied:start], file, copied, True
+            if kind == "directive":
+                yield from self._obey(file, match, conditions, active)
+            elif command:
+                position = command.end()
+                yield from self._include(file, start, command["beside"], is_beside=True, active=active)
+            elif is_macro:
+                text, position = self._expanded(file, match)
+                yield text, file, start, False
+            elif is_taken:  # a comment
+                yield " ", file, start, False
+            copied = position
         if conditions:
             raise file.error_at(conditions[-1].offset, "#if must end with #endif before the file does")
-        yield written[position:], file, position, True
+        yield written[copied:], file, copied, True
 
     def _expanded(self, file: File, use: re.Match[str]) -> tuple[str, int]:
         try:
