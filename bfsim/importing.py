@@ -90,7 +90,7 @@ class OwnModules(MetaPathFinder):
     @contextmanager
     def _named(self, tops: set[str]) -> Iterator[None]:
         """Put the own modules in the place of those that others have imported by these top-level names."""
-        others = {name: module for name, module in sys.modules.items() if name.partition(".")[0] in tops}
+        others = _below(tops)
         for name in others:
             del sys.modules[name]
         sys.modules.update(self.modules)
@@ -100,7 +100,7 @@ class OwnModules(MetaPathFinder):
         finally:
             sys.meta_path.remove(self)
             own = {name.partition(".")[0] for name in self.modules}
-            here = {name: each for name, each in sys.modules.items() if name.partition(".")[0] in tops | own}
+            here = _below(tops | own)
             self.modules = {name: each for name, each in here.items() if name.partition(".")[0] in own}
             for name in here:
                 del sys.modules[name]
@@ -133,6 +133,12 @@ class OwnModules(MetaPathFinder):
                 return name == __name__ or (own is not None and vars(own) is names)
             frame = getattr(frame, "f_back", None)
         return False
+
+
+def _below(tops: set[str]) -> dict[str, ModuleType]:
+    """Return what is imported by top-level names, and below them."""
+    prefixes = tuple(f"{top}." for top in tops)
+    return {name: each for name, each in sys.modules.items() if name in tops or name.startswith(prefixes)}
 
 
 @dataclass(frozen=True, slots=True)
