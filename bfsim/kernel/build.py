@@ -11,6 +11,7 @@ from bfsim.kernel.decorator import Kernel
 from bfsim.kernel.function import Function
 from bfsim.kernel.jit import CompiledKernel
 from bfsim.kernel.profile import VDSP_O2, CompilerProfile
+from bfsim.machine_code import Effort
 
 if TYPE_CHECKING:
     from bfsim.kernel.objects.compiled import CompiledObject
@@ -50,7 +51,8 @@ class Build:
         """Return a kernel ready to run; `traced`: its accesses outside L1 are reported. Raises KernelError as `Kernel.compile`."""
         if kernel.function in self.objects:
             return self.objects[kernel.function].compiled(kernel.function, traced=traced)
-        return kernel.compile(self.profile, traced=traced)
+        # code that calls at each access is hardly faster for more, which takes six times as long
+        return kernel.compile(self.profile, traced=traced, effort=Effort.REGISTERS if traced else Effort.ALL)
 
     def counters(self, kernel: Kernel) -> tuple[Counter, ...]:
         """Return what is counted in a run and what it costs, callees included. Raises KernelError as `Kernel.counters`."""

@@ -18,8 +18,6 @@ from bfsim.kernel.lowering.charges import Access, Charge
 from bfsim.kernel.profile import CompilerProfile
 
 OPS = {each.value: each for each in Op}
-_READ: dict[str, Costs] = {}
-"""Costs that this process has read from the cache on disk, by their keys."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +35,7 @@ class Costs:
 
 @cache
 def costs_of(function: Function, profile: CompilerProfile) -> Costs:
-    """Cost `function` and its callees, or take the costs from the cache on disk."""
+    """Cost `function` and its callees, or take the costs from the cache on disk; once per process."""
 
     def made() -> Costs:
         from bfsim.kernel.costing import costed  # most starts find all costs
@@ -48,10 +46,8 @@ def costs_of(function: Function, profile: CompilerProfile) -> Costs:
 
 
 def kept_costs(key: str, made: Callable[[], Costs]) -> Costs:
-    """Return the costs that the cache on disk keeps under a key, or those that are made now, which it keeps; a process reads them once."""
-    if key not in _READ:
-        _READ[key] = _costs(store.kept(key, lambda: _rows(made())))
-    return _READ[key]
+    """Return the costs that the cache on disk keeps under a key, or those that are made now, which it keeps."""
+    return _costs(store.kept(key, lambda: _rows(made())))
 
 
 def _rows(costs: Costs) -> dict[str, Any]:

@@ -24,6 +24,8 @@ from bfsim.kernel.types import ArrayType
 
 NO_ARRAY = ""
 """In place of an array's name: memory that belongs to none, such as the stack."""
+_READ: dict[str, Costs] = {}
+"""Costs of object code that this process has read, by the keys of what is kept."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,7 @@ def compiled_object(
 
     key = keys.object_key(*about, f"costs of {function.symbol}")
     costs = (
-        made() if places.folder else kept_costs(key, made)
+        made() if places.folder else _costs_read(key, made)
     )  # lines of files that may change are looked up anew
     program = Program(function.symbol, costs, function.array_names, together=True)
     if traced:
@@ -91,6 +93,13 @@ def compiled_object(
     lines = {one.line.routine for each in costs.counters for one in each.charges} - set(costs.calls)
     functions = tuple(places.function_called(each) for each in (*costs.calls, *sorted(lines)))
     return CompiledObject(function, subroutine, program, functions, places, order)
+
+
+def _costs_read(key: str, made: Callable[[], Costs]) -> Costs:
+    """Return the costs that are kept under a key, or made now; a process reads them once, for each run binds the code to another board."""
+    if key not in _READ:
+        _READ[key] = kept_costs(key, made)
+    return _READ[key]
 
 
 def code_bytes(symbol: str, loaded: LoadedImage, places: Places) -> dict[str, int]:
