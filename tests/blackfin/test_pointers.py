@@ -14,7 +14,7 @@ from bfsim.building import build_for
 from bfsim.kernel import Kernel
 from bfsim.kernel.access_trace import KIND_BIT, KIND_MASK, LOG, STORE, AccessTrace
 from bfsim.kernel.build import Build
-from bfsim.kernel.profile import GCC
+from bfsim.kernel.profile import DEFAULT
 from bfsim.loading import entries_of, load_firmware
 from bfsim.run import simulate
 from bfsim.shipped import FIRMWARE
@@ -27,14 +27,14 @@ KERNELS = ("suppress_row", "gauss3_row", "connect_near", "segment_row")
 @cache
 def built() -> Build:
     """The built-in firmware by GCC's code."""
-    return build_for(load_firmware(FIRMWARE[0]), GCC)
+    return build_for(load_firmware(FIRMWARE[0]), DEFAULT)
 
 
 @pytest.fixture(scope="module")
 def sampler() -> Sampler:
     """A few calls of each kernel in a frame."""
     found = Sampler(4)
-    simulate(frames=1, profile="gcc", on_call=found.see)
+    simulate(frames=1, on_call=found.see)
     return found
 
 

@@ -240,7 +240,7 @@ def test_a_board_that_was_edited_is_refused_by_its_number(
 
 def test_code_of_another_gcc_is_refused(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The profile is the same; before anything runs. Another edit of the firmware is other code of the same GCC, and held."""
-    what = (*WHAT, "--frames", "1", "--profile", "gcc", "--baseline", "limits.toml")
+    what = (*WHAT, "--frames", "1", "--baseline", "limits.toml")
     assert call(*what, "--update").exit_code == 0
     Path("fw_eyes.py").write_text(SLOWER)
     assert call(*what).exit_code == 1

@@ -59,12 +59,12 @@ def test_the_cycles_are_the_same_with_a_page(written: tuple[Path, dict[str, obje
 
 def test_a_profile_writes_a_page_too(tmp_path: Path) -> None:
     """Beside its tables; without a target there is no slack."""
-    result = bfsim("profile", "--html", tmp_path / "profile.html", "--ldf", "l2", "--set", "sdram.nRP=3")
+    result = bfsim("profile", "--html", tmp_path / "profile.html", "--ldf", "thesis", "--set", "sdram.nRP=3")
     assert result.exit_code == 0, result.output
     text = (tmp_path / "profile.html").read_text()
     assert text.count("data:image/webp") == 2
     assert "slack, worst" not in text
-    assert "l2.ldf on cm-bf561" in text
+    assert "thesis.ldf on cm-bf561" in text
 
 
 def test_mistakes_are_told_before_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
