@@ -23,8 +23,10 @@ from bfsim.kernel.lowering import optimised as optimising
 from bfsim.kernel.lowering import unoptimised
 from bfsim.kernel.lowering.charges import Access, merged
 from bfsim.kernel.lowering.rewrites import rewritten
+from bfsim.kernel.lowering.rotations import held, released
 from bfsim.kernel.lowering.unrolled import marked
 from bfsim.kernel.profile import CompilerProfile
+from bfsim.kernel.rules import Rule
 
 UNROLLED_NESTING = 3  # loops in loops that are written out, the inner ones first
 CLEANING = (
@@ -33,8 +35,9 @@ CLEANING = (
 PASSES = (
     "sroa", "simplify_cfg", "jump_threading", "simplify_cfg", "instruction_combine", "loop_simplify", "lcssa",
     "loop_rotate", "new_gvn", "jump_threading", "instruction_combine", "simplify_cfg", "loop_simplify", "lcssa",
-    "loop_rotate", "jump_threading", *CLEANING,
 )  # fmt: skip
+LATER_PASSES = ("jump_threading", *CLEANING)
+"""Behind a second rotation: of the loops that jump threading has made."""
 
 
 def costed(function: Function, profile: CompilerProfile) -> Costs:
@@ -55,6 +58,8 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
     if inlined:
         _inline(module, function)
     generic.run(PASSES, module)
+    module = _rotated(module, profile)
+    generic.run(LATER_PASSES, module)
     text = str(module)
     for _ in range(UNROLLED_NESTING):
         if (unrolling := marked(text)) is None:
@@ -63,6 +68,17 @@ def optimised(function: Function, profile: CompilerProfile) -> str:
         generic.run(("loop_unroll", *CLEANING), module)
         text = str(module)
     return rewritten(text, profile)
+
+
+def _rotated(module: llvm.ModuleRef, profile: CompilerProfile) -> llvm.ModuleRef:
+    """Rotate loops once more; those that end with their test already stay as they are."""
+    holding = held(str(module)) if profile.applies(Rule.ROTATED_ONCE) else None
+    if holding is None:
+        generic.run(("loop_rotate",), module)
+        return module
+    module = llvm.parse_assembly(holding)
+    generic.run(("loop_rotate",), module)
+    return llvm.parse_assembly(released(str(module)))
 
 
 def _inline(module: llvm.ModuleRef, function: Function) -> None:

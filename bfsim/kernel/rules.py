@@ -58,6 +58,7 @@ class Rule(StrEnum):
     PREPARED_DIFFERENCES = "a counter is its pointer less what is computed before the loop"
     COMPARED_COUNTERS = "a counter of a loop is guessed to be within what bounds it"
     LOOP_GUARDS = "a test that decides whether an inner loop is come to is guessed to fail"
+    ROTATED_ONCE = "a loop that ends with its test is not rotated again"
     SPLIT_TESTS = "`and` and `or` are branches, each test its own"
 
 
@@ -66,6 +67,7 @@ GCC: dict[Rule, str] = {
     Rule.PREPARED_DIFFERENCES: "get_computation_cost in tree-ssa-loop-ivopts.cc",
     Rule.COMPARED_COUNTERS: "predict_iv_comparison in predict.cc",
     Rule.LOOP_GUARDS: "PRED_LOOP_GUARD in predict.cc",
+    Rule.ROTATED_ONCE: "do_while_loop_p in tree-ssa-loop-ch.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
     Rule.KNOWN_SIGN: "expand_divmod in expmed.cc",
@@ -123,5 +125,6 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.PREPARED_DIFFERENCES: ("centre_of_mass", "moved_boxes"),
     Rule.COMPARED_COUNTERS: ("label_regions", "largest_first"),
     Rule.LOOP_GUARDS: ("join_parts", "pack_runs"),
+    Rule.ROTATED_ONCE: ("segment_row",),
     Rule.SPLIT_TESTS: ("ray_length", "unpack_runs", "lzss_expand"),
 }

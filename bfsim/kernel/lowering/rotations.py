@@ -1,0 +1,44 @@
+"""Loops that end with their test are not rotated again [do_while_loop_p in tree-ssa-loop-ch.cc of GCC 12].
+
+LLVM rotates such a loop once more where a value that the loop carries is wanted behind it alone: of `while x < n and a[x] == 0`, it
+would put the access last, behind the test that counts. So a call that must not be copied holds the header while LLVM rotates the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from bfsim.kernel.ir_text import DEFINE, LABEL, Routine, read_module
+from bfsim.kernel.loops import ControlFlow
+
+HOLDS = "@bfsim.holds()"
+
+
+def held(text: str) -> str | None:
+    """Return the module `text` with a call in the header of each such loop; None if there is none."""
+    headers = {(routine.symbol, header) for routine in read_module(text) for header in _headers(routine)}
+    return "\n".join((*_marked(text, headers), f"declare void {HOLDS}")) if headers else None
+
+
+def released(text: str) -> str:
+    """Return a module without these calls."""
+    return "\n".join(row for row in text.splitlines() if HOLDS not in row)
+
+
+def _headers(routine: Routine) -> Iterator[str]:
+    flow = ControlFlow(routine)
+    for loop in flow.loops:
+        if loop.header != loop.latch and loop.latch in flow.exits(loop):
+            yield loop.header
+
+
+def _marked(text: str, headers: set[tuple[str, str]]) -> Iterator[str]:
+    symbol = label = ""
+    for row in text.splitlines():
+        if found := DEFINE.match(row):
+            symbol = found.group(1)
+        elif found := LABEL.match(row):
+            label = found.group(1)
+        if row.startswith("  br ") and (symbol, label) in headers:
+            yield f"  call void {HOLDS} noduplicate"
+        yield row
