@@ -30,6 +30,16 @@ HELPER int32_t joined(int32_t label, int32_t above, uint32_t colours, uint8_t pa
     return root;
 }
 
+HELPER int32_t begin_segment(int32_t label, uint8_t parents[], uint32_t blob_data[], uint32_t colours, int32_t x,
+                             int32_t y, int32_t parents_length)
+{
+    if (label >= parents_length)
+        return 0;
+    parents[label] = (uint8_t)label;
+    open_segment(blob_data, label, colours, x, y);
+    return label;
+}
+
 KERNEL int32_t segment_row(const uint32_t words[], uint8_t labels[], uint8_t parents[], uint32_t blob_data[],
                            const uint32_t colour_groups[], uint32_t interest, int32_t y, int32_t used,
                            int32_t words_length, int32_t parents_length)
@@ -39,11 +49,12 @@ KERNEL int32_t segment_row(const uint32_t words[], uint8_t labels[], uint8_t par
     int32_t corner = 0;
     int32_t x = 0;
     while (x < width) {
-        if ((words[x] & interest) == 0) {
+        while (x < width && (words[x] & interest) == 0) {
             corner = labels[x];
             labels[x] = 0;
             x = x + 1;
-        } else {
+        }
+        if (x < width) {
             int32_t first = x;
             uint32_t colours = group_of(words[x], colour_groups);
             int32_t label = joined(0, corner, colours, parents, blob_data);
@@ -58,11 +69,7 @@ KERNEL int32_t segment_row(const uint32_t words[], uint8_t labels[], uint8_t par
                 label = joined(label, labels[x], colours, parents, blob_data);
             if (label == 0) {
                 wanted = wanted + 1;
-                if (wanted < parents_length) {
-                    label = wanted;
-                    parents[label] = (uint8_t)label;
-                    open_segment(blob_data, label, colours, first, y);
-                }
+                label = begin_segment(wanted, parents, blob_data, colours, first, y, parents_length);
             }
             for (int32_t at = first; at < x; at++)
                 labels[at] = (uint8_t)label;

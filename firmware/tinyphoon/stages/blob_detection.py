@@ -139,6 +139,16 @@ def joined(label: i32, above: i32, colours: u32, parents: u8[:], blob_data: u32[
 
 
 @kernel
+def begin_segment(label: i32, parents: u8[:], blob_data: u32[:], colours: u32, x: i32, y: i32) -> i32:
+    """Begin a segment with the label `label` at (x, y) and return it, or 0 if there is no such label."""
+    if label >= len(parents):
+        return 0
+    parents[label] = label
+    open_segment(blob_data, label, colours, x, y)
+    return label
+
+
+@kernel
 def segment_row(
     words: u32[:],
     labels: u8[:],
@@ -160,11 +170,11 @@ def segment_row(
     corner: i32 = 0  # the label above of the pixel to the left
     x: i32 = 0
     while x < width:
-        if words[x] & interest == 0:
+        while x < width and words[x] & interest == 0:  # most pixels: few registers are enough for them
             corner = labels[x]
             labels[x] = 0
             x = x + 1
-        else:
+        if x < width:
             first = x
             colours = group_of(words[x], colour_groups)
             label = joined(0, corner, colours, parents, blob_data)
@@ -177,10 +187,7 @@ def segment_row(
                 label = joined(label, labels[x], colours, parents, blob_data)
             if label == 0:
                 wanted = wanted + 1
-                if wanted < len(parents):
-                    label = wanted
-                    parents[label] = label
-                    open_segment(blob_data, label, colours, first, y)
+                label = begin_segment(wanted, parents, blob_data, colours, first, y)
             for at in range(first, x):
                 labels[at] = label
             if label != 0:
