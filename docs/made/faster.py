@@ -18,7 +18,7 @@ STEPS: Sequence[tuple[str, Sequence[str], Sequence[str]]] = (
     (
         "gradients: roots from a table, and only where both components together reach the threshold; pairs at once",
         ("sobel_row", "magnitude_row"),
-        ("slope_words",),
+        ("sobel_words", "magnitude_words"),
     ),
     (
         "directions of edges alone, by a multiplication; maxima by comparing both components",

@@ -37,7 +37,6 @@ from tinyphoon.stages.colour_reduction import (
     DARKEST,
     FIRST_HUE,
     HUES,
-    WHITE_NUMBER,
     colour_word,
 )
 from tinyphoon.tables import arctangent_table
@@ -132,6 +131,19 @@ def hue_of(
 
 
 @kernel
+def chroma_square(word: i32) -> i32:
+    """Return the square of the chroma of a UYVY word."""
+    vu = sub_i2x16(word & EVEN_BYTES, GREY_PAIR)
+    return mac_i2x16(0, vu, vu)
+
+
+@kernel
+def brightness_of(word: i32, chroma: i32) -> i32:
+    """Return the luma of both pixels of a UYVY word, less its chroma."""
+    return sub_i2x16(word >> 8 & EVEN_BYTES, compose_fr2x16(chroma, chroma))
+
+
+@kernel
 def colour_words(
     uyvy: i32[:],
     roots: u8[:],
@@ -143,72 +155,128 @@ def colour_words(
     eps_white: i32,
     least_chroma: i32,
 ) -> None:
-    """Reduce the colours of one row as `colour_row` does. Most pairs have little chroma, and both pixels the same word."""
+    """Reduce the colours of one row as `colour_row` does.
+
+    Most pairs have little chroma and are black: a run of these has a loop of its own, which needs few registers. Of
+    the others, most are neither black nor white.
+    """
     grey = min(least_chroma * least_chroma, SMALL)
     black = compose_fr2x16(eps_black - 1, eps_black - 1)
-    white = compose_fr2x16(eps_white + 1, eps_white + 1)
-    for pair in range(len(uyvy)):
-        word = uyvy[pair]
-        vu = sub_i2x16(word & EVEN_BYTES, GREY_PAIR)
-        luma = word >> 8 & EVEN_BYTES
-        square = mac_i2x16(0, vu, vu)
-        if square < grey:
-            chroma = i32(roots[square])
-            brightness = sub_i2x16(luma, compose_fr2x16(chroma, chroma))
-            if max_fr2x16(brightness, black) == black:
-                colours[2 * pair] = joined_colours[BLACK_NUMBER]
-                colours[2 * pair + 1] = joined_colours[BLACK_NUMBER]
-            elif min_fr2x16(brightness, white) == white:
-                colours[2 * pair] = joined_colours[WHITE_NUMBER]
-                colours[2 * pair + 1] = joined_colours[WHITE_NUMBER]
+    brightest = compose_fr2x16(eps_white, eps_white)
+    pairs = len(uyvy)
+    pair = 0
+    while pair < pairs:
+        while pair < pairs:
+            square = chroma_square(uyvy[pair])
+            if square >= grey or max_fr2x16(brightness_of(uyvy[pair], i32(roots[square])), black) != black:
+                break
+            colours[2 * pair] = joined_colours[BLACK_NUMBER]
+            colours[2 * pair + 1] = joined_colours[BLACK_NUMBER]
+            pair = pair + 1
+        while pair < pairs:
+            word = uyvy[pair]
+            square = chroma_square(word)
+            darkest = eps_black
+            hue: u32 = 0
+            if square < grey:
+                brightness = brightness_of(word, i32(roots[square]))
+                if max_fr2x16(brightness, black) == black:
+                    break
+            else:
+                chroma = root8(square, roots)
+                if least_chroma != 0 and chroma >= least_chroma:
+                    darkest = DARKEST
+                brightness = brightness_of(word, chroma)
+                vu = sub_i2x16(word & EVEN_BYTES, GREY_PAIR)
+                hue = hue_of(
+                    vu,
+                    brightness,
+                    chroma,
+                    atan,
+                    reciprocals,
+                    joined_colours,
+                    darkest,
+                    eps_white,
+                    least_chroma,
+                )
+            at_least = max_fr2x16(brightness, compose_fr2x16(darkest, darkest))
+            if min_fr2x16(at_least, brightest) == brightness:
+                colours[2 * pair] = hue
+                colours[2 * pair + 1] = hue
             else:
                 colours[2 * pair] = colour_word(
-                    low_of_fr2x16(brightness), 0, eps_black, eps_white, joined_colours
+                    low_of_fr2x16(brightness), hue, darkest, eps_white, joined_colours
                 )
                 colours[2 * pair + 1] = colour_word(
-                    high_of_fr2x16(brightness), 0, eps_black, eps_white, joined_colours
+                    high_of_fr2x16(brightness), hue, darkest, eps_white, joined_colours
                 )
-        else:
-            chroma = root8(square, roots)
-            darkest = eps_black
-            if least_chroma != 0 and chroma >= least_chroma:
-                darkest = DARKEST
-            brightness = sub_i2x16(luma, compose_fr2x16(chroma, chroma))
-            hue = hue_of(
-                vu, brightness, chroma, atan, reciprocals, joined_colours, darkest, eps_white, least_chroma
-            )
-            colours[2 * pair] = colour_word(
-                low_of_fr2x16(brightness), hue, darkest, eps_white, joined_colours
-            )
-            colours[2 * pair + 1] = colour_word(
-                high_of_fr2x16(brightness), hue, darkest, eps_white, joined_colours
-            )
+            pair = pair + 1
 
 
 @kernel
 def gauss3_words(above: i32[:], here: i32[:], below: i32[:], smooth: i32[:], last: i32) -> None:
-    """Smooth one row as `gauss3_row` does; its last pixel is number `last`."""
-    outer_upper, outer_lower = add_i4x8(above[0], below[0])
-    twice_upper, twice_lower = add_i4x8(here[0], here[0])
-    upper = add_i2x16(outer_upper, twice_upper)
-    lower = add_i2x16(outer_lower, twice_lower)
-    before = lower
+    """Smooth one row as `gauss3_row` does; its last pixel is number `last`.
+
+    `between`: the last column sum of a word and the first of the next one.
+    """
+    outer_upper, outer_lower = add_i4x8(above[0], here[0])
+    inner_upper, inner_lower = add_i4x8(here[0], below[0])
+    upper = add_i2x16(outer_upper, inner_upper)
+    lower = add_i2x16(outer_lower, inner_lower)
+    between = align16(lower, lower)
     for i in range(len(here) - 1):
-        outer_upper, outer_lower = add_i4x8(above[i + 1], below[i + 1])
-        twice_upper, twice_lower = add_i4x8(here[i + 1], here[i + 1])
-        after = add_i2x16(outer_lower, twice_lower)
+        outer_upper, outer_lower = add_i4x8(above[i + 1], here[i + 1])
+        inner_upper, inner_lower = add_i4x8(here[i + 1], below[i + 1])
         middle = align16(upper, lower)
-        inner = add_i2x16(lower, middle)
-        outer = add_i2x16(middle, upper)
-        left = add_i2x16(add_i2x16(align16(lower, before), lower), inner)
-        right = add_i2x16(outer, add_i2x16(upper, align16(after, upper)))
+        left = add_i2x16(add_i2x16(between, lower), add_i2x16(lower, middle))
+        lower = add_i2x16(outer_lower, inner_lower)
+        between = align16(lower, upper)
+        right = add_i2x16(add_i2x16(middle, upper), add_i2x16(upper, between))
+        upper = add_i2x16(outer_upper, inner_upper)
         smooth[i] = bytepack(shr_fr2x16(left, 4), shr_fr2x16(right, 4))
-        before = upper
-        lower = after
-        upper = add_i2x16(outer_upper, twice_upper)
     smooth[0] = smooth[0] & -256 | here[0] & 255
     kept = 255 << ((last & 3) << 3)
     smooth[last >> 2] = smooth[last >> 2] & ~kept | here[last >> 2] & kept
+
+
+@kernel
+def sobel_words(
+    above: i32[:], here: i32[:], below: i32[:], gx: i32[:], gy: i32[:], steepness: i32[:]
+) -> None:
+    """Sobel gradients of one smoothed row, two words of `gx` and of `gy` for a word of pixels, and how steep its words are at most.
+
+    That is, of pixels 0 and 2 and of 1 and 3, the greater sum of both components. What pixels in a column have
+    goes from word to word, as in `gauss3_words`.
+    """
+    outer_upper, outer_lower = add_i4x8(above[0], here[0])
+    inner_upper, inner_lower = add_i4x8(here[0], below[0])
+    upper = add_i2x16(outer_upper, inner_upper)
+    lower = add_i2x16(outer_lower, inner_lower)
+    between = align16(lower, lower)
+    down_upper, down_lower = sub_i4x8(below[0], above[0])
+    down_between = align16(down_lower, down_lower)
+    for i in range(len(here) - 1):
+        middle = align16(down_upper, down_lower)
+        gy_lower = add_i2x16(add_i2x16(down_between, down_lower), add_i2x16(down_lower, middle))
+        next_upper, down_lower = sub_i4x8(below[i + 1], above[i + 1])
+        down_between = align16(down_lower, down_upper)
+        gy_upper = add_i2x16(add_i2x16(middle, down_upper), add_i2x16(down_upper, down_between))
+        down_upper = next_upper
+        gy[2 * i] = gy_lower
+        gy[2 * i + 1] = gy_upper
+        middle = align16(upper, lower)
+        gx_lower = sub_i2x16(middle, between)
+        outer_upper, outer_lower = add_i4x8(above[i + 1], here[i + 1])
+        inner_upper, inner_lower = add_i4x8(here[i + 1], below[i + 1])
+        lower = add_i2x16(outer_lower, inner_lower)
+        between = align16(lower, upper)
+        gx_upper = sub_i2x16(between, middle)
+        upper = add_i2x16(outer_upper, inner_upper)
+        gx[2 * i] = gx_lower
+        gx[2 * i + 1] = gx_upper
+        left = add_i2x16(abs_fr2x16(gx_lower), abs_fr2x16(gy_lower))
+        right = add_i2x16(abs_fr2x16(gx_upper), abs_fr2x16(gy_upper))
+        steepness[i] = max_fr2x16(left, right)
 
 
 @kernel
@@ -223,62 +291,29 @@ def magnitude8(gx: i32, gy: i32, roots: u8[:], least: i32) -> i32:
 
 
 @kernel
-def slope_words(
-    above: i32[:],
-    here: i32[:],
-    below: i32[:],
-    roots: u8[:],
-    threshold: i32,
-    last: i32,
-    gx: i32[:],
-    gy: i32[:],
-    magnitude: i32[:],
+def magnitude_words(
+    gx: i32[:], gy: i32[:], roots: u8[:], threshold: i32, last: i32, magnitude: i32[:]
 ) -> None:
-    """Magnitudes of one smoothed row, those that reach the threshold, and the Sobel gradients of words that have one.
-
-    Two words of `gx` and of `gy` go with a word of pixels; those of words without a magnitude are left as they were.
-    """
+    """Magnitudes of one row, those that reach the threshold, in place of how steep its words are."""
     limit = (4 * threshold - 1) * 0x00010001
     least = threshold * threshold
-    outer_upper, outer_lower = add_i4x8(above[0], below[0])
-    twice_upper, twice_lower = add_i4x8(here[0], here[0])
-    down_upper, down_lower = sub_i4x8(below[0], above[0])
-    upper = add_i2x16(outer_upper, twice_upper)
-    lower = add_i2x16(outer_lower, twice_lower)
-    before = lower
-    down_before = down_lower
-    for i in range(len(here) - 1):
-        outer_upper, outer_lower = add_i4x8(above[i + 1], below[i + 1])
-        twice_upper, twice_lower = add_i4x8(here[i + 1], here[i + 1])
-        next_down_upper, down_after = sub_i4x8(below[i + 1], above[i + 1])
-        after = add_i2x16(outer_lower, twice_lower)
-        middle = align16(upper, lower)
-        gx_lower = sub_i2x16(middle, align16(lower, before))
-        gx_upper = sub_i2x16(align16(after, upper), middle)
-        middle = align16(down_upper, down_lower)
-        inner = add_i2x16(down_lower, middle)
-        outer = add_i2x16(middle, down_upper)
-        gy_lower = add_i2x16(add_i2x16(align16(down_lower, down_before), down_lower), inner)
-        gy_upper = add_i2x16(outer, add_i2x16(down_upper, align16(down_after, down_upper)))
-        left = add_i2x16(abs_fr2x16(gx_lower), abs_fr2x16(gy_lower))
-        right = add_i2x16(abs_fr2x16(gx_upper), abs_fr2x16(gy_upper))
-        four = 0
-        if max_fr2x16(max_fr2x16(left, right), limit) != limit:
-            gx[2 * i] = gx_lower
-            gx[2 * i + 1] = gx_upper
-            gy[2 * i] = gy_lower
-            gy[2 * i + 1] = gy_upper
+    words = len(magnitude) - 1
+    i = 0
+    while i < words:
+        while i < words and max_fr2x16(magnitude[i], limit) == limit:  # most words, and few registers
+            magnitude[i] = 0
+            i = i + 1
+        if i < words:
+            gx_lower = gx[2 * i]
+            gy_lower = gy[2 * i]
+            gx_upper = gx[2 * i + 1]
+            gy_upper = gy[2 * i + 1]
             four = magnitude8(low_of_fr2x16(gx_lower), low_of_fr2x16(gy_lower), roots, least)
             four = four | magnitude8(high_of_fr2x16(gx_lower), high_of_fr2x16(gy_lower), roots, least) << 8
             four = four | magnitude8(low_of_fr2x16(gx_upper), low_of_fr2x16(gy_upper), roots, least) << 16
             four = four | magnitude8(high_of_fr2x16(gx_upper), high_of_fr2x16(gy_upper), roots, least) << 24
-        magnitude[i] = four
-        before = upper
-        lower = after
-        upper = add_i2x16(outer_upper, twice_upper)
-        down_before = down_upper
-        down_lower = down_after
-        down_upper = next_down_upper
+            magnitude[i] = four
+            i = i + 1
     magnitude[0] = magnitude[0] & -256
     magnitude[last >> 2] = magnitude[last >> 2] & ((1 << ((last & 3) << 3)) - 1)
 
@@ -324,8 +359,12 @@ def peak_words(
     """
     found = 0
     first_level = band << 8
-    for i in range(begin >> 2, end + 3 >> 2):
-        if words[i] != 0:
+    i = begin >> 2
+    after_last = end + 3 >> 2
+    while i < after_last:
+        while i < after_last and words[i] == 0:  # most words have no edge
+            i = i + 1
+        if i < after_last:
             for x in range(max(4 * i, begin), min(4 * i + 4, end)):
                 gradient = i32(here[x])
                 if gradient != 0:
@@ -349,6 +388,7 @@ def peak_words(
                         level = first_level + gradient
                         levels[level] = levels[level] + 1
                         found = found + 1
+            i = i + 1
     edge_counts[y] = found
 
 

@@ -13,13 +13,13 @@ from tinyphoon.stages.open_closing import NoiseRemoval, open_closing
 def erode_columns(above: u32[:], here: u32[:], below: u32[:], eroded: u32[:]) -> None:
     """Keep the colours of a row that all nine pixels around have, as `erode_row` does."""
     last = len(here) - 1
-    before = above[0] & here[0] & below[0]
     column = above[1] & here[1] & below[1]
+    both = above[0] & here[0] & below[0] & column  # this column and the one before it
     eroded[0] = 0
     for x in range(1, last):
         after = above[x + 1] & here[x + 1] & below[x + 1]
-        eroded[x] = before & column & after
-        before = column
+        eroded[x] = both & after
+        both = column & after
         column = after
     eroded[last] = 0
 
@@ -28,13 +28,13 @@ def erode_columns(above: u32[:], here: u32[:], below: u32[:], eroded: u32[:]) ->
 def dilate_columns(above: u32[:], here: u32[:], below: u32[:], dilated: u32[:]) -> None:
     """Give each pixel of a row the colours of all nine around it, as `dilate_row` does."""
     last = len(here) - 1
-    before = above[0] | here[0] | below[0]
     column = above[1] | here[1] | below[1]
+    both = above[0] | here[0] | below[0] | column  # this column and the one before it
     dilated[0] = 0
     for x in range(1, last):
         after = above[x + 1] | here[x + 1] | below[x + 1]
-        dilated[x] = before | column | after
-        before = column
+        dilated[x] = both | after
+        both = column | after
         column = after
     dilated[last] = 0
 

@@ -18,8 +18,9 @@ from tinyphoon.stages.fast_edges import (
     first_sighted,
     gauss3_words,
     grey_words,
+    magnitude_words,
     peak_words,
-    slope_words,
+    sobel_words,
     words_of,
 )
 from tinyphoon.tables import reciprocal_table, root_table
@@ -111,17 +112,11 @@ class FastScan:
             yield self.core.run(gauss5_row, *rows, self.smooth.elements[y])
 
     def slopes(self, y: int) -> Generator[Any, Any, None]:
-        """Find the gradients of a smoothed row."""
-        yield self.core.run(
-            slope_words,
-            *window(self.smooth.words, y, self.frame.height),
-            self.core.array("roots"),
-            self.thresholds.edge_threshold,
-            self.frame.width - 1,
-            self.gx.words[y],
-            self.gy.words[y],
-            self.magnitude.words[y],
-        )
+        """Find the gradients of a smoothed row, and the magnitudes of those that may be edges."""
+        core, gx, gy, magnitude = self.core, self.gx.words[y], self.gy.words[y], self.magnitude.words[y]
+        yield core.run(sobel_words, *window(self.smooth.words, y, self.frame.height), gx, gy, magnitude)
+        limits = self.thresholds.edge_threshold, self.frame.width - 1
+        yield core.run(magnitude_words, gx, gy, core.array("roots"), *limits, magnitude)
 
     def peaks(self, y: int) -> Generator[Any, Any, None]:
         """Keep the edges of a row as candidates."""
