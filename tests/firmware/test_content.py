@@ -15,7 +15,6 @@ from tests.firmware.whole_pictures import stereo
 pytestmark = pytest.mark.exhaustive
 
 WIDTH, HEIGHT = 320, 240
-STEADY = ("Edge detection", "Open & closing", "Blob detection")
 
 
 @pytest.fixture(scope="module")
@@ -52,16 +51,21 @@ def ratio(seen: Sequence[Seen], stage: str) -> float:
     ("stage", "most"), [("Edge detection", 1.01), ("Open & closing", 1.005), ("Blob detection", 1.05)]
 )
 def test_steady_stages_over_the_built_in_recording(shipped: list[Seen], stage: str, most: float) -> None:
-    """From frame to frame they differ by 0.7, 0.2 and 3.6 percent."""
+    """From frame to frame they differ by 0.4, 0.2 and 1.6 percent."""
     assert ratio(shipped, stage) < most
 
 
-@pytest.mark.parametrize(
-    ("stage", "most"), [("Edge detection", 1.5), ("Open & closing", 1.005), ("Blob detection", 3.4)]
-)
+@pytest.mark.parametrize(("stage", "most"), [("Edge detection", 1.5), ("Open & closing", 1.005)])
 def test_steady_stages_between_nothing_and_clutter(far_apart: list[Seen], stage: str, most: float) -> None:
-    """They differ by 48, 0 and 226 percent: flat and grey pixels are spared the divisions for direction and hue, black ones the blobs."""
+    """They differ by 46 and 0 percent: flat and grey pixels are spared the divisions for direction and hue."""
     assert ratio(far_apart, stage) < most
+
+
+def test_blobs_of_clutter_cost_as_much_as_they_ever_did(far_apart: list[Seen]) -> None:
+    """50 cycles a pixel where 53 was the most, and 10 in a black picture: blank pixels, which cost 16, have a loop of their own."""
+    dark, white, _, clutter = (each.stages_cclk["Blob detection"] / (WIDTH * HEIGHT) for each in far_apart)
+    assert max(dark, white) < 16
+    assert clutter < 53
 
 
 def test_lines_depend_on_the_picture(shipped: list[Seen], far_apart: list[Seen]) -> None:

@@ -30,6 +30,14 @@ HELPER int32_t joined(int32_t label, int32_t above, uint32_t colours, uint8_t pa
     return root;
 }
 
+HELPER int32_t after_alike(const uint32_t words[], const uint8_t labels[], int32_t x, uint32_t colours, int32_t above,
+                           int32_t words_length)
+{
+    while (x < words_length && labels[x] == above && (words[x] & colours) != 0)
+        x = x + 1;
+    return x;
+}
+
 HELPER int32_t begin_segment(int32_t label, uint8_t parents[], uint32_t blob_data[], uint32_t colours, int32_t x,
                              int32_t y, int32_t parents_length)
 {
@@ -63,7 +71,7 @@ KERNEL int32_t segment_row(const uint32_t words[], uint8_t labels[], uint8_t par
                     corner = labels[x];
                     label = joined(label, corner, colours, parents, blob_data);
                 }
-                x = x + 1;
+                x = after_alike(words, labels, x + 1, colours, corner, words_length);
             }
             if (x < width)
                 label = joined(label, labels[x], colours, parents, blob_data);

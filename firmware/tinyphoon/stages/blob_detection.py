@@ -139,6 +139,14 @@ def joined(label: i32, above: i32, colours: u32, parents: u8[:], blob_data: u32[
 
 
 @kernel
+def after_alike(words: u32[:], labels: u8[:], x: i32, colours: u32, above: i32) -> i32:
+    """Return the column from `x` on of the first pixel without `colours`, or with another label above it than `above`."""
+    while x < len(words) and labels[x] == above and words[x] & colours != 0:
+        x = x + 1
+    return x
+
+
+@kernel
 def begin_segment(label: i32, parents: u8[:], blob_data: u32[:], colours: u32, x: i32, y: i32) -> i32:
     """Begin a segment with the label `label` at (x, y) and return it, or 0 if there is no such label."""
     if label >= len(parents):
@@ -182,7 +190,7 @@ def segment_row(
                 if labels[x] != corner:
                     corner = labels[x]
                     label = joined(label, corner, colours, parents, blob_data)
-                x = x + 1
+                x = after_alike(words, labels, x + 1, colours, corner)
             if x < width:
                 label = joined(label, labels[x], colours, parents, blob_data)
             if label == 0:
