@@ -8,15 +8,9 @@ import pytest
 
 from tests.pages import PAGES, ROOT, blocks_of, compare, reader
 
-IN_EVERY_RUN = (ROOT / "README.md",)
-"""What a stranger reads first; the other pages take minutes."""
 
-
-@pytest.mark.parametrize(
-    "page",
-    [pytest.param(page, marks=() if page in IN_EVERY_RUN else pytest.mark.exhaustive) for page in PAGES],
-    ids=lambda page: str(page.relative_to(ROOT)),
-)
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_the_blocks_of_a_page_run_one_after_the_other(page: Path) -> None:
     """Files are written and commands run in an empty folder, as the reader of the page would do it."""
     with reader() as somebody:

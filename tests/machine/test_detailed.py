@@ -504,6 +504,7 @@ def test_a_core_alone_waits_for_nobody(gap_cclk: int) -> None:
     assert w.ARBITRATION not in fast.stalls()
 
 
+@pytest.mark.exhaustive
 def test_stalls_are_split_alike_in_both_modes() -> None:
     """Random traffic of both cores beside a stream and a camera: each reason to 5 % of it and 0.5 % of all stalls."""
     sums = []
@@ -524,6 +525,7 @@ def test_stalls_are_split_alike_in_both_modes() -> None:
     assert ours.tolist() == pytest.approx(theirs.tolist(), rel=0.05, abs=0.005 * int(theirs.sum()))
 
 
+@pytest.mark.exhaustive
 @given(seed=st.integers(0, 1000), words=st.sampled_from((160, 500, 2000)), word_sclk=st.integers(2, 120))
 @settings(max_examples=12, derandomize=True, phases=[Phase.generate])
 def test_random_traffic_is_within_the_aims(seed: int, words: int, word_sclk: int) -> None:

@@ -101,6 +101,7 @@ def true_sources(side: str) -> Vector:
     return np.stack([bent[..., 1], bent[..., 0]])
 
 
+@pytest.mark.exhaustive
 def test_errors_are_a_fraction_of_a_pixel(found: StereoCalibration) -> None:
     """Corners fit the cameras found, and rows agree after rectification though they were five pixels apart."""
     assert len(found.report.used) == 27
@@ -111,6 +112,7 @@ def test_errors_are_a_fraction_of_a_pixel(found: StereoCalibration) -> None:
     assert not found.report.has_measured_focal  # it was given
 
 
+@pytest.mark.exhaustive
 def test_baseline_is_measured(found: StereoCalibration) -> None:
     """The distance of the optical centres comes out to half a percent, the shift of the right one included."""
     left, right = real_pair().values()
@@ -119,6 +121,7 @@ def test_baseline_is_measured(found: StereoCalibration) -> None:
     )
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_tables_point_where_the_light_fell(found: StereoCalibration, side: str) -> None:
     """Tables are those of the true cameras to a pixel; they hold whole numbers, so 0.25 px on average is theirs."""
@@ -133,6 +136,7 @@ def test_tables_point_where_the_light_fell(found: StereoCalibration, side: str) 
     assert not seen[outside].any()
 
 
+@pytest.mark.exhaustive
 def test_straight_lines_are_straight_again(found: StereoCalibration) -> None:
     """The image of a wall's edge bends by pixels in the recorded picture, and by under one in the rectified."""
     real, ideal = real_pair()["left"], rectified(real_pair())["left"]
@@ -151,6 +155,7 @@ def test_straight_lines_are_straight_again(found: StereoCalibration) -> None:
     assert np.abs(np.array(rectified_rows) - expected).max() < 1.5
 
 
+@pytest.mark.exhaustive
 def test_tables_reach_the_recording_and_nothing_else_changes(
     chessboards: Path, recording: Path, found: StereoCalibration
 ) -> None:
@@ -175,6 +180,7 @@ def test_tables_reach_the_recording_and_nothing_else_changes(
     assert f"left and right, {shares[0]:.1%} and {shares[1]:.1%} of the pixels have a source" in shown
 
 
+@pytest.mark.exhaustive
 def test_output_leaves_the_recording_alone(chessboards: Path, recording: Path, tmp_path: Path) -> None:
     """With another output the recording keeps its bytes."""
     pytest.importorskip("cv2")
@@ -226,6 +232,7 @@ def test_a_grossly_wrong_pair_does_not_end_a_fisheye_calibration() -> None:
         _fit_without_outliers(model, BOARD, [views[3], *views[:4]], (640, 480))
 
 
+@pytest.mark.exhaustive
 def test_recording_without_geometry_gets_the_measured_one(chessboards: Path, tmp_path: Path) -> None:
     """Focal length and baseline are kept, what nobody measured is unknown, and options say it; what was measured is again."""
     pytest.importorskip("cv2")
@@ -301,6 +308,7 @@ def test_larger_chessboards_are_scaled_like_the_recording(chessboards: Path, tmp
     assert report.focal_px == pytest.approx(386, rel=0.02)
 
 
+@pytest.mark.exhaustive
 def test_boards_that_an_import_cuts_off_count_too(chessboards: Path, tmp_path: Path) -> None:
     """Corners are found in the pictures as they are: a board need not be whole in the shape of the recording."""
     pytest.importorskip("cv2")
@@ -315,6 +323,7 @@ def test_boards_that_an_import_cuts_off_count_too(chessboards: Path, tmp_path: P
     assert square.reprojection_px == pytest.approx(whole.reprojection_px * 160 / 240, rel=0.02)
 
 
+@pytest.mark.exhaustive
 def test_single_camera(chessboards: Path, tmp_path: Path) -> None:
     """The pictures of one camera make a geometry without a baseline, and the same tables for both sides."""
     pytest.importorskip("cv2")
@@ -327,6 +336,7 @@ def test_single_camera(chessboards: Path, tmp_path: Path) -> None:
     np.testing.assert_array_equal(found.tables.left, found.tables.right)
 
 
+@pytest.mark.exhaustive
 def test_bent_and_blurred_boards_are_left_out(chessboards: Path, tmp_path: Path) -> None:
     """One camera alone tells, for its other pictures agree; corners of a picture out of focus are found beside their places."""
     pytest.importorskip("cv2")
@@ -391,12 +401,14 @@ class TestBadPictures:
             "found; " in self.refusal(pictures, (9, 8))
         )
 
+    @pytest.mark.exhaustive
     def test_too_few(self, pictures: Path) -> None:
         for k in range(4, 27):
             (pictures / f"left_{k:02}.png").unlink()
             (pictures / f"right_{k:02}.png").unlink()
         assert "pairs must be at least 5, not 4; `--corners`" in self.refusal(pictures)
 
+    @pytest.mark.exhaustive
     def test_names_that_tell_no_pairs(self, pictures: Path) -> None:
         for k in range(27):
             (pictures / f"right_{k:02}.png").rename(pictures / f"right_{k + 100}.png")
@@ -405,6 +417,7 @@ class TestBadPictures:
             pictures
         )
 
+    @pytest.mark.exhaustive
     def test_swapped_cameras(self, pictures: Path) -> None:
         for k in range(6, 27):
             (pictures / f"left_{k:02}.png").unlink()
@@ -418,14 +431,15 @@ class TestBadPictures:
         pytest.importorskip("cv2")
         assert "left*: source must hold images" in self.refusal(tmp_path)
 
+    @pytest.mark.exhaustive
     def test_no_board(self, pictures: Path) -> None:
         assert "at least 3x3 inner corners" in self.refusal(pictures, (2, 5))
 
 
 def test_missing_opencv_says_how_to_get_it(
-    chessboards: Path, recording: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, recording: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Without OpenCV calibration is a RecordingError that names the extra to install."""
     monkeypatch.setitem(sys.modules, "cv2", None)
     with pytest.raises(RecordingError, match=r'OpenCV must be installed .* pip install "bfsim\[opencv\]"'):
-        calibrate_recording(chessboards, recording, corners=CORNERS, square_mm=SQUARE_MM)
+        calibrate_recording(tmp_path, recording, corners=CORNERS, square_mm=SQUARE_MM)
