@@ -31,7 +31,7 @@ from bfsim.kernel import VDSP_O2
 from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.kernel.profile import profile_named
 from bfsim.linker import link, parse_ldf
-from bfsim.loading import load_firmware
+from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.board import Board
 from bfsim.machine.symbols import symbols_of
 from bfsim.recording import RecordingReader, StereoFrame
@@ -62,26 +62,27 @@ def frames_of(number: int) -> list[StereoFrame]:
         return list(islice(cycle(list(reader.frames())), number))
 
 
+@cache
+def loaded() -> LoadedFirmware:
+    """The built-in firmware, as `bfsim run` has it."""
+    return load_firmware(FIRMWARE[0])
+
+
 def build_of(profile: str) -> Build:
-    """Return how `bfsim run --profile` builds the kernels of the built-in firmware."""
-    loaded = load_firmware(FIRMWARE[0])
-    with loaded.own.named():
-        return build_for(loaded, profile_named(profile))
+    """Return how `bfsim run --profile` builds its kernels."""
+    with loaded().own.named():
+        return build_for(loaded(), profile_named(profile))
 
 
 def run(frames: Sequence[StereoFrame], build: Build = ESTIMATED) -> float:
     """Run the built-in firmware on the simulated board; return the processor time, in seconds."""
-    size = FrameSize(320, 240)
-    board = Board(
-        CM_BF561,
-        tinyphoon.tinyphoon,
-        size,
-        link(parse_ldf(DEFAULT_LDF), symbols_of(tinyphoon.tinyphoon, size)),
-        build=build,
-    )
-    begin = process_time()
-    board.run(iter(frames))
-    return process_time() - begin
+    size, firmware = FrameSize(320, 240), loaded().firmware
+    with loaded().own.named():
+        link_map = link(parse_ldf(DEFAULT_LDF), symbols_of(firmware, size, build))
+        board = Board(CM_BF561, firmware, size, link_map, build=build)
+        begin = process_time()
+        board.run(iter(frames))
+        return process_time() - begin
 
 
 @contextmanager

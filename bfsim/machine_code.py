@@ -10,15 +10,23 @@ import llvmlite.binding as llvm
 
 
 class Effort(IntEnum):
-    """How much LLVM does for code to be fast: nothing, what makes registers of variables, what a compiler's -O1 does, or all that it can."""
+    """How much LLVM does for code to be fast: nothing; what makes registers of variables; that, and it looks for good instructions;
+    what a compiler's -O1 does; or all that it can."""
 
     NONE = 0
     REGISTERS = 1
-    SOME = 2
-    ALL = 3
+    SELECTION = 2
+    SOME = 3
+    ALL = 4
 
 
-SELECTION_LEVEL = {Effort.NONE: 0, Effort.REGISTERS: 0, Effort.SOME: 2, Effort.ALL: 3}
+SELECTION_LEVEL = {
+    Effort.NONE: 0,
+    Effort.REGISTERS: 0,
+    Effort.SELECTION: 1,
+    Effort.SOME: 2,
+    Effort.ALL: 3,
+}
 """How much LLVM does when it selects the host's instructions. At 0 that takes a sixth of the time."""
 
 
@@ -32,7 +40,7 @@ def host_code(text: str, effort: Effort = Effort.ALL) -> bytes:
         _optimise(parsed, machine)
     elif effort is Effort.SOME:
         _simplify(parsed, machine)
-    elif effort is Effort.REGISTERS:
+    elif effort is not Effort.NONE:
         _make_registers(parsed, machine)
     code: bytes = machine.emit_object(parsed)
     return code
