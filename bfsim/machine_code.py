@@ -10,8 +10,10 @@ import llvmlite.binding as llvm
 
 
 class Effort(IntEnum):
-    """How much LLVM does for code to be fast: nothing; what makes registers of variables; that, and it looks for good instructions;
-    what a compiler's -O1 does; or all that it can."""
+    """How much LLVM does for code to be fast.
+
+    Nothing; what makes registers of variables; that, and it looks for good instructions; what a compiler's -O1 does; all that it can.
+    """
 
     NONE = 0
     REGISTERS = 1

@@ -90,6 +90,9 @@ class FetchedCall:
         places = [code.places[each] for each in group.fetched]
         sites = range(group.first_site + len(group.code.program.sites), group.first_site + group.site_count)
         self._pieces = list(zip(sites, places, strict=True))
+        words = [np.arange(at, at + nbytes, FETCH_BYTES) for at, nbytes in places]
+        self._words = np.concatenate(words) | log.FETCH << log.KIND_BIT
+        self._word_sites = np.repeat(sites, [len(each) for each in words])
         self._lines = self._cached_lines(code.cache.line_bytes) if code.cache else []
         self._site_of = dict(reversed(self._lines))
         outside = [each.nbytes if each.routine in group.fetched else 0 for each in group.code.counters]
@@ -125,8 +128,6 @@ class FetchedCall:
         count = -(-int(events @ self._nbytes) // FETCH_BYTES)
         number = np.arange(count, dtype=np.int64)
         stamps = number * (work.issue_cclk + work.stall_cclk) // max(1, count)
-        words = [np.arange(at, at + nbytes, FETCH_BYTES) for _, (at, nbytes) in self._pieces]
-        sites = [np.full(len(each), site) for (site, _), each in zip(self._pieces, words, strict=True)]
-        turn = number % sum(map(len, words))
-        fetches: Words = stamps << log.STAMP_BIT | log.FETCH << log.KIND_BIT | np.concatenate(words)[turn]
-        return fetches, np.concatenate(sites)[turn]
+        turn = number % len(self._words)
+        fetches: Words = stamps << log.STAMP_BIT | self._words[turn]
+        return fetches, self._word_sites[turn]
