@@ -21,7 +21,7 @@ def test_checks_change_no_cycle_of_the_firmware(monkeypatch: pytest.MonkeyPatch)
 
     def unchecked(self: Kernel, *given: Any, **how: Any) -> Any:
         asked.append(self.name)
-        return compiled(self, *given, **how, checked=False, effort=Effort.NONE)
+        return compiled(self, *given, **{**how, "checked": False, "effort": Effort.NONE})
 
     monkeypatch.setattr(Kernel, "compile", unchecked)
     assert simulate(frames=FRAMES, profile="vdsp-O2") == checked
