@@ -33,8 +33,8 @@ OUTSIDE = 0xFFFFFFFE
 
 
 LOOP_BLOCKS = 50
-"""[ours] Code of up to so many blocks is most often a loop over pixels, which is worth some of LLVM's effort: all of it takes twice
-as long, and the code gains an eighth, for a compiler has optimised it already. For what is longer that takes ten times as long."""
+"""[ours] Code of up to so many blocks is most often a loop over pixels, which is worth some of LLVM's effort: all of it takes nearly
+twice as long, and the code gains an eighth, for a compiler has optimised it already. For what is longer that takes ten times as long."""
 COUNT_BYTES = 4
 """Of the number of counters before machine code that is kept."""
 

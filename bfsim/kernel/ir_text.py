@@ -202,6 +202,17 @@ def inlined_through(text: str) -> dict[int, tuple[str, ...]]:
     return found
 
 
+def placed_rows(text: str) -> Iterator[tuple[str, str, str]]:
+    """Yield each row of a module, with the symbol of the routine and the label of the block that it stands in."""
+    symbol = label = ""
+    for row in text.splitlines():
+        if found := DEFINE.match(row):
+            symbol = found.group(1)
+        elif found := LABEL.match(row):
+            label = found.group(1)
+        yield symbol, label, row
+
+
 def with_names(text: str) -> str:
     """Return a module in which every value and block has a name: LLVM numbers the others by their order, which passes change."""
     return NUMBERED.sub(lambda found: f"%.n{found[1]}" if found[1] else f".n{found[2]}", text)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from bfsim.kernel.ir_text import DEFINE, LABEL, Routine, read_module
+from bfsim.kernel.ir_text import Routine, placed_rows, read_module
 from bfsim.kernel.loops import ControlFlow
 
 HOLDS = "@bfsim.holds()"
@@ -33,12 +33,7 @@ def _headers(routine: Routine) -> Iterator[str]:
 
 
 def _marked(text: str, headers: set[tuple[str, str]]) -> Iterator[str]:
-    symbol = label = ""
-    for row in text.splitlines():
-        if found := DEFINE.match(row):
-            symbol = found.group(1)
-        elif found := LABEL.match(row):
-            label = found.group(1)
+    for symbol, label, row in placed_rows(text):
         if row.startswith("  br ") and (symbol, label) in headers:
             yield f"  call void {HOLDS} noduplicate"
         yield row

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from bfsim.kernel.ir_text import DEFINE, LABEL, Instruction, Routine, read_module
+from bfsim.kernel.ir_text import Instruction, Routine, placed_rows, read_module
 from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
@@ -39,12 +39,7 @@ def marked(text: str) -> str | None:
 
 def _annotated(text: str, wishes: dict[tuple[str, str], str]) -> Iterator[str]:
     numbers = {place: len(text) + 2 * number for number, place in enumerate(wishes)}
-    symbol = label = ""
-    for row in text.splitlines():
-        if found := DEFINE.match(row):
-            symbol = found.group(1)
-        elif found := LABEL.match(row):
-            label = found.group(1)
+    for symbol, label, row in placed_rows(text):
         latch = row.startswith("  br ") and (symbol, label) in numbers
         yield f"{row.split(LOOP_NOTE)[0]}{LOOP_NOTE}{numbers[symbol, label]}" if latch else row
 
