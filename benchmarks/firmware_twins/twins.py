@@ -14,6 +14,8 @@ from bfsim.kernel import CompilerProfile
 from bfsim.machine_code import Effort
 from bfsim.verifying.player import checksum
 from tinyphoon.stages.blob_detection import segment_row
+from tinyphoon.stages.circle_consensus import agree_on_side
+from tinyphoon.stages.circle_detection import judge_consensus
 from tinyphoon.stages.circle_edges import select_edges_row
 from tinyphoon.stages.circle_fit import fit_circle
 from tinyphoon.stages.circle_outline import refine_row
@@ -47,6 +49,7 @@ TWINS: tuple[Kernel, ...] = (
     grey_row, colour_row, gauss3_row, sobel_row, magnitude_row, direction_row, suppress_row, store_edges_row,
     group_edges_row, label_edges_row, keep_edges_row, erode_row, dilate_row, segment_row, segments_row,
     connect_near, fit_lines, connect_far, look_at_row, select_edges_row, draw_lines, refine_row, fit_circle,
+    agree_on_side, judge_consensus,
     take_left_row, take_right_row, spread_left_row, spread_right_row, match_edges, store_edges3d_row,
 )  # fmt: skip
 

@@ -27,9 +27,6 @@ def test_every_twin_leaves_what_its_kernel_leaves() -> None:
 
 
 @pytest.mark.exhaustive
-@pytest.mark.xfail(
-    strict=True, reason="96.993 %, since kernels without a twin cost more: one more twin is wanted"
-)
 def test_the_twins_are_nearly_all_of_a_frame() -> None:
     """At least 97 % of the issue cycles of both cores."""
     assert covered(compare("O2"), "O2") >= 97

@@ -16,6 +16,11 @@ KERNEL int32_t edge_y(uint32_t edge)
     return (int32_t)(edge >> 8 & 0x7FF);
 }
 
+KERNEL int32_t looks_away(uint32_t edge)
+{
+    return (int32_t)(edge >> AWAY_BIT & 1);
+}
+
 HELPER int32_t is_overlaid(const uint32_t above[], const uint32_t here[], const uint32_t below[], int32_t x,
                            uint32_t colours)
 {

@@ -15,5 +15,6 @@
 
 KERNEL int32_t edge_x(uint32_t edge);
 KERNEL int32_t edge_y(uint32_t edge);
+KERNEL int32_t looks_away(uint32_t edge);
 
 #endif

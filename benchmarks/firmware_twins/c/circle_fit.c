@@ -1,9 +1,10 @@
-/* Twin of tinyphoon/stages/circle_fit.py: `fit_circle`. */
+/* Twin of tinyphoon/stages/circle_fit.py: `fit_circle`, `near_of`. */
 #include "circle_fit.h"
 #include "arithmetic.h"
 #include "circle_edges.h"
 #include "line_fit.h"
 
+#define NEAR_BITS 4
 #define NOISE 256
 #define SHADE 16
 #define OUTSIDE_BITS 8
@@ -26,6 +27,11 @@ HELPER int32_t outside_of(int32_t nx, int32_t ny, int32_t away, const int32_t fi
 {
     int32_t bulge = (fit[BULGE_COSINE] * (nx * nx - ny * ny) + 2 * fit[BULGE_SINE] * nx * ny) >> (2 * NORMAL_BITS);
     return away - fit[RADIUS] - (fit[RADIUS] * bulge >> BULGE_BITS);
+}
+
+KERNEL int32_t near_of(int32_t radius)
+{
+    return max(FINE, radius >> NEAR_BITS);
 }
 
 HELPER void weigh(uint16_t weights[], int32_t fit[])
@@ -105,6 +111,6 @@ KERNEL void fit_circle(const uint32_t points[], uint16_t weights[], int32_t fit[
     for (int32_t i = 0; i < rounds; i++) {
         sum_up(points, weights, fit[REFINED], fit, near);
         move_circle(fit, near);
-        near = max(near >> 1, min(max(FINE, fit[RADIUS] >> 4), near)); /* NEAR_BITS is 4 */
+        near = max(near >> 1, min(near_of(fit[RADIUS]), near));
     }
 }

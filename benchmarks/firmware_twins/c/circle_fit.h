@@ -21,6 +21,7 @@
 #define BULGE_COSINE 14
 #define BULGE_SINE 15
 
+KERNEL int32_t near_of(int32_t radius);
 KERNEL int32_t distance(int32_t x, int32_t y, const int32_t fit[]);
 
 #endif

@@ -42,4 +42,13 @@ OPERATOR int32_t floor_div(int32_t a, int32_t b)
     return quotient;
 }
 
+/* a % b, with the sign of b */
+OPERATOR int32_t floor_mod(int32_t a, int32_t b)
+{
+    int32_t remainder = a % b;
+    if (remainder != 0 && (remainder ^ b) < 0)
+        remainder += b;
+    return remainder;
+}
+
 #endif
