@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 from bfsim.cli.options.running import simulated, takes_a_run, warn
 from bfsim.terminal import print_report
@@ -23,13 +22,10 @@ if TYPE_CHECKING:
     "--asm",
     "as_assembly",
     is_flag=True,
-    help="Print the compiler's instructions beneath the source lines, with their cycles, and what bounds each loop. Of a kernel in "
-    "Python, --profile is gcc-O2 then, gcc-O0 or gcc-adi.",
+    help="Print the compiler's instructions beneath the source lines, with their cycles, and what bounds each loop; not with "
+    "--profile vdsp-O2, of which there is no code.",
 )
-@click.pass_context
 def explain(
-    context: click.Context,
-    /,
     kernel: str,
     runs: bool,
     as_json: bool,
@@ -49,13 +45,8 @@ def explain(
       bfsim explain my_kernels:convolve --profile gcc-O2 --json
     """
     runs = runs or what["recording"] is not None
-    if as_assembly:
-        is_asked = context.get_parameter_source("profile") is not ParameterSource.DEFAULT
-        compiler = what["profile"] if is_asked else "gcc-O2"
-        done = _explain_code(kernel, compiler, runs=runs, as_json=as_json, **what)
-    else:
-        done = _explain_lines(kernel, runs=runs, as_json=as_json, **what)
-    if done:
+    explained = _explain_code if as_assembly else _explain_lines
+    if done := explained(kernel, runs=runs, as_json=as_json, **what):
         warn(done)
 
 
@@ -76,8 +67,8 @@ def _explain_lines(kernel: str, *, runs: bool, as_json: bool, **what: Any) -> Ru
     return done
 
 
-def _explain_code(kernel: str, compiler: str, *, runs: bool, as_json: bool, **what: Any) -> RunRecord | None:
-    """Print the instructions that a compiler makes of a kernel; return the run, if there was one, which is that of the profile."""
+def _explain_code(kernel: str, *, runs: bool, as_json: bool, **what: Any) -> RunRecord | None:
+    """Print the instructions that the profile's compiler makes of a kernel; return the run, if there was one."""
     from bfsim.assembly import Counting, find_code, listed
     from bfsim.compiling.toolchain import blackfin_compiler
     from bfsim.hardware import find_profile
@@ -86,7 +77,7 @@ def _explain_code(kernel: str, compiler: str, *, runs: bool, as_json: bool, **wh
 
     found = load_kernel(kernel, what["firmware"])
     firmware = load_firmware(what["firmware"])
-    code = find_code(found, firmware, find_profile(compiler).value, blackfin_compiler())
+    code = find_code(found, firmware, find_profile(what["profile"]).value, blackfin_compiler())
     counting = Counting(code)
     done = simulated(on_call=counting.see, **what) if runs else None
     assembly = listed(code, counting.events() if done else None)
