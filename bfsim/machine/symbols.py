@@ -25,12 +25,13 @@ def require_cores(firmware: Firmware, spec: BoardSpec) -> None:
 
 def symbols_of(firmware: Firmware, size: FrameSize, build: Build = ESTIMATED) -> list[Symbol]:
     """Return what the linker must place for pictures of `size`: buffers, and code as it is built."""
+    buffers_of = _called(firmware, size)  # first, for the size of code takes seconds to estimate
     found = [
         symbol
         for owner, main in firmware.mains.items()
         for symbol in code_symbols(main, PROCESSORS[owner], build)
     ]
-    for owner, buffers in _called(firmware, size).items():
+    for owner, buffers in buffers_of.items():
         if owner not in PROCESSORS:
             raise FirmwareError(f"buffers must belong to {', '.join(PROCESSORS)}, not {owner!r}")
         for each in buffers:

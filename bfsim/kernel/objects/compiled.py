@@ -24,8 +24,8 @@ from bfsim.kernel.types import ArrayType
 
 NO_ARRAY = ""
 """In place of an array's name: memory that belongs to none, such as the stack."""
-_READ: dict[str, Costs] = {}
-"""Costs of object code that this process has read, by the keys of what is kept."""
+_READ: dict[str, tuple[Program, NDArray[np.int64]]] = {}
+"""What this process has read of the costs of object code, by the keys of what is kept."""
 
 
 @dataclass(frozen=True)
@@ -82,24 +82,25 @@ def compiled_object(
         return Costs(tuple(found), calls(counted.code, places, subroutine.address, function.array_names))
 
     key = keys.object_key(*about, f"costs of {function.symbol}")
-    costs = (
-        made() if places.folder else _costs_read(key, made)
-    )  # lines of files that may change are looked up anew
-    program = Program(function.symbol, costs, function.array_names, together=True)
+    if places.folder:  # lines of files that may change are looked up anew
+        program, order = _counted(function, made())
+    else:  # each run binds the code to another board: what it costs is read once
+        if key not in _READ:
+            _READ[key] = _counted(function, kept_costs(key, made))
+        program, order = _READ[key]
     if traced:
         subroutine.processor.tracing = Tracing(_site_of(program, places), WRITE)
-    numbers = {id(each): number for number, each in enumerate(costs.counters)}
-    order = np.array([numbers[id(each)] for each in program.counters], np.int64)
+    costs = program.costs
     lines = {one.line.routine for each in costs.counters for one in each.charges} - set(costs.calls)
     functions = tuple(places.function_called(each) for each in (*costs.calls, *sorted(lines)))
     return CompiledObject(function, subroutine, program, functions, places, order)
 
 
-def _costs_read(key: str, made: Callable[[], Costs]) -> Costs:
-    """Return the costs that are kept under a key, or made now; a process reads them once, for each run binds the code to another board."""
-    if key not in _READ:
-        _READ[key] = kept_costs(key, made)
-    return _READ[key]
+def _counted(function: Function, costs: Costs) -> tuple[Program, NDArray[np.int64]]:
+    """Return how a kernel's object code is counted, and of each counter its number in the code."""
+    program = Program(function.symbol, costs, function.array_names, together=True)
+    numbers = {id(each): number for number, each in enumerate(costs.counters)}
+    return program, np.array([numbers[id(each)] for each in program.counters], np.int64)
 
 
 def code_bytes(symbol: str, loaded: LoadedImage, places: Places) -> dict[str, int]:
