@@ -31,6 +31,8 @@ from bfsim.trace import StallReason
 from bfsim.verifying import Sampler, verify
 from tests.kernel import cost_kernels
 from tests.machine.owners import assert_owned
+from tests.test_run import FIRMWARE as SMALL_FIRMWARE
+from tests.tiers import exhaustive
 
 EXACT, CODE = DEFAULT.name, "GCC 12.2.0 -O2, timing adi"
 FEW_CALLED = ("suppress_row", "gauss3_row", "clear_segments")
@@ -47,26 +49,18 @@ MAKERS = (
 
 
 @pytest.fixture(scope="module")
-def seen() -> dict[str, list[SeenFrame]]:
-    """What each profile saw."""
-    return {each: [] for each in (EXACT, "vdsp-O2")}
+def exact() -> Run:
+    """A frame of the built-in firmware by the compiler's own code."""
+    return simulate(frames=1)
 
 
-@pytest.fixture(scope="module")
-def runs(seen: dict[str, list[SeenFrame]]) -> dict[str, Run]:
-    """A frame of the built-in firmware by the compiler's own code, and as estimated."""
-    return {
-        profile: simulate(frames=1, profile=profile, on_seen=seen[profile].append)
-        for profile in (EXACT, "vdsp-O2")
-    }
-
-
-def test_it_sees_and_publishes_what_the_estimated_run_does(
-    runs: dict[str, Run], seen: dict[str, list[SeenFrame]]
-) -> None:
+@pytest.mark.exhaustive
+def test_it_sees_and_publishes_what_the_estimated_run_does() -> None:
     """Bit for bit; only cycles differ."""
+    seen: dict[str, list[SeenFrame]] = {EXACT: [], "vdsp-O2": []}
+    runs = {name: simulate(frames=1, profile=name, on_seen=of.append) for name, of in seen.items()}
     assert pickle.dumps(seen[EXACT]) == pickle.dumps(seen["vdsp-O2"])
-    exact, estimated = ([each.results for each in runs[name].frames] for name in (EXACT, "vdsp-O2"))
+    exact, estimated = ([each.results for each in run.frames] for run in runs.values())
     assert exact == estimated
     calls = [
         {(each.core, each.stage, each.path[0]) for each in done.paths if each.calls} for done in runs.values()
@@ -97,28 +91,29 @@ def test_each_call_takes_the_cycles_that_verify_has() -> None:
         assert here == each.measured_cclk > 0
 
 
+@pytest.mark.usefixtures("exact")
 def test_a_second_start_reads_no_object_code() -> None:
     """All that is made of it is kept: neither the reader of ELF files nor the decoder, and no kernel's body, is needed again."""
     source = "import sys; from bfsim.run import simulate; simulate(frames=1); print(*sys.modules)"
     command = [sys.executable, "-c", source]
-    _, again = (subprocess.run(command, check=True, capture_output=True, text=True) for _ in range(2))
+    again = subprocess.run(command, check=True, capture_output=True, text=True)
     assert not {*MAKERS} & {*again.stdout.split()}
 
 
-def test_every_cycle_has_an_owner(runs: dict[str, Run]) -> None:
+@pytest.mark.parametrize("profile", [EXACT, *exhaustive("vdsp-O2")])
+def test_every_cycle_has_an_owner(profile: str) -> None:
     """Issue, stall and idle cycles are the elapsed ones, by stages, kernels, lines, accesses and paths."""
-    for run in runs.values():
-        assert_owned(run)
-        for core in run.frames[0].cores:
-            total = sum(
-                each.issue_cclk + each.idle_cclk + sum(each.stall_cclk.values()) for each in core.stages
-            )
-            assert total == core.end_cclk - core.begin_cclk
+    run = simulate(frames=1, profile=profile)
+    assert_owned(run)
+    for core in run.frames[0].cores:
+        total = sum(each.issue_cclk + each.idle_cclk + sum(each.stall_cclk.values()) for each in core.stages)
+        assert total == core.end_cclk - core.begin_cclk
 
 
-def test_the_run_says_whose_code_and_for_how_much(runs: dict[str, Run]) -> None:
+def test_the_run_says_whose_code_and_for_how_much(exact: Run, tmp_path: Path) -> None:
     """In its identity, by kernel, and in words; an estimated run says nothing."""
-    exact, estimated = runs[EXACT], runs["vdsp-O2"]
+    (tmp_path / "fw_eyes.py").write_text(SMALL_FIRMWARE)
+    estimated = simulate(frames=1, firmware=f"{tmp_path}/fw_eyes.py:eyes", profile="vdsp-O2")
     assert (exact.identity.code, len(exact.identity.code_digest)) == (CODE, 64)
     assert (estimated.identity.code, estimated.identity.code_digest) == ("", "")
     assert all(0 <= each.object_cclk <= each.issue_cclk for each in exact.kernels)
@@ -179,10 +174,10 @@ def test_a_cost_without_a_compiler_is_an_estimate() -> None:
 
 
 def test_the_cost_of_a_built_in_kernel_is_that_of_its_code(
-    runs: dict[str, Run], recwarn: pytest.WarningsRecorder
+    exact: Run, recwarn: pytest.WarningsRecorder
 ) -> None:
     """Each call of `sobel_row` costs the same in a run, and as much by itself, without a compiler."""
-    records = [each for each in runs[EXACT].kernels if each.kernel == "sobel_row"]
+    records = [each for each in exact.kernels if each.kernel == "sobel_row"]
     rows = [*np.zeros((3, 320), np.uint8), *np.zeros((2, 320), np.int16)]
     cost = load_kernel("sobel_row", FIRMWARE[0]).cost(*rows)
     cclk = sum(each.issue_cclk + each.stall_cclk[StallReason.INTERLOCK] for each in records)

@@ -14,6 +14,7 @@ SEMAPHORES_OF_FIRST_FRAME = (
 )
 
 
+@pytest.mark.exhaustive
 def test_rows_in_l2_stall_for_every_read() -> None:
     """Pixels and issue cycles stay; each read of a kernel waits the latency of L2, less the cycle of its own.
 

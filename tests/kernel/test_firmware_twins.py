@@ -44,6 +44,7 @@ def test_the_frame_is_as_near_as_is_said(level: str, variant: str, signed: float
     assert found.by_share <= by_share
 
 
+@pytest.mark.exhaustive
 def test_the_sample_is_spread_over_the_run() -> None:
     """A kernel that runs on every row of both cores has calls of both, up to the limit, and its true number of calls."""
     calls = recorded()[group_edges_row]

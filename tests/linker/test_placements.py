@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import pytest
 
+from bfsim.kernel.profile import DEFAULT
 from bfsim.mapping import map_memory
 from bfsim.report.ldf.lint import lint
 from bfsim.report.ldf.map import Kind, MemoryMap
@@ -25,10 +26,10 @@ CLOSE = (
 
 
 @cache
-def placed(name: str, width_px: int = 320, height_px: int = 240) -> MemoryMap:
+def placed(name: str, width_px: int = 320, height_px: int = 240, profile: str = DEFAULT.name) -> MemoryMap:
     """The built-in firmware in one of the shipped placements."""
     return map_memory(
-        FOLDER / f"{name}.ldf", firmware="tinyphoon", board="cm-bf561", profile="vdsp-O2",
+        FOLDER / f"{name}.ldf", firmware="tinyphoon", board="cm-bf561", profile=profile,
         width_px=width_px, height_px=height_px,
     )  # fmt: skip
 
@@ -74,11 +75,20 @@ def test_images_of_each_stream_have_a_bank(name: str) -> None:
     assert "streams share a bank" not in {each.rule for each in lint(placed(name))}
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", ["thesis", "sdram", "l2"])
-def test_code_is_in_l1(name: str) -> None:
-    """The placements differ in data only; what the code memory has no room for is in the code cache, which is off."""
-    found = memories(placed(name), Kind.CODE)
+def test_all_code_of_visualdsp_is_in_l1(name: str) -> None:
+    """What the code memory has no room for is in the code cache, which is off."""
+    found = memories(placed(name, profile="vdsp-O2"), Kind.CODE)
     assert all("_L1_CODE" in each for where in found.values() for each in where)
+
+
+@pytest.mark.parametrize("name", ["sdram", "l2"])
+def test_placements_differ_in_data_only(name: str) -> None:
+    """Code of GCC, which is larger, fills L1 in each of them, and what is left is in L2."""
+    found = memories(placed(name), Kind.CODE)
+    assert found == memories(placed("thesis"), Kind.CODE)
+    assert {each for where in found.values() for each in where if "_L1_CODE" not in each} == {"L2"}
 
 
 def test_code_that_the_cache_leaves_no_room_for_is_in_sdram() -> None:

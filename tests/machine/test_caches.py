@@ -25,7 +25,6 @@ from tests.machine.kernels import copy, fill, first, spin, total
 from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, in_work, made_board, play
 from tests.machine.placements import changed, shipped
 from tests.machine.rig import Play, every_frame, noise, of_core, see_all, stage_of
-from tests.tiers import exhaustive
 from tinyphoon import tinyphoon
 
 CACHE = CHIP.cache
@@ -271,7 +270,8 @@ def seen_by_tinyphoon(ldf: str, size: FrameSize) -> tuple[dict[str, bytes], Boar
     }, outcome
 
 
-@pytest.mark.parametrize("ldf", ["cache.ldf", *exhaustive("l2.ldf", "sdram.ldf")])
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("ldf", ["cache.ldf", "l2.ldf", "sdram.ldf"])
 def test_the_placement_changes_cycles_and_no_pixel(ldf: str) -> None:
     """Every shipped placement: the same images, edges and messages as the thesis's, at another price."""
     size = FrameSize(64, 24)

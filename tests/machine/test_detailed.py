@@ -101,6 +101,11 @@ class Bench:
         self.play()
         return [each.end for each in transfers]
 
+    def content(self) -> list[bytes]:
+        """Return what lies where tests copy from and to, and behind it: to look through all of SDRAM takes half a second."""
+        firsts = (0, self.bank, self.l2, self.l1, self.outside)
+        return [self.memories.bytes_from(first, 2 * NBYTES).tobytes() for first in firsts]
+
     def traffic(self) -> list[int]:
         """Return every counter of who moved what."""
         return list(self.bus.words[w.TRAFFIC_AT : w.SUBBANKS_AT])
@@ -377,7 +382,7 @@ def test_copies_are_the_same_in_both_modes(board: str, source: str, target: str,
     fast, detailed = same(board, copy)
     assert fast.transfer.end == detailed.transfer.end
     assert fast.traffic() == detailed.traffic()
-    assert (fast.memories.arena == detailed.memories.arena).all()
+    assert fast.content() == detailed.content()
 
 
 STORES_AND_LOADS = (log.STORE, log.LOAD, log.WRITE_BACK, log.FILL, log.FETCH_LINE, log.TEST_AND_SET)
@@ -429,7 +434,7 @@ def test_imdma_and_a_core_share_the_port_of_l2(source: str, target: str, kind: i
     assert our_stalls == pytest.approx(their_stalls, abs=2)
     assert our_stalls[w.L2_PORT] + our_stalls[w.STORE_BUFFER] > 0 or kind == log.STORE
     assert fast.traffic() == detailed.traffic()
-    assert (fast.memories.arena == detailed.memories.arena).all()
+    assert fast.content() == detailed.content()
 
 
 @pytest.mark.parametrize("count", [1, 7, 1000])
