@@ -98,6 +98,7 @@ def recording_work(
             },
             buffers=machine.owners_of_memory,
             is_bound=machine.is_bound_to_placement,
+            code_outside_l1=machine.code_outside_l1,
         )
         yield
         for core in cores:
@@ -130,14 +131,16 @@ def playing_work(
         machine.firmware = replace(
             machine.firmware, mains=dict.fromkeys(machine.firmware.mains, played_again), view=None
         )
-        machine.core, machine.ahead = partial(_replayed, reader, kernels), None
+        machine.core, machine.ahead = partial(_replayed, reader, kernels, machine), None
         yield
 
 
-def _replayed(reader: WorkReader, kernels: dict[str, Kernel], parts: Parts) -> Core:
+def _replayed(reader: WorkReader, kernels: dict[str, Kernel], machine: Board, parts: Parts) -> Core:
+    from bfsim.machine.retiming.moved_code import moves_of
     from bfsim.machine.retiming.replayed_core import ReplayedCore
 
-    return ReplayedCore(parts, kernels, reader.works(parts.name))
+    moves = moves_of(parts.name, reader.recorded.code_outside_l1, machine.code_outside_l1)
+    return ReplayedCore(parts, kernels, reader.works(parts.name), moves)
 
 
 def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -> None:
@@ -160,8 +163,18 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
         "ldf_digest"
     ] != identity.ldf_digest:
         raise WorkError(
-            f"{path} must be played with the LDF that it was recorded with, where one of the two has caches, or code or a stack outside of L1: "
+            f"{path} must be played with the LDF that it was recorded with, where one of the two has caches or a stack outside of L1: "
             "what they fetch depends on where everything lies; record it with this LDF"
+        )
+    there, here = (
+        {(core, routine) for core, routine, *_ in each}
+        for each in (recorded.code_outside_l1, machine.code_outside_l1)
+    )
+    if there != here:
+        core, routine = min(there ^ here)
+        raise WorkError(
+            f"{path} must be played where the same code lies outside of L1, for its fetches are recorded, and {routine} of core {core} "
+            f"{'was' if (core, routine) in there else 'is'} there and is not in both; record it with this LDF"
         )
     if recorded.obstacles:
         raise WorkError(

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from bfsim.errors import WorkError
 from bfsim.kernel import keys
+from bfsim.machine.retiming.moved_code import check_places
 from bfsim.machine.retiming.work import (
     ACCESS_COLUMNS,
     BYTE,
@@ -35,7 +36,7 @@ from bfsim.machine.retiming.work import (
 )
 from bfsim.report.save import writing
 
-FORMAT = 4
+FORMAT = 5
 WIDTHS = tuple(np.dtype(each) for each in ("<i1", "<i2", "<i4", "<i8"))
 TABLES = {
     "operations": OPERATION_COLUMNS, "accesses": ACCESS_COLUMNS, "events": EVENT_COLUMNS, "copies": COPY_COLUMNS,
@@ -52,13 +53,15 @@ LARGEST_FRAME_BYTES = 1 << 30
 class Recorded:
     """What was run. `identity` are fields of the run's `Identity`; `buffers` those of each owner of memory, by name and bytes.
 
-    `is_bound`: whether what is accessed depends on where everything lies. `frame_digests`: of the recording up to each frame.
+    `is_bound`: whether what is accessed depends on where everything lies. `code_outside_l1`: where code is fetched from, as
+    `Board.code_outside_l1` has it. `frame_digests`: of the recording up to each frame.
     `modules`: of the firmware. `obstacles`: why it cannot be played, in words.
     """
 
     identity: Mapping[str, Any]
     buffers: Sequence[Sequence[Any]]
     is_bound: bool
+    code_outside_l1: Sequence[Sequence[Any]]
     frame_digests: Sequence[str]
     modules: Sequence[str]
     firmware_digest: str
@@ -118,7 +121,8 @@ class WorkReader:
             self.recorded = Recorded(
                 **{each: run[each] for each in run if each not in ("format", "costs")}, **end
             )
-        except TypeError as error:
+            check_places(self.recorded.code_outside_l1, len(self.recorded.buffers))
+        except (TypeError, ValueError) as error:
             raise self._broken() from error
 
     def works(self, core: str) -> Iterator[FrameWork]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import random
 import zipfile
+from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
@@ -13,7 +15,9 @@ import pytest
 import zstandard
 
 from bfsim.errors import ConfigError, WorkError
+from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
+from bfsim.machine.retiming.moved_code import moved, moves_of
 from bfsim.machine.retiming.work import CALL, FrameWork, check
 from bfsim.result import Run
 from bfsim.run import Feed, Fidelity, simulate
@@ -83,15 +87,21 @@ def test_it_is_the_run_of_other_hardware(work: Path, plain: Run, seed: int) -> N
 
 
 @pytest.mark.exhaustive
-def test_it_is_the_run_of_another_placement(folder: Path, plain: Run) -> None:
-    """What was recorded with buffers outside of L1 is played where they are in L1; the reverse is refused, with a buffer's name."""
-    path = folder / "l2.work"
-    elsewhere = simulate(frames=1, ldf=Path("l2"), profile="vdsp-O2", record_work=path)
-    here = simulate(frames=1, profile="vdsp-O2")
-    assert here.frames != elsewhere.frames
-    assert differing(here, simulate(frames=1, profile="vdsp-O2", work=path)) <= HOSTS_OWN
+@pytest.mark.parametrize("profile", ["gcc-adi", "vdsp-O2"])
+def test_it_is_the_run_of_another_placement(folder: Path, profile: str) -> None:
+    """What was recorded with buffers outside of L1 is played where they are elsewhere, and code that is fetched, too.
+
+    The reverse is refused, with a buffer's name.
+    """
+    path = folder / "sdram.work"
+    outside = simulate(frames=1, ldf=Path("sdram"), profile=profile, record_work=path)
+    for ldf in ("thesis", "l2"):
+        there = simulate(frames=1, ldf=Path(ldf), profile=profile)
+        assert there.frames != outside.frames
+        assert differing(there, simulate(frames=1, ldf=Path(ldf), profile=profile, work=path)) <= HOSTS_OWN
+    simulate(frames=1, profile=profile, record_work=path)
     with pytest.raises(WorkError, match=r"must be in L1, for it was when the run was recorded"):
-        simulate(frames=1, ldf=Path("sdram"), profile="vdsp-O2", work=path)
+        simulate(frames=1, ldf=Path("sdram"), profile=profile, work=path)
 
 
 @pytest.mark.exhaustive
@@ -209,6 +219,60 @@ def test_a_broken_frame_is_refused(work: Path, folder: Path, frame: bytes) -> No
             new.writestr(name, frame if name == "B/000001" else old.read(name))
     with pytest.raises(WorkError, match=r"broken\.work must be a whole file"):
         simulate(frames=FRAMES, work=broken)
+
+
+def rewritten(work: Path, path: Path, change: Callable[[dict[str, Any]], None]) -> Path:
+    """Write a recorded run with other words on what was run."""
+    with zipfile.ZipFile(work) as old, zipfile.ZipFile(path, "w") as new:
+        for name in old.namelist():
+            content = old.read(name)
+            if name == "run.json":
+                run = json.loads(content)
+                change(run)
+                content = json.dumps(run).encode()
+            new.writestr(name, content)
+    return path
+
+
+def test_other_code_outside_of_l1_is_refused(work: Path, folder: Path) -> None:
+    """Its fetches are recorded, and those of others are not."""
+    other = rewritten(work, folder / "less.work", lambda run: run["code_outside_l1"].pop())
+    with pytest.raises(WorkError, match=r"and \w+ of core [AB] is there and is not in both"):
+        simulate(frames=FRAMES, work=other)
+
+
+@pytest.mark.parametrize(
+    "place",
+    [
+        ["A"],
+        ["A", "routine", "L2", 0],
+        [0, "routine", 0, 0],
+        ["A", "routine", 9999, 0],
+        ["A", "routine", 0, 1 << 70],
+        7,
+    ],
+)
+def test_a_place_of_code_that_is_none_is_refused(work: Path, folder: Path, place: Any) -> None:
+    """At opening."""
+    other = rewritten(work, folder / "odd.work", lambda run: run["code_outside_l1"].append(place))
+    with pytest.raises(WorkError, match=r"odd\.work must be a whole file"):
+        simulate(frames=FRAMES, work=other)
+
+
+def test_code_is_fetched_from_where_it_lies_now() -> None:
+    """Each word at its place in its routine; data stays where it is, and a fetch from where no code was is refused."""
+    there = [("A", "first", 1, 0x100), ("A", "second", 1, 0x200), ("B", "first", 1, 0x900)]
+    here = [("A", "second", 1, 0x40), ("A", "first", 2, 0x8), ("B", "first", 1, 0x900)]
+    moves = moves_of("A", there, here)
+    accesses = np.array(
+        [(0, log.FETCH, 1, 0x100, 5), (1, log.LOAD, 1, 0x100, 5), (2, log.FETCH, 1, 0x210, 6)], np.uint32
+    )
+    expected = [[0, log.FETCH, 2, 0x8, 5], [1, log.LOAD, 1, 0x100, 5], [2, log.FETCH, 1, 0x50, 6]]
+    assert moved(accesses, moves).tolist() == expected
+    assert moved(accesses, moves_of("A", there, there)) is accesses
+    accesses[0, 3] = 0x80
+    with pytest.raises(ValueError, match="where none lies"):
+        moved(accesses, moves)
 
 
 def test_a_frame_takes_less_than_200_kb(work: Path) -> None:

@@ -117,11 +117,23 @@ class Board:
 
     @property
     def is_bound_to_placement(self) -> bool:
-        """Whether what is accessed depends on where everything lies: where there is a cache, or code or a stack outside of L1."""
+        """Whether what is accessed depends on where everything lies: where there is a cache, or a stack outside of L1."""
         return any(each.data or each.code for each in self._caches.values()) or any(
-            self._code_outside_l1(core) or self._stack_outside_l1(core) is not None
-            for core in self.spec.chip.cores
+            self._stack_outside_l1(core) is not None for core in self.spec.chip.cores
         )
+
+    @property
+    def code_outside_l1(self) -> list[tuple[str, str, int, int]]:
+        """Core and name of each routine that is fetched from outside of L1, the owner of its memory by number, and its place there."""
+        owners = self._bus.owners
+        fetched = [
+            (core, routine, owners.of(offset), offset)
+            for core in self.spec.chip.cores
+            for routine, (offset, _) in self._code_outside_l1(core).items()
+        ]
+        return [
+            (core, routine, owner, offset - owners.first[owner]) for core, routine, owner, offset in fetched
+        ]
 
     def run(
         self,

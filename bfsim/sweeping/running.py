@@ -36,7 +36,7 @@ class Outcome:
     """What became of a point: the figures of its run by name, or in words why there are none.
 
     `is_final`: it would become the same again. `frames` are those that were done, and `seconds` what that took.
-    `waits`: the part of the time that kernels waited for memory outside of L1; all of it where code lies there.
+    `waits`: the part of the time that kernels waited for memory outside of L1.
     """
 
     identity: Identity | None = None
@@ -147,11 +147,11 @@ OF_MEMORY = frozenset(StallReason) - {
 
 
 def _waits(run: Run) -> float:
-    """Return the part of the time that kernels waited for memory outside of L1; all of it where code lies there."""
+    """Return the part of the time that kernels waited for memory outside of L1."""
     costs = [cost for frame in run.frames for core in frame.cores for cost in core.stages]
     waits = sum(cclk for cost in costs for reason, cclk in cost.stall_cclk.items() if reason in OF_MEMORY)
     elapsed = sum(each.elapsed_cclk for each in costs)
-    return waits / elapsed if elapsed and all(each.in_l1 for each in run.code) else 1
+    return waits / elapsed if elapsed else 1
 
 
 def plan_point(configuration: Configuration, folder: Path) -> tuple[Identity, int] | str:

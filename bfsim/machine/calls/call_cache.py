@@ -163,12 +163,19 @@ class CallCache:
             self._ledger.add_conflicts(conflicts.sites, conflicts.at_sites_cclk)
         return conflicts.cclk
 
-    def prepare(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> KnownCall:
-        """Prepare a call for the first time, and know it from now on. Rows outside of L1 are traced."""
+    def prepare(
+        self, kernel: Kernel, arguments: tuple[Row | int, ...], *, was_traced: bool = False
+    ) -> KnownCall:
+        """Prepare a call for the first time, and know it from now on. Rows outside of L1 are traced.
+
+        `was_traced`: some lay there when it was recorded, so that its sites are numbered as those of traced code.
+        """
         if not isinstance(kernel, Kernel):
             name = getattr(kernel, "__name__", repr(kernel))
             raise FirmwareError(f"core.run must get a function with @kernel before it, not {name}")
-        call = self.known[kernel, kernel.arrays_of(arguments)] = self._prepared(kernel, arguments)
+        call = self.known[kernel, kernel.arrays_of(arguments)] = self._prepared(
+            kernel, arguments, was_traced=was_traced
+        )
         self._count += 1
         self.on_prepared(kernel, arguments)
         return call
@@ -195,7 +202,7 @@ class CallCache:
         buffers = tuple(each.buffer for each in self._owners)
         return CoreRecords(self._core, tuple(self._groups.values()), self._ledger.reported, buffers)
 
-    def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...]) -> KnownCall:
+    def _prepared(self, kernel: Kernel, arguments: tuple[Row | int, ...], *, was_traced: bool) -> KnownCall:
         for each in arguments:
             if isinstance(each, Generator):
                 wait = f"{getattr(each, '__name__', 'wait')}(...)"
@@ -214,7 +221,8 @@ class CallCache:
             rows.append(row)
         outside = [each for each in rows if self._is_traced(each)]
         stack = self._stack if self._build.has_code(kernel) else None
-        traced = bool(outside) or stack is not None
+        leaves_l1 = bool(outside) or stack is not None
+        traced = leaves_l1 or was_traced
         group = self._group(kernel, tuple(self._owners.of(each.offset) for each in rows), traced)
         for seen, row in zip(group.subbanks, rows, strict=True):
             seen.update(self._subbanks.of(row))
@@ -236,7 +244,7 @@ class CallCache:
             kernel.name,
             self._count,
             call.run,
-            stays_in_l1=not (traced or group.fetched),
+            stays_in_l1=not (leaves_l1 or group.fetched),
             is_alone=all(each.buffer in self._own or each.buffer in self._handed_over for each in outside),
             handed_over=tuple(
                 dict.fromkeys(each.buffer for each in rows if each.buffer in self._handed_over)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from bfsim.machine.core.parts import Parts
 from bfsim.machine.core.semaphore import Semaphore
 from bfsim.machine.core.spin_lock import SpinLock
 from bfsim.machine.memories import Row
+from bfsim.machine.retiming.moved_code import moved
 from bfsim.machine.retiming.translated import Stretch, translated
 from bfsim.machine.retiming.work import (
     DESTINATION,
@@ -38,15 +40,18 @@ Wait = Generator[Any, Any, Any]
 
 
 class ReplayedCore(Core):
-    """A core that plays `works`. `kernels`: those of its firmware, by symbol."""
+    """A core that plays `works`. `kernels`: those of its firmware, by symbol. `code_moves`: of its code outside of L1 (`moved_code`)."""
 
-    def __init__(self, parts: Parts, kernels: dict[str, Kernel], works: Iterator[FrameWork]) -> None:
+    def __init__(
+        self, parts: Parts, kernels: dict[str, Kernel], works: Iterator[FrameWork], code_moves: Table
+    ) -> None:
         super().__init__(parts)
         assert isinstance(parts.bus, WovenBus), "recorded work is played by the weave"
         self._bus = parts.bus
         self._chip = parts.board.chip
         self._works = works
         self._kernels = kernels
+        self._code_moves = code_moves
         self._firsts = np.array(parts.bus.owners.first, np.int64)
         self._is_outside = self._firsts < int(parts.bus.words[w.L2_END])
         self._kinds_of_calls: list[int] = []  # of those that were prepared: what running them is to the bus
@@ -89,6 +94,7 @@ class ReplayedCore(Core):
         self._account_names += work.accounts
         if len(work.copies):
             self._copies = np.concatenate([self._copies, self._planned(work.copies)])
+        work = replace(work, accesses=moved(work.accesses, self._code_moves))
         frame = translated(work, self._firsts, self._is_outside, self._copies, self._chip.events)
         events = np.searchsorted(work.events[:, 0], np.arange(len(work.calls) + 1)).tolist()
         for number, stretches in enumerate(frame.stretches()):
@@ -201,7 +207,7 @@ class ReplayedCore(Core):
             else (0 if isinstance(each.type, IntType) else 0.0)
             for each in parameters
         ]
-        call = self._parts.calls.prepare(kernel, tuple(arguments))
+        call = self._parts.calls.prepare(kernel, tuple(arguments), was_traced=not all(in_l1))
         given = [each for each in arguments if isinstance(each, Row)]
         moved_out = [each.buffer for each, was in zip(given, in_l1, strict=True) if was and not each.is_in_l1]
         if moved_out:
