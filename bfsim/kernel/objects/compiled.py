@@ -24,7 +24,18 @@ from bfsim.kernel.types import ArrayType
 
 NO_ARRAY = ""
 """In place of an array's name: memory that belongs to none, such as the stack."""
-_READ: dict[str, tuple[Program, NDArray[np.int64]]] = {}
+
+
+@dataclass(frozen=True, slots=True)
+class _Counted:
+    """How a kernel's object code is counted, of each counter its number in the code, and which functions the instructions are of."""
+
+    program: Program
+    order: NDArray[np.int64]
+    symbols: tuple[str, ...]
+
+
+_READ: dict[str, _Counted] = {}
 """What this process has read of the costs of object code, by the keys of what is kept."""
 
 
@@ -83,24 +94,23 @@ def compiled_object(
 
     key = keys.object_key(*about, f"costs of {function.symbol}")
     if places.folder:  # lines of files that may change are looked up anew
-        program, order = _counted(function, made())
+        counted = _counted(function, made())
     else:  # each run binds the code to another board: what it costs is read once
         if key not in _READ:
             _READ[key] = _counted(function, kept_costs(key, made))
-        program, order = _READ[key]
+        counted = _READ[key]
     if traced:
-        subroutine.processor.tracing = Tracing(_site_of(program, places), WRITE)
-    costs = program.costs
-    lines = {one.line.routine for each in costs.counters for one in each.charges} - set(costs.calls)
-    functions = tuple(places.function_called(each) for each in (*costs.calls, *sorted(lines)))
-    return CompiledObject(function, subroutine, program, functions, places, order)
+        subroutine.processor.tracing = Tracing(_site_of(counted.program, places), WRITE)
+    functions = tuple(map(places.function_called, counted.symbols))
+    return CompiledObject(function, subroutine, counted.program, functions, places, counted.order)
 
 
-def _counted(function: Function, costs: Costs) -> tuple[Program, NDArray[np.int64]]:
-    """Return how a kernel's object code is counted, and of each counter its number in the code."""
+def _counted(function: Function, costs: Costs) -> _Counted:
     program = Program(function.symbol, costs, function.array_names, together=True)
     numbers = {id(each): number for number, each in enumerate(costs.counters)}
-    return program, np.array([numbers[id(each)] for each in program.counters], np.int64)
+    order = np.array([numbers[id(each)] for each in program.counters], np.int64)
+    lines = {one.line.routine for each in costs.counters for one in each.charges} - set(costs.calls)
+    return _Counted(program, order, (*costs.calls, *sorted(lines)))
 
 
 def code_bytes(symbol: str, loaded: LoadedImage, places: Places) -> dict[str, int]:

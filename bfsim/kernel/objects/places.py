@@ -60,13 +60,16 @@ class Places:
     def function_called(self, symbol: str) -> Function:
         """Return the kernel, or other function, that instructions of the image are of, by its own symbol."""
         if symbol not in self.functions:
-            known = next((each for each in self.kernels.values() if each.symbol == symbol), None)
-            if found := known or self.of_file.get(symbol):
+            if found := self._by_symbol.get(symbol) or self.of_file.get(symbol):
                 self.functions[symbol] = found
             else:
                 routines = (each for each in self.image.routines if each.name == symbol)
                 self._source(next(routines, Routine(symbol, 0, 0)))
         return self.functions[symbol]
+
+    @cached_property
+    def _by_symbol(self) -> Mapping[str, Function]:
+        return {each.symbol: each for each in self.kernels.values()}
 
     def entered_at(self, address: int) -> str | None:
         """Return the symbol of what begins at an address."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from bisect import bisect_right, insort
 from collections.abc import Iterator
 from dataclasses import dataclass
-from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -58,7 +57,7 @@ class MemoryOwners:
 
     def of(self, offset: int) -> int:
         """Return the number of the owner of the byte at `offset`."""
-        return self._pieces[bisect_right(self._pieces, offset, key=itemgetter(0)) - 1][1]
+        return self._pieces[bisect_right(self._firsts, offset) - 1][1]
 
     def of_all(self, offsets: NDArray[np.int64]) -> NDArray[np.int64]:
         """Return the numbers of the owners of the bytes at `offsets`."""
@@ -67,6 +66,7 @@ class MemoryOwners:
         return found
 
     def _write(self) -> None:
+        self._firsts = [offset for offset, _ in self._pieces]
         self._words[w.PIECES] = len(self._pieces)
         for number, (offset, owner) in enumerate(self._pieces):
             self._words[w.PIECES_AT + number] = offset
