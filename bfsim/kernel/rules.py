@@ -27,6 +27,7 @@ class Rule(StrEnum):
     FACTORS = "a byte that is a factor of a 16-bit product and used in another way is extended for each"
     COMPARED = "a constant that is compared with is loaded where it is, not before the loop"
     GUARDS = "a condition that does not change in a loop is kept in a register, and moved to CC and back"
+    FACTORED_SUMS = "a sum with a constant is added up before it is multiplied"
     ACCUMULATORS = "what a loop only adds to may live in another bank, for one move"
     DIFFERENCE = "the absolute value of a difference, written as an `if`, is a branch"
     COMMON_LOADS = "what both sides of a test load first is loaded before it"
@@ -44,6 +45,7 @@ class Rule(StrEnum):
     CARRIED_LOADS = "a load that the choice of an index in a loop makes redundant goes along in a register"
     SINKING = "what only the rarer side of a test needs is computed there"
     HANDED_ON = "a minimum is one, too, where another way leads to what only hands its result on"
+    BOUNDED_VALUES = "a minimum is one, too, where LLVM tests what its value is made of"
     MERGED_LOADS = "a load from an address that several ways choose is a load on each of them"
     NEIGHBOURS = "a test for one of two neighbouring numbers is one test"
     ADDED_FLAGS = "a flag that is added is added where it is set"
@@ -77,6 +79,7 @@ GCC: dict[Rule, str] = {
     Rule.EVALUATED_LOOPS: "loop_niter_by_eval in tree-ssa-loop-niter.cc",
     Rule.THREADED_EXITS: "tree-ssa-threadbackward.cc",
     Rule.ELIMINATED_COUNTERS: "may_eliminate_iv in tree-ssa-loop-ivopts.cc",
+    Rule.BOUNDED_VALUES: "minmax_replacement in tree-ssa-phiopt.cc",
     Rule.SINKING: "tree-ssa-sink.cc",
     Rule.NEIGHBOURS: "fold_range_test in fold-const.cc",
     Rule.SINGLE_BITS: "BITSET, BITCLR and BITTGL in bfin.md",
@@ -96,6 +99,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.FACTORS: ("alpha_blend", "variance_blocks"),
     Rule.COMPARED: ("match_lines", "alpha_blend", "conv3x3"),
     Rule.GUARDS: ("circle_vote", "cordic_atan"),
+    Rule.FACTORED_SUMS: ("split_uyvy", "yuv_to_rgb"),
     Rule.ACCUMULATORS: ("moments",),
     Rule.DIFFERENCE: ("sad_search",),
     Rule.COMMON_LOADS: ("cordic_atan",),
@@ -111,6 +115,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.CARRIED_LOADS: ("selection_sort",),
     Rule.SINKING: ("fill_xy",),
     Rule.HANDED_ON: ("fir_decimate",),
+    Rule.BOUNDED_VALUES: ("brighten_corners",),
     Rule.MERGED_LOADS: ("nms_row",),
     Rule.NEIGHBOURS: ("contrast_lut",),
     Rule.ADDED_FLAGS: ("count_words",),

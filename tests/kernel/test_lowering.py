@@ -6,6 +6,7 @@ import dataclasses
 from collections import Counter as Tally
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from benchmarks.twins.lines import grow_segments
@@ -21,7 +22,7 @@ from bfsim.kernel.lowering.predict import combined
 from bfsim.kernel.lowering.schedule import issues
 from bfsim.kernel.rules import Rule
 from tests.kernel.modules import import_text
-from tests.kernel.running import CALLING_VDSP
+from tests.kernel.running import CALLING_VDSP, run
 
 
 def lowered(text: str, folder: Path, profile: CompilerProfile = GCC_O2) -> Tally[Op]:
@@ -48,6 +49,38 @@ def test_a_minimum_is_one_operation_however_it_is_written(body: str, tmp_path: P
     """MIN and its constant; no comparison and no branch. Two NOPs keep the return away from the call."""
     found = lowered(f"def f(x: i32) -> i32:\n    {body}\n    return y\n", tmp_path)
     assert found == {Op.NOP: 2, Op.DSP_ALU: 1, Op.IMM: 1, Op.RETURN: 1}
+
+
+@pytest.mark.parametrize(
+    ("body", "shifts"),
+    [
+        ("y = (a[0] * a[1]) >> 4\n    if y > 255:\n        y = 255", 1),
+        ("y = a[0] + a[1] - 20\n    if y < 0:\n        y = 0", 0),
+        ("y = (a[0] - a[1]) >> 2\n    if y < -9:\n        y = -9\n    elif y > 50:\n        y = 50", 1),
+    ],
+)
+def test_a_minimum_of_what_was_shifted_or_added_is_one(body: str, shifts: int, tmp_path: Path) -> None:
+    """LLVM tests the product, the sum and the difference; GCC has MIN or MAX, and no branch."""
+    text = f"def f(a: u8[:]) -> i32:\n    {body}\n    return y\n"
+    found = lowered(text, tmp_path)
+    assert found[Op.DSP_ALU] == (2 if "elif" in body else 1)
+    assert (found[Op.SHIFT], found[Op.COMPARE]) == (shifts, 0)
+    kernel = import_text(f"@kernel\n{text}", tmp_path).f
+    for pair in ((0, 0), (3, 250), (250, 3), (255, 255), (9, 12), (60, 200)):
+        assert run(kernel, np.array(pair, np.uint8)).value == kernel.python(list(pair))
+
+
+def test_a_sum_with_a_constant_is_no_narrow_factor(tmp_path: Path) -> None:
+    """x * 454 - 58112 to LLVM; GCC subtracts, and multiplies words: R0 = R0 + R1, R0 *= R2."""
+    text = "def f(a: u8[:], out: i16[:]):\n    out[0] = ((a[0] - 128) * 454 + {0}) >> 8\n"
+    for added, sums in ((0, 1), (64, 2)):
+        found = lowered(text.format(added), tmp_path)
+        assert (found[Op.MUL32], found[Op.MUL16], found[Op.ALU]) == (1, 0, sums)
+        kernel = import_text(f"@kernel\n{text.format(added)}", tmp_path).f
+        for value in (0, 1, 127, 128, 255):
+            out = np.zeros(1, np.int16)
+            run(kernel, np.array([value], np.uint8), out)
+            assert out[0] == ((value - 128) * 454 + added) >> 8
 
 
 def test_an_absolute_value_is_one_operation_but_not_of_a_difference(tmp_path: Path) -> None:
@@ -162,13 +195,31 @@ def test_counting_bits_is_one_operation(tmp_path: Path) -> None:
     assert kernel(0xFFFF) == 16
 
 
-def test_products_with_a_constant_are_shifts_and_sums() -> None:
-    """At most four operations; beyond that the multiplier is as good."""
-    assert multiple(8) == (Op.SHIFT,)
-    assert multiple(5) == (Op.ADD_SHIFT,)
-    assert multiple(10) == (Op.ADD_SHIFT, Op.SHIFT)
-    assert multiple(15) in ((Op.SHIFT, Op.ALU), (Op.ADD_SHIFT, Op.ADD_SHIFT))
-    assert multiple(0x12345) is None
+@pytest.mark.parametrize(
+    ("factor", "ops"),
+    [
+        (8, "shift"),
+        (5, "add_shift"),
+        (10, "add_shift shift"),
+        (15, "shift alu"),
+        (18, "shift add_shift"),
+        (21, "add_shift shift alu"),
+        (83, "add_shift shift alu shift alu"),
+        (359, "add_shift shift alu shift alu"),
+        (-1, "shift alu"),
+        (-28, "shift alu shift"),
+        (-20, "add_shift shift alu"),
+    ],
+)
+def test_products_with_a_constant_are_shifts_and_sums(factor: int, ops: str) -> None:
+    """As GCC 12.2 compiles `x * factor` for the Blackfin, moves apart."""
+    assert " ".join(each.value for each in multiple(factor) or ()) == ops
+
+
+@pytest.mark.parametrize("factor", [73, 74, 82, 134, 454, 0x12345, -100, -208])
+def test_other_constants_are_multiplied_with(factor: int) -> None:
+    """GCC loads these, and has `*=`."""
+    assert multiple(factor) is None
 
 
 def test_more_values_than_registers_are_reloaded(tmp_path: Path) -> None:

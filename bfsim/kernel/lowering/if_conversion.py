@@ -11,6 +11,7 @@ from enum import Enum, auto
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction, predicate
 from bfsim.kernel.loops import ControlFlow
+from bfsim.kernel.lowering.bounded_values import bound_of
 from bfsim.kernel.lowering.widths import BYTE, WORD
 from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
@@ -118,7 +119,7 @@ class IfConversion:
         if (
             rest
             or not bound.lstrip("-").isdigit()
-            or bound not in _bounds(test)
+            or bound not in self._bounds(test)
             or value not in inner.operands
         ):
             return None
@@ -162,10 +163,29 @@ class IfConversion:
             return self._negation(label, arms, phi, work, test)
         if {yes, no} == {"1", "0"}:
             return ConvertedIf(ConversionKind.FLAG, label, phi, (yes, no), arms)
-        bounds = {self._plain(each) for each in _bounds(test)}
+        bounds = {self._plain(each) for each in self._bounds(test)}
         if (predicate(test)[0] == "s" or self._is_positive(test)) and {yes, no} <= bounds:
             return ConvertedIf(ConversionKind.EXTREME, label, phi, (yes, no), arms)
         return ConvertedIf(ConversionKind.CHOICE, label, phi, (yes, no), arms)
+
+    def _bounds(self, test: Instruction) -> tuple[str, ...]:
+        """What a comparison with a constant bounds, by values that are there before it: LLVM writes x <= 255 as x < 256."""
+        tested, bound = test.operands
+        if not bound.lstrip("-").isdigit():
+            return test.operands
+        found = {tested: int(bound)} | {
+            each.result or "": limit
+            for each in self._bounded(test)
+            if (limit := bound_of(test, each)) is not None
+        }
+        near = {str(limit + beside) for limit in found.values() for beside in (-1, 0, 1)}
+        return (*found, *sorted(near))
+
+    def _bounded(self, test: Instruction) -> list[Instruction]:
+        """Values made of what is tested, in the block of the test."""
+        label, _ = self.flow.defined[test.result or ""]
+        made = self.flow.users[test.operands[0]]
+        return [each for each in made if self.flow.defined.get(each.result or "", ("",))[0] == label]
 
     def _is_positive(self, test: Instruction) -> bool:
         """Whether an unsigned comparison is as good as a signed one: LLVM makes them of values that are never negative."""
@@ -193,15 +213,6 @@ class IfConversion:
             if chosen and tested and by_sign
             else None
         )
-
-
-def _bounds(test: Instruction) -> tuple[str, ...]:
-    """What a comparison with a constant bounds: LLVM writes x <= 255 as x < 256."""
-    bound = test.operands[1]
-    if not bound.lstrip("-").isdigit():
-        return test.operands
-    near = {str(int(bound) - 1), bound, str(int(bound) + 1)}
-    return (test.operands[0], *sorted(near))
 
 
 def _arm_value(phi: Instruction, source: str) -> str:

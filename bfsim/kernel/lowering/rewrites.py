@@ -8,8 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from bfsim.kernel.ir_text import Routine, read_module, with_names, write_module
+from bfsim.kernel.lowering.bounded_values import bound_values
 from bfsim.kernel.lowering.carried import carry_over
 from bfsim.kernel.lowering.counted_fills import count_fills
+from bfsim.kernel.lowering.factored_sums import factor_sums
 from bfsim.kernel.lowering.header_copies import copy_headers
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
 from bfsim.kernel.lowering.merged_stores import merge_stores
@@ -22,6 +24,7 @@ from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
 REWRITES: tuple[Callable[[Routine], Routine], ...] = (
+    factor_sums,
     split_tests,
     split_loads,
     merge_stores,
@@ -31,14 +34,17 @@ REWRITES: tuple[Callable[[Routine], Routine], ...] = (
     carry_over,
     sink,
     hoist_loads,
+    bound_values,
 )
 """In this order."""
 SWITCHES = {
+    factor_sums: Rule.FACTORED_SUMS,
     split_tests: Rule.SPLIT_TESTS,
     split_loads: Rule.MERGED_LOADS,
     without_redundant_loads: Rule.CARRIED_LOADS,
     sink: Rule.SINKING,
     copy_headers: Rule.COPIED_HEADERS,
+    bound_values: Rule.BOUNDED_VALUES,
 }
 """Those that can be left out."""
 

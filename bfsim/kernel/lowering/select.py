@@ -154,7 +154,10 @@ class _Selector(Accesses):
             value = left
             for number, op in enumerate(plan):
                 result = each.result if number == len(plan) - 1 else f"{each.result}.{number}"
-                bank = POINTER if op is Op.ADD_SHIFT else ANY
+                is_sum = (
+                    Op.SHIFT in plan[max(number - 1, 0) : number]
+                )  # of (x << 7) + x: its shift is free in either bank
+                bank = POINTER if op is Op.ADD_SHIFT and not is_sum else ANY
                 self.append(op, each, result, bank, (value, bank), (left, bank))
                 value = result or ""
         elif self._short(each):
