@@ -62,8 +62,9 @@ class _Preprocessor:
             if kind == "unclosed":
                 raise file.error_at(start, "comment must end with */ before the file does")
             is_taken = not conditions or conditions[-1].is_taken
-            is_macro = is_taken and kind == "word" and match.group() in self.macros
-            command = None if is_macro or not is_taken else _INCLUDE_COMMAND.match(written, start)
+            word = match.group() if is_taken and kind == "word" else ""
+            is_macro = word in self.macros
+            command = _INCLUDE_COMMAND.match(written, start) if word == "INCLUDE" and not is_macro else None
             if not (is_macro or command or kind in ("directive", "comment")):
                 continue
             if is_taken:

@@ -2,22 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 import pytest
 
-from bfsim.api import Firmware, Readout, Seen
+from bfsim.api import Buffer, Firmware, FrameSize, Readout, Seen, u8
 from bfsim.errors import FirmwareError
 from bfsim.run import simulate
-from tinyphoon import tinyphoon
+from tests.machine.rig import see_all
+
+
+def buffers(size: FrameSize) -> dict[str, Sequence[Buffer]]:
+    """What the cameras fill."""
+    camera = {
+        core: Buffer("camera", u8, 2 * size.width_px, f"sdram_bank{number}", rows=3 * size.height_px)
+        for number, core in enumerate("AB")
+    }
+    return {core: [each] for core, each in camera.items()} | {"shared": []}
 
 
 def looking(view: Callable[[Readout], Any]) -> Firmware:
-    """The built-in firmware with another view."""
-    return replace(tinyphoon, view=view)
+    """Firmware that only takes pictures, with a view."""
+    return Firmware(mains={"A": see_all, "B": see_all}, buffers=buffers, camera="camera", rows=(), view=view)
 
 
 def picture() -> Any:

@@ -16,7 +16,6 @@ from tests.machine.rig import STAGES
 from tests.machine.test_timeline import LDFS, STEPS, Step, main_of
 from tests.report.profile_sums import assert_profile_adds_up
 from tests.report.records import IDENTITY, run_of
-from tests.tiers import exhaustive
 
 
 def run_from(outcome: BoardRecord) -> RunRecord:
@@ -43,10 +42,8 @@ def test_rows_of_chance_firmware_add_up(
     assert_profile_adds_up(run_from(play(*mains, frames=frames, ldf=LDFS[ldf])))
 
 
-@pytest.mark.parametrize(
-    "ldf",
-    ["thesis", *exhaustive("l2", "sdram", "cache")],
-)
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("ldf", ["thesis", "l2", "sdram", "cache"])
 def test_rows_of_the_built_in_firmware_add_up(ldf: str) -> None:
     """Two frames of the built-in recording, with the start-up told apart."""
     assert_profile_adds_up(simulate(ldf=Path(ldf), frames=2))
