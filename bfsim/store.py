@@ -38,8 +38,10 @@ KEPT = "kept"
 
 def folder() -> Path:
     """Where compiled kernels are kept: $BFSIM_CACHE_DIR, or the user's cache folder."""
-    named = os.environ.get("BFSIM_CACHE_DIR")
-    return Path(named) if named else Path(platformdirs.user_cache_dir("bfsim"))
+    return _path(os.environ.get("BFSIM_CACHE_DIR") or platformdirs.user_cache_dir("bfsim"))
+
+
+_path = cache(Path)  # a start asks hundreds of times
 
 
 def can_keep() -> bool:
