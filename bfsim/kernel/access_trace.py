@@ -148,13 +148,14 @@ class AccessTrace:
         return self._state[first : first + count]
 
     def insert(self, count: int, entries: NDArray[np.int64], sites: NDArray[np.int64]) -> int:
-        """Add `entries` to the `count` of the last call, by their stamps and behind those of the same; return the new count."""
+        """Add `entries`, ordered by their stamps, to the `count` of the last call, behind those of the same; return the new count."""
         total = count + len(entries)
         self._check_room(total)
         merged, merged_sites = self.entries(total), self.sites(total)
         merged[count:], merged_sites[count:] = entries, sites
-        order = np.argsort(merged >> STAMP_BIT, kind="stable")
-        merged[:], merged_sites[:] = merged[order], merged_sites[order]
+        if count:
+            order = np.argsort(merged >> STAMP_BIT, kind="stable")
+            merged[:], merged_sites[:] = merged[order], merged_sites[order]
         return total
 
     def _check_room(self, count: int) -> None:

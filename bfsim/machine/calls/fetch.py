@@ -91,8 +91,12 @@ class FetchedCall:
         sites = range(group.first_site + len(group.code.program.sites), group.first_site + group.site_count)
         self._pieces = list(zip(sites, places, strict=True))
         words = [np.arange(at, at + nbytes, FETCH_BYTES) for at, nbytes in places]
-        self._words = np.concatenate(words) | log.FETCH << log.KIND_BIT
-        self._word_sites = np.repeat(sites, [len(each) for each in words])
+        self._turn = (
+            np.concatenate(words) | log.FETCH << log.KIND_BIT,
+            np.repeat(sites, [len(each) for each in words]),
+        )
+        self._numbers = np.arange(0)  # of words, as many as a call may have fetched,
+        self._words, self._word_sites = self._turn  # and these, the code in turn
         self._lines = self._cached_lines(code.cache.line_bytes) if code.cache else []
         self._site_of = dict(reversed(self._lines))
         outside = [each.nbytes if each.routine in group.fetched else 0 for each in group.code.counters]
@@ -126,8 +130,9 @@ class FetchedCall:
     def _single_fetches(self, work: Work, events: Words) -> tuple[Words, Words]:
         """One fetch for every 64 bits that were executed, from the routines' code in turn."""
         count = -(-int(events @ self._nbytes) // FETCH_BYTES)
-        number = np.arange(count, dtype=np.int64)
-        stamps = number * (work.issue_cclk + work.stall_cclk) // max(1, count)
-        turn = number % len(self._words)
-        fetches: Words = stamps << log.STAMP_BIT | self._words[turn]
-        return fetches, self._word_sites[turn]
+        if count > len(self._numbers):
+            self._numbers = np.arange(2 * count)
+            self._words, self._word_sites = (np.resize(each, 2 * count) for each in self._turn)
+        stamps = self._numbers[:count] * (work.issue_cclk + work.stall_cclk) // max(1, count)
+        fetches: Words = stamps << log.STAMP_BIT | self._words[:count]
+        return fetches, self._word_sites[:count]
