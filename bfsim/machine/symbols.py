@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from bfsim.chip.spec import BoardSpec
 from bfsim.errors import BfsimError, FirmwareError
@@ -25,13 +25,14 @@ def require_cores(firmware: Firmware, spec: BoardSpec) -> None:
 
 def symbols_of(firmware: Firmware, size: FrameSize, build: Build = ESTIMATED) -> list[Symbol]:
     """Return what the linker must place for pictures of `size`: buffers, and code as it is built."""
-    buffers_of = _called(firmware, size)  # first, for the size of code takes seconds to estimate
-    found = [
-        symbol
-        for owner, main in firmware.mains.items()
-        for symbol in code_symbols(main, PROCESSORS[owner], build)
-    ]
-    for owner, buffers in buffers_of.items():
+    buffers = list(_of_buffers(firmware, size))  # first, for the size of code takes seconds to estimate
+    mains = firmware.mains.items()
+    code = (each for owner, main in mains for each in code_symbols(main, PROCESSORS[owner], build))
+    return [*code, *buffers]
+
+
+def _of_buffers(firmware: Firmware, size: FrameSize) -> Iterator[Symbol]:
+    for owner, buffers in _called(firmware, size).items():
         if owner not in PROCESSORS:
             raise FirmwareError(f"buffers must belong to {', '.join(PROCESSORS)}, not {owner!r}")
         for each in buffers:
@@ -41,16 +42,13 @@ def symbols_of(firmware: Firmware, size: FrameSize, build: Build = ESTIMATED) ->
                 raise FirmwareError(
                     f"buffer {each.name} of {owner} must not be handed over (handed_over=True): only a shared buffer that no camera fills is"
                 )
-            found.append(
-                Symbol(
-                    name=each.name,
-                    section=each.section,
-                    nbytes=each.nbytes,
-                    processor=PROCESSORS[owner],
-                    object_file=object_file(each.name),
-                )
+            yield Symbol(
+                name=each.name,
+                section=each.section,
+                nbytes=each.nbytes,
+                processor=PROCESSORS[owner],
+                object_file=object_file(each.name),
             )
-    return found
 
 
 def _called(firmware: Firmware, size: FrameSize) -> Buffers:
