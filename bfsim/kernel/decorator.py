@@ -222,31 +222,45 @@ class Kernel:
 
     def check_array(self, position: int, array: object) -> None:
         """Raise KernelError unless `array` is what parameter number `position` takes."""
-        parameter = self.function.parameters[position]
-        assert isinstance(parameter.type, ArrayType)
-        wanted = parameter.type.element.dtype
+        wanted, is_written = self._elements[position]
+        if not (isinstance(array, np.ndarray) and array.dtype == wanted and array.ndim == 1):
+            raise self._misfit(position, array)
+        flags = array.flags
+        if not (flags.c_contiguous and flags.aligned and (flags.writeable or not is_written)):
+            raise self._misfit(position, array)
+
+    @cached_property
+    def _elements(self) -> dict[int, tuple[np.dtype[Any], bool]]:
+        """Of each array parameter the type of its elements, and whether the kernel stores into it."""
+        parameters = [(each, self.function.parameters[each]) for each in self.array_positions]
+        return {
+            position: (each.type.element.dtype, each.name in self.function.written)
+            for position, each in parameters
+            if isinstance(each.type, ArrayType)
+        }
+
+    def _misfit(self, position: int, array: object) -> KernelError:
+        """Return what is wrong with an array for a parameter that does not take it."""
+        parameter, (wanted, _) = self.function.parameters[position], self._elements[position]
         where = f"({parameter.name} of {self.name}, {self.place})"
         if not isinstance(array, np.ndarray):
-            raise KernelError(
-                f"{parameter.name} must be an array {parameter.type}, not {type(array).__name__} {where}"
-            )
-        if array.dtype != wanted or array.ndim != 1 or not array.flags.c_contiguous:
+            what = f"be an array {parameter.type}, not {type(array).__name__}"
+        elif array.dtype != wanted or array.ndim != 1 or not array.flags.c_contiguous:
             shape = "x".join(map(str, array.shape))
-            raise KernelError(
-                f"{parameter.name} must be one contiguous row of {wanted}, not {array.dtype} of shape {shape} {where}"
-            )
-        if not array.flags.aligned:
-            raise KernelError(f"{parameter.name} must lie at a multiple of {wanted.itemsize} bytes {where}")
-        if parameter.name in self.function.written and not array.flags.writeable:
-            raise KernelError(
-                f"{parameter.name} must be writeable, because the kernel stores into it {where}"
-            )
+            what = f"be one contiguous row of {wanted}, not {array.dtype} of shape {shape}"
+        elif not array.flags.aligned:
+            what = f"lie at a multiple of {wanted.itemsize} bytes"
+        else:
+            what = "be writeable, because the kernel stores into it"
+        return KernelError(f"{parameter.name} must {what} {where}")
 
     def _check_overlaps(self, arrays: Sequence[NDArray[Any]]) -> None:
         """Raise KernelError if an array that is written lies over one of wider or narrower elements, unless one is of bytes.
 
         The compiled code may have loaded such an element before the store, as C compilers may.
         """
+        if len({each.itemsize for each in arrays} - {1}) < 2:  # of one width, beside bytes
+            return
         named = list(zip(self.array_positions, arrays, strict=True))
         for (position, one), (behind, other) in combinations(named, 2):
             names = [self.function.parameters[each].name for each in (position, behind)]
