@@ -16,7 +16,7 @@ from bfsim.kernel import divisions, floats, tree
 from bfsim.kernel.floats import register_type
 from bfsim.kernel.function import Function
 from bfsim.kernel.intrinsics.meaning import function_type
-from bfsim.kernel.ir_text import ENTERS
+from bfsim.kernel.ir_text import ENTERS, NO_HINT
 from bfsim.kernel.types import ArrayType, FloatType, IntType, Number, u32
 
 InlinedCall = tuple[str, str, int]
@@ -384,12 +384,24 @@ class _Emitter:
         slot = self._decided(node.left)
         more, after = (self.builder.append_basic_block(name) for name in (node.op, "decided"))
         left = self.builder.load(slot, typ=I1)
-        self._hint(self.builder.cbranch(left, *((more, after) if node.op == "and" else (after, more))))
+        branch = self.builder.cbranch(left, *((more, after) if node.op == "and" else (after, more)))
+        if self._decides_alone(node.op):
+            self._hint(branch)
+        else:
+            branch.set_weights(NO_HINT if node.op == "and" else NO_HINT[::-1])
         self.builder.position_at_end(more)
         self.builder.store(self.value(node.right), slot)
         self.builder.branch(after)
         self.builder.position_at_end(after)
         return self.builder.load(slot, typ=I1)
+
+    def _decides_alone(self, op: str) -> bool:
+        """Whether the left side of `and` or `or` may lead to a `continue` by itself: else the hint is the right one's.
+
+        [predict_paths_leading_to in predict.cc of GCC 12.] The hint of a `return` stays with both sides.
+        """
+        yes, no = self.weights
+        return min(yes, no) != CONTINUES or yes == no or (yes < no) == (op == "or")
 
     def _decided(self, node: tree.Expr) -> ir.Value:
         value = self.value(node)

@@ -32,6 +32,8 @@ CASE = re.compile(r"i\d+ (-?\d+), label (%[\w.$-]+)")
 WIDTH = re.compile(r"\bi(\d+)\b")
 KERNEL_CALL = re.compile(r"\bcall [^@]*@([\w.$-]+)\(")
 INTRINSIC = re.compile(rf"@{re.escape(PREFIX)}(\w+)\(")
+NO_HINT = (1 << 20, 1)
+"""Weights of a branch of which the source says nothing; LLVM takes the first side for certain."""
 OPCODE_NOISE = {"tail", "musttail", "notail"}
 ENTERS = "bfsim.enters."
 """Before the symbol of a kernel: a call that does nothing, where the code of an inlined kernel begins."""

@@ -118,6 +118,21 @@ def test_values_are_guessed_to_be_positive_and_unequal(tmp_path: Path) -> None:
         assert found == pytest.approx(chance if stores_first else 1 - chance), test
 
 
+@pytest.mark.parametrize(("joined", "goes_on"), [("and", 0.5), ("or", 0.67)])
+def test_only_a_test_that_leads_to_a_continue_by_itself_is_guessed_by_it(
+    joined: str, goes_on: float, tmp_path: Path
+) -> None:
+    """The second part of `and` does so; each of `or` does."""
+    found = context(
+        f"def f(a: i32[:], b: i32[:], least: i32, most: i32):\n    for x in range(len(a)):\n"
+        f"        if a[x] < least {joined} b[x] > most:\n            continue\n        b[x] = a[x]\n",
+        tmp_path,
+    )
+    taken = found.likelihood.taken
+    assert taken["body", "decided"] == pytest.approx(goes_on)  # on to the second part
+    assert taken["decided", "after.1"] == pytest.approx(0.67)
+
+
 def test_two_heuristics_are_combined() -> None:
     """Dempster and Shafer's rule; even votes change nothing."""
     assert combined([]) == combined([0.5]) == 0.5

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from functools import cached_property
 
-from bfsim.kernel.ir_text import BasicBlock, predicate
+from bfsim.kernel.ir_text import NO_HINT, BasicBlock, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.counter_comparisons import CounterComparisons
 from bfsim.kernel.lowering.frequencies import frequencies
@@ -195,7 +195,9 @@ def _by_hint(block: BasicBlock) -> list[float]:
     Where a jump was threaded, LLVM has made an extreme of it.
     """
     weights = block.terminator.weights
-    return [min(max(weights[0] / sum(weights), 1 - CONTINUE), CONTINUE)] if any(weights) else []
+    if not any(weights) or set(weights) == set(NO_HINT):
+        return []
+    return [min(max(weights[0] / sum(weights), 1 - CONTINUE), CONTINUE)]
 
 
 def combined(votes: list[float]) -> float:
