@@ -20,6 +20,7 @@ from benchmarks.twins import (
     filters,
     fixed_point,
     gains,
+    gauges,
     grids,
     heaps,
     images,
@@ -63,6 +64,7 @@ from benchmarks.twins import (
     text,
     trackers,
     transforms,
+    views,
     voices,
     warps,
     waves,
@@ -71,11 +73,11 @@ from benchmarks.twins import (
 
 SUBJECTS = (
     angles, bits, borders, cameras, codes, contours, controllers, devices, digits, drawing,
-    duties, exchanges, figures, fills, filters, fixed_point, gains, grids, heaps, images,
-    integers, labels, lines, lookups, machines, maps, masks, messages, mixture, motion,
+    duties, exchanges, figures, fills, filters, fixed_point, gains, gauges, grids, heaps,
+    images, integers, labels, lines, lookups, machines, maps, masks, messages, mixture, motion,
     neighbours, ordering, packing, patches, pictures, pixels, planes, plans, profiles,
     protocols, regions, remotes, robots, rows, samples, searches, shapes, signals, sorted_rows,
     sorting, statistics, stereo, stores, streams, sums, tables, tallies, text, trackers,
-    transforms, voices, warps, waves, words,
+    transforms, views, voices, warps, waves, words,
 )  # fmt: skip
 CASES = tuple(case for subject in SUBJECTS for case in subject.CASES)
