@@ -75,9 +75,11 @@ class Errors:
         return np.isfinite(self.off[:, 0])
 
 
-def errors_of(condition: Condition, frames: int) -> Errors:
+def errors_of(
+    condition: Condition, frames: int, radii_px: tuple[float, float] = (RADII_PX[0], RADII_PX[-1])
+) -> Errors:
     """Draw balls and see them."""
-    shots = [frame_of(condition, RADII_PX[0], RADII_PX[-1], number) for number in range(frames)]
+    shots = [frame_of(condition, *radii_px, number) for number in range(frames)]
     radii, off = [], []
     for seen in see(shots, INDOOR_FIELD):
         passed = seen.words[seen.words[:, CIRCLE_TESTS] & RADIUS_PASSED != 0]

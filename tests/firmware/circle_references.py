@@ -139,8 +139,11 @@ def radius_peak(counts: Sequence[int], reach: int) -> tuple[int, int, int]:
     return radius, max(sums), FINE * radius + mean_offset(wide[radius : radius + 2 * reach + 1])
 
 
-def outline_offset(profile: Sequence[int]) -> tuple[int, int]:
-    """Where the outline crosses a profile, in 1/64 px from its middle, and how steep it is; 7 values before, 8 behind."""
+Breadth = tuple[int, int]  # how much an outline rises, and its rises times the squares of their distances
+
+
+def outline_offset(profile: Sequence[int]) -> tuple[int, int, Breadth]:
+    """Where the outline crosses a profile, in 1/64 px from its middle, how steep it is and how broad; 7 values before, 8 behind."""
     rises = [int(after) - int(before) for before, after in pairwise(profile)]
     place = max(
         range(5, 9), key=lambda each: sum(rises[each - 1 : each + 2]) + rises[each]
@@ -155,11 +158,19 @@ def outline_offset(profile: Sequence[int]) -> tuple[int, int]:
     parts = [max(rises[place + step] - slope, 0) for step, slope in zip(steps, slopes, strict=True)]
     moment = sum(step * part for step, part in zip(steps, parts, strict=True))
     aside = (2 * FINE * moment + sum(parts)) // (2 * sum(parts)) if sum(parts) else 0
-    return FINE * (place - 7) + FINE // 2 + aside, max(rises[place], 0)
+    ends = [dark * (before + 1) if step < 0 else bright * (after + 1) for step in steps]
+    square = sum(
+        abs(step) * (abs(step) * rises[place + step] - end) for step, end in zip(steps, ends, strict=True)
+    )
+    return (
+        FINE * (place - 7) + FINE // 2 + aside,
+        max(rises[place], 0),
+        (sum(parts), max(square, 0)),
+    )
 
 
-def point_of(edge: Edge, luma: Picture) -> tuple[Point, int]:
-    """The point on the outline at an edge, in 1/64 px, and how steep it is there."""
+def point_of(edge: Edge, luma: Picture) -> tuple[Point, int, Breadth]:
+    """The point on the outline at an edge, in 1/64 px, and how steep and broad the outline is there."""
     x, y, direction = edge
     steep = is_steep(direction)
     way = (1 if direction < 128 else -1) if steep else (1 if direction < 64 or direction >= 192 else -1)
@@ -168,15 +179,36 @@ def point_of(edge: Edge, luma: Picture) -> tuple[Point, int]:
     profile = (
         luma[np.clip(y + steps, 0, height - 1), x] if steep else luma[y, np.clip(x + steps, 0, width - 1)]
     )
-    offset, rise = outline_offset(profile.tolist())
+    offset, *how = outline_offset(profile.tolist())
     if steep:
-        return (FINE * x, max(FINE * y + way * offset, 0)), rise
-    return (max(FINE * x + way * offset, 0), FINE * y), rise
+        return (FINE * x, max(FINE * y + way * offset, 0)), *how
+    return (max(FINE * x + way * offset, 0), FINE * y), *how
+
+
+def breadths(outline: Sequence[tuple[Point, int, Breadth]]) -> Breadth:
+    """The sums of the breadths of points, each times how steep the outline is there."""
+    return (
+        sum(steep * whole for _, steep, (whole, _) in outline),
+        sum(steep * square for _, steep, (_, square) in outline),
+    )
 
 
 def near_of(radius: int) -> int:
     """How far from a circle its points may be: a pixel or a sixteenth of its radius."""
     return max(FINE, radius // 16)
+
+
+def nearer(limit: int, radius: int) -> int:
+    """How far from the circle points may be in the next round: half as far, but 4.7 eighths of a pixel or a sixteenth of the radius."""
+    return max(limit // 2, min(max(int(4.7 * FINE / 8), radius // 16), limit))
+
+
+def without_blur(circle: Circle, breadth: Breadth) -> Circle:
+    """A circle whose radius is larger by the variance of the outline's blur over twice the radius."""
+    x, y, radius = circle
+    whole, square = breadth
+    variance = max(square // max(whole // FINE, 1) - FINE // 6, 0)
+    return x, y, radius + int(FINE * variance / (2 * max(radius, FINE)) + 0.5)
 
 
 def is_near(edge: Edge, circle: Circle) -> bool:
@@ -293,6 +325,24 @@ def refined(
     return x + dx, y + dy, radius + (2 * (total(3) - towards) + weight) // (2 * weight)
 
 
+def settled(
+    circle: Circle,
+    points: Sequence[Point],
+    counts: Sequence[Weights],
+    limit: int,
+    rounds: int,
+    bulge: Bulge = (0, 0),
+) -> Circle:
+    """The circle after some rounds, or when none of its numbers moves by more than a thirtieth of a pixel any more."""
+    for _ in range(rounds):
+        before, circle = circle, refined(circle, points, counts, limit, bulge)
+        closer = nearer(limit, circle[2])
+        if closer == limit and max(abs(one - other) for one, other in zip(before, circle, strict=True)) <= 2:
+            break
+        limit = closer
+    return circle
+
+
 def arc(circle: Circle, points: Sequence[Point], bulge: Bulge = (0, 0)) -> int:
     """How much of an outline has a point within a pixel, in 1/256: 8 for each of its 32 sectors."""
     x, y, _ = circle
@@ -402,9 +452,8 @@ def fit(
     away = [distance((FINE * edge[0], FINE * edge[1]), (x, y)) for edge in edges]
     close = [edge for edge, each in zip(edges, away, strict=True) if abs(each - radius) <= limit]
     outline = [point_of(edge, luma) for edge in close]
-    points = [point for point, _ in outline]
-    counts = weights([steep for _, steep in outline])
-    for _ in range(limits.fit_rounds):
-        circle = refined(circle, points, counts, limit, bulge)
-        limit = max(limit // 2, min(near_of(circle[2]), limit))
+    points = [point for point, *_ in outline]
+    counts = weights([steep for _, steep, _ in outline])
+    circle = settled(circle, points, counts, limit, limits.fit_rounds, bulge)
+    circle = without_blur(circle, breadths(outline))
     return circle, arc(circle, points, bulge)

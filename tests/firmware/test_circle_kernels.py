@@ -31,7 +31,16 @@ from tinyphoon.stages.circle_edges import (
     open_area,
     select_edges_row,
 )
-from tinyphoon.stages.circle_fit import FIT_WORDS, OUTSIDE_BITS, REFINED, arc_of, expect_bulge, fit_circle
+from tinyphoon.stages.circle_fit import (
+    FIT_WORDS,
+    OUTSIDE_BITS,
+    REFINED,
+    RISE_SUM,
+    SQUARE_SUM,
+    arc_of,
+    expect_bulge,
+    fit_circle,
+)
 from tinyphoon.stages.circle_outline import (
     LUMA_LINES,
     REACH_LINES,
@@ -210,9 +219,10 @@ def test_points_on_the_outline(edges: list[Edge], seed: int, x: int, y: int, rad
     close = [edge for edge, each in zip(edges, away, strict=True) if abs(each - 64 * radius) <= 192]
     wanted = [expected.point_of(edge, expected.references.luma(uyvy)) for edge in close]
     assert [(word & 0xFFFF, word >> 16) for word in selected[: fit[REFINED]].tolist()] == [
-        point for point, _ in wanted
+        point for point, *_ in wanted
     ]
-    assert steep[: fit[REFINED]].tolist() == [rise for _, rise in wanted]
+    assert steep[: fit[REFINED]].tolist() == [rise for _, rise, _ in wanted]
+    assert (fit[RISE_SUM], fit[SQUARE_SUM]) == expected.breadths(wanted)
 
 
 points_near = st.lists(
@@ -226,11 +236,16 @@ def words_of(weights: list[expected.Weights]) -> list[int]:
     return [inside | outside << OUTSIDE_BITS for inside, outside in weights]
 
 
-@given(points_near, st.integers(1, 100), st.integers(0, 4), st.integers(1, 2000))
+breadths = st.builds(
+    lambda whole, square_px: (whole, whole * square_px >> 8), st.integers(0, 1 << 27), st.integers(0, 15 << 8)
+)
+
+
+@given(points_near, st.integers(1, 100), st.integers(0, 8), st.integers(1, 2000), breadths)
 def test_rounds_of_the_fit(
-    around: list[tuple[float, int, int]], radius: int, rounds: int, focal_px: int
+    around: list[tuple[float, int, int]], radius: int, rounds: int, focal_px: int, breadth: expected.Breadth
 ) -> None:
-    """Scattered points, arcs, a single point and none, with lenses from one pixel to 2000."""
+    """Scattered points, arcs, a single point and none, with lenses from one pixel to 2000; it stops early where little moves."""
     points = [
         (int(8000 + (64 * radius + off) * np.cos(angle)), int(7900 + (64 * radius + off) * np.sin(angle)))
         for angle, off, _ in around
@@ -239,6 +254,7 @@ def test_rounds_of_the_fit(
     fit = np.zeros(FIT_WORDS, np.int32)
     fit[:3] = 8010, 7890, 64 * radius
     fit[REFINED] = len(points)
+    fit[RISE_SUM], fit[SQUARE_SUM] = breadth
     words = np.array([x | y << 16 for x, y in points] or [0], np.uint32)
     counts = np.array(steep or [0], np.uint16)
     circle, limit = (8010, 7890, 64 * radius), 192
@@ -247,10 +263,8 @@ def test_rounds_of_the_fit(
     fit_circle(words, counts, fit, 3, rounds)
     wanted = expected.weights(steep)
     assert counts[: len(points)].tolist() == words_of(wanted)
-    for _ in range(rounds):
-        circle = expected.refined(circle, points, wanted, limit, bulge)
-        limit = max(limit // 2, min(expected.near_of(circle[2]), limit))
-    assert tuple(fit[:3].tolist()) == circle
+    circle = expected.settled(circle, points, wanted, limit, rounds, bulge)
+    assert tuple(fit[:3].tolist()) == expected.without_blur(circle, breadth)
 
 
 @settings(max_examples=25)
@@ -370,7 +384,8 @@ def test_a_blurred_step_is_found_where_it_is(sigma: float, shift: float) -> None
     for slope in (0.0, 2.0):
         rises = np.diff(np.rint(40 + 120 * step + slope * places).astype(np.int32))
         at = steepest(rises)
-        off = outline_offset(rises, at, flank(rises, at, -1), flank(rises, at, 1)) / 64 - shift
+        beside = flank(rises, at, -1), flank(rises, at, 1)
+        off = outline_offset(rises, at, *beside, np.zeros(FIT_WORDS, np.int32)) / 64 - shift
         assert abs(off) < 0.3
 
 

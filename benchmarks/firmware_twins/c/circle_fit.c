@@ -15,6 +15,9 @@
 #define NORMAL_BITS 7
 #define BULGE_BITS 12
 #define SHORTEST_ARC (1 << 10)
+#define NEAR_POINTS 37
+#define OWN_SQUARE (FINE / 6)
+#define STILL 2
 
 KERNEL int32_t distance(int32_t x, int32_t y, const int32_t fit[])
 {
@@ -79,11 +82,11 @@ HELPER void sum_up(const uint32_t points[], const uint16_t weights[], int32_t co
     }
 }
 
-HELPER void move_circle(int32_t fit[], int32_t fit_range)
+HELPER int32_t move_circle(int32_t fit[], int32_t fit_range)
 {
     int32_t weight = fit[WEIGHT];
     if (weight == 0)
-        return;
+        return 0;
     int32_t xx = floor_div(spread(fit[SUM_NXX], fit[SUM_NX], fit[SUM_NX], weight), weight) >> 2;
     int32_t xy = floor_div(spread(fit[SUM_NXY], fit[SUM_NX], fit[SUM_NY], weight), weight) >> 2;
     int32_t yy = floor_div(spread(fit[SUM_NYY], fit[SUM_NY], fit[SUM_NY], weight), weight) >> 2;
@@ -101,7 +104,18 @@ HELPER void move_circle(int32_t fit[], int32_t fit_range)
         fit[CENTRE_Y] = fit[CENTRE_Y] + along_y;
     }
     int32_t towards = ((fit[SUM_NX] >> 1) * along_x + (fit[SUM_NY] >> 1) * along_y) >> (NORMAL_BITS - 1);
-    fit[RADIUS] = fit[RADIUS] + floor_div(2 * (fit[SUM_E] - towards) + weight, 2 * weight);
+    int32_t larger = floor_div(2 * (fit[SUM_E] - towards) + weight, 2 * weight);
+    fit[RADIUS] = fit[RADIUS] + larger;
+    return max(max(abs(along_x), abs(along_y)), abs(larger));
+}
+
+HELPER void take_off_blur(int32_t fit[])
+{
+    int32_t square = floor_div(fit[SQUARE_SUM], max(floor_div(fit[RISE_SUM], FINE), 1)) - OWN_SQUARE;
+    if (square > 0) {
+        int32_t radius = max(fit[RADIUS], FINE);
+        fit[RADIUS] = fit[RADIUS] + floor_div(FINE * square + radius, 2 * radius);
+    }
 }
 
 KERNEL void fit_circle(const uint32_t points[], uint16_t weights[], int32_t fit[], int32_t fit_range, int32_t rounds)
@@ -110,7 +124,11 @@ KERNEL void fit_circle(const uint32_t points[], uint16_t weights[], int32_t fit[
     int32_t near = FINE * fit_range;
     for (int32_t i = 0; i < rounds; i++) {
         sum_up(points, weights, fit[REFINED], fit, near);
-        move_circle(fit, near);
-        near = max(near >> 1, min(near_of(fit[RADIUS]), near));
+        int32_t moved = move_circle(fit, near);
+        int32_t nearer = max(near >> 1, min(max(fit[RADIUS] >> NEAR_BITS, NEAR_POINTS), near));
+        if (moved <= STILL && nearer == near)
+            break;
+        near = nearer;
     }
+    take_off_blur(fit);
 }

@@ -20,6 +20,8 @@
 #define REFINED 13
 #define BULGE_COSINE 14
 #define BULGE_SINE 15
+#define RISE_SUM 16
+#define SQUARE_SUM 17
 
 KERNEL int32_t near_of(int32_t radius);
 KERNEL int32_t distance(int32_t x, int32_t y, const int32_t fit[]);

@@ -55,22 +55,30 @@ HELPER int32_t flank(const int32_t rises[], int32_t at, int32_t way)
     return beside;
 }
 
-HELPER int32_t outline_offset(const int32_t rises[], int32_t at, int32_t before, int32_t after)
+HELPER int32_t outline_offset(const int32_t rises[], int32_t at, int32_t before, int32_t after, int32_t fit[])
 {
     int32_t dark_slope = max(rises[at - before - 1], 0);
     int32_t bright_slope = max(rises[at + after + 1], 0);
     int32_t whole = max(rises[at] - ((dark_slope + bright_slope) >> 1), 0);
     int32_t moment = 0;
+    int32_t square = 0;
+    int32_t dark_end = (before + 1) * dark_slope;
+    int32_t bright_end = (after + 1) * bright_slope;
     for (int32_t step = 1; step < before + 1; step++) {
         int32_t rise = max(rises[at - step] - dark_slope, 0);
         whole = whole + rise;
         moment = moment - step * rise;
+        square = square + step * (step * rises[at - step] - dark_end);
     }
     for (int32_t step = 1; step < after + 1; step++) {
         int32_t rise = max(rises[at + step] - bright_slope, 0);
         whole = whole + rise;
         moment = moment + step * rise;
+        square = square + step * (step * rises[at + step] - bright_end);
     }
+    int32_t steep = max(rises[at], 0);
+    fit[RISE_SUM] = fit[RISE_SUM] + steep * whole;
+    fit[SQUARE_SUM] = fit[SQUARE_SUM] + steep * max(square, 0);
     int32_t offset = FINE * (at - BEFORE) + FINE / 2;
     if (whole > 0)
         offset = offset + floor_div(2 * FINE * moment + whole, 2 * whole);
@@ -92,7 +100,7 @@ KERNEL void refine_row(uint32_t selected[], int32_t count, int32_t y, const uint
             int32_t at = steepest(rises);
             int32_t before = flank(rises, at, -1);
             int32_t after = flank(rises, at, 1);
-            int32_t offset = way * outline_offset(rises, at, before, after);
+            int32_t offset = way * outline_offset(rises, at, before, after, fit);
             int32_t across = max(offset * (1 - flat) + x, 0);
             int32_t down = max(offset * flat + FINE * y, 0);
             int32_t point = fit[REFINED];

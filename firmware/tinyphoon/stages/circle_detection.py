@@ -75,7 +75,7 @@ class CircleThresholds:
     `peak_reach`: how many cells round a peak belong to it; 0 is the thesis, whole pixels.
     `min_edges`, `centre_share`: of the centre test T_c (T Eq. 5.6). `min_peak`, `radius_share`: of the radius test
     T_r (T Eq. 5.7). `consensus_share`: if more of the edges agree on a circle, it has passed both tests.
-    `fit_rounds`: how often centre and radius are fitted to the outline; 0 is the thesis, without consensus.
+    `fit_rounds`: how often at most centre and radius are fitted to the outline; 0 is the thesis, without consensus.
     `fit_range`: how far from the circle the outline is looked for, 1..4.
     """
 

@@ -3,7 +3,8 @@
 The smoothing before the edge detection moves an edge by more than half a pixel where the ball's luma falls off towards
 it. So each edge is looked up again in the camera's lines, along the axis that is nearer to its gradient. The greatest rise
 of luma from pixel to pixel and its flanks, the rises beside it, say where the outline is: their centre, after the slope that the
-luma has on either side is taken off all. A blurred outline has wider flanks, and all of them count.
+luma has on either side is taken off all. A blurred outline has wider flanks, and all of them count. How wide it is is summed up
+for the fit.
 
 The luma of the latest LUMA_LINES lines lies in one array, line y in place y modulo LUMA_LINES. A point is one word, x
 in the low half and y in the high one, in 1/64 px.
@@ -13,7 +14,7 @@ from __future__ import annotations
 
 from bfsim.api import i32, kernel, u8, u16, u32
 from tinyphoon.stages.circle_edges import FINE, LEFT, RIGHT, edge_x, edge_y
-from tinyphoon.stages.circle_fit import NEXT_EDGE, RADIUS, REFINED, distance
+from tinyphoon.stages.circle_fit import NEXT_EDGE, RADIUS, REFINED, RISE_SUM, SQUARE_SUM, distance
 from tinyphoon.stages.line_segments import is_flat
 
 LUMA_LINES = 16
@@ -32,6 +33,8 @@ def clear_points(fit: i32[:]) -> None:
     """Begin with the first edge, and no point yet."""
     fit[NEXT_EDGE] = 0
     fit[REFINED] = 0
+    fit[RISE_SUM] = 0
+    fit[SQUARE_SUM] = 0
 
 
 @kernel
@@ -90,23 +93,32 @@ def flank(rises: i32[:], at: i32, way: i32) -> i32:
 
 
 @kernel
-def outline_offset(rises: i32[:], at: i32, before: i32, after: i32) -> i32:
-    """Return how far towards the bright side of an edge the luma steps, in 1/64 px.
+def outline_offset(rises: i32[:], at: i32, before: i32, after: i32, fit: i32[:]) -> i32:
+    """Return how far towards the bright side of an edge the luma steps, in 1/64 px, and sum up how wide the step is.
 
-    That is the centre of the rise at place `at`, `before` rises before it and `after` behind.
+    That is the centre of the rise at place `at`, `before` rises before it and `after` behind. An outline that bends has a rise that
+    is larger on one side and smaller on the other, the more the further off, slopes and all: so much each adds to the sum.
     """
     dark_slope = max(rises[at - before - 1], 0)
     bright_slope = max(rises[at + after + 1], 0)
     whole = max(rises[at] - (dark_slope + bright_slope >> 1), 0)
     moment = 0
+    square = 0
+    dark_end = (before + 1) * dark_slope
+    bright_end = (after + 1) * bright_slope
     for step in range(1, before + 1):
         rise = max(rises[at - step] - dark_slope, 0)
         whole = whole + rise
         moment = moment - step * rise
+        square = square + step * (step * rises[at - step] - dark_end)
     for step in range(1, after + 1):
         rise = max(rises[at + step] - bright_slope, 0)
         whole = whole + rise
         moment = moment + step * rise
+        square = square + step * (step * rises[at + step] - bright_end)
+    steep = max(rises[at], 0)
+    fit[RISE_SUM] = fit[RISE_SUM] + steep * whole
+    fit[SQUARE_SUM] = fit[SQUARE_SUM] + steep * max(square, 0)
     offset = FINE * (at - BEFORE) + FINE // 2
     if whole > 0:
         offset = offset + (2 * FINE * moment + whole) // (2 * whole)
@@ -142,7 +154,7 @@ def refine_row(
             at = steepest(rises)
             before = flank(rises, at, -1)
             after = flank(rises, at, 1)
-            offset = way * outline_offset(rises, at, before, after)
+            offset = way * outline_offset(rises, at, before, after, fit)
             across = max(offset * (1 - flat) + x, 0)
             down = max(offset * flat + FINE * y, 0)
             point = fit[REFINED]

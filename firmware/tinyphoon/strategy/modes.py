@@ -86,7 +86,8 @@ FITTED_CIRCLES = CircleThresholds(
     radius_share=96,
     # Five eighths. Of the edges of squares and bars not half lie on one circle; of balls cut by the border three quarters do.
     consensus_share=160,
-    fit_rounds=4,
+    # In even light it stands still after three; from a lit half it takes up to eight, from each 2 px off to the whole.
+    fit_rounds=8,
     # The circle from the peaks is off by up to 2 px where the ball is dark at the bottom, and its edges lie as far in.
     fit_range=3,
 )
