@@ -13,15 +13,24 @@ import pytest
 from hypothesis import settings
 
 from tests.pages import path_without_compiler
+from tests.tiers import leaves_examples_open
 
 # no deadline, for the first example compiles kernels, and machines are busy
 settings.register_profile("bfsim", deadline=None, derandomize=True)  # the same examples every time
+settings.register_profile("few", settings.get_profile("bfsim"), max_examples=25)
 settings.register_profile("search", deadline=None)  # others every time
 settings.load_profile("bfsim")
 
 PATH = os.environ["PATH"]
 WHOLE_COMMANDS = (Path(__file__).parent, Path(__file__).parent / "cli")
 """Folders of tests that do what users do."""
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_configure(config: pytest.Config) -> None:
+    """Try few examples of a property in plain `pytest`, unless it says how many; what is exhaustive has all of them."""
+    if config.option.markexpr == "not exhaustive" and not config.getoption("--hypothesis-profile"):
+        settings.load_profile("few")
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -36,9 +45,16 @@ def no_terminal() -> None:
     os.environ.pop("COLUMNS", None)
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the tests of whole commands, the longest ones: at the end no core then waits for the other."""
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Begin with the tests of whole commands, the longest ones: at the end no core then waits for the other.
+
+    Properties that plain `pytest` tries on few examples are tried on all where what is exhaustive is asked for.
+    """
     items.sort(key=lambda item: item.path.parent not in WHOLE_COMMANDS)
+    for item in items if config.option.markexpr == "exhaustive" else ():
+        if leaves_examples_open(getattr(item, "obj", None)):
+            item.add_marker(pytest.mark.exhaustive)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -9,8 +9,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from tests.pages import ROOT
+from tests.tiers import leaves_examples_open
 
 SUITE = """
 import os
@@ -63,3 +66,23 @@ def test_what_is_exhaustive_is_left_out_unless_asked_or_named(
 def test_compiled_kernels_stay_in_the_cache_of_pytest(tmp_path: Path) -> None:
     """From run to run, unless somebody says where else."""
     assert "2 passed" in ran(tmp_path, "tests/test_both.py")
+
+
+@given(st.none())
+def open_property(_: None) -> None:
+    """Any number of examples will do."""
+
+
+@settings(max_examples=7)
+@given(st.none())
+def settled_property(_: None) -> None:
+    """Seven examples, in whichever tier it is."""
+
+
+def test_only_properties_that_leave_it_open_are_tried_again() -> None:
+    """On few examples in plain `pytest`, on all of them where what is exhaustive runs."""
+    assert leaves_examples_open(open_property)
+    assert not leaves_examples_open(settled_property)
+    assert not leaves_examples_open(test_only_properties_that_leave_it_open_are_tried_again)
+    few, every = (settings.get_profile(each).max_examples for each in ("few", "bfsim"))
+    assert 10 <= few < every == 100
