@@ -98,7 +98,7 @@ def recording_work(
             },
             buffers=machine.owners_of_memory,
             is_bound=machine.is_bound_to_placement,
-            code_outside_l1=machine.code_outside_l1,
+            code_places=machine.code_places,
         )
         yield
         for core in cores:
@@ -139,7 +139,7 @@ def _replayed(reader: WorkReader, kernels: dict[str, Kernel], machine: Board, pa
     from bfsim.machine.retiming.moved_code import moves_of
     from bfsim.machine.retiming.replayed_core import ReplayedCore
 
-    moves = moves_of(parts.name, reader.recorded.code_outside_l1, machine.code_outside_l1)
+    moves = moves_of(parts.name, reader.recorded.code_places, machine.code_places)
     return ReplayedCore(parts, kernels, reader.works(parts.name), moves)
 
 
@@ -168,7 +168,7 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
         )
     there, here = (
         {(core, routine) for core, routine, *_ in each}
-        for each in (recorded.code_outside_l1, machine.code_outside_l1)
+        for each in (recorded.code_places, machine.code_places)
     )
     if there != here:
         core, routine = min(there ^ here)

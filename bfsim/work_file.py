@@ -53,15 +53,15 @@ LARGEST_FRAME_BYTES = 1 << 30
 class Recorded:
     """What was run. `identity` are fields of the run's `Identity`; `buffers` those of each owner of memory, by name and bytes.
 
-    `is_bound`: whether what is accessed depends on where everything lies. `code_outside_l1`: where code is fetched from, as
-    `Board.code_outside_l1` has it. `frame_digests`: of the recording up to each frame.
+    `is_bound`: whether what is accessed depends on where everything lies. `code_places`: of the code that lies outside
+    of L1, as `Board.code_places` has them. `frame_digests`: of the recording up to each frame.
     `modules`: of the firmware. `obstacles`: why it cannot be played, in words.
     """
 
     identity: Mapping[str, Any]
     buffers: Sequence[Sequence[Any]]
     is_bound: bool
-    code_outside_l1: Sequence[Sequence[Any]]
+    code_places: Sequence[Sequence[Any]]
     frame_digests: Sequence[str]
     modules: Sequence[str]
     firmware_digest: str
@@ -121,7 +121,7 @@ class WorkReader:
             self.recorded = Recorded(
                 **{each: run[each] for each in run if each not in ("format", "costs")}, **end
             )
-            check_places(self.recorded.code_outside_l1, len(self.recorded.buffers))
+            check_places(self.recorded.code_places, len(self.recorded.buffers))
         except (TypeError, ValueError) as error:
             raise self._broken() from error
 

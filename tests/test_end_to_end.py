@@ -69,6 +69,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[subprocess.Complete
 @pytest.fixture(scope="module")
 def report(whole: tuple[subprocess.CompletedProcess[str], Path]) -> dict[str, Any]:
     """The JSON report of the built-in recording."""
+    assert whole[0].returncode == 0, whole[0].stderr
     loaded: dict[str, Any] = json.loads(whole[1].read_text())
     return loaded
 

@@ -236,7 +236,7 @@ def rewritten(work: Path, path: Path, change: Callable[[dict[str, Any]], None]) 
 
 def test_other_code_outside_of_l1_is_refused(work: Path, folder: Path) -> None:
     """Its fetches are recorded, and those of others are not."""
-    other = rewritten(work, folder / "less.work", lambda run: run["code_outside_l1"].pop())
+    other = rewritten(work, folder / "less.work", lambda run: run["code_places"].pop())
     with pytest.raises(WorkError, match=r"and \w+ of core [AB] is there and is not in both"):
         simulate(frames=FRAMES, work=other)
 
@@ -254,7 +254,7 @@ def test_other_code_outside_of_l1_is_refused(work: Path, folder: Path) -> None:
 )
 def test_a_place_of_code_that_is_none_is_refused(work: Path, folder: Path, place: Any) -> None:
     """At opening."""
-    other = rewritten(work, folder / "odd.work", lambda run: run["code_outside_l1"].append(place))
+    other = rewritten(work, folder / "odd.work", lambda run: run["code_places"].append(place))
     with pytest.raises(WorkError, match=r"odd\.work must be a whole file"):
         simulate(frames=FRAMES, work=other)
 
@@ -270,9 +270,10 @@ def test_code_is_fetched_from_where_it_lies_now() -> None:
     expected = [[0, log.FETCH, 2, 0x8, 5], [1, log.LOAD, 1, 0x100, 5], [2, log.FETCH, 1, 0x50, 6]]
     assert moved(accesses, moves).tolist() == expected
     assert moved(accesses, moves_of("A", there, there)) is accesses
-    accesses[0, 3] = 0x80
-    with pytest.raises(ValueError, match="where none lies"):
-        moved(accesses, moves)
+    for place in (0x80, log.OFFSET_MASK):  # before all code, and so far behind it that the memory ends
+        accesses[0, 3] = place
+        with pytest.raises(ValueError, match="where none lies"):
+            moved(accesses, moves_of("A", there[:1], [("A", "first", 2, 0x108)]))
 
 
 def test_a_frame_takes_less_than_200_kb(work: Path) -> None:

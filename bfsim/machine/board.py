@@ -123,8 +123,8 @@ class Board:
         )
 
     @property
-    def code_outside_l1(self) -> list[tuple[str, str, int, int]]:
-        """Core and name of each routine that is fetched from outside of L1, the owner of its memory by number, and its place there."""
+    def code_places(self) -> list[tuple[str, str, int, int]]:
+        """Core and name of each routine outside of L1, the owner of its memory by number, and its place there."""
         owners = self._bus.owners
         fetched = [
             (core, routine, owners.of(offset), offset)

@@ -32,7 +32,7 @@ time, medians of three): n points that are left gain from n = (173 - 44) / (165 
 MOST_WAITS = 0.02
 """Of the time, for memory outside of L1: what kernels access there is written, read and played word by word.
 
-At 1.5 % (the default LDF and profile) playing pays, as above; at 45 % (l2.ldf, 1 and 5 frames) a frame more takes 2.6 times as long to record, and
+At 1.5 % (the default LDF and profile) playing pays, as above; at 45 % (l2.ldf with vdsp-O2, 1 and 5 frames) a frame more takes 2.6 times as long to record, and
 1.1 times as long to play, as to run. What lies between is not measured [assumed]: where it is wrong a sweep takes longer. Its figures
 are the same.
 """

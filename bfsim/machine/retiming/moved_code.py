@@ -47,6 +47,8 @@ def moved(accesses: Accesses, moves: Table) -> Accesses:
     if (routine < 0).any():
         raise ValueError("code is fetched from where none lies")
     now = was + moves[routine, 1]
+    if (now >> OWNER_BIT != moves[routine].sum(axis=1) >> OWNER_BIT).any():  # behind the end of its memory
+        raise ValueError("code is fetched from where none lies")
     there = accesses.copy(order="K")
     there[fetches, OWNER], there[fetches, BYTE] = now >> OWNER_BIT, now & log.OFFSET_MASK
     return there
