@@ -7,6 +7,7 @@ from benchmarks.twins import (
     bits,
     borders,
     cameras,
+    coders,
     codes,
     contours,
     controllers,
@@ -15,6 +16,7 @@ from benchmarks.twins import (
     drawing,
     duties,
     exchanges,
+    features,
     figures,
     fills,
     filters,
@@ -34,6 +36,7 @@ from benchmarks.twins import (
     messages,
     mixture,
     motion,
+    motors,
     neighbours,
     ordering,
     packing,
@@ -49,6 +52,7 @@ from benchmarks.twins import (
     robots,
     rows,
     samples,
+    scans,
     searches,
     shapes,
     signals,
@@ -72,12 +76,12 @@ from benchmarks.twins import (
 )
 
 SUBJECTS = (
-    angles, bits, borders, cameras, codes, contours, controllers, devices, digits, drawing,
-    duties, exchanges, figures, fills, filters, fixed_point, gains, gauges, grids, heaps,
-    images, integers, labels, lines, lookups, machines, maps, masks, messages, mixture, motion,
-    neighbours, ordering, packing, patches, pictures, pixels, planes, plans, profiles,
-    protocols, regions, remotes, robots, rows, samples, searches, shapes, signals, sorted_rows,
-    sorting, statistics, stereo, stores, streams, sums, tables, tallies, text, trackers,
-    transforms, views, voices, warps, waves, words,
+    angles, bits, borders, cameras, coders, codes, contours, controllers, devices, digits,
+    drawing, duties, exchanges, features, figures, fills, filters, fixed_point, gains, gauges,
+    grids, heaps, images, integers, labels, lines, lookups, machines, maps, masks, messages,
+    mixture, motion, motors, neighbours, ordering, packing, patches, pictures, pixels, planes,
+    plans, profiles, protocols, regions, remotes, robots, rows, samples, scans, searches,
+    shapes, signals, sorted_rows, sorting, statistics, stereo, stores, streams, sums, tables,
+    tallies, text, trackers, transforms, views, voices, warps, waves, words,
 )  # fmt: skip
 CASES = tuple(case for subject in SUBJECTS for case in subject.CASES)
