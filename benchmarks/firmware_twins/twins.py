@@ -21,14 +21,7 @@ from tinyphoon.stages.circle_fit import fit_circle
 from tinyphoon.stages.circle_outline import refine_row
 from tinyphoon.stages.circle_votes import draw_lines
 from tinyphoon.stages.colour_reduction import colour_row
-from tinyphoon.stages.edge_correspondence import (
-    match_edges,
-    spread_left_row,
-    spread_right_row,
-    store_edges3d_row,
-    take_left_row,
-    take_right_row,
-)
+from tinyphoon.stages.edge_correspondence import match_edges, store_edges3d_row
 from tinyphoon.stages.edge_detection import (
     direction_row,
     gauss3_row,
@@ -37,6 +30,7 @@ from tinyphoon.stages.edge_detection import (
     sobel_row,
     suppress_row,
 )
+from tinyphoon.stages.edge_rows import spread_left_row, spread_right_row, take_left_row, take_right_row
 from tinyphoon.stages.hysteresis import group_edges_row, keep_edges_row, label_edges_row
 from tinyphoon.stages.line_connectors import connect_far, connect_near
 from tinyphoon.stages.line_detection import fit_lines

@@ -1,8 +1,10 @@
 """3-D edges and 3-D lines of real stereo pairs beside a dense matcher, and beside the true disparities where there are some.
 
-The dense matcher is OpenCV's SGBM over all of the rows' disparities, with its check from left to right. At the border of a
-near thing a pixel has two disparities, the thing's and that of what is behind: an edge is right where one of the nine
-dense ones round it is near its own. `plain` is without that, the pixel's own alone.
+The dense matcher is OpenCV's SGBM over all of the rows' disparities, with its check from left to right. It errs, too, above all
+where things look alike. True disparities come with a pair, or are those of the plane of a chessboard whose corners OpenCV
+finds in both pictures of a calibrated recording; then the dense matcher is judged like the 3-D edges, at the same pixels. At
+the border of a near thing a pixel has two disparities, the thing's and that of what is behind: an edge is right where one of
+the nine dense ones round it is near its own. `plain` is without that, the pixel's own alone.
 """
 
 from __future__ import annotations
@@ -16,10 +18,11 @@ from numpy.typing import NDArray
 
 from benchmarks.playing import Played
 from benchmarks.real.sets import Disparities, PictureSet
+from benchmarks.rectified.truths import truth_of
 from bfsim.api import Seen
 from bfsim.report.tables import percent
 from tinyphoon.stages.stereo_lines import Correspondence
-from tinyphoon.strategy.modes import INDOOR_FIELD
+from tinyphoon.strategy.modes import INDOOR_FIELD, THESIS_FIELD
 
 TITLE = "3-D edges and lines beside dense disparities"
 COLUMNS = (
@@ -35,10 +38,16 @@ COLUMNS = (
 )
 NOTE = (
     "In % of those judged: where the dense disparity is known. Kept: how many 3-D edges there are of those that the thesis "
-    "matches on the same edges, right or wrong; wanted: of those of both that are not too far away; right: of those within 1 px."
+    "matches on the same edges, right or wrong; wanted: of those of both that are not too far away; right: of those within 1 px. "
+    "Beside the truth, which on chessboards is their plane, SGBM itself at the pixels of the 3-D edges."
 )
 
-ALONE = {"send": [{"mode": {"stereo_edges": {"correspondence": int(Correspondence.NEAREST)}}}]}
+ALONE = {
+    "send": [{"mode": {"stereo_edges": {
+        "correspondence": int(Correspondence.NEAREST),
+        "direction_range": THESIS_FIELD.stereo_edges.direction_range,
+    }}}]
+}  # fmt: skip
 """What orders the thesis's way: each edge is matched alone."""
 
 NEAR_PX, FAR_PX = 1.0, 5.0
@@ -160,6 +169,23 @@ class _Found:
         wanted = sum(_wanted(each.taken["A"], points, own) for each, points, own in frames)
         return cls(sum(len(points) for _, points, _ in frames), count, near, plain, wanted)
 
+    @classmethod
+    def of_dense(
+        cls, played: Sequence[Played[Seen]], dense: Sequence[Disparities], truth: Sequence[Disparities]
+    ) -> _Found:
+        """Judge a dense matcher at the pixels of the 3-D edges of all frames, as if these had its disparities."""
+        frames = []
+        for each, own in zip(played, dense, strict=True):
+            points = edge_points(each.taken["A"])
+            points[:, 2] = _around(points, own, 0)[:, 0]
+            frames.append(points[np.isfinite(points[:, 2])])
+        near, plain = (
+            np.concatenate([_errors(points, true, reach) for points, true in zip(frames, truth, strict=True)])
+            for reach in (1, 0)
+        )
+        count = sum(len(points) for points in frames)
+        return cls(count, count, near, plain, wanted=count)
+
     def of_all(self, number: int) -> int:
         """Return how many of all there are if `number` of the judged are, and those without room are like the others."""
         return round(number * self.count / max(len(self.near), 1))
@@ -170,15 +196,31 @@ def rows_of(
 ) -> list[list[str]]:
     """Return the rows of the table for a set of stereo pairs, played our way and with each edge matched alone."""
     dense = {"SGBM": [sgbm(*pictures.lumas(frame)) for frame in pictures.frames]}
-    if pictures.truth:
-        dense["truth"] = list(pictures.truth)
+    truth = true_disparities(pictures)
+    if truth:
+        dense["truth"] = truth
     rows = []
     for kind, points_of in (("edges", edge_points), ("lines", line_points)):
         for beside, disparities in dense.items():
             found, all_ = (_Found.of(played, points_of, disparities) for played in (ours, alone))
             kept = _kept(found, all_) if kind == "edges" else ("", "", "")
             rows.append([beside, kind, *_cells(found), *kept])
+    if truth:
+        rows.append(["truth", "SGBM", *_cells(_Found.of_dense(ours, dense["SGBM"], truth)), "", "", ""])
     return rows
+
+
+def true_disparities(pictures: PictureSet) -> Sequence[Disparities]:
+    """Return the true disparities of each frame, NaN where unknown: none at all if they are unknown everywhere."""
+    sources = pictures.calibration.sources
+    if pictures.truth or not sources:
+        return pictures.truth
+    tables = {"left": sources["A"], "right": sources["B"]}
+    truths = [truth_of(frame, tables) for frame in pictures.frames]
+    if not any(truths):
+        return ()
+    unknown = np.full(tables["left"].rows.shape, np.nan)
+    return [each.disparities if each else unknown for each in truths]
 
 
 def _cells(found: _Found) -> list[str]:

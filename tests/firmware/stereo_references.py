@@ -122,7 +122,7 @@ NEVER = 65535
 
 @dataclass(slots=True)
 class Choice:
-    """The best pair of an edge as pairs come in, from left to right, and the score of its best rival."""
+    """The best pair of an edge as pairs come in, and the score of its best rival."""
 
     best: int = NEVER
     partner: Edge | None = None
@@ -130,12 +130,49 @@ class Choice:
 
     def see(self, score: int, partner: Edge) -> None:
         """Look at a pair. What is a pixel beside the best so far is no rival of it."""
-        is_apart = self.partner is None or partner[0] - self.partner[0] > 1
+        is_apart = self.partner is None or abs(partner[0] - self.partner[0]) > 1
         if score < self.best:
             self.rival = self.best if is_apart else self.rival
             self.best, self.partner = score, partner
         elif is_apart:
             self.rival = min(self.rival, score)
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """Pairs of a row in one order, and what they are worth."""
+
+    value: int = 0
+    pairs: tuple[tuple[Edge, Edge], ...] = ()
+
+    def with_pair(self, edge: Edge, other: Edge, score: int) -> Path:
+        """With one more: a pixel of disparity from the last pair costs 4."""
+        step = 0
+        if self.pairs:
+            before, partner = self.pairs[-1]
+            step = abs(edge[0] - other[0] - (before[0] - partner[0]))
+        return Path(self.value + NEVER - score - 4 * step, (*self.pairs, (edge, other)))
+
+
+def path_of(left: Sequence[Edge], right: Sequence[Edge], scores: Mapping[tuple[Edge, Edge], int]) -> Path:
+    """The best path of those that go on from the best ones before; of equals the one that was there first.
+
+    `up_to[n]` is the best one to the first n right edges.
+    """
+    up_to = [Path()] * (len(right) + 1)
+    for edge in left:
+        with_edge = {
+            place: up_to[place].with_pair(edge, other, scores[edge, other])
+            for place, other in enumerate(right)
+            if (edge, other) in scores
+        }
+        for place in sorted(with_edge, reverse=True):
+            path = with_edge[place]
+            for end in range(place + 1, len(up_to)):
+                if up_to[end].value >= path.value:
+                    break
+                up_to[end] = path
+    return up_to[-1]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -177,26 +214,32 @@ class EdgeLimits:
         return total
 
     def supported(self, left: Rows, right: Rows, y: int, most: int) -> dict[Edge, Edge]:
-        """The partners of left edges of a row: best of each other by a margin, with support."""
+        """The partners of left edges of a row: those of the path that are best of each other by a margin, or a pixel beside, with support."""
         lefts = {edge: Choice() for edge in left[y]}
         rights = {other: Choice() for other in right[y]}
-        support = {}
+        support, scores = {}, {}
         for edge in left[y]:
-            for other in right[y]:
+            for other in reversed(right[y]):
                 disparity, own = edge[0] - other[0], self.unlike(edge, other)
                 if 0 <= disparity <= most and own is not None:
                     around = self.around(left, right, y, edge[0], disparity)
                     support[edge, other] = around < 4 * self.lack
+                    scores[edge, other] = own + around
                     lefts[edge].see(own + around, other)
                     rights[other].see(own + around, edge)
-        return {
-            edge: mine.partner
-            for edge, mine in lefts.items()
-            if mine.partner
-            and support[edge, mine.partner]
-            and (theirs := rights[mine.partner]).partner == edge
-            and all(each.best + self.margin <= each.rival for each in (mine, theirs))
-        }
+        found = {}
+        for edge, other in path_of(left[y], right[y], scores).pairs:
+            mine, theirs = lefts[edge], rights[other]
+            if (
+                mine.partner
+                and theirs.partner
+                and support[edge, mine.partner]
+                and abs(mine.partner[0] - other[0]) <= 1
+                and abs(theirs.partner[0] - edge[0]) <= 1
+                and all(each.best + self.margin <= each.rival for each in (mine, theirs))
+            ):
+                found[edge] = other
+        return found
 
     def settled(
         self, matched: Sequence[dict[Edge, Edge]], left: Rows, right: Rows, most: int
@@ -222,11 +265,13 @@ class EdgeLimits:
             for edge in left[y]:
                 if edge not in found[y]:
                     known = [each for row in (y, y + 1, y + 2) for each in beside(row, edge, 12)]
-                    near = {each + step for each in known for step in (-1, 0, 1)}
+                    near = dict.fromkeys(known, 0) | {
+                        each + step: 16 for each in known for step in (-1, 1) if each + step not in known
+                    }
                     offers = [
-                        (off, edge[0] - other[0], other)
+                        (off + near[edge[0] - other[0]], edge[0] - other[0], other)
                         for other in right[y]
-                        if edge[0] - other[0] in near & set(range(most + 1))
+                        if edge[0] - other[0] in near.keys() & set(range(most + 1))
                         and other not in found[y].values()
                         and (off := self.unlike(edge, other, self.follow_range)) is not None
                     ]

@@ -46,6 +46,38 @@ def test_a_recording_is_seen_as_rectified(tmp_path: Path) -> None:
         assert float(kind["over 5 px off %"]) < 3
 
 
+SQUARE_PX, SHIFT_PX, WALL = 20, 24, 100
+
+
+def test_a_board_is_its_own_truth(tmp_path: Path) -> None:
+    """A board of squares, lit from one side, before a wall: 3-D edges and the dense matcher are judged by its plane."""
+    rows, columns = np.indices((240, 320), np.int32)
+    squares = ((rows // SQUARE_PX + columns // SQUARE_PX) % 2).astype(bool)
+    board = np.full((240, 320), WALL, np.uint8)
+    board[40:180, 80:280] = np.where(squares, columns // 2 + 100, 20)[40:180, 80:280]
+    lumas = board, np.roll(board, -SHIFT_PX, axis=1)
+    frames = [np.stack([np.full_like(each, 128), each], axis=-1).reshape(240, 640) for each in lumas]
+    plain = np.stack([rows, columns])
+    path = tmp_path / "board.mcap"
+    tables = RectificationTables(plain, plain)
+    with RecordingWriter(path, width=320, height=240, rectification=tables) as writer:
+        writer.add(*frames, 0, 0)
+
+    seen = see(path, (320, 240))
+    (truth,) = depth.true_disparities(seen.pictures)
+    assert np.allclose(truth[60:160, 100:260], SHIFT_PX, atol=0.3)
+    assert np.isnan(truth[:50]).all()
+    judged = {(row[0], row[1]): row[2:6] for row in depth.rows_of(seen.pictures, seen.played, seen.alone)}
+    assert set(judged) == {(by, kind) for by in ("SGBM", "truth") for kind in ("edges", "lines")} | {
+        ("truth", "SGBM")
+    }
+    for kind in ("edges", "SGBM"):
+        number, within, _, far = judged["truth", kind]
+        assert int(number.split()[0]) > 200
+        assert float(within) > 95
+        assert float(far) < 3
+
+
 def test_a_recording_of_one_camera_is_no_pair(tmp_path: Path) -> None:
     """Both sides have the same picture."""
     picture = np.full((4, 16), 128, np.uint8)

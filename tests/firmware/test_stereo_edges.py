@@ -19,7 +19,8 @@ from tests.firmware.stereo_references import Edge, EdgeLimits, Rig, edges_3d
 from tests.firmware.whole_pictures import buffer, random_frames, run, stereo
 from tinyphoon.exchange import copy_words, pack_edge_rows
 from tinyphoon.geometry import GEOMETRY_WORDS
-from tinyphoon.stages.edge_correspondence import is_level
+from tinyphoon.stages.edge_correspondence import LINK_WORDS
+from tinyphoon.stages.edge_rows import is_level
 from tinyphoon.stages.line_votes import LineVote
 from tinyphoon.stages.stereo_edges import StereoEdgeThresholds, stereo_edges
 from tinyphoon.stages.stereo_lines import Correspondence
@@ -51,7 +52,12 @@ class StereoCore(BareCore):
 
 
 def found(
-    left: Sequence[Row], right: Sequence[Row], mode: StereoEdgeThresholds, rig: Rig = ROBOT, room: int = 500
+    left: Sequence[Row],
+    right: Sequence[Row],
+    mode: StereoEdgeThresholds,
+    rig: Rig = ROBOT,
+    room: int = 500,
+    links: int = 500,
 ) -> tuple[list[tuple[int, ...]], int]:
     """What the stage makes of two edge stores, and how many there would be."""
     data, index, counts = store(right)
@@ -66,6 +72,9 @@ def found(
             **{name: np.full((count, rig.width), GARBAGE, np.uint32) for name, count in rings.items()},
             **{name: [each] for name, each in stores},
             "edge_ring": np.full((2, rig.width), GARBAGE, np.uint8),
+            "camera_ring": np.full((2, 2 * rig.width), GARBAGE, np.uint8),
+            "grey_ring": np.full((3, rig.width), GARBAGE, np.uint8),
+            "edge_groups": [np.full(links * LINK_WORDS, GARBAGE, np.uint16)],
             "right_edge_data": [shared],
             "right_edge_rows": [rows],
             "geometry": [np.array([rig.focal, rig.baseline, *[0] * (GEOMETRY_WORDS - 2)], np.int32)],
@@ -180,6 +189,49 @@ def test_an_edge_that_is_as_like_two_has_no_depth() -> None:
     one, two, beside = [[(170, 0, 80)]], [[(150, 0, 80), (170, 0, 80)]], [[(170, 0, 80), (171, 0, 60)]]
     assert [found([[(200, 0, 80)]] * 3, right * 3, LIKE)[1] for right in (one, two, beside)] == [3, 0, 3]
     assert found([[(200, 0, 80), (210, 0, 80)]] * 3, one * 3, LIKE)[1] == 0
+
+
+def test_pairs_keep_their_order() -> None:
+    """Each of two edges is most like the other one's partner; alone it would belong to it."""
+    left, right = [[(200, 0, 50), (210, 0, 90)]] * 3, [[(170, 0, 90), (180, 0, 50)]] * 3
+    assert found(left, right, LIKE) == ([], 0)
+    assert [
+        found([row[:1] for row in left], right, LIKE)[1],
+        found([row[1:] for row in left], right, LIKE)[1],
+    ] == [
+        3,
+        3,
+    ]
+
+
+def test_posts_of_a_fence_are_told_apart_by_their_number() -> None:
+    """Each post is exactly like the next one's image, but then one would be left over; the last one fits no other."""
+    left = [[(100 + 20 * post, 0, 50 + 30 * post) for post in range(5)]] * 3
+    right = [[(70 + 20 * post, 0, 20 + 30 * post) for post in range(5)]] * 3
+    assert {each[3] % 5 for each in found(left, right, LIKE)[0]} <= {4}
+    assert found([row[:4] for row in left], [row[1:] for row in right], LIKE)[1] == 12
+
+
+def test_of_paths_with_as_many_pairs_the_one_with_smaller_steps_wins() -> None:
+    """The middle one of three edges has a partner that is most like it, two pixels off the disparity of the others, and follows them."""
+    left = [[(158, 0, 50), (170, 0, 110), (182, 0, 200)]] * 3
+    for likest, other in ((142, 140), (138, 140)):
+        right = [sorted([(128, 0, 50), (likest, 0, 110), (other, 0, 108), (152, 0, 200)])] * 3
+        assert [each[2] for each in found(left, right, replace(LIKE, margin=0))[0]] == [392] * 9
+
+
+def test_a_pair_without_room_for_its_link_is_on_no_path() -> None:
+    """The first link is none."""
+    left, right = [[(200, 0, 80)]] * 3, [[(170, 0, 80)]] * 3
+    assert [found(left, right, LIKE, links=links)[1] for links in (1, 2)] == [0, 3]
+
+
+def test_who_follows_takes_the_very_disparity_rather_than_one_beside() -> None:
+    """Unless the edge a pixel beside is more alike by more than 16."""
+    left = [[(200, 0, 80)]] * 4
+    tops = [[(169, 16, 80), (170, 16, gradient)] for gradient in (65, 63)]
+    depths = [found(left, [top, *[[(170, 0, 80)]] * 3], LIKE)[0][-1][2] for top in tops]
+    assert depths == [392, 379]
 
 
 @pytest.mark.parametrize(

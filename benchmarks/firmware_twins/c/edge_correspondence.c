@@ -1,85 +1,23 @@
 /* Twin of tinyphoon/stages/edge_correspondence.py. */
+#include "edge_rows.h"
 #include "geometry.h"
 #include "line_segments.h"
 #include "lines.h"
 
-#define REACH 2
-#define WINDOW_ROWS (2 * REACH + 1)
 #define WORST 0xFFFF
+
+/* half-words of a link */
+#define LINK_BEFORE 0
+#define LINK_LEFT 1
+#define LINK_RIGHT 2
+#define LINK_WORDS 3
+
+#define STEP 4
 
 /* half-words of a 3-D edge */
 #define EDGE3D_X 0
 #define EDGE3D_LEFT 3
 #define EDGE3D_WORDS 4
-
-HELPER int32_t is_level(uint32_t edge, int32_t level_range)
-{
-    /* half a turn is 128: above 0 and below twice the range, counted from as far before straight down */
-    return (((int32_t)(edge >> 8) + level_range - 65) & 127) < 2 * level_range - 1 ? 1 : 0;
-}
-
-HELPER int32_t take_edges(const uint32_t edges[], int32_t first, int32_t count, uint32_t row[], int32_t level_range)
-{
-    int32_t taken = 0;
-    for (int32_t place = first; place < first + count; place++) {
-        uint32_t edge = edges[place];
-        if (is_level(edge, level_range) == 0) {
-            row[taken] = edge;
-            taken = taken + 1;
-        }
-    }
-    return taken;
-}
-
-KERNEL int32_t take_left_row(const uint32_t edge_data[], const uint32_t edge_index[], const uint16_t edge_counts[],
-                             int32_t y, uint32_t row[], int32_t level_range)
-{
-    return take_edges(edge_data, (int32_t)edge_index[y], edge_counts[y], row, level_range);
-}
-
-KERNEL int32_t take_right_row(const uint32_t right_edges[], const uint32_t right_rows[], int32_t y, uint32_t row[],
-                              int32_t level_range)
-{
-    uint32_t here = right_rows[y];
-    return take_edges(right_edges, (int32_t)(here & 0xFFFF), (int32_t)(here >> 16), row, level_range);
-}
-
-HELPER void spread_edges(const uint32_t edges[], int32_t first, int32_t count, uint16_t window[], int32_t slot,
-                         int32_t level_range, int32_t window_length)
-{
-    int32_t pitch = window_length / WINDOW_ROWS;
-    int32_t base = slot * pitch;
-    for (int32_t place = base; place < base + pitch; place++)
-        window[place] = 0;
-    for (int32_t place = first; place < first + count; place++) {
-        uint32_t edge = edges[place];
-        if (is_level(edge, level_range) == 0)
-            window[base + (int32_t)(edge >> 16)] = edge & 0xFFFF;
-    }
-}
-
-KERNEL void spread_left_row(const uint32_t edge_data[], const uint32_t edge_index[], const uint16_t edge_counts[],
-                            int32_t y, uint16_t window[], int32_t slot, int32_t level_range,
-                            int32_t edge_counts_length, int32_t window_length)
-{
-    int32_t first = 0;
-    int32_t count = 0;
-    if (0 <= y && y < edge_counts_length) {
-        first = (int32_t)edge_index[y];
-        count = edge_counts[y];
-    }
-    spread_edges(edge_data, first, count, window, slot, level_range, window_length);
-}
-
-KERNEL void spread_right_row(const uint32_t right_edges[], const uint32_t right_rows[], int32_t y, uint16_t window[],
-                             int32_t slot, int32_t level_range, int32_t right_rows_length, int32_t window_length)
-{
-    uint32_t here = 0;
-    if (0 <= y && y < right_rows_length)
-        here = right_rows[y];
-    spread_edges(right_edges, (int32_t)(here & 0xFFFF), (int32_t)(here >> 16), window, slot, level_range,
-                 window_length);
-}
 
 HELPER int32_t unlike(int32_t edge, int32_t other, int32_t direction_range)
 {
@@ -139,62 +77,134 @@ HELPER void offer(const uint32_t left_row[], int32_t left, int32_t right, int32_
     }
 }
 
-HELPER void drop_contested(int32_t left_count, uint16_t partners[], const uint16_t bests[], const uint16_t rivals[],
-                           const uint16_t owners[], int32_t margin)
+HELPER int32_t first_behind(const uint32_t row[], int32_t first, int32_t count, int32_t x)
 {
-    for (int32_t left = 0; left < left_count; left++) {
-        int32_t right = partners[left] - 1;
-        if (right >= 0 && (owners[right] != left + 1 || bests[right] + margin > rivals[right]))
-            partners[left] = 0;
+    while (first < count && (int32_t)(row[first] >> 16) <= x)
+        first = first + 1;
+    return first;
+}
+
+HELPER void clear_path(int32_t values[], uint16_t ends[], int32_t right_count)
+{
+    for (int32_t right = 0; right < right_count; right++) {
+        values[right] = 0;
+        ends[right] = 0;
+    }
+}
+
+HELPER int32_t disparity_of(const uint32_t left_row[], int32_t left, const uint32_t right_row[], int32_t right)
+{
+    return (int32_t)(left_row[left] >> 16) - (int32_t)(right_row[right] >> 16);
+}
+
+HELPER int32_t add_pair(const uint32_t left_row[], int32_t left, const uint32_t right_row[], int32_t right,
+                        int32_t right_count, int32_t score, int32_t values[], uint16_t ends[], uint16_t links[],
+                        int32_t used, int32_t links_length)
+{
+    int32_t value = WORST - score;
+    int32_t before = 0;
+    if (right > 0) {
+        before = ends[right - 1];
+        value = value + values[right - 1];
+    }
+    if (before != 0) {
+        int32_t link = LINK_WORDS * before;
+        int32_t last = disparity_of(left_row, links[link + LINK_LEFT], right_row, links[link + LINK_RIGHT]);
+        value = value - STEP * abs(disparity_of(left_row, left, right_row, right) - last);
+    }
+    int32_t link = LINK_WORDS * used;
+    if (value <= values[right] || link + LINK_WORDS > links_length)
+        return used;
+    links[link + LINK_BEFORE] = before;
+    links[link + LINK_LEFT] = left;
+    links[link + LINK_RIGHT] = right;
+    int32_t place = right;
+    while (place < right_count && values[place] < value) {
+        values[place] = value;
+        ends[place] = used;
+        place = place + 1;
+    }
+    return used + 1;
+}
+
+HELPER int32_t columns_apart(const uint32_t row[], int32_t one, int32_t other)
+{
+    return abs((int32_t)(row[one] >> 16) - (int32_t)(row[other] >> 16));
+}
+
+HELPER void take_path(const uint32_t left_row[], int32_t left_count, const uint32_t right_row[], uint16_t partners[],
+                      const uint16_t bests[], const uint16_t rivals[], const uint16_t owners[], int32_t margin,
+                      const uint16_t links[], int32_t end)
+{
+    int32_t link = LINK_WORDS * end;
+    for (int32_t left = left_count - 1; left > -1; left--) {
+        int32_t best = partners[left];
+        partners[left] = 0;
+        if (link != 0 && links[link + LINK_LEFT] == left) {
+            int32_t right = links[link + LINK_RIGHT];
+            link = LINK_WORDS * links[link + LINK_BEFORE];
+            int32_t has_rival = best == 0 || bests[right] + margin > rivals[right];
+            if (!has_rival && columns_apart(right_row, best - 1, right) <= 1
+                && columns_apart(left_row, owners[right] - 1, left) <= 1)
+                partners[left] = right + 1;
+        }
     }
 }
 
 KERNEL void match_edges(const uint32_t left_row[], int32_t left_count, const uint32_t right_row[],
                         int32_t right_count, const uint16_t left_window[], const uint16_t right_window[],
                         int32_t slot, uint16_t partners[], uint16_t bests[], uint16_t rivals[], uint16_t owners[],
-                        int32_t direction_range, int32_t max_disparity, int32_t lack, int32_t margin,
-                        int32_t left_window_length)
+                        int32_t values[], uint16_t ends[], uint16_t links[], int32_t direction_range,
+                        int32_t max_disparity, int32_t lack, int32_t margin, int32_t left_window_length,
+                        int32_t links_length)
 {
     for (int32_t right = 0; right < right_count; right++) {
         bests[right] = WORST;
         rivals[right] = WORST;
         owners[right] = 0;
     }
+    clear_path(values, ends, right_count);
     int32_t pitch = left_window_length / WINDOW_ROWS;
+    int32_t behind = 0;
+    int32_t used = 1;
     for (int32_t left = 0; left < left_count; left++) {
         uint32_t edge = left_row[left];
         int32_t x = (int32_t)(edge >> 16);
         int32_t best = WORST;
         int32_t rival = WORST;
-        int32_t best_x = NONE;
+        int32_t best_x = x;
         int32_t partner = 0;
-        for (int32_t right = 0; right < right_count; right++) {
+        behind = first_behind(right_row, behind, right_count, x);
+        for (int32_t right = behind - 1; right > -1; right--) {
             uint32_t other = right_row[right];
             int32_t other_x = (int32_t)(other >> 16);
-            if (other_x > x)
+            if (x - other_x > max_disparity)
                 break;
-            int32_t score = WORST;
-            if (x - other_x <= max_disparity)
-                score = unlike((int32_t)(edge & 0xFFFF), (int32_t)(other & 0xFFFF), direction_range);
+            int32_t score = unlike((int32_t)(edge & 0xFFFF), (int32_t)(other & 0xFFFF), direction_range);
             if (score < WORST) {
                 int32_t around = unlike_around(left_window, right_window, pitch, slot, x, x - other_x,
                                                direction_range, lack);
                 score = score + around;
                 if (score < best) {
-                    if (other_x - best_x > 1)
+                    if (best_x - other_x > 1)
                         rival = best;
                     best = score;
                     best_x = other_x;
                     partner = around < (WINDOW_ROWS - 1) * lack ? right + 1 : 0;
-                } else if (other_x - best_x > 1) {
+                } else if (best_x - other_x > 1) {
                     rival = score < rival ? score : rival;
                 }
                 offer(left_row, left, right, score, bests, rivals, owners);
+                used = add_pair(left_row, left, right_row, right, right_count, score, values, ends, links, used,
+                                links_length);
             }
         }
         partners[left] = best + margin <= rival ? partner : 0;
     }
-    drop_contested(left_count, partners, bests, rivals, owners, margin);
+    if (right_count > 0) {
+        int32_t end = ends[right_count - 1];
+        take_path(left_row, left_count, right_row, partners, bests, rivals, owners, margin, links, end);
+    }
 }
 
 KERNEL int32_t store_edges3d_row(const uint32_t edge_data[], const uint32_t edge_index[], int32_t y,

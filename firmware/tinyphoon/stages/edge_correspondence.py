@@ -4,103 +4,35 @@ The pictures are rectified, so both show a point in one row. The plain way of th
 the one with the least disparity. The better way, ours, asks the rows around: what has a disparity has it in the next rows
 too, along the edge. A pair's score is how unlike its gradients are, and for each of four rows around how unlike the most
 similar pair of that disparity is that lies beside the edge. The pair with the least score must be the best of both its
-edges, by a margin, and must have support in one row at least. Whether it is believed, and what else is, say the disparities
-around (`edge_following.py`).
+edges, by a margin, must have support in one row at least, and be on the path through the row. Whether it is believed, and
+what else is, say the disparities around (`edge_following.py`).
+
+The *path* is what pairs of a row there can be in one order in both pictures, as many as possible (stereo by dynamic programming,
+as Ohta and Kanade have it). What lies side by side is seen in the same order by both cameras, unless something thin stands far
+before the rest. So where one square of a board is like the next, their number tells them apart, and what lies beyond the
+board. Of paths with as many pairs the better one has pairs that are more alike, and smaller steps of disparity between them.
+It is found as the pairs come in, left edges from left to right, the right ones of each from right to left: for each right edge,
+`values` says how good the best path is that ends there or before, and `ends` with which link. A link is a pair and the link
+before it; link 0 is none.
 """
 
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel, u16, u32
 from tinyphoon.geometry import store_point
-from tinyphoon.stages.line_segments import NONE, turn_between
+from tinyphoon.stages.edge_rows import REACH, WINDOW_ROWS
+from tinyphoon.stages.line_segments import turn_between
 from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.stores.lines3d import EDGE3D_LEFT, EDGE3D_WORDS, EDGE3D_X
 
-REACH = 2
-"""Rows above and below that support a pair; as many columns to both sides: an edge that leans by 45 degrees."""
-
-WINDOW_ROWS = 2 * REACH + 1
 WORST = 0xFFFF
 
+# A link.
+LINK_BEFORE, LINK_LEFT, LINK_RIGHT = 0, 1, 2
+LINK_WORDS = 3
 
-@kernel
-def is_level(edge: u32, level_range: i32) -> i32:
-    """Return 1 for an edge whose gradient looks up or down, to less than `level_range`; else 0."""
-    # half a turn is 128: above 0 and below twice the range, counted from as far before straight down
-    return 1 if (i32(edge >> 8) + level_range - 65 & 127) < 2 * level_range - 1 else 0
-
-
-@kernel
-def take_edges(edges: u32[:], first: i32, count: i32, row: u32[:], level_range: i32) -> i32:
-    """Copy `count` edges from place `first` on to `row`, without the level ones, and return how many are left."""
-    taken = 0
-    for place in range(first, first + count):
-        edge = edges[place]
-        if is_level(edge, level_range) == 0:
-            row[taken] = edge
-            taken = taken + 1
-    return taken
-
-
-@kernel
-def take_left_row(
-    edge_data: u32[:], edge_index: u32[:], edge_counts: u16[:], y: i32, row: u32[:], level_range: i32
-) -> i32:
-    """Copy row `y` of the edge store, without the level edges; return how many are left."""
-    return take_edges(edge_data, i32(edge_index[y]), i32(edge_counts[y]), row, level_range)
-
-
-@kernel
-def take_right_row(right_edges: u32[:], right_rows: u32[:], y: i32, row: u32[:], level_range: i32) -> i32:
-    """Copy row `y` of the edge store that core B shares, without the level edges; return how many are left."""
-    here = right_rows[y]
-    return take_edges(right_edges, i32(here & 0xFFFF), i32(here >> 16), row, level_range)
-
-
-@kernel
-def spread_edges(edges: u32[:], first: i32, count: i32, window: u16[:], slot: i32, level_range: i32) -> None:
-    """Put `count` edges from place `first` on into a row of a window, by column, without the level ones.
-
-    A column holds gradient and direction, or 0.
-    """
-    pitch = len(window) // WINDOW_ROWS
-    base = slot * pitch
-    for place in range(base, base + pitch):
-        window[place] = 0
-    for place in range(first, first + count):
-        edge = edges[place]
-        if is_level(edge, level_range) == 0:
-            window[base + i32(edge >> 16)] = edge & 0xFFFF
-
-
-@kernel
-def spread_left_row(
-    edge_data: u32[:],
-    edge_index: u32[:],
-    edge_counts: u16[:],
-    y: i32,
-    window: u16[:],
-    slot: i32,
-    level_range: i32,
-) -> None:
-    """Put row `y` of the edge store into a window; rows that the picture does not have are empty."""
-    first = 0
-    count = 0
-    if 0 <= y < len(edge_counts):
-        first = i32(edge_index[y])
-        count = i32(edge_counts[y])
-    spread_edges(edge_data, first, count, window, slot, level_range)
-
-
-@kernel
-def spread_right_row(
-    right_edges: u32[:], right_rows: u32[:], y: i32, window: u16[:], slot: i32, level_range: i32
-) -> None:
-    """Put row `y` of the edge store that core B shares into a window; rows that the picture does not have are empty."""
-    here: u32 = 0
-    if 0 <= y < len(right_rows):
-        here = right_rows[y]
-    spread_edges(right_edges, i32(here & 0xFFFF), i32(here >> 16), window, slot, level_range)
+STEP = 4
+"""What a path pays for each pixel that the disparity changes by from a pair to the next: for 8 px as for a row that lacks support."""
 
 
 @kernel
@@ -193,14 +125,103 @@ def offer(
 
 
 @kernel
-def drop_contested(
-    left_count: i32, partners: u16[:], bests: u16[:], rivals: u16[:], owners: u16[:], margin: i32
+def first_behind(row: u32[:], first: i32, count: i32, x: i32) -> i32:
+    """Return the place, from `first` on, of the first edge of a row that lies to the right of column `x`."""
+    while first < count and i32(row[first] >> 16) <= x:
+        first = first + 1
+    return first
+
+
+@kernel
+def clear_path(values: i32[:], ends: u16[:], right_count: i32) -> None:
+    """Begin without a pair."""
+    for right in range(right_count):
+        values[right] = 0
+        ends[right] = 0
+
+
+@kernel
+def disparity_of(left_row: u32[:], left: i32, right_row: u32[:], right: i32) -> i32:
+    """Return the disparity of a pair."""
+    return i32(left_row[left] >> 16) - i32(right_row[right] >> 16)
+
+
+@kernel
+def add_pair(
+    left_row: u32[:],
+    left: i32,
+    right_row: u32[:],
+    right: i32,
+    right_count: i32,
+    score: i32,
+    values: i32[:],
+    ends: u16[:],
+    links: u16[:],
+    used: i32,
+) -> i32:
+    """Take a pair into the paths that are better with it; `used` links are taken. Returns how many are now.
+
+    A pair that finds no room for its link is in no path.
+    """
+    value = WORST - score  # so much that the path with more pairs wins
+    before = 0
+    if right > 0:
+        before = i32(ends[right - 1])
+        value = value + values[right - 1]
+    if before != 0:
+        link = LINK_WORDS * before
+        last = disparity_of(left_row, i32(links[link + LINK_LEFT]), right_row, i32(links[link + LINK_RIGHT]))
+        value = value - STEP * abs(disparity_of(left_row, left, right_row, right) - last)
+    link = LINK_WORDS * used
+    if value <= values[right] or link + LINK_WORDS > len(links):
+        return used
+    links[link + LINK_BEFORE] = before
+    links[link + LINK_LEFT] = left
+    links[link + LINK_RIGHT] = right
+    place = right
+    while place < right_count and values[place] < value:
+        values[place] = value
+        ends[place] = used
+        place = place + 1
+    return used + 1
+
+
+@kernel
+def columns_apart(row: u32[:], one: i32, other: i32) -> i32:
+    """Return how many columns two edges of a row are apart."""
+    return abs(i32(row[one] >> 16) - i32(row[other] >> 16))
+
+
+@kernel
+def take_path(
+    left_row: u32[:],
+    left_count: i32,
+    right_row: u32[:],
+    partners: u16[:],
+    bests: u16[:],
+    rivals: u16[:],
+    owners: u16[:],
+    margin: i32,
+    links: u16[:],
+    end: i32,
 ) -> None:
-    """Leave left edges without a partner that is another's, or that has a rival nearly as good."""
-    for left in range(left_count):
-        right = partners[left] - 1
-        if right >= 0 and (owners[right] != left + 1 or bests[right] + margin > rivals[right]):
-            partners[left] = 0
+    """Give left edges the partners of the path that ends with link `end`, if these are the best of both, or a pixel beside.
+
+    `partners` comes with the best of each left edge, or 0 where that has a rival.
+    """
+    link = LINK_WORDS * end
+    for left in range(left_count - 1, -1, -1):
+        best = i32(partners[left])
+        partners[left] = 0
+        if link != 0 and i32(links[link + LINK_LEFT]) == left:
+            right = i32(links[link + LINK_RIGHT])
+            link = LINK_WORDS * i32(links[link + LINK_BEFORE])
+            has_rival = best == 0 or i32(bests[right]) + margin > i32(rivals[right])
+            if not has_rival and (
+                columns_apart(right_row, best - 1, right) <= 1
+                and columns_apart(left_row, i32(owners[right]) - 1, left) <= 1
+            ):
+                partners[left] = right + 1
 
 
 @kernel
@@ -216,6 +237,9 @@ def match_edges(
     bests: u16[:],
     rivals: u16[:],
     owners: u16[:],
+    values: i32[:],
+    ends: u16[:],
+    links: u16[:],
     direction_range: i32,
     max_disparity: i32,
     lack: i32,
@@ -223,46 +247,53 @@ def match_edges(
 ) -> None:
     """Set for each left edge the place of its partner in the right row, from 1 on, or 0.
 
-    `bests`, `rivals` and `owners` are room for the right row: least score, that of the rival, and whose the least is.
-    A rival is the best of the others that are more than a pixel away. Pairs farther away than is wanted take part: an edge
-    whose true partner is there must not get another.
+    `bests`, `rivals` and `owners` are room for the right row: least score, that of the rival, and whose the least is;
+    `values`, `ends` and `links` for the path. A rival is the best of the others that are more than a pixel away. Pairs farther
+    away than is wanted take part: an edge whose true partner is there must not get another.
     """
     for right in range(right_count):
         bests[right] = WORST
         rivals[right] = WORST
         owners[right] = 0
+    clear_path(values, ends, right_count)
     pitch = len(left_window) // WINDOW_ROWS
+    behind = 0
+    used = 1
     for left in range(left_count):
         edge = left_row[left]
         x = i32(edge >> 16)
         best = WORST
         rival = WORST
-        best_x = NONE
+        best_x = x
         partner = 0
-        for right in range(right_count):
+        behind = first_behind(right_row, behind, right_count, x)
+        for right in range(behind - 1, -1, -1):
             other = right_row[right]
             other_x = i32(other >> 16)
-            if other_x > x:
+            if x - other_x > max_disparity:
                 break
-            score = WORST
-            if x - other_x <= max_disparity:
-                score = unlike(i32(edge & 0xFFFF), i32(other & 0xFFFF), direction_range)
+            score = unlike(i32(edge & 0xFFFF), i32(other & 0xFFFF), direction_range)
             if score < WORST:
                 around = unlike_around(
                     left_window, right_window, pitch, slot, x, x - other_x, direction_range, lack
                 )
                 score = score + around
                 if score < best:
-                    if other_x - best_x > 1:
+                    if best_x - other_x > 1:
                         rival = best
                     best = score
                     best_x = other_x
                     partner = right + 1 if around < (WINDOW_ROWS - 1) * lack else 0
-                elif other_x - best_x > 1:
+                elif best_x - other_x > 1:
                     rival = min(rival, score)
                 offer(left_row, left, right, score, bests, rivals, owners)
+                used = add_pair(
+                    left_row, left, right_row, right, right_count, score, values, ends, links, used
+                )
         partners[left] = partner if best + margin <= rival else 0
-    drop_contested(left_count, partners, bests, rivals, owners, margin)
+    if right_count > 0:
+        end = i32(ends[right_count - 1])
+        take_path(left_row, left_count, right_row, partners, bests, rivals, owners, margin, links, end)
 
 
 @kernel

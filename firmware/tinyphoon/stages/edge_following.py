@@ -23,6 +23,9 @@ NO_OFFER = WORST << OFFER_BITS
 LEAST_SUPPORT = 2
 """Rows around that must have a disparity: chance gives one of the four easily, but seldom two."""
 
+BESIDE = 16
+"""How much more alike a pair must be that differs from the disparity it follows by a pixel: most things go on at the same."""
+
 FOLLOW_REACH = 12
 """Columns to both sides of an edge in which it finds disparities to follow."""
 
@@ -113,6 +116,7 @@ def best_offer(
                 other = i32(right_edges[x - disparity + 1])
                 if other != 0:
                     off = unlike(i32(edge & 0xFFFF), other, follow_range)
+                    off = off + BESIDE * abs(disparity - known)
                     best = min(best, off << OFFER_BITS | disparity)
             before = known
     return best

@@ -11,25 +11,23 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from bfsim.api import Buffer, Core, Frame, Row, i16, u16, u32
+from bfsim.api import Buffer, Core, Frame, Row, i16, i32, u16, u32
 from tinyphoon.fields import allowed
 from tinyphoon.geometry import FARTHEST_MM, disparity_at
-from tinyphoon.stages.edge_correspondence import (
-    REACH,
-    WINDOW_ROWS,
-    match_edges,
-    match_nearest,
-    spread_left_row,
-    spread_right_row,
-    store_edges3d_row,
-    take_left_row,
-    take_right_row,
-)
+from tinyphoon.stages.edge_correspondence import match_edges, match_nearest, store_edges3d_row
 from tinyphoon.stages.edge_following import (
     believe_edges,
     clear_disparities,
     follow_edges,
     place_disparities,
+)
+from tinyphoon.stages.edge_rows import (
+    REACH,
+    WINDOW_ROWS,
+    spread_left_row,
+    spread_right_row,
+    take_left_row,
+    take_right_row,
 )
 from tinyphoon.stages.line_votes import LineVote
 from tinyphoon.stages.stereo_lines import Correspondence, check_depths
@@ -152,15 +150,19 @@ class _Search:
     most: int
     partners: Row
     scores: tuple[Row, ...]
+    path: tuple[Row, Row, Row]
     disparities: tuple[Row, ...]
     words: tuple[Row, ...]
 
     @classmethod
     def of(cls, core: Core, frame: Frame, thresholds: StereoEdgeThresholds, least: int, most: int) -> _Search:
         partners, *scores = core.overlay(_SCORES, u16, frame.width)
+        values, *_ = core.overlay("camera_ring", i32, frame.width)
+        ends, *_ = core.overlay("grey_ring", u16, frame.width)
         return cls(
             core=core, rows=_Rows.of(core, frame.width, thresholds.level_range), thresholds=thresholds,
             height=frame.height, least=least, most=most, partners=partners, scores=tuple(scores),
+            path=(values, ends, core.array("edge_groups")),
             disparities=_disparity_rows(core, u16, frame.width),
             words=_disparity_rows(core, u32, frame.width // 2),
         )  # fmt: skip
@@ -196,7 +198,7 @@ class _Search:
         limit = self.thresholds.direction_range
         if self.is_mutual:
             limits = limit, self.most, self.thresholds.lack, self.thresholds.margin
-            room = self.partners, *self.scores
+            room = self.partners, *self.scores, *self.path
             yield self.core.run(match_edges, *left, *right, *self.rows.windows, slot, *room, *limits)
         else:
             yield self.core.run(match_nearest, *left, *right, self.partners, limit, self.least, self.most)

@@ -221,8 +221,9 @@ INDOOR_FIELD = Mode(
         correspondence=Correspondence.MUTUAL,
         # 22.5 degrees, as for lines.
         level_range=16,
-        # As for lines; noise turns single edges more.
-        direction_range=8,
+        # 22.5 degrees. An upright edge on a plane whose disparity changes by two fifths of a pixel a row is turned by so much
+        # from one picture to the other; noise turns single edges, too.
+        direction_range=16,
         # Nearer than 10 cm no robot's lens is sharp; farther than the largest field or room nobody plays. What is farther
         # still takes part in the search and is dropped then.
         nearest_mm=100,
@@ -250,6 +251,8 @@ THESIS_FIELD = replace(
     refinement=replace(INDOOR_FIELD.refinement, reach=0),
     # T §5.2.7 and §5.2.8: the nearest of like direction
     stereo_lines=replace(INDOOR_FIELD.stereo_lines, correspondence=Correspondence.NEAREST, edge_range=0),
-    stereo_edges=replace(INDOOR_FIELD.stereo_edges, correspondence=Correspondence.NEAREST),
+    stereo_edges=replace(
+        INDOOR_FIELD.stereo_edges, correspondence=Correspondence.NEAREST, direction_range=8
+    ),  # as for lines
 )
 """The same field without what is [ours]."""
