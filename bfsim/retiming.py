@@ -98,7 +98,7 @@ def recording_work(
             },
             buffers=machine.owners_of_memory,
             is_bound=machine.is_bound_to_placement,
-            code_places=machine.code_places,
+            code_outside=machine.code_outside,
         )
         yield
         for core in cores:
@@ -131,16 +131,14 @@ def playing_work(
         machine.firmware = replace(
             machine.firmware, mains=dict.fromkeys(machine.firmware.mains, played_again), view=None
         )
-        machine.core, machine.ahead = partial(_replayed, reader, kernels, machine), None
+        machine.core, machine.ahead = partial(_replayed, reader, kernels), None
         yield
 
 
-def _replayed(reader: WorkReader, kernels: dict[str, Kernel], machine: Board, parts: Parts) -> Core:
-    from bfsim.machine.retiming.moved_code import moves_of
+def _replayed(reader: WorkReader, kernels: dict[str, Kernel], parts: Parts) -> Core:
     from bfsim.machine.retiming.replayed_core import ReplayedCore
 
-    moves = moves_of(parts.name, reader.recorded.code_places, machine.code_places)
-    return ReplayedCore(parts, kernels, reader.works(parts.name), moves)
+    return ReplayedCore(parts, kernels, reader.works(parts.name))
 
 
 def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -> None:
@@ -166,10 +164,7 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
             f"{path} must be played with the LDF that it was recorded with, where one of the two has caches or a stack outside of L1: "
             "what they fetch depends on where everything lies; record it with this LDF"
         )
-    there, here = (
-        {(core, routine) for core, routine, *_ in each}
-        for each in (recorded.code_places, machine.code_places)
-    )
+    there, here = ({tuple(pair) for pair in each} for each in (recorded.code_outside, machine.code_outside))
     if there != here:
         core, routine = min(there ^ here)
         raise WorkError(

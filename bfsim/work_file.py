@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 
 from bfsim.errors import WorkError
 from bfsim.kernel import keys
-from bfsim.machine.retiming.moved_code import check_places
 from bfsim.machine.retiming.work import (
     ACCESS_COLUMNS,
     BYTE,
@@ -36,7 +35,7 @@ from bfsim.machine.retiming.work import (
 )
 from bfsim.report.save import writing
 
-FORMAT = 5
+FORMAT = 6
 WIDTHS = tuple(np.dtype(each) for each in ("<i1", "<i2", "<i4", "<i8"))
 TABLES = {
     "operations": OPERATION_COLUMNS, "accesses": ACCESS_COLUMNS, "events": EVENT_COLUMNS, "copies": COPY_COLUMNS,
@@ -53,15 +52,15 @@ LARGEST_FRAME_BYTES = 1 << 30
 class Recorded:
     """What was run. `identity` are fields of the run's `Identity`; `buffers` those of each owner of memory, by name and bytes.
 
-    `is_bound`: whether what is accessed depends on where everything lies. `code_places`: of the code that lies outside
-    of L1, as `Board.code_places` has them. `frame_digests`: of the recording up to each frame.
+    `is_bound`: whether what is accessed depends on where everything lies. `code_outside`: core and name of each routine
+    outside of L1. `frame_digests`: of the recording up to each frame.
     `modules`: of the firmware. `obstacles`: why it cannot be played, in words.
     """
 
     identity: Mapping[str, Any]
     buffers: Sequence[Sequence[Any]]
     is_bound: bool
-    code_places: Sequence[Sequence[Any]]
+    code_outside: Sequence[Sequence[str]]
     frame_digests: Sequence[str]
     modules: Sequence[str]
     firmware_digest: str
@@ -121,7 +120,7 @@ class WorkReader:
             self.recorded = Recorded(
                 **{each: run[each] for each in run if each not in ("format", "costs")}, **end
             )
-            check_places(self.recorded.code_places, len(self.recorded.buffers))
+            _check_names(self.recorded.code_outside)
         except (TypeError, ValueError) as error:
             raise self._broken() from error
 
@@ -163,6 +162,13 @@ def opened(path: Path) -> Iterator[WorkReader]:
         ) from error
     with zipped:
         yield WorkReader(path, zipped)
+
+
+def _check_names(routines: Sequence[Sequence[str]]) -> None:
+    """Raise TypeError or ValueError unless each routine is the names of a core and its own."""
+    for core, routine in routines:
+        if not type(core) is type(routine) is str:
+            raise TypeError("a routine must be two names")
 
 
 def _decompressed(content: bytes) -> bytes:

@@ -17,11 +17,10 @@ import zstandard
 from bfsim.errors import ConfigError, WorkError
 from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
-from bfsim.machine.retiming.moved_code import moved, moves_of
-from bfsim.machine.retiming.work import CALL, FrameWork, check
+from bfsim.machine.retiming.work import CALL, KIND, SITE, FrameWork, check
 from bfsim.result import Run
 from bfsim.run import Feed, Fidelity, simulate
-from bfsim.work_file import FORMAT
+from bfsim.work_file import FORMAT, _read, _written
 from tests.test_run import FIRMWARE, record
 from tests.tiers import exhaustive
 
@@ -221,6 +220,22 @@ def test_a_broken_frame_is_refused(work: Path, folder: Path, frame: bytes) -> No
         simulate(frames=FRAMES, work=broken)
 
 
+def test_a_fetch_of_code_that_is_none_is_refused(work: Path, folder: Path) -> None:
+    """Its site must be that of a routine outside of L1."""
+    odd = folder / "fetch.work"
+    with zipfile.ZipFile(work) as old, zipfile.ZipFile(odd, "w") as new:
+        for name in old.namelist():
+            content = old.read(name)
+            if name == "A/000001":
+                done = _read("A", zstandard.decompress(content))
+                assert (done.accesses[:, KIND] == log.FETCHES).any()
+                done.accesses[done.accesses[:, KIND] == log.FETCHES, SITE] = w.MAX_SITES - 1
+                content = zstandard.compress(_written(done))
+            new.writestr(name, content)
+    with pytest.raises(WorkError, match="code is fetched from where none lies"):
+        simulate(frames=FRAMES, work=odd)
+
+
 def rewritten(work: Path, path: Path, change: Callable[[dict[str, Any]], None]) -> Path:
     """Write a recorded run with other words on what was run."""
     with zipfile.ZipFile(work) as old, zipfile.ZipFile(path, "w") as new:
@@ -236,44 +251,17 @@ def rewritten(work: Path, path: Path, change: Callable[[dict[str, Any]], None]) 
 
 def test_other_code_outside_of_l1_is_refused(work: Path, folder: Path) -> None:
     """Its fetches are recorded, and those of others are not."""
-    other = rewritten(work, folder / "less.work", lambda run: run["code_places"].pop())
+    other = rewritten(work, folder / "less.work", lambda run: run["code_outside"].pop())
     with pytest.raises(WorkError, match=r"and \w+ of core [AB] is there and is not in both"):
         simulate(frames=FRAMES, work=other)
 
 
-@pytest.mark.parametrize(
-    "place",
-    [
-        ["A"],
-        ["A", "routine", "L2", 0],
-        [0, "routine", 0, 0],
-        ["A", "routine", 9999, 0],
-        ["A", "routine", 0, 1 << 70],
-        7,
-    ],
-)
-def test_a_place_of_code_that_is_none_is_refused(work: Path, folder: Path, place: Any) -> None:
+@pytest.mark.parametrize("routine", [["A"], [0, "routine"], ["A", 7], ["A", "routine", 0], 7])
+def test_a_routine_that_is_none_is_refused(work: Path, folder: Path, routine: Any) -> None:
     """At opening."""
-    other = rewritten(work, folder / "odd.work", lambda run: run["code_places"].append(place))
+    other = rewritten(work, folder / "odd.work", lambda run: run["code_outside"].append(routine))
     with pytest.raises(WorkError, match=r"odd\.work must be a whole file"):
         simulate(frames=FRAMES, work=other)
-
-
-def test_code_is_fetched_from_where_it_lies_now() -> None:
-    """Each word at its place in its routine; data stays where it is, and a fetch from where no code was is refused."""
-    there = [("A", "first", 1, 0x100), ("A", "second", 1, 0x200), ("B", "first", 1, 0x900)]
-    here = [("A", "second", 1, 0x40), ("A", "first", 2, 0x8), ("B", "first", 1, 0x900)]
-    moves = moves_of("A", there, here)
-    accesses = np.array(
-        [(0, log.FETCH, 1, 0x100, 5), (1, log.LOAD, 1, 0x100, 5), (2, log.FETCH, 1, 0x210, 6)], np.uint32
-    )
-    expected = [[0, log.FETCH, 2, 0x8, 5], [1, log.LOAD, 1, 0x100, 5], [2, log.FETCH, 1, 0x50, 6]]
-    assert moved(accesses, moves).tolist() == expected
-    assert moved(accesses, moves_of("A", there, there)) is accesses
-    for place in (0x80, log.OFFSET_MASK):  # before all code, and so far behind it that the memory ends
-        accesses[0, 3] = place
-        with pytest.raises(ValueError, match="where none lies"):
-            moved(accesses, moves_of("A", there[:1], [("A", "first", 2, 0x108)]))
 
 
 def test_a_frame_takes_less_than_200_kb(work: Path) -> None:

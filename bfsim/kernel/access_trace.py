@@ -22,7 +22,9 @@ WRITE = 256  # `counters` adds it to an access's byte count when it writes
 # An entry of the log: `stamp << STAMP_BIT | kind << KIND_BIT | offset in the arena`
 KIND_BIT, STAMP_BIT = 28, 31
 OFFSET_MASK, KIND_MASK = (1 << KIND_BIT) - 1, 7
-LOAD, STORE, FILL, WRITE_BACK, FETCH, FETCH_LINE, TEST_AND_SET = range(7)
+LOAD, STORE, FILL, WRITE_BACK, FETCH, FETCH_LINE, TEST_AND_SET, FETCHES = range(8)
+"""What an entry is. FETCHES, the last one of a call, stands for all fetches of its code that no cache holds: their number takes the
+place of a stamp, and its site is that of the routine that is fetched first (`bus.state`)."""
 
 # Words of the state; the log stands behind them, and behind that the site of each of its entries (`call_paths`).
 (
@@ -146,6 +148,13 @@ class AccessTrace:
         """Return the sites of these entries."""
         first = LOG + int(self._state[ROOM]) + self._kept
         return self._state[first : first + count]
+
+    def add(self, count: int, entry: int, site: int) -> int:
+        """Add an entry behind the `count` of the last call; return the new count."""
+        self._check_room(count + 1)
+        first, words = LOG + self._kept + count, self._words
+        words[first], words[first + words[ROOM]] = entry, site
+        return count + 1
 
     def insert(self, count: int, entries: NDArray[np.int64], sites: NDArray[np.int64]) -> int:
         """Add `entries`, ordered by their stamps, to the `count` of the last call, behind those of the same; return the new count."""

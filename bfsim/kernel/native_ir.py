@@ -16,11 +16,8 @@ import llvmlite.binding as llvm
 from bfsim.errors import BfsimError
 
 OPTIONS = {"error_model": "numpy"}
-SETTINGS = {"BOUNDSCHECK": 0, "DISABLE_JIT": 0}
-"""Whatever a user's environment tells numba for code of its own: `words_at` does not know the length that would be checked.
-
-Numba optimises for the host; what it would do is done here.
-"""
+SETTINGS = {"DISABLE_JIT": 0}
+"""Whatever a user's environment tells numba for code of its own. Numba optimises for the host; what it would do is done here."""
 ROUNDS = 2
 """Of LLVM's passes. In the second one they see that nothing can fail, and leave out what Python would do then."""
 
@@ -103,9 +100,9 @@ def _register(part: Function) -> None:
 
 @cache
 def _extend(words_at: Function) -> None:
-    """Tell numba of `words_at`."""
+    """Tell numba of `words_at`: an address is taken for an array, none of whose indices is negative."""
     numba = _numba()
-    numba.extending.overload(words_at)(lambda address: lambda address: numba.carray(address, 1))
+    numba.extending.overload(words_at)(lambda address: lambda address: address)
 
 
 def _kind(types: Any, name: str) -> Any:

@@ -123,17 +123,9 @@ class Board:
         )
 
     @property
-    def code_places(self) -> list[tuple[str, str, int, int]]:
-        """Core and name of each routine outside of L1, the owner of its memory by number, and its place there."""
-        owners = self._bus.owners
-        fetched = [
-            (core, routine, owners.of(offset), offset)
-            for core in self.spec.chip.cores
-            for routine, (offset, _) in self._code_outside_l1(core).items()
-        ]
-        return [
-            (core, routine, owner, offset - owners.first[owner]) for core, routine, owner, offset in fetched
-        ]
+    def code_outside(self) -> list[tuple[str, str]]:
+        """Core and name of each routine outside of L1."""
+        return [(core, routine) for core in self.spec.chip.cores for routine in self._code_outside_l1(core)]
 
     def run(
         self,
@@ -215,7 +207,9 @@ class Board:
             name,
             self.build,
             access_trace,
-            CodeOutside(self._code_outside_l1(name), code_cache),
+            CodeOutside(
+                self._code_outside_l1(name), code_cache, partial(self._bus.logs.keep_routine, number)
+            ),
             SubBanks(chip, self._memories, self._bus.words),
             self._bus.owners,
             Ledger(partial(self._bus.logs.stalls_at_sites, number)),

@@ -263,18 +263,33 @@ class Bench:
         return self.memories.first[region.name] + address - region.start
 
     def call(
-        self, core: int, accesses: Iterable[tuple[int, int, int]], *, begin: int = 0, cclk: int = 0
+        self,
+        core: int,
+        accesses: Iterable[tuple[int, int, int]],
+        *,
+        begin: int = 0,
+        cclk: int = 0,
+        fetches: int = 0,
     ) -> Call:
         """Let core 0 or 1 access memories from tick `begin`, in a call of `cclk` cycles without stalls.
 
-        Each access: (cycle of the call, kind, address).
+        Each access: (cycle of the call, kind, address). `fetches`: of its code (`keep_code`), so many.
         """
-        entries, count = self.bus.logs.room_of(core)[log.LOG :], 0
-        for stamp, kind, address in accesses:
-            entry = stamp << log.STAMP_BIT | kind << log.KIND_BIT
-            entries[count] = entry | self.offset(address)
-            count += 1
-        return Call(self, core, self.bus.cores.access(core, begin, cclk, count))
+        entries = [
+            stamp << log.STAMP_BIT | kind << log.KIND_BIT | self.offset(address)
+            for stamp, kind, address in accesses
+        ]
+        sites = [w.NO_SITE] * len(entries)
+        if fetches:
+            entries.append(fetches << log.STAMP_BIT | log.FETCHES << log.KIND_BIT)
+            sites.append(1)
+        self.bus.logs.replace(core, np.array([entries, sites]))
+        return Call(self, core, self.bus.cores.access(core, begin, cclk, len(entries)))
+
+    def keep_code(self, core: int, nbytes: int, *places: int) -> None:
+        """Let the code that a core fetches be routines of so many bytes at these addresses, in turn."""
+        for site, place in enumerate(places, 1):
+            self.bus.logs.keep_routine(core, site, self.offset(place), nbytes, site % len(places) + 1)
 
     def traffic(self, master: int, owner: int = w.NO_BUFFER_IN_SDRAM) -> Traffic:
         """Return what a master moved so far to and from memory of an owner."""

@@ -61,7 +61,12 @@ class Scene:
             self.bench.env.process(self._post(plan, tick))
         for core in (0, 1):
             logs = [self._log(chance) for _ in range(chance.randint(0, 2))]
-            self.bench.env.process(self._run(core, logs, chance.randint(0, 500)))
+            self.bench.keep_code(
+                core, chance.randint(1, 99), *chance.sample(CORE_PLACES, chance.randint(1, 3))
+            )
+            self.bench.env.process(
+                self._run(core, logs, chance.randint(0, 500), chance.choice([0, 0, 1, 30]))
+            )
 
     def _walk(self, chance: Random, size: int, x_count: int) -> Walk:
         first = self.bench.offset(chance.choice(PLACES)) + size * chance.randint(0, 9)
@@ -122,11 +127,12 @@ class Scene:
         yield self.bench.env.timeout(tick)
         self.transfers.append(self.bench.bus.post(plan))
 
-    def _run(self, core: int, logs: list[list[tuple[int, int, int]]], begin_cclk: int) -> Play:
+    def _run(self, core: int, logs: list[list[tuple[int, int, int]]], begin_cclk: int, fetches: int) -> Play:
         yield self.bench.env.timeout(self.bench.cclk(begin_cclk))
         for log in logs:
             cclk = log[-1][0] + len(log)
-            self.calls.append(self.bench.call(core, log, begin=self.bench.env.tick, cclk=cclk))
+            call = self.bench.call(core, log, begin=self.bench.env.tick, cclk=cclk, fetches=fetches)
+            self.calls.append(call)
             yield self.calls[-1].event
 
     def _settle(self, stops: Iterable[int]) -> Play:

@@ -82,14 +82,23 @@ class Bench:
         )
         return self.bus.post(plan)
 
-    def call(self, core: int, accesses: Iterable[CoreAccess], cclk: int = 0) -> None:
-        """Make the accesses of a call; its end and its stalls come to `calls`."""
+    def call(self, core: int, accesses: Iterable[CoreAccess], cclk: int = 0, fetches: int = 0) -> None:
+        """Make the accesses of a call, and `fetches` of its code (`keep_code`); its end and its stalls come to `calls`."""
         entries = [stamp << log.STAMP_BIT | kind << log.KIND_BIT | offset for stamp, kind, offset in accesses]
-        self.bus.logs.room_of(core)[log.LOG : log.LOG + len(entries)] = entries
+        sites = [w.NO_SITE] * len(entries)
+        if fetches:
+            entries.append(fetches << log.STAMP_BIT | log.FETCHES << log.KIND_BIT)
+            sites.append(1)
+        self.bus.logs.replace(core, np.array([entries, sites]))
         done = self.bus.cores.access(core, 0, cclk, len(entries))
         done.callbacks.append(
             lambda _event: self.calls.append((self.env.tick, list(self.bus.cores.stalls_of(core))))
         )
+
+    def keep_code(self, core: int, *places: int) -> None:
+        """Let the code that a core fetches be routines of 40 bytes at these places, in turn."""
+        for site, place in enumerate(places, 1):
+            self.bus.logs.keep_routine(core, site, place, 40, site % len(places) + 1)
 
     def play(self) -> None:
         """Play everything to its end."""
@@ -368,6 +377,26 @@ def test_accesses_of_one_core_are_the_same_in_both_modes(board: str, kind: int) 
 
 
 @each_board
+@pytest.mark.parametrize("fetches", [1, 10, 77])
+@pytest.mark.parametrize("gap_cclk", [2, 5, 150])
+def test_fetches_are_the_same_in_both_modes(board: str, fetches: int, gap_cclk: int) -> None:
+    """Of code in SDRAM and in L2, faster than it can come and slowly, among the loads of a call."""
+
+    def prepare(bench: Bench) -> None:
+        places = [64, bench.bank + 8192, *([bench.l2 + 64] if bench.spec.chip.l2 else [])]
+        bench.keep_code(0, *places)
+        loads = [(3 * gap_cclk * each, log.LOAD, 4 * each) for each in range(8)]
+        bench.call(0, loads, max(fetches, 3 * len(loads)) * gap_cclk, fetches)
+
+    fast, detailed = same(board, prepare)
+    assert fast.calls == detailed.calls
+    assert fast.traffic() == detailed.traffic()
+    assert fast.stalls()[w.CODE_FETCH] > 0
+    first, count = w.SITES_AT, 4 * w.SITE_WORDS
+    assert list(fast.bus.words[first : first + count]) == list(detailed.bus.words[first : first + count])
+
+
+@each_board
 @pytest.mark.parametrize(
     ("source", "target"), [("l1", "sdram"), ("sdram", "l1"), ("sdram", "bank"), ("l1", "l1")]
 )
@@ -486,7 +515,11 @@ def test_a_core_that_spins_takes_time_at_the_port_of_l2(kind: int) -> None:
 
 
 def accesses_by_chance(seed: int, core: int, bench: Bench) -> list[CoreAccess]:
-    """Return 1500 reads and writes of all banks and of L2: some of what a frame has, so that chance evens out."""
+    """Return 1500 reads and writes of all banks and of L2: some of what a frame has, so that chance evens out.
+
+    The code of the call that makes them is in L2 and in SDRAM.
+    """
+    bench.keep_code(core, bench.l2 + 4096, 3 * bench.bank)
     chance, stamp, found = Random(f"{seed} {core}"), 0, []
     memories = (*(number * bench.bank for number in range(4)), bench.l2)
     kinds = (log.LOAD, log.LOAD, log.FILL, log.FETCH, log.STORE, log.WRITE_BACK)
@@ -519,7 +552,7 @@ def test_stalls_are_split_alike_in_both_modes() -> None:
             bench = Bench(mode)
             for core in (0, 1):
                 accesses = accesses_by_chance(seed, core, bench)
-                bench.call(core, accesses, accesses[-1][0] + 1)
+                bench.call(core, accesses, accesses[-1][0] + 1, fetches=300)
             bench.copy(bench.l1, bench.bank, 500)
             bench.camera(2 * bench.bank, 8, 16, Fraction(20))
             bench.play()
@@ -542,7 +575,7 @@ def test_random_traffic_is_within_the_aims(seed: int, words: int, word_sclk: int
     def prepare(bench: Bench) -> None:
         for core in (0, 1):
             accesses = accesses_by_chance(seed, core, bench)
-            bench.call(core, accesses, accesses[-1][0] + 1)
+            bench.call(core, accesses, accesses[-1][0] + 1, fetches=300)
         bench.transfers = [
             bench.copy(bench.l1, bench.bank, words),
             bench.camera(2 * bench.bank, 8, 16, Fraction(word_sclk)),

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from bfsim.api import Core, Frame
 from bfsim.chip.boards import CM_BF561
+from bfsim.errors import KernelError
 from bfsim.kernel import VDSP_O2, Kernel
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.access_trace import AccessTrace
@@ -24,7 +25,7 @@ from bfsim.trace import StallReason
 from tests.machine.kernels import copy, spin, total
 from tests.machine.made_boards import CCLK_PER_SCLK, CHIP, assert_accounted, in_work, play
 from tests.machine.placements import code_in, shipped
-from tests.machine.rig import Play, cycles_of, stage_of
+from tests.machine.rig import Bench, Play, cycles_of, stage_of
 
 LINE = CHIP.cache.line_bytes
 FETCH_L2_CCLK = CHIP.l2.read_cclk - 1
@@ -179,18 +180,49 @@ def test_lines_of_different_sets_do_not_push_each_other_out() -> None:
     assert cache.miss([0]) == [0], "the one that was used first has left"
 
 
-def test_fetches_come_between_the_accesses_without_reordering_them() -> None:
+def entry(stamp: int, kind: int, offset: int) -> int:
+    """An entry of a log."""
+    return stamp << log.STAMP_BIT | kind << log.KIND_BIT | offset
+
+
+def new_trace() -> AccessTrace:
+    """One with room for 16 entries."""
+    return AccessTrace(np.zeros(64, np.uint8), 64, np.zeros(log.LOG + log.ENTRY_WORDS * 16, np.int64))
+
+
+def test_line_fills_come_between_the_accesses_without_reordering_them() -> None:
     """The log is in order of time; accesses of one block, which have one stamp, stay as the block made them."""
-    access_trace = AccessTrace(np.zeros(64, np.uint8), 64, np.zeros(log.LOG + log.ENTRY_WORDS * 16, np.int64))
-
-    def entry(stamp: int, kind: int, offset: int) -> int:
-        return stamp << log.STAMP_BIT | kind << log.KIND_BIT | offset
-
+    access_trace = new_trace()
     block = [entry(5, log.WRITE_BACK, 32), entry(5, log.FILL, 0), entry(5, log.LOAD, 60)]
     access_trace.entries(3)[:] = block
-    fetches = [entry(0, log.FETCH, 8), entry(5, log.FETCH, 16), entry(9, log.FETCH, 24)]
-    assert access_trace.insert(3, np.array(fetches), np.arange(3)) == 6
-    assert access_trace.entries(6).tolist() == [fetches[0], *block, fetches[1], fetches[2]]
+    fills = [entry(0, log.FETCH_LINE, 8), entry(5, log.FETCH_LINE, 16), entry(9, log.FETCH_LINE, 24)]
+    assert access_trace.insert(3, np.array(fills), np.arange(3)) == 6
+    assert access_trace.entries(6).tolist() == [fills[0], *block, fills[1], fills[2]]
+
+
+def test_single_fetches_are_one_entry_behind_the_accesses() -> None:
+    """With its site, and as long as there is room."""
+    access_trace = new_trace()
+    access_trace.entries(15)[:] = [entry(each, log.LOAD, 4 * each) for each in range(15)]
+    fetches = entry(100, log.FETCHES, 0)
+    assert access_trace.add(15, fetches, 7) == 16
+    assert (access_trace.entries(16)[15], access_trace.sites(16)[15]) == (fetches, 7)
+    with pytest.raises(KernelError, match="at most 16 times, not 17 times"):
+        access_trace.add(16, fetches, 7)
+
+
+def test_code_is_fetched_in_turn_evenly_over_its_call() -> None:
+    """Words of two routines, one behind the other and then from the first again; behind the accesses of their cycle."""
+    bus = Bench().bus
+    bus.logs.keep_routine(0, 5, offset=96, nbytes=20, following=6)
+    bus.logs.keep_routine(0, 6, offset=4096, nbytes=8, following=5)
+    logged = [(entry(0, log.LOAD, 8), 1), (entry(5, log.STORE, 12), 2), (entry(6, log.FETCHES, 0), 5)]
+    bus.logs.replace(0, np.array(logged).T)
+    fetched = [(0, 96, 5), (2, 104, 5), (5, 112, 5), (7, 4096, 6), (10, 96, 5), (12, 104, 5)]
+    fetches = [(entry(stamp, log.FETCH, place), site) for stamp, place, site in fetched]
+    expected = [logged[0], *fetches[:2], logged[1], *fetches[2:]]
+    assert bus.logs.accesses(0, 15, 3) == expected
+    assert bus.logs.accesses(0, 15, 2) == logged[:2]
 
 
 def test_the_record_says_where_the_code_is() -> None:

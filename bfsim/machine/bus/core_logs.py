@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -31,6 +33,17 @@ class CoreLogs:
         room[log.LOG], room[log.LOG + w.LOG_ENTRIES] = entry, w.NO_SITE
         return 1
 
+    def keep_routine(self, core: int, site: int, offset: int, nbytes: int, following: int) -> None:
+        """Keep where the code of a site lies that no cache holds, and the site of the routine that is fetched behind it."""
+        row = w.SITES_AT + (core * w.MAX_SITES + site) * w.SITE_WORDS
+        self._words[row + w.CODE], self._words[row + w.CODE_WORDS] = offset, -(-nbytes // w.FETCH_BYTES)
+        self._words[row + w.NEXT_ROUTINE] = following
+
+    def are_routines(self, core: int, sites: NDArray[np.int64]) -> bool:
+        """Whether all `sites` of a core are such of code that is kept here."""
+        rows = w.SITES_AT + (core * w.MAX_SITES + sites) * w.SITE_WORDS
+        return bool((self._state[rows + w.CODE_WORDS] > 0).all())
+
     def replace(self, core: int, accesses: NDArray[np.int64]) -> None:
         """Make the log of a core that of `accesses`, a row of entries and one of sites."""
         room, count = self.room_of(core)[log.LOG :], accesses.shape[1]
@@ -41,10 +54,27 @@ class CoreLogs:
         room = self.room_of(core)[log.LOG :]
         return room[:count], room[w.LOG_ENTRIES :][:count]
 
-    def entries(self, core: int, count: int) -> list[tuple[int, int]]:
-        """Return the first `count` entries of a core's log, each with its site."""
-        entries, sites = self.first(core, count)
-        return list(zip(entries.tolist(), sites.tolist(), strict=True))
+    def accesses(self, core: int, cclk: int, count: int) -> list[tuple[int, int]]:
+        """Return the accesses of a call of `cclk` cycles, whose log has `count` entries, in order: an entry for each, and its site."""
+        logged = list(zip(*(each.tolist() for each in self.first(core, count)), strict=True))
+        if not logged or logged[-1][0] >> log.KIND_BIT & log.KIND_MASK != log.FETCHES:
+            return logged
+        fetches, site = logged.pop()
+        number = fetches >> log.STAMP_BIT
+        words = islice(self._code_in_turn(core, site), number)
+        logged += [
+            (each * cclk // number << log.STAMP_BIT | log.FETCH << log.KIND_BIT | place, routine)
+            for each, (place, routine) in enumerate(words)
+        ]
+        return sorted(logged, key=lambda each: each[0] >> log.STAMP_BIT)
+
+    def _code_in_turn(self, core: int, site: int) -> Iterator[tuple[int, int]]:
+        """Yield the words of a routine and those behind it, over and over: where each lies, and the routine's site."""
+        while True:
+            row = w.SITES_AT + (core * w.MAX_SITES + site) * w.SITE_WORDS
+            first, words = self._words[row + w.CODE], self._words[row + w.CODE_WORDS]
+            yield from ((first + number * w.FETCH_BYTES, site) for number in range(words))
+            site = self._words[row + w.NEXT_ROUTINE]
 
     def stalls_at_sites(self, core: int, count: int) -> NDArray[np.int64]:
         """Return what the first `count` sites of a core have stalled so far: by site and, in the order of `bus.state`, reason.

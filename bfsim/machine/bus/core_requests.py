@@ -28,8 +28,7 @@ def bytes_of(state: State, kind: int) -> int:
 @native
 def site_of(state: State, core: int) -> int:
     """Return the site of the core's present access."""
-    entry = state[w.JOBS_AT + core * w.JOB_WORDS + w.ENTRY]
-    return state[w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + w.LOG_ENTRIES + entry]
+    return state[w.JOBS_AT + core * w.JOB_WORDS + w.SITE]
 
 
 @native
@@ -40,17 +39,55 @@ def charge(state: State, core: int, reason: int, cycles: int) -> None:
 
 
 @native
+def find_present(state: State, core: int) -> bool:
+    """Find what the core accesses next, in its log or in code that it fetches; return whether there is anything.
+
+    Fetches are spread evenly over the call; of a fetch and accesses of its cycle these come first.
+    """
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    at = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + state[job + w.ENTRY]
+    is_logged = state[job + w.ENTRY] < state[job + w.END]
+    if state[job + w.FETCHED] < state[job + w.FETCHES]:
+        stamp = state[job + w.FETCHED] * state[job + w.TOTAL] // state[job + w.FETCHES]
+        if not is_logged or stamp < state[at] >> log.STAMP_BIT:
+            site = state[job + w.SITE] = state[job + w.ROUTINE]
+            code = state[w.SITES_AT + (core * w.MAX_SITES + site) * w.SITE_WORDS + w.CODE]
+            place = code + state[job + w.WORD] * w.FETCH_BYTES
+            state[job + w.PRESENT] = stamp << log.STAMP_BIT | log.FETCH << log.KIND_BIT | place
+            state[job + w.IN_TURN] = 1
+            return True
+    state[job + w.IN_TURN] = 0
+    if is_logged:
+        state[job + w.PRESENT], state[job + w.SITE] = state[at], state[at + w.LOG_ENTRIES]
+    return is_logged
+
+
+@native
+def go_past(state: State, core: int) -> None:
+    """Leave the present access behind: of the code, in turn, or of the log."""
+    job = w.JOBS_AT + core * w.JOB_WORDS
+    if not state[job + w.IN_TURN]:
+        state[job + w.ENTRY] += 1
+        return
+    row = w.SITES_AT + (core * w.MAX_SITES + state[job + w.SITE]) * w.SITE_WORDS
+    state[job + w.FETCHED] += 1
+    state[job + w.WORD] += 1
+    if state[job + w.WORD] == state[row + w.CODE_WORDS]:
+        state[job + w.WORD], state[job + w.ROUTINE] = 0, state[row + w.NEXT_ROUTINE]
+
+
+@native
 def next_entry(state: State, core: int, not_before: int) -> int:
     """Set the core's next access up; after the last one end the job and return its number, NONE - 1 - core."""
     job = w.JOBS_AT + core * w.JOB_WORDS
     master = w.MASTERS_AT + w.CORE_A + core
     cclk = state[w.CCLK]
-    if state[job + w.ENTRY] == state[job + w.END]:
+    if not find_present(state, core):
         state[job + w.STATE] = w.IDLE
         state[master + w.READY] = w.NEVER
         state[w.DONE_AT] = state[job + w.BEGIN] + state[job + w.TOTAL] * cclk + state[job + w.STALLED]
         return w.NONE - 1 - core
-    entry = state[w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + state[job + w.ENTRY]]
+    entry = state[job + w.PRESENT]
     issued = max(not_before, state[job + w.BEGIN] + (entry >> log.STAMP_BIT) * cclk + state[job + w.STALLED])
     kind = entry >> log.KIND_BIT & log.KIND_MASK
     waits = kind not in (log.STORE, log.WRITE_BACK)
@@ -91,6 +128,12 @@ def start_job(state: State, core: int, begin: int, cclk: int, first: int, end: i
     state[job + w.STATE] = w.RUNNING
     state[job + w.BEGIN], state[job + w.TOTAL], state[job + w.STALLED] = begin, cclk, 0
     state[job + w.ENTRY], state[job + w.END] = first, end
+    state[job + w.FETCHES], state[job + w.FETCHED] = 0, 0
+    last = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + end - 1
+    if first < end and state[last] >> log.KIND_BIT & log.KIND_MASK == log.FETCHES:
+        state[job + w.END] -= 1
+        state[job + w.FETCHES] = state[last] >> log.STAMP_BIT
+        state[job + w.ROUTINE], state[job + w.WORD] = state[last + w.LOG_ENTRIES], 0
     for reason in range(w.STALLS):
         state[job + w.STALL + reason] = 0
     next_entry(state, core, begin)
@@ -191,11 +234,7 @@ def is_in_buffer(state: State, job: int, offset: int, nbytes: int) -> bool:
 def serve_core(state: State, core: int, at: int, until: int) -> int:
     """Make the core's present access at tick `at`; return the number of its job when that is done, else NONE."""
     job = w.JOBS_AT + core * w.JOB_WORDS
-    entry = (
-        state[w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG + state[job + w.ENTRY]]
-        if state[job + w.ENTRY] < state[job + w.END]
-        else w.NONE
-    )
+    entry = state[job + w.PRESENT]
     kind, offset = entry >> log.KIND_BIT & log.KIND_MASK, entry & log.OFFSET_MASK
     if kind in (log.STORE, log.WRITE_BACK):
         return store(state, core, at, entry & ((1 << log.STAMP_BIT) - 1))
@@ -212,7 +251,7 @@ def serve_core(state: State, core: int, at: int, until: int) -> int:
         done = read_l2(state, core, at, kind, offset)
     if kind == log.FILL:
         state[w.SITES_AT + (core * w.MAX_SITES + site_of(state, core)) * w.SITE_WORDS + w.FILLS] += 1
-    state[job + w.ENTRY] += 1
+    go_past(state, core)
     return next_entry(state, core, done)
 
 

@@ -130,9 +130,13 @@ AT_END, AT_ROWS = 1, 2  # what wakes somebody
     STORE_HEAD, STORES,  # store buffer: the oldest, and how many
     LINE_DONE,      # when the last line that was fetched is whole
     SPIN,           # ticks from the end of a TESTSET to the next one while the core spins on a lock, else 0
-) = range(11)  # fmt: skip
+    PRESENT, SITE,  # the present access, as an entry of the log, and its site,
+    IN_TURN,        # and whether it is a fetch of the code below
+    FETCHES, FETCHED,  # how often code is fetched that no cache holds, and how often it has been
+    ROUTINE, WORD,  # the site of the routine that is fetched next, and which of its words
+) = range(18)  # fmt: skip
 IDLE, STARTING, RUNNING, BUFFER_FULL, BUFFER_NOT_EMPTY = range(5)
-STALL = 11
+STALL = 18
 (
     L2_LATENCY, L2_PORT, PAGE_HIT, PAGE_MISS, PAGE_CONFLICT, REFRESHING, ARBITRATION, STORE_BUFFER, CACHE_FILL, CODE_FETCH,
 ) = range(10)  # fmt: skip
@@ -193,7 +197,9 @@ NO_SITE = 0
 MAX_SITES = 1 << 18
 # Behind the stalls by reason: how many lines were filled; the piece of memory that was accessed last, to find it again.
 FILLS, PIECE = STALLS, STALLS + 1
-SITE_WORDS = STALLS + 2
+# Of a site that is the code of a routine: where it lies, how many FETCH_BYTES long it is, and the site of the one that is fetched behind it.
+CODE, CODE_WORDS, NEXT_ROUTINE = STALLS + 2, STALLS + 3, STALLS + 4
+SITE_WORDS = STALLS + 5
 
 # ---- Where each part begins in the one array; the SDRAM controller and the bus begin it.
 MASTERS_AT = BUS_AT + BUS_WORDS

@@ -236,8 +236,8 @@ class CallCache:
             stack,
             self._memory,
         )
-        if group.fetched:
-            call = FetchedCall(call, group, self._code, self._access_trace)
+        if group.fetches:
+            call = FetchedCall(call, group.fetches)
         if self._before_call:
             call = WatchedCall(call, kernel, self._before_call)
         return KnownCall(
@@ -283,6 +283,8 @@ class CallCache:
                 first_site=first_site,
                 subbanks=[set() for _ in owners],
             )
+            if fetched:
+                self._groups[key].fetches = self._code.fetches_of(self._groups[key], self._access_trace)
             self._ledger.add(self._groups[key])
             self._in_stage[self.stage].add(self._groups[key])
         return self._groups[key]

@@ -7,11 +7,11 @@ used later. Code that is not cached is fetched 64 bits at a time, as often as it
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bfsim.chip.spec import CacheSpec
 from bfsim.kernel import Work
@@ -19,11 +19,12 @@ from bfsim.kernel import access_trace as log
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.counters import Counter
 from bfsim.machine.bus.state import FETCH_BYTES
-from bfsim.machine.calls.groups import CallGroup
+from bfsim.machine.calls.groups import CallGroup, Fetches
 from bfsim.machine.memories import Row
 
 SUBBANK_BYTES = 4096
-Words = NDArray[np.int64]
+KeepRoutine = Callable[[int, int, int, int], None]
+"""Is told of a routine: its site, where it lies, its bytes, and the site of the one that is fetched behind it."""
 
 
 class Runnable(Protocol):
@@ -66,73 +67,88 @@ class CodeCache:
 class CodeOutside:
     """The kernels of one core whose code lies outside L1, and the cache that holds it, if the LDF has one."""
 
-    def __init__(self, places: Mapping[str, tuple[int, int]], cache: CodeCache | None) -> None:
-        """`places`: (offset in the arena, bytes) of each routine outside L1."""
-        self.cache = cache
+    def __init__(
+        self, places: Mapping[str, tuple[int, int]], cache: CodeCache | None, keep_routine: KeepRoutine
+    ) -> None:
+        """`places`: (offset in the arena, bytes) of each routine outside L1. `keep_routine` tells the bus of one that no cache holds."""
         self.places = places
+        self._cache = cache
+        self._keep_routine = keep_routine
 
     def of(self, counters: Iterable[Counter]) -> Iterable[str]:
         """Return the routines of a kernel and its callees that lie outside L1."""
         routines = dict.fromkeys(each.routine for each in counters)
         return [each for each in routines if each in self.places]
 
+    def fetches_of(self, group: CallGroup, access_trace: AccessTrace) -> Fetches:
+        """Return what calls of a group that have fetched routines tell an access trace of."""
+        places = [self.places[each] for each in group.fetched]
+        sites = range(group.first_site + len(group.code.program.sites), group.first_site + group.site_count)
+        if self._cache:
+            return LineFills(self._cache, dict(zip(sites, places, strict=True)), access_trace)
+        for site, following, (offset, nbytes) in zip(sites, (*sites[1:], sites[0]), places, strict=True):
+            self._keep_routine(site, offset, nbytes, following)
+        return SingleFetches(group, sites[0], access_trace)
 
+
+class LineFills:
+    """Fetches of code that a cache holds. `places`: offset in the arena and bytes of each routine, by its site."""
+
+    def __init__(
+        self, cache: CodeCache, places: Mapping[int, tuple[int, int]], access_trace: AccessTrace
+    ) -> None:
+        self._cache = cache
+        self._access_trace = access_trace
+        self._lines = [
+            (line, site)
+            for site, (offset, nbytes) in places.items()
+            for line in range(offset // cache.line_bytes, (offset + nbytes - 1) // cache.line_bytes + 1)
+        ]
+        self._site_of = dict(reversed(self._lines))
+
+    def add(self, work: Work) -> int:
+        """Add a fill of each line that was not there, at the beginning of the call."""
+        missed = self._cache.miss(line for line, _ in self._lines)
+        if not missed:
+            return work.accesses
+        places = np.array(missed, np.int64) * self._cache.line_bytes
+        sites = np.array([self._site_of[line] for line in missed], np.int64)
+        return self._access_trace.insert(work.accesses, places | log.FETCH_LINE << log.KIND_BIT, sites)
+
+
+class SingleFetches:
+    """Fetches of code that no cache holds: one for every 64 bits that were executed, from the routines' code in turn.
+
+    The bus makes them (`bus.core_requests.find_present`); the trace has their number only.
+    """
+
+    def __init__(self, group: CallGroup, first_site: int, access_trace: AccessTrace) -> None:
+        self._access_trace = access_trace
+        self._site = first_site
+        self._totals = group.totals
+        outside = [each.nbytes if each.routine in group.fetched else 0 for each in group.code.counters]
+        self._nbytes = np.array(outside or [0], np.int64)
+        self._executed = 0
+
+    def add(self, work: Work) -> int:
+        """Add as many as code has been executed since the last time."""
+        before, self._executed = self._executed, int(self._totals @ self._nbytes)
+        count = -(-(self._executed - before) // FETCH_BYTES)
+        if not count:
+            return work.accesses
+        entry = count << log.STAMP_BIT | log.FETCHES << log.KIND_BIT
+        return self._access_trace.add(work.accesses, entry, self._site)
+
+
+@dataclass(frozen=True, slots=True)
 class FetchedCall:
     """A call whose code lies outside L1: its fetches are added to what its access trace has."""
 
-    def __init__(
-        self, call: Runnable, group: CallGroup, code: CodeOutside, access_trace: AccessTrace
-    ) -> None:
-        self._call = call
-        self._totals = group.totals
-        self._access_trace = access_trace
-        self._cache = code.cache
-        places = [code.places[each] for each in group.fetched]
-        sites = range(group.first_site + len(group.code.program.sites), group.first_site + group.site_count)
-        self._pieces = list(zip(sites, places, strict=True))
-        words = [np.arange(at, at + nbytes, FETCH_BYTES) for at, nbytes in places]
-        self._turn = (
-            np.concatenate(words) | log.FETCH << log.KIND_BIT,
-            np.repeat(sites, [len(each) for each in words]),
-        )
-        self._numbers = np.arange(0)  # of words, as many as a call may have fetched,
-        self._words, self._word_sites = self._turn  # and these, the code in turn
-        self._lines = self._cached_lines(code.cache.line_bytes) if code.cache else []
-        self._site_of = dict(reversed(self._lines))
-        outside = [each.nbytes if each.routine in group.fetched else 0 for each in group.code.counters]
-        self._nbytes = np.array(outside or [0], np.int64)
-
-    def _cached_lines(self, line_bytes: int) -> list[tuple[int, int]]:
-        """Return the cache lines that the code fills, each with the site that fetches it."""
-        return [
-            (line, site)
-            for site, (offset, nbytes) in self._pieces
-            for line in range(offset // line_bytes, (offset + nbytes - 1) // line_bytes + 1)
-        ]
+    call: Runnable
+    fetches: Fetches
 
     def run(self, arguments: tuple[Row | int, ...]) -> Work:
         """Run the kernel now and say what it cost."""
-        before = self._totals.copy()
-        work = self._call.run(arguments)
-        if self._cache:
-            fetches, sites = self._line_fills(self._cache)
-        else:
-            fetches, sites = self._single_fetches(work, self._totals - before)
-        if len(fetches):
-            work.accesses = self._access_trace.insert(work.accesses, fetches, sites)
+        work = self.call.run(arguments)
+        work.accesses = self.fetches.add(work)
         return work
-
-    def _line_fills(self, cache: CodeCache) -> tuple[Words, Words]:
-        missed = np.array(cache.miss(line for line, _ in self._lines), np.int64)
-        sites = [self._site_of[line] for line in missed.tolist()]
-        return missed * cache.line_bytes | log.FETCH_LINE << log.KIND_BIT, np.array(sites, np.int64)
-
-    def _single_fetches(self, work: Work, events: Words) -> tuple[Words, Words]:
-        """One fetch for every 64 bits that were executed, from the routines' code in turn."""
-        count = -(-int(events @ self._nbytes) // FETCH_BYTES)
-        if count > len(self._numbers):
-            self._numbers = np.arange(2 * count)
-            self._words, self._word_sites = (np.resize(each, 2 * count) for each in self._turn)
-        stamps = self._numbers[:count] * (work.issue_cclk + work.stall_cclk) // max(1, count)
-        fetches: Words = stamps << log.STAMP_BIT | self._words[:count]
-        return fetches, self._word_sites[:count]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.kernel import Kernel
+from bfsim.kernel import Kernel, Work
 from bfsim.kernel.call_paths import CallPath
 from bfsim.kernel.counters import Counter
 from bfsim.kernel.ir_text import SourceLine
@@ -20,6 +20,13 @@ if TYPE_CHECKING:
     from bfsim.kernel.objects.compiled import CompiledObject
 
 Label = TypeVar("Label")
+
+
+class Fetches(Protocol):
+    """The fetches of code by calls that are counted together."""
+
+    def add(self, work: Work) -> int:
+        """Add those of the call that has just been made to its accesses, in the access trace; return how many entries these have now."""
 
 
 class GroupSite(NamedTuple):
@@ -34,7 +41,7 @@ class GroupSite(NamedTuple):
 class CallGroup:
     """Calls of one kernel in one stage with its arrays in the same buffers.
 
-    `owners`: of the memory of each array. `fetched`: routines whose code is outside L1. `totals`: events of each counter, which
+    `owners`: of the memory of each array. `fetched`: routines whose code is outside L1, by `fetches`. `totals`: events of each counter, which
     are among those of its core from `first_event` on, as its sites are from `first_site` on.
     `subbanks`: the sub-banks of L1 that the rows of each array have lain in.
     """
@@ -48,6 +55,7 @@ class CallGroup:
     first_event: int
     first_site: int
     subbanks: list[set[int]]
+    fetches: Fetches | None = None
 
     def counted(self) -> Iterator[tuple[int, CallPath, Counter]]:
         """Yield every counter with its number and the path that it counts."""

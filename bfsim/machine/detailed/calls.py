@@ -26,7 +26,8 @@ class DetailedCalls:
     def access(self, core: int, begin: int, cclk: int, entries: int) -> simpy.Event:
         """Play a call."""
         done = self._env.event()
-        self._env.process(self._ports[core].call(begin, cclk, self._logs.entries(core, entries), done))
+        accesses = self._logs.accesses(core, cclk, entries)
+        self._env.process(self._ports[core].call(begin, cclk, accesses, done))
         return done
 
     def spin(self, core: int, since: int) -> None:

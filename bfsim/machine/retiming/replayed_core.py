@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from bfsim.errors import BfsimError, WorkError, shown
 from bfsim.kernel import Kernel
+from bfsim.kernel import access_trace as log
 from bfsim.kernel.types import ArrayType, IntType, Number, u8
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus import state as w
@@ -20,7 +20,6 @@ from bfsim.machine.core.parts import Parts
 from bfsim.machine.core.semaphore import Semaphore
 from bfsim.machine.core.spin_lock import SpinLock
 from bfsim.machine.memories import Row
-from bfsim.machine.retiming.moved_code import moved
 from bfsim.machine.retiming.translated import Stretch, translated
 from bfsim.machine.retiming.work import (
     DESTINATION,
@@ -40,18 +39,15 @@ Wait = Generator[Any, Any, Any]
 
 
 class ReplayedCore(Core):
-    """A core that plays `works`. `kernels`: those of its firmware, by symbol. `code_moves`: of its code outside of L1 (`moved_code`)."""
+    """A core that plays `works`. `kernels`: those of its firmware, by symbol."""
 
-    def __init__(
-        self, parts: Parts, kernels: dict[str, Kernel], works: Iterator[FrameWork], code_moves: Table
-    ) -> None:
+    def __init__(self, parts: Parts, kernels: dict[str, Kernel], works: Iterator[FrameWork]) -> None:
         super().__init__(parts)
         assert isinstance(parts.bus, WovenBus), "recorded work is played by the weave"
         self._bus = parts.bus
         self._chip = parts.board.chip
         self._works = works
         self._kernels = kernels
-        self._code_moves = code_moves
         self._firsts = np.array(parts.bus.owners.first, np.int64)
         self._is_outside = self._firsts < int(parts.bus.words[w.L2_END])
         self._kinds_of_calls: list[int] = []  # of those that were prepared: what running them is to the bus
@@ -94,7 +90,6 @@ class ReplayedCore(Core):
         self._account_names += work.accounts
         if len(work.copies):
             self._copies = np.concatenate([self._copies, self._planned(work.copies)])
-        work = replace(work, accesses=moved(work.accesses, self._code_moves))
         frame = translated(work, self._firsts, self._is_outside, self._copies, self._chip.events)
         events = np.searchsorted(work.events[:, 0], np.arange(len(work.calls) + 1)).tolist()
         for number, stretches in enumerate(frame.stretches()):
@@ -108,6 +103,10 @@ class ReplayedCore(Core):
 
     def _stretch(self, stretch: Stretch) -> Wait:
         runs_at, kernels = stretch.calls
+        entries, sites = stretch.accesses
+        fetching = sites[entries >> log.KIND_BIT & log.KIND_MASK == log.FETCHES]
+        if not self._bus.logs.are_routines(self._parts.number, fetching):
+            raise ValueError("code is fetched from where none lies")
         if len(runs_at):
             stretch.operations[runs_at, 0] = np.array(self._kinds_of_calls)[kernels]
         number, clock, stretches = self._parts.number, self._parts.clock, self._bus.stretches

@@ -71,7 +71,7 @@ def check(work: FrameWork, owners: int) -> None:
         (awaits[:, 1], 1, w.ENDS - 1),
         (awaits[:, 2], w.SETTING_UP, w.RING_FULL),
         (awaits[:, 3], 0, w.MAX_ACCOUNTS - 1),
-        (accesses[:, KIND], 0, log.FETCH_LINE),
+        (accesses[:, KIND], 0, log.FETCHES),
         (accesses[:, OWNER], 0, owners - 1),
         (accesses[:, BYTE], 0, log.OFFSET_MASK),
         (accesses[:, SITE], 0, w.MAX_SITES - 1),

@@ -115,11 +115,11 @@ class WorkNotes:
             np.concatenate([each[side] for each in self._accesses] or [np.zeros(0, np.int64)])
             for side in (0, 1)
         )
-        offsets = entries & log.OFFSET_MASK
-        owners = self._owners.of_all(offsets)
+        offsets, kinds = entries & log.OFFSET_MASK, entries >> log.KIND_BIT & log.KIND_MASK
+        owners = np.where(kinds == log.FETCHES, w.NO_BUFFER_IN_SDRAM, self._owners.of_all(offsets))
         columns = np.empty((ACCESS_COLUMNS, len(entries)), np.uint32)
         columns[:] = (
-            entries >> log.STAMP_BIT, entries >> log.KIND_BIT & log.KIND_MASK, owners,
+            entries >> log.STAMP_BIT, kinds, owners,
             offsets - np.array(self._owners.first)[owners], sites,
         )  # fmt: skip
         return columns.T
