@@ -65,7 +65,7 @@ class Scene:
                 core, chance.randint(1, 99), *chance.sample(CORE_PLACES, chance.randint(1, 3))
             )
             self.bench.env.process(
-                self._run(core, logs, chance.randint(0, 500), chance.choice([0, 0, 1, 30]))
+                self._run(core, logs, chance.randint(0, 500), chance.choice([0, 0, 1, 12]))
             )
 
     def _walk(self, chance: Random, size: int, x_count: int) -> Walk:
@@ -130,7 +130,9 @@ class Scene:
     def _run(self, core: int, logs: list[list[tuple[int, int, int]]], begin_cclk: int, fetches: int) -> Play:
         yield self.bench.env.timeout(self.bench.cclk(begin_cclk))
         for log in logs:
-            cclk = log[-1][0] + len(log)
+            cclk = max(
+                log[-1][0] + len(log), fetches * (fetches + len(log))
+            )  # each access has a cycle of its own
             call = self.bench.call(core, log, begin=self.bench.env.tick, cclk=cclk, fetches=fetches)
             self.calls.append(call)
             yield self.calls[-1].event
