@@ -62,7 +62,7 @@ class Moves:
         Then the two share a register, and nothing is copied on the way back. It is if the old value is wanted after that or
         behind the header, unless another variable takes it over.
         """
-        where, new = self.flow.defined.get(value, ("", None))
+        where, new = self.flow.defined.get(value.removesuffix(".wide"), ("", None))
         critical = home in self.flow.dominators[label] and len(set(self.flow.blocks[label].successors)) > 1
         if where != home or new is None or new.opcode == "phi" or not critical:
             return False

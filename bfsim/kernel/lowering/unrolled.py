@@ -6,17 +6,17 @@ constant in them, against one iteration. LLVM is asked to unroll those and no ot
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from bfsim.kernel.ir_text import Instruction, Routine, placed_rows, read_module
+from bfsim.kernel.ir_text import TARGET, Instruction, Routine, placed_rows, read_module
 from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.lowering.invariant_code_motion import InvariantCodeMotion
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
-from bfsim.kernel.lowering.scalar_evolution import ScalarEvolution
+from bfsim.kernel.lowering.scalar_evolution import Affine, ScalarEvolution
 
 MOST_ITERATIONS = 8  # [max-completely-peel-times]
-CONTROL = 4  # statements that vanish with the loop: two counters, and a test that counts as two
-FREE = ("phi", "br", "zext", "sext", "trunc", "freeze")
+COUNTER = 1  # statement that steps what counts the iterations [create_canonical_iv]
+FREE = ("phi", "zext", "sext", "trunc", "freeze")
 LOOP_NOTE = ", !llvm.loop !"
 FULL, DISABLED = "llvm.loop.unroll.full", "llvm.loop.unroll.disable"
 
@@ -58,30 +58,84 @@ def _shrinks(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> bool:
         return False
     if any(each.is_call or each.is_division for each in inside):
         return False
-    control = _control(flow, evolution, loop)
-    size = sum(_size(flow, evolution, loop, each) for each in inside if each.result not in control)
-    return 2 * iterations * size <= 3 * (size + CONTROL)
+    statements = _Statements(flow, evolution, loop)
+    for each in inside:
+        statements.count(each)
+    return max(2 * iterations * statements.kept // 3, 1) <= statements.whole
 
 
-def _control(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> set[str | None]:
-    """The test that ends the loop, and the step of its counter."""
-    counters = {each.result for each in flow.blocks[loop.header].instructions if each.opcode == "phi"}
-    steps = [
-        each.result
-        for each in flow.blocks[loop.latch].instructions
-        if each.opcode == "add" and each.operands[0] in counters and each.operands[1].lstrip("-").isdigit()
-    ]
-    return {evolution.exit_test(loop), *steps}
+class _Statements:
+    """Statements that C has for one iteration of a loop [tree_estimate_loop_size].
 
+    `kept` are those that each copy has; the others are of the counter alone, constants once the loop is written out.
+    """
 
-def _size(flow: ControlFlow, evolution: ScalarEvolution, loop: Loop, each: Instruction) -> int:
-    """Statements that C has for an instruction; what does not change in the loop has left it."""
-    if each.opcode in FREE or (each.result and evolution.code_motion.is_invariant(each.result, loop)):
-        return 0
-    if each.opcode != "getelementptr":
-        return 1
-    base = flow.instruction(each.operands[0])
-    summed = (
-        base is not None and base.opcode == "getelementptr"
-    )  # C sums indices first, in an operation of its own
-    return 1 + summed + (pointee_nbytes(each) > 1)
+    def __init__(self, flow: ControlFlow, evolution: ScalarEvolution, loop: Loop) -> None:
+        self.flow, self.evolution, self.loop = flow, evolution, loop
+        self.kept = self.folded = 0
+        self.sets_constants = False
+        """Whether a constant comes of an operation that no counter is followed through: GCC takes one statement less for it."""
+
+    @property
+    def whole(self) -> int:
+        """Statements of an iteration with those of a counter of iterations, and the one that is saved before the loop."""
+        return self.kept + self.folded + COUNTER + self.sets_constants
+
+    def count(self, each: Instruction) -> None:
+        """Add an instruction; what does not change in the loop has left it."""
+        fixed = each.result and self.evolution.code_motion.is_invariant(each.result, self.loop)
+        if each.opcode in FREE or fixed or (each.opcode == "br" and not each.operands):
+            return
+        if each.opcode == "getelementptr":
+            self._address(each)
+        elif each.opcode == "br":
+            test = self.flow.instruction(each.operands[0])
+            if test is not None and not self._chooses(each, test):
+                self._add(1, folds=self._are_constant(test.operands[:2]))
+        elif each.opcode not in ("load", "store") and self._are_constant(each.operands):
+            self._add(1, folds=True)
+            self.sets_constants |= each.opcode != "icmp" and not self._is_constant(each.result or "")
+        else:
+            self._add(1, folds=False)
+
+    def _chooses(self, branch: Instruction, test: Instruction) -> bool:
+        """Whether a branch makes the smaller or the larger of what it compares: that is one statement."""
+        behind = {
+            way for each in TARGET.findall(branch.text) for way in self.flow.blocks[each[1:]].successors
+        }
+        return any(
+            each.opcode == "phi" and set(each.operands) == set(test.operands[:2])
+            for way in behind
+            for each in self.flow.blocks[way].instructions
+        )
+
+    def _address(self, each: Instruction) -> None:
+        """C sums indices first, in an operation of its own, and scales them."""
+        base = self.flow.instruction(each.operands[0])
+        summed = base is not None and base.opcode == "getelementptr"
+        indices = [*(base.operands[1:] if base is not None and summed else ()), *each.operands[1:]]
+        self._add(1, folds=False)
+        scaled = any(pointee_nbytes(one) > 1 for one in (each, *([base] if base is not None else [])))
+        self._add(summed + scaled, folds=self._are_constant(indices))
+
+    def _add(self, number: int, *, folds: bool) -> None:
+        self.kept += number * (not folds)
+        self.folded += number * folds
+
+    def _are_constant(self, values: Sequence[str]) -> bool:
+        return all(self._is_constant(each) for each in values)
+
+    def _is_constant(self, value: str) -> bool:
+        """Whether a value is a sum of constants and of counters that start at constants."""
+        for name, _ in self.evolution.affine(value).terms:
+            gain = self._gain(name)
+            start = self.evolution.first(name, self.loop)
+            if gain is None or gain.terms or start is None or not start.lstrip("-").isdigit():
+                return False
+        return True
+
+    def _gain(self, name: str) -> Affine | None:
+        home = self.flow.defined.get(name)
+        if home is None or home[0] != self.loop.header or home[1].opcode != "phi":
+            return None
+        return self.evolution.gain(name, self.loop)
