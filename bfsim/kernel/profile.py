@@ -106,7 +106,7 @@ class CompilerProfile:
     """None: kernels with floats are refused."""
     inlines: Inlines
     without: tuple[Rule, ...] = ()
-    """Fitted rules that are left out, to see what they are worth."""
+    """Rules that are left out: those of another compiler, or to see what they are worth."""
 
     def applies(self, rule: Rule) -> bool:
         """Whether a fitted rule is followed."""
@@ -173,6 +173,8 @@ GCC = replace(GCC_O2, name="gcc")
 VDSP_O2 = CompilerProfile(
     name="vdsp-O2", optimises=True, interlocks=True, parallel_issue=True, accumulates=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]
     library=ADI, floats=ADI_FLOATS, inlines=Inlines.FILE,  # [assumed] as GCC
+    without=(Rule.LAGGING_COUNTERS, Rule.SPILLED_RANGES, Rule.FINAL_VALUES, Rule.PARALLEL_COUNTS, Rule.DOWNWARD_POINTERS,
+             Rule.FREQUENT_COUNTERS, Rule.COPIED_BREAKS),  # GCC's alone: nothing says that VisualDSP++ does so
 )  # fmt: skip
 GCC_ADI = replace(
     GCC, name="gcc-adi", interlocks=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]

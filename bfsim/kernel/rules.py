@@ -62,6 +62,19 @@ class Rule(StrEnum):
     LOOP_GUARDS = "a test that decides whether an inner loop is come to is guessed to fail"
     ROTATED_ONCE = "a loop that ends with its test is not rotated again"
     SPLIT_TESTS = "`and` and `or` are branches, each test its own"
+    COPIED_BREAKS = (
+        "a loop that ends with a `break` once it has added up enough is rotated until that test is at its end"
+    )
+    FREQUENT_COUNTERS = (
+        "a counter whose value an iteration wants more than once is stepped, whatever pointer stands for it"
+    )
+    LAGGING_COUNTERS = (
+        "what a loop carries to have its counter an iteration later is the counter less its step"
+    )
+    PARALLEL_COUNTS = "bits that are counted in parallel are counted by an instruction"
+    SPILLED_RANGES = "what is reloaded is used least for the places at which it is in the way"
+    FINAL_VALUES = "a counter that is wanted behind its loop is what it was compared with"
+    DOWNWARD_POINTERS = "a pointer that walks down is stepped by an access, as one that walks up"
 
 
 GCC: dict[Rule, str] = {
@@ -70,6 +83,13 @@ GCC: dict[Rule, str] = {
     Rule.COMPARED_COUNTERS: "predict_iv_comparison in predict.cc",
     Rule.LOOP_GUARDS: "PRED_LOOP_GUARD in predict.cc",
     Rule.ROTATED_ONCE: "do_while_loop_p in tree-ssa-loop-ch.cc",
+    Rule.COPIED_BREAKS: "should_duplicate_loop_header_p in tree-ssa-loop-ch.cc",
+    Rule.FREQUENT_COUNTERS: "get_scaled_computation_cost_at in tree-ssa-loop-ivopts.cc",
+    Rule.LAGGING_COUNTERS: '"Too few iterations" in loop-doloop.cc, of a distance that is known',
+    Rule.PARALLEL_COUNTS: '"branchless implementations of popcount" in match.pd',
+    Rule.SPILLED_RANGES: "allocno_spill_priority in ira-color.cc",
+    Rule.FINAL_VALUES: "final_value_replacement_loop in tree-scalar-evolution.cc",
+    Rule.DOWNWARD_POINTERS: "add_autoinc_candidates in tree-ssa-loop-ivopts.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
     Rule.KNOWN_SIGN: "expand_divmod in expmed.cc",
@@ -132,4 +152,11 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.LOOP_GUARDS: ("join_parts", "pack_runs"),
     Rule.ROTATED_ONCE: ("segment_row",),
     Rule.SPLIT_TESTS: ("ray_length", "unpack_runs", "lzss_expand"),
+    Rule.COPIED_BREAKS: ("match_features",),
+    Rule.FREQUENT_COUNTERS: ("label_boxes",),
+    Rule.LAGGING_COUNTERS: ("border_strength",),
+    Rule.PARALLEL_COUNTS: ("nearest_words",),
+    Rule.SPILLED_RANGES: ("thin_once", "keep_ridges"),
+    Rule.FINAL_VALUES: ("two_sums",),
+    Rule.DOWNWARD_POINTERS: ("keep_connected", "chamfer"),
 }

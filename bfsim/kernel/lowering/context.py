@@ -53,6 +53,7 @@ class Context:
             self.induction_variables,
             self.jump_threading,
             frozenset(self.fills),
+            self.likelihood.frequency,
             profile,
         )
         self.replaced = self.bit_counts | self.fills

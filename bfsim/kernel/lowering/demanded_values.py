@@ -5,12 +5,14 @@ Post-increments, hardware loops, folded offsets and extending loads do much of w
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import Enum, auto
 from functools import cached_property
 
 from bfsim.kernel.divisions import FLOOR, SIGNED
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.loops import ControlFlow, Loop
+from bfsim.kernel.lowering.bits_set import counted
 from bfsim.kernel.lowering.endless_loops import EndlessLoops
 from bfsim.kernel.lowering.folding import NARROW, Folding
 from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
@@ -48,9 +50,10 @@ class DemandedValues(Folding):
         induction_variables: InductionVariables,
         jump_threading: JumpThreading,
         calling: frozenset[str],
+        frequency: Mapping[str, float],
         profile: CompilerProfile,
     ) -> None:
-        """`calling`: blocks that become calls of the library."""
+        """`calling`: blocks that become calls of the library; `frequency`: how often each block runs."""
         super().__init__(flow, profile)
         self.evolution, self.if_conversion, self.induction_variables, self.jump_threading = (
             evolution,
@@ -68,6 +71,7 @@ class DemandedValues(Folding):
                 evolution,
                 induction_variables,
                 self.counted,
+                frequency if profile.applies(Rule.FREQUENT_COUNTERS) else {},
                 prepares=profile.applies(Rule.PREPARED_DIFFERENCES),
             )
             if eliminates
@@ -145,6 +149,8 @@ class DemandedValues(Folding):
             return () if self.jump_threading.decides(each) or self._is_guard(each) else self._of_branch(each)
         if each.opcode == "icmp":
             return self._of_compare(each)
+        if (word := self.counted_bits(each)) is not None:
+            return (word,)
         if (other := self.added_flag(each)) is not None:
             return (other,)
         if each.opcode == "mul" and self.stepped(each) is not None:
@@ -157,6 +163,10 @@ class DemandedValues(Folding):
             }
             return tuple(operand for operand in each.operands if operand not in counting)
         return each.operands
+
+    def counted_bits(self, each: Instruction) -> str | None:
+        """The word whose bits an instruction ends up with, counted in parallel: an instruction does that."""
+        return counted(self.flow, each) if self.profile.applies(Rule.PARALLEL_COUNTS) else None
 
     def stepped(self, product: Instruction) -> Increment | None:
         """By how much a product of a counter grows with each iteration: an addition takes its place (strength reduction)."""
@@ -337,6 +347,8 @@ class DemandedValues(Folding):
         label = variable.accesses[0][0]
         rows = self.flow.blocks[label].instructions
         ends = {id(user) for user in self.users(users[0].result or "")}
+        if load not in rows:
+            return False  # what is loaded comes from where several ways meet
         between = rows[rows.index(load) + 1 :]
         first_use = next((number for number, each in enumerate(between) if id(each) in ends), len(between))
         return any(each is access for each in between[:first_use] for _, access, _ in variable.accesses)

@@ -1,12 +1,13 @@
 """Loop headers of two tests: `while a and b` is rotated so that both are made once before the loop, and then at its end [tree-ssa-loop-ch.cc of GCC 12].
 
-LLVM copies the first test only. GCC goes on while the next one, too, leaves the loop and is computed from counters and from what does not
-change in the loop, without an access.
+LLVM copies the first test only. GCC goes on while the next one, too, leaves the loop and is computed from what the loop carries and from
+what does not change in it: from counters, or from what it has added up where that is enough for a `break`.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 
 from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, predicate
@@ -20,13 +21,31 @@ TYPE = re.compile(r"\b(i\d+|ptr|float)\b")
 
 
 def copy_headers(routine: Routine) -> Routine:
-    """Return `routine` with each loop rotated once more whose header is such a test."""
+    """Return `routine` with each loop rotated once more whose header is such a test, without an access."""
+    return _copied(routine, lambda flow, loop: not _accesses(flow, loop))
+
+
+def copy_breaks(routine: Routine) -> Routine:
+    """Return `routine` with each loop rotated once more that begins with accesses and such a test, of a `break`."""
+    return _copied(routine, lambda flow, loop: _accesses(flow, loop) and _breaks(flow, loop))
+
+
+def _copied(routine: Routine, wanted: Callable[[ControlFlow, Loop], bool]) -> Routine:
     for header in [loop.header for loop in ControlFlow(routine).loops]:
         flow = ControlFlow(routine)
         loop = next((each for each in flow.loops if each.header == header), None)
-        if loop is not None and _is_copied(flow, loop):
+        if loop is not None and wanted(flow, loop) and _is_copied(flow, loop):
             routine = _Rotation(flow, loop).routine()
     return routine
+
+
+def _accesses(flow: ControlFlow, loop: Loop) -> bool:
+    return any(each.opcode in ("load", "store") for each in flow.blocks[loop.header].instructions)
+
+
+def _breaks(flow: ControlFlow, loop: Loop) -> bool:
+    """Whether the header's test is another one than the loop begins with in the source: that has been copied, and is at its end."""
+    return flow.blocks[loop.header].terminator.line != flow.blocks[loop.latch].terminator.line
 
 
 def _is_copied(flow: ControlFlow, loop: Loop) -> bool:
@@ -58,7 +77,7 @@ def _counts(flow: ControlFlow, loop: Loop) -> bool:
     test = flow.instruction(header.terminator.operands[0])
     if test is None or test.opcode != "icmp" or flow.is_overflow_guard(header):
         return False
-    if any(each.opcode in ("load", "store", "call") for each in header.instructions):
+    if any(each.is_call for each in header.instructions):
         return False
     if JumpThreading(flow).decides(header.terminator):
         return False  # gone by then
@@ -66,9 +85,9 @@ def _counts(flow: ControlFlow, loop: Loop) -> bool:
 
 
 def _is_carried(flow: ControlFlow, loop: Loop, value: str) -> bool:
-    """Whether a value of the header is a phi of it, or computed from one."""
+    """Whether a value of the header is a phi of it, or computed from one, and not loaded."""
     each = flow.instruction(value)
-    if each is None or flow.defined[value][0] != loop.header:
+    if each is None or flow.defined[value][0] != loop.header or each.opcode == "load":
         return False
     return each.opcode == "phi" or any(_is_carried(flow, loop, operand) for operand in each.operands)
 

@@ -2,12 +2,13 @@
 
 A counter of its own costs a step in each iteration, and a register. A difference to the array costs two operations where it is wanted,
 which is worth it where every iteration accesses neighbours, a[i] and a[i + 1]; a difference to what is computed before the loop
-anyway, a + y * w, costs one, which always is [get_computation_cost].
+anyway, a + y * w, costs one [get_computation_cost]; it is worth that if an iteration wants the counter at most once, by the guess of how
+often each block runs [get_scaled_computation_cost_at].
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from bfsim.kernel.ir_text import PHI_ARM, Instruction
@@ -37,12 +38,14 @@ def eliminated_counters(
     evolution: ScalarEvolution,
     variables: InductionVariables,
     counted: set[str],
+    frequency: Mapping[str, float],
     *,
     prepares: bool,
 ) -> dict[str, EliminatedCounter]:
     """Return such counters of the `counted` loops (by header): of bytes, so that the distance is the index.
 
-    `prepares`: whether differences to what is computed before the loop count.
+    `frequency`: how often each block runs; empty where that is not asked. `prepares`: whether differences to what is computed before the
+    loop count.
     """
     found: dict[str, EliminatedCounter] = {}
     for variable in variables.all:
@@ -60,10 +63,13 @@ def eliminated_counters(
             prepared = prepares and (
                 affine.keys() != {name, variable.root} or not start.lstrip("-").isdigit()
             )
-            blocks = frozenset(_wanted(flow, evolution, loop, name))
+            wanted = list(_wanted(flow, evolution, loop, name))
+            blocks = frozenset(wanted)
+            often = sum(frequency.get(label, 0) for label in wanted) / frequency.get(loop.header, 1)
             if (
                 (len(steady) > 1 or prepared)
                 and blocks
+                and often <= 1
                 and all(
                     flow.innermost(label) is loop and not flow.every_iteration(label, loop)
                     for label in blocks

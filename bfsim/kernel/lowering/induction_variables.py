@@ -172,7 +172,8 @@ class InductionVariables:
         """A post-increment: the step is the width of an access that is made in every iteration.
 
         Either all accesses are in one block, or the first at the lowest address is made in every iteration of a loop that
-        walks upwards; the others then reach back from the stepped pointer [autoinc candidates in tree-ssa-loop-ivopts.cc].
+        walks upwards, or downwards to the one end it has; the others then reach back from the stepped pointer
+        [add_autoinc_candidates in tree-ssa-loop-ivopts.cc].
         """
         step = variable.increment.constant
         labels = {self._hoisted(label, variable) for label, _, _ in variable.accesses}
@@ -181,7 +182,10 @@ class InductionVariables:
         if len(labels) == 1 and self.flow.every_iteration(next(iter(labels)), variable.loop):
             return any(abs(step) == each.bits // 8 for _, each, _ in variable.accesses)
         label, lowest, _ = min(variable.accesses, key=lambda access: access[2])
-        return step == lowest.bits // 8 and self.flow.every_iteration(label, variable.loop)
+        downwards = self.profile.applies(Rule.DOWNWARD_POINTERS) and len(self.flow.exits(variable.loop)) == 1
+        return (abs(step) if downwards else step) == lowest.bits // 8 and self.flow.every_iteration(
+            label, variable.loop
+        )
 
 
 def is_merged_pointer(each: Instruction) -> bool:

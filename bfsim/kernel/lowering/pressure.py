@@ -1,9 +1,14 @@
 """Register pressure: what does not fit in the registers of a loop is reloaded where it is used.
 
+The one to go is used least for the room it takes: the places where there are too many while it is alive [allocno_spill_priority in
+ira-color.cc of GCC 12].
+
 Values come from the stack; constants from registers that can do nothing else (I, M, B), which takes a move.
 """
 
 from __future__ import annotations
+
+from collections import Counter as Tally
 
 from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
@@ -59,23 +64,27 @@ class Pressure:
             for instruction in self.code.of[label]
         )
         room = KEPT[bank] if has_call else ROOM[bank]
-        busiest: set[str] = set()
-        for label in self.flow.inside(loop):
-            for alive in self.points(label, across_calls=has_call):
-                here = {name for name in alive if self.bank.get(name) is bank and name not in spilled}
-                if len(here) > len(busiest):
-                    busiest = here
         # once something is spilled, one register is taken by the reloads
         reloading = (loop.header, bank) in self.reloading and self.webs.context.profile.applies(
             Rule.RELOAD_REGISTER
         )
-        if len(busiest) + extra <= room - reloading:
+        crowded: list[set[str]] = []
+        for label in self.flow.inside(loop):
+            for alive in self.points(label, across_calls=has_call):
+                here = {name for name in alive if self.bank.get(name) is bank and name not in spilled}
+                if len(here) + extra > room - reloading:
+                    crowded.append(here)
+        if not crowded:
             return None
         self.reloading.add((loop.header, bank))
-        weights = {name: self._weight(name, loop) for name in busiest}
-        if bank is RegisterBank.DATA:
-            weights |= constants
-        return min(weights, key=lambda name: (weights[name], name), default=None)
+        places = Tally(name for here in crowded for name in here) + Tally(
+            dict.fromkeys(constants if extra else (), len(crowded))
+        )
+        if not self.webs.context.profile.applies(Rule.SPILLED_RANGES):
+            busiest = max(crowded, key=len)
+            places = Tally(dict.fromkeys([*busiest, *(constants if extra else ())], 1))
+        weights = {name: constants.get(name, 0) or self._weight(name, loop) for name in places}
+        return min(weights, key=lambda name: (weights[name] / (places[name] + 1), name), default=None)
 
     def points(self, label: str, *, across_calls: bool) -> list[set[str]]:
         """Webs alive after each instruction of a block (only across calls, if asked for)."""

@@ -12,8 +12,10 @@ from bfsim.kernel.lowering.bounded_values import bound_values
 from bfsim.kernel.lowering.carried import carry_over
 from bfsim.kernel.lowering.counted_fills import count_fills
 from bfsim.kernel.lowering.factored_sums import factor_sums
-from bfsim.kernel.lowering.header_copies import copy_headers
+from bfsim.kernel.lowering.final_values import with_final_values
+from bfsim.kernel.lowering.header_copies import copy_breaks, copy_headers
 from bfsim.kernel.lowering.invariant_loads import hoist_loads
+from bfsim.kernel.lowering.lagging_counters import without_lagging
 from bfsim.kernel.lowering.merged_stores import merge_stores
 from bfsim.kernel.lowering.preheaders import with_preheaders
 from bfsim.kernel.lowering.redundant import without_redundant_loads
@@ -24,27 +26,33 @@ from bfsim.kernel.profile import CompilerProfile
 from bfsim.kernel.rules import Rule
 
 REWRITES: tuple[Callable[[Routine], Routine], ...] = (
+    without_lagging,
     factor_sums,
     split_tests,
     split_loads,
     merge_stores,
     copy_headers,
+    copy_breaks,
     with_preheaders,
     without_redundant_loads,
     carry_over,
     sink,
     hoist_loads,
     bound_values,
+    with_final_values,
 )
 """In this order."""
 SWITCHES = {
+    without_lagging: Rule.LAGGING_COUNTERS,
     factor_sums: Rule.FACTORED_SUMS,
     split_tests: Rule.SPLIT_TESTS,
     split_loads: Rule.MERGED_LOADS,
     without_redundant_loads: Rule.CARRIED_LOADS,
     sink: Rule.SINKING,
     copy_headers: Rule.COPIED_HEADERS,
+    copy_breaks: Rule.COPIED_BREAKS,
     bound_values: Rule.BOUNDED_VALUES,
+    with_final_values: Rule.FINAL_VALUES,
 }
 """Those that can be left out."""
 

@@ -173,28 +173,22 @@ class ScalarEvolution:
     def _iterations(self, name: str, loop: Loop) -> int | None:
         """How often `loop` iterates until a test ends it, where constants say so."""
         test = self.flow.instruction(name)
-        if test is None or test.opcode != "icmp" or not test.operands[1].lstrip("-").isdigit():
+        if test is None or test.opcode != "icmp" or not self.flow.is_invariant(test.operands[1], loop):
             return None
         gain = self.increment(test.operands[0], loop)
         start = self._start(test.operands[0], loop)
         if gain is None or start is None or not gain.constant or gain.symbolic:
             return None
-        return max(0, (int(test.operands[1]) - start) // gain.constant) + 1
+        distance = self.affine(test.operands[1]).plus(start, -1)
+        return None if distance.terms else max(0, distance.constant // gain.constant) + 1
 
     def _evaluated(self, test: str, loop: Loop) -> int | None:
         return evaluated_iterations(self.flow, loop, test) if self.evaluates else None
 
-    def _start(self, value: str, loop: Loop) -> int | None:
+    def _start(self, value: str, loop: Loop) -> Affine | None:
         """What an affine value of one counter is in its first iteration."""
-        affine, entering = self.affine(value), self.flow.entering(loop)
-        if len(affine.terms) != 1:
-            return None
-        name, times = affine.terms[0]
-        each = self.flow.instruction(name)
-        if each is None or each.opcode != "phi":
-            return None
-        first = next((arm for arm, source in PHI_ARM.findall(each.text) if source[1:] == entering), "")
-        return int(first) * times + affine.constant if first.lstrip("-").isdigit() else None
+        affine, first = self.affine(value), self.first(value, loop)
+        return None if first is None else self.affine(first).plus(Affine(constant=affine.constant))
 
     def first(self, value: str, loop: Loop) -> str | None:
         """Return what a counter of `loop` starts with: a constant, or a value but for a constant; None if it is no counter."""

@@ -99,6 +99,10 @@ class _Selector(Accesses):
             return
         if self.context.demanded.in_shift_add(each) or self._is_half_extension(each):
             return
+        if (word := self.context.demanded.counted_bits(each)) is not None:
+            self.append(Op.ALU, each, each.result, DATA, (word, DATA))
+            self.append(Op.EXTEND, each, each.result, DATA, (each.result or "", DATA))
+            return
         value, amount = each.operands[:2]
         if (pair := self.context.demanded.shifted_sum(each)) is not None:
             self.append(Op.ADD_SHIFT, each, each.result, ANY, (pair[0], ANY), (pair[1], ANY), overwrites=pair)

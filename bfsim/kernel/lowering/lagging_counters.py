@@ -1,0 +1,59 @@
+"""Lagging counters: what a loop carries beside its counter to have it one iteration later is the counter less its step.
+
+LLVM makes `x - 1` of such a loop a variable of its own [phi of ops, NewGVN]; GCC leaves it, so that it knows how far `x - 1` is from `x + 2`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine
+from bfsim.kernel.loops import ControlFlow, Loop
+
+
+def without_lagging(routine: Routine) -> Routine:
+    """Return `routine` with each such variable computed from the counter."""
+    flow = ControlFlow(routine)
+    found = {
+        each.result: made
+        for loop in flow.loops
+        for each in flow.blocks[loop.header].instructions
+        if (made := _computed(flow, loop, each)) is not None
+    }
+    return (
+        replace(routine, blocks=tuple(_with(block, found) for block in routine.blocks)) if found else routine
+    )
+
+
+def _computed(flow: ControlFlow, loop: Loop, phi: Instruction) -> Instruction | None:
+    """The sum that takes the place of a phi, or None."""
+    arms = _arms(phi) if phi.opcode == "phi" else {}
+    counter = flow.instruction(arms.get(loop.latch, ""))
+    if counter is None or counter.opcode != "phi" or flow.defined[counter.result or ""][0] != loop.header:
+        return None
+    following = _arms(counter)
+    stepped = flow.instruction(following.get(loop.latch, ""))
+    entering = flow.entering(loop)
+    numbers = [arms.get(entering, ""), following.get(entering, ""), stepped.operands[-1] if stepped else ""]
+    if stepped is None or stepped.opcode != "add" or stepped.operands[0] != counter.result:
+        return None
+    if len(arms) != 2 or not all(each.lstrip("-").isdigit() for each in numbers):
+        return None
+    first, start, step = map(int, numbers)
+    if first != start - step:
+        return None
+    text = f"add nsw i32 {counter.result}, {-step}"
+    return Instruction(phi.result, "add", text, (counter.result or "", str(-step)), stepped.line)
+
+
+def _arms(phi: Instruction) -> dict[str, str]:
+    return {label[1:]: value for value, label in PHI_ARM.findall(phi.text)}
+
+
+def _with(block: BasicBlock, found: dict[str | None, Instruction]) -> BasicBlock:
+    phis = [each for each in block.instructions if each.opcode == "phi" and each.result not in found]
+    made = [
+        found[each.result] for each in block.instructions if each.opcode == "phi" and each.result in found
+    ]
+    others = [each for each in block.instructions if each.opcode != "phi"]
+    return replace(block, instructions=(*phis, *made, *others)) if made else block
