@@ -13,7 +13,6 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.camera_words import take_hits
@@ -116,23 +115,6 @@ def serve_cameras(state: State, memory: Memory, number: int, at: int, until: int
 
 
 @native
-def fetch_alone(state: State, core: int, until: int) -> int:
-    """Fetch the code in L2 that a core wants next, as long as nobody else asks for anything before tick `until`; return who is woken."""
-    master, present = w.MASTERS_AT + w.CORE_A + core, w.JOBS_AT + core * w.JOB_WORDS + w.PRESENT
-    for other in range(w.STORES_A, w.MASTERS):
-        if other != w.CORE_A + core:
-            until = min(until, state[w.MASTERS_AT + other + w.READY])
-    while state[present] >> log.KIND_BIT & log.KIND_MASK == log.FETCH and state[master + w.USES] == w.L2:
-        at = max(state[master + w.READY], state[w.L2_FREE])
-        if at >= until:
-            break
-        woken = serve_core(state, core, at, until)
-        if woken != w.NONE:
-            return woken
-    return w.NONE
-
-
-@native
 def serve_cores(state: State, number: int, at: int, until: int) -> int:
     """Serve a core, and then the accesses of both that come before a DMA can want anything; return who is woken.
 
@@ -144,8 +126,6 @@ def serve_cores(state: State, number: int, at: int, until: int) -> int:
     while True:
         if number >= w.CORE_A:
             woken = serve_core(state, number - w.CORE_A, at, until)
-            if woken == w.NONE:
-                woken = fetch_alone(state, number - w.CORE_A, limit)
         else:
             woken = serve_stores(state, number - w.STORES_A, at)
         if woken != w.NONE:
