@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from benchmarks.twins import (
+    actuators,
     angles,
     bits,
     borders,
@@ -11,6 +12,7 @@ from benchmarks.twins import (
     codes,
     contours,
     controllers,
+    detectors,
     devices,
     digits,
     drawing,
@@ -21,6 +23,8 @@ from benchmarks.twins import (
     fills,
     filters,
     fixed_point,
+    flows,
+    frames,
     gains,
     gauges,
     grids,
@@ -50,6 +54,7 @@ from benchmarks.twins import (
     regions,
     remotes,
     robots,
+    routes,
     rows,
     samples,
     scans,
@@ -76,12 +81,13 @@ from benchmarks.twins import (
 )
 
 SUBJECTS = (
-    angles, bits, borders, cameras, coders, codes, contours, controllers, devices, digits,
-    drawing, duties, exchanges, features, figures, fills, filters, fixed_point, gains, gauges,
-    grids, heaps, images, integers, labels, lines, lookups, machines, maps, masks, messages,
-    mixture, motion, motors, neighbours, ordering, packing, patches, pictures, pixels, planes,
-    plans, profiles, protocols, regions, remotes, robots, rows, samples, scans, searches,
-    shapes, signals, sorted_rows, sorting, statistics, stereo, stores, streams, sums, tables,
-    tallies, text, trackers, transforms, views, voices, warps, waves, words,
+    actuators, angles, bits, borders, cameras, coders, codes, contours, controllers,
+    detectors, devices, digits, drawing, duties, exchanges, features, figures, fills, filters,
+    fixed_point, flows, frames, gains, gauges, grids, heaps, images, integers, labels, lines,
+    lookups, machines, maps, masks, messages, mixture, motion, motors, neighbours, ordering,
+    packing, patches, pictures, pixels, planes, plans, profiles, protocols, regions, remotes,
+    robots, routes, rows, samples, scans, searches, shapes, signals, sorted_rows, sorting,
+    statistics, stereo, stores, streams, sums, tables, tallies, text, trackers, transforms,
+    views, voices, warps, waves, words,
 )  # fmt: skip
 CASES = tuple(case for subject in SUBJECTS for case in subject.CASES)
