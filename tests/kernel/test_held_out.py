@@ -73,6 +73,10 @@ HELD_OUT = {
         quadtree_split quantise_zigzag ransac_line sliding_maximum step_axes unwrap_phase v_disparity
         viterbi_decode wavelet_row xtea_encrypt
     """,
+    "8990d67": """
+        battery_gauge bilateral_row cascade_windows field_currents flow_step meter_exposure motion_history pack_can
+        plan_path pyramid_down quaternion_track resample_particles rs_parity servo_frames simplify_outline steer_clear
+    """,
 }
 
 
@@ -96,7 +100,7 @@ def test_only_held_out_kernels_have_a_first_sight() -> None:
 def test_the_errors_at_first_sight_are_those_of_the_history() -> None:
     """Mean of each batch in percent, as its commit's own model had it."""
     found = {each.commit: (each.kernels, round(each.mean, 1)) for each in first_sight("O2")}
-    assert list(found.items())[:15] == [
+    assert list(found.items())[:16] == [
         ("44c5983", (16, 5.7)),
         ("5243a0b", (10, 17.5)),
         ("adb0f43", (12, 23.4)),
@@ -112,4 +116,5 @@ def test_the_errors_at_first_sight_are_those_of_the_history() -> None:
         ("09df417", (24, 11.2)),
         ("653eee3", (12, 8.1)),
         ("bcbb090", (24, 10.3)),
+        ("8990d67", (16, 10.3)),
     ]
