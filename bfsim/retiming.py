@@ -98,7 +98,7 @@ def recording_work(
             },
             buffers=machine.owners_of_memory,
             is_bound=machine.is_bound_to_placement,
-            code_outside=machine.code_outside,
+            routines_outside=machine.routines_outside,
         )
         yield
         for core in cores:
@@ -164,7 +164,9 @@ def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -
             f"{path} must be played with the LDF that it was recorded with, where one of the two has caches or a stack outside of L1: "
             "what they fetch depends on where everything lies; record it with this LDF"
         )
-    there, here = ({tuple(pair) for pair in each} for each in (recorded.code_outside, machine.code_outside))
+    there, here = (
+        {tuple(pair) for pair in each} for each in (recorded.routines_outside, machine.routines_outside)
+    )
     if there != here:
         core, routine = min(there ^ here)
         raise WorkError(

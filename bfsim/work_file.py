@@ -52,7 +52,7 @@ LARGEST_FRAME_BYTES = 1 << 30
 class Recorded:
     """What was run. `identity` are fields of the run's `Identity`; `buffers` those of each owner of memory, by name and bytes.
 
-    `is_bound`: whether what is accessed depends on where everything lies. `code_outside`: core and name of each routine
+    `is_bound`: whether what is accessed depends on where everything lies. `routines_outside`: core and name of each routine
     outside of L1. `frame_digests`: of the recording up to each frame.
     `modules`: of the firmware. `obstacles`: why it cannot be played, in words.
     """
@@ -60,7 +60,7 @@ class Recorded:
     identity: Mapping[str, Any]
     buffers: Sequence[Sequence[Any]]
     is_bound: bool
-    code_outside: Sequence[Sequence[str]]
+    routines_outside: Sequence[Sequence[str]]
     frame_digests: Sequence[str]
     modules: Sequence[str]
     firmware_digest: str
@@ -120,7 +120,7 @@ class WorkReader:
             self.recorded = Recorded(
                 **{each: run[each] for each in run if each not in ("format", "costs")}, **end
             )
-            _check_names(self.recorded.code_outside)
+            _check_names(self.recorded.routines_outside)
         except (TypeError, ValueError) as error:
             raise self._broken() from error
 

@@ -251,7 +251,7 @@ def rewritten(work: Path, path: Path, change: Callable[[dict[str, Any]], None]) 
 
 def test_other_code_outside_of_l1_is_refused(work: Path, folder: Path) -> None:
     """Its fetches are recorded, and those of others are not."""
-    other = rewritten(work, folder / "less.work", lambda run: run["code_outside"].pop())
+    other = rewritten(work, folder / "less.work", lambda run: run["routines_outside"].pop())
     with pytest.raises(WorkError, match=r"and \w+ of core [AB] is there and is not in both"):
         simulate(frames=FRAMES, work=other)
 
@@ -259,7 +259,7 @@ def test_other_code_outside_of_l1_is_refused(work: Path, folder: Path) -> None:
 @pytest.mark.parametrize("routine", [["A"], [0, "routine"], ["A", 7], ["A", "routine", 0], 7])
 def test_a_routine_that_is_none_is_refused(work: Path, folder: Path, routine: Any) -> None:
     """At opening."""
-    other = rewritten(work, folder / "odd.work", lambda run: run["code_outside"].append(routine))
+    other = rewritten(work, folder / "odd.work", lambda run: run["routines_outside"].append(routine))
     with pytest.raises(WorkError, match=r"odd\.work must be a whole file"):
         simulate(frames=FRAMES, work=other)
 

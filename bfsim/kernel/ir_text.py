@@ -304,6 +304,11 @@ def _is_constant(word: str) -> bool:
     return bool(re.fullmatch(r"-?\d+|true|false|null|poison|-?\d+\.\d+e[+-]\d+|0x[0-9A-F]+", word))
 
 
+def arms_of(phi: Instruction) -> dict[str, str]:
+    """Return the values of a phi by the labels of the blocks that they come from."""
+    return {label[1:]: value for value, label in PHI_ARM.findall(phi.text)}
+
+
 def predicate(compare: Instruction) -> str:
     """Return the relation that an `icmp` or `fcmp` tests: eq, slt, ult, ..."""
     words = compare.text.split()

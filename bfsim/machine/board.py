@@ -123,7 +123,7 @@ class Board:
         )
 
     @property
-    def code_outside(self) -> list[tuple[str, str]]:
+    def routines_outside(self) -> list[tuple[str, str]]:
         """Core and name of each routine outside of L1."""
         return [(core, routine) for core in self.spec.chip.cores for routine in self._code_outside_l1(core)]
 

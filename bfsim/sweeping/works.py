@@ -25,16 +25,16 @@ WORKS = "works"
 LEAST_LEFT = 2
 """The least points that are left for the first of them to be recorded.
 
-With all that kernels work on in L1 a frame more takes 165 ms to run, 173 ms to record and 44 ms to play (20 and 60 frames, processor
-time, medians of three): n points that are left gain from n = (173 - 44) / (165 - 44), 1.1, on.
+With all that kernels work on in L1 a frame more takes 134 ms to run, 162 ms to record and 39 ms to play (20 and 60 frames, processor
+time, medians of three): n points that are left gain from n = (162 - 39) / (134 - 39), 1.3, on.
 """
 
 MOST_WAITS = 0.02
 """Of the time, for memory outside of L1: what kernels access there is written, read and played word by word.
 
-At 1.5 % (the default LDF and profile) playing pays, as above; at 45 % (l2.ldf with vdsp-O2, 1 and 5 frames) a frame more takes 2.6 times as long to record, and
-1.1 times as long to play, as to run. What lies between is not measured [assumed]: where it is wrong a sweep takes longer. Its figures
-are the same.
+At 1.5 % (the default LDF and profile) playing pays, as above; at 45 % (l2.ldf, 4 and 12 frames) a frame more takes 1.6
+times as long to record, and 0.6 times as long to play, as to run: that gains little, from three points that are left on. What lies between
+is not measured [assumed]: where it is wrong a sweep takes longer. Its figures are the same.
 """
 
 

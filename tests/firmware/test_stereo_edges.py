@@ -195,13 +195,8 @@ def test_pairs_keep_their_order() -> None:
     """Each of two edges is most like the other one's partner; alone it would belong to it."""
     left, right = [[(200, 0, 50), (210, 0, 90)]] * 3, [[(170, 0, 90), (180, 0, 50)]] * 3
     assert found(left, right, LIKE) == ([], 0)
-    assert [
-        found([row[:1] for row in left], right, LIKE)[1],
-        found([row[1:] for row in left], right, LIKE)[1],
-    ] == [
-        3,
-        3,
-    ]
+    alone = [row[:1] for row in left], [row[1:] for row in left]
+    assert [found(each, right, LIKE)[1] for each in alone] == [3, 3]
 
 
 def test_posts_of_a_fence_are_told_apart_by_their_number() -> None:

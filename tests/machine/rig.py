@@ -24,6 +24,7 @@ from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.linker import LinkerScript, Placement, Symbol, link, parse_ldf
 from bfsim.machine.board import Board
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.core_logs import CoreLogs
 from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.bus.transfer_plans import Transfer
 from bfsim.machine.bus.weave import Weave, compiled_weave
@@ -206,6 +207,20 @@ class Call:
         self.stalls = {reason: cclk for reason, cclk in stalls if cclk}
 
 
+def write_log(logs: CoreLogs, core: int, entries: Sequence[int], fetches: int) -> int:
+    """Make the log of a core that of a call with these accesses and `fetches` of its code; return how many entries it has."""
+    last = [fetches << log.STAMP_BIT | log.FETCHES << log.KIND_BIT] if fetches else []
+    sites = [w.NO_SITE] * len(entries) + [1] * len(last)
+    logs.replace(core, np.array([[*entries, *last], sites]))
+    return len(sites)
+
+
+def keep_code(logs: CoreLogs, core: int, nbytes: int, *offsets: int) -> None:
+    """Let the code that a core fetches be routines of so many bytes at these offsets, in turn: its sites from 1 on."""
+    for site, offset in enumerate(offsets, 1):
+        logs.keep_routine(core, site, offset, nbytes, site % len(offsets) + 1)
+
+
 class Bench:
     """The bus of a board with its memories and masters; what tests post is all that happens on it."""
 
@@ -279,17 +294,8 @@ class Bench:
             stamp << log.STAMP_BIT | kind << log.KIND_BIT | self.offset(address)
             for stamp, kind, address in accesses
         ]
-        sites = [w.NO_SITE] * len(entries)
-        if fetches:
-            entries.append(fetches << log.STAMP_BIT | log.FETCHES << log.KIND_BIT)
-            sites.append(1)
-        self.bus.logs.replace(core, np.array([entries, sites]))
-        return Call(self, core, self.bus.cores.access(core, begin, cclk, len(entries)))
-
-    def keep_code(self, core: int, nbytes: int, *places: int) -> None:
-        """Let the code that a core fetches be routines of so many bytes at these addresses, in turn."""
-        for site, place in enumerate(places, 1):
-            self.bus.logs.keep_routine(core, site, self.offset(place), nbytes, site % len(places) + 1)
+        count = write_log(self.bus.logs, core, entries, fetches)
+        return Call(self, core, self.bus.cores.access(core, begin, cclk, count))
 
     def traffic(self, master: int, owner: int = w.NO_BUFFER_IN_SDRAM) -> Traffic:
         """Return what a master moved so far to and from memory of an owner."""

@@ -19,7 +19,7 @@ from bfsim.machine.bus import core_requests, dma_requests, runs
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.transfer_plans import Pace, Transfer, TransferPlan, Walk
 from bfsim.machine.bus.weave import Weave, compiled_weave, plain_weave
-from tests.machine.rig import Bench, Call, Play
+from tests.machine.rig import Bench, Call, Play, keep_code
 
 SDRAM_PLACES = (0x0000_1000, 0x0000_1F00, 0x0000_8000, 0x0080_1000, 0x0100_0700)
 PLACES = (*SDRAM_PLACES, 0xFEB0_1000, 0xFF80_1000, 0xFF40_1000)
@@ -61,9 +61,8 @@ class Scene:
             self.bench.env.process(self._post(plan, tick))
         for core in (0, 1):
             logs = [self._log(chance) for _ in range(chance.randint(0, 2))]
-            self.bench.keep_code(
-                core, chance.randint(1, 99), *chance.sample(CORE_PLACES, chance.randint(1, 3))
-            )
+            nbytes, places = chance.randint(1, 99), chance.sample(CORE_PLACES, chance.randint(1, 3))
+            keep_code(self.bench.bus.logs, core, nbytes, *map(self.bench.offset, places))
             self.bench.env.process(
                 self._run(core, logs, chance.randint(0, 500), chance.choice([0, 0, 1, 12]))
             )

@@ -25,6 +25,7 @@ from bfsim.machine.detailed.bus import DetailedBus
 from bfsim.machine.detailed.sdram import Page, SdramBanks
 from bfsim.machine.memories import Memories
 from bfsim.machine.simulation import END_OF_TIME, Simulation
+from tests.machine.rig import keep_code, write_log
 
 IN_EVERY_RUN = ("cm-bf561", "bf561-ezkit", "cm-bf533")
 """A board of each kind: the others are the first one with other clocks."""
@@ -42,6 +43,7 @@ each_board = on_boards(BOARDS)
 with_l2 = on_boards(name for name, each in BOARDS.items() if each.chip.l2)
 MODES = (WovenBus, DetailedBus)
 NBYTES = 1 << 13  # of noise at the beginning of each memory, and of the world outside
+CODE_BYTES = 40  # of each routine that is fetched
 WORD = 4
 
 CoreAccess = tuple[int, int, int]
@@ -85,20 +87,10 @@ class Bench:
     def call(self, core: int, accesses: Iterable[CoreAccess], cclk: int = 0, fetches: int = 0) -> None:
         """Make the accesses of a call, and `fetches` of its code (`keep_code`); its end and its stalls come to `calls`."""
         entries = [stamp << log.STAMP_BIT | kind << log.KIND_BIT | offset for stamp, kind, offset in accesses]
-        sites = [w.NO_SITE] * len(entries)
-        if fetches:
-            entries.append(fetches << log.STAMP_BIT | log.FETCHES << log.KIND_BIT)
-            sites.append(1)
-        self.bus.logs.replace(core, np.array([entries, sites]))
-        done = self.bus.cores.access(core, 0, cclk, len(entries))
+        done = self.bus.cores.access(core, 0, cclk, write_log(self.bus.logs, core, entries, fetches))
         done.callbacks.append(
             lambda _event: self.calls.append((self.env.tick, list(self.bus.cores.stalls_of(core))))
         )
-
-    def keep_code(self, core: int, *places: int) -> None:
-        """Let the code that a core fetches be routines of 40 bytes at these places, in turn."""
-        for site, place in enumerate(places, 1):
-            self.bus.logs.keep_routine(core, site, place, 40, site % len(places) + 1)
 
     def play(self) -> None:
         """Play everything to its end."""
@@ -384,7 +376,7 @@ def test_fetches_are_the_same_in_both_modes(board: str, fetches: int, gap_cclk: 
 
     def prepare(bench: Bench) -> None:
         places = [64, bench.bank + 8192, *([bench.l2 + 64] if bench.spec.chip.l2 else [])]
-        bench.keep_code(0, *places)
+        keep_code(bench.bus.logs, 0, CODE_BYTES, *places)
         loads = [(3 * gap_cclk * each, log.LOAD, 4 * each) for each in range(8)]
         bench.call(0, loads, max(fetches, 3 * len(loads)) * gap_cclk, fetches)
 
@@ -519,7 +511,7 @@ def accesses_by_chance(seed: int, core: int, bench: Bench) -> list[CoreAccess]:
 
     The code of the call that makes them is in L2 and in SDRAM.
     """
-    bench.keep_code(core, bench.l2 + 4096, 3 * bench.bank)
+    keep_code(bench.bus.logs, core, CODE_BYTES, bench.l2 + 4096, 3 * bench.bank)
     chance, stamp, found = Random(f"{seed} {core}"), 0, []
     memories = (*(number * bench.bank for number in range(4)), bench.l2)
     kinds = (log.LOAD, log.LOAD, log.FILL, log.FETCH, log.STORE, log.WRITE_BACK)

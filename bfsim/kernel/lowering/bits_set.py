@@ -11,7 +11,7 @@ from bfsim.kernel.loops import ControlFlow
 PAIRS, FOURS, BYTES, ONES = 0x55555555, 0x33333333, 0x0F0F0F0F, 0x01010101
 
 
-def counted(flow: ControlFlow, each: Instruction) -> str | None:
+def counted_word(flow: ControlFlow, each: Instruction) -> str | None:
     """Return the word whose bits an instruction ends up with, or None."""
     product = _with(flow, each.result or "", "lshr", 24)
     fours = _with(flow, _with(flow, product, "mul", ONES), "and", BYTES)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.preheaders import with_preheader
 from bfsim.kernel.lowering.widths import BYTE
@@ -52,7 +52,7 @@ def _carried(flow: ControlFlow, loop: Loop, each: Instruction) -> Carried | None
     before = list(_until(flow.blocks[loop.header], each))
     if each.opcode == "load" and any(_may_write(other, each) for other in before):
         return None
-    following = _there(flow, each, _arms(index)[loop.latch], loop.latch, loop.blocks)
+    following = _there(flow, each, arms_of(index)[loop.latch], loop.latch, loop.blocks)
     return Carried(loop, each, index, following) if following is not None else None
 
 
@@ -64,7 +64,7 @@ def _address(flow: ControlFlow, each: Instruction) -> Instruction | None:
 
 def _steps(flow: ControlFlow, index: Instruction, loop: Loop) -> bool:
     """Whether an index is an induction variable: a sum of itself and of what does not change."""
-    following = flow.instruction(_arms(index)[loop.latch])
+    following = flow.instruction(arms_of(index)[loop.latch])
     if following is None or following.opcode not in ("add", "sub"):
         return following is None
     others = [each for each in following.operands if each != index.result]
@@ -113,12 +113,12 @@ def _moved(flow: ControlFlow, routine: Routine, carried: Carried) -> Routine:
     """Put a phi in the place of a load or an address, and make it before the loop unless it is there."""
     loop, each = carried.loop, carried.each
     entering = flow.entering(loop)
-    first = _there(flow, each, _arms(carried.index)[entering], entering, frozenset(flow.blocks))
+    first = _there(flow, each, arms_of(carried.index)[entering], entering, frozenset(flow.blocks))
     made: list[Instruction] = []
     if first is None:
         if len(set(flow.blocks[entering].successors)) > 1:  # the loop need not be entered
             return with_preheader(routine, loop, entering)
-        made = list(_before(flow, carried, _arms(carried.index)[entering]))
+        made = list(_before(flow, carried, arms_of(carried.index)[entering]))
         first = made[-1].result
     kind = "ptr" if each.opcode == "getelementptr" else _kind(each)
     text = f"phi {kind} [ {first}, %{entering} ], [ {carried.following}, %{loop.latch} ]"
@@ -156,10 +156,6 @@ def _until(block: BasicBlock, last: Instruction) -> Iterator[Instruction]:
         if each is last:
             return
         yield each
-
-
-def _arms(phi: Instruction) -> dict[str, str]:
-    return {label[1:]: value for value, label in PHI_ARM.findall(phi.text)}
 
 
 def _kind(each: Instruction) -> str:

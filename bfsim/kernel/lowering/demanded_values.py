@@ -12,7 +12,7 @@ from functools import cached_property
 from bfsim.kernel.divisions import FLOOR, SIGNED
 from bfsim.kernel.ir_text import Instruction
 from bfsim.kernel.loops import ControlFlow, Loop
-from bfsim.kernel.lowering.bits_set import counted
+from bfsim.kernel.lowering.bits_set import counted_word
 from bfsim.kernel.lowering.endless_loops import EndlessLoops
 from bfsim.kernel.lowering.folding import NARROW, Folding
 from bfsim.kernel.lowering.if_conversion import ConversionKind, IfConversion
@@ -166,7 +166,7 @@ class DemandedValues(Folding):
 
     def counted_bits(self, each: Instruction) -> str | None:
         """The word whose bits an instruction ends up with, counted in parallel: an instruction does that."""
-        return counted(self.flow, each) if self.profile.applies(Rule.PARALLEL_COUNTS) else None
+        return counted_word(self.flow, each) if self.profile.applies(Rule.PARALLEL_COUNTS) else None
 
     def stepped(self, product: Instruction) -> Increment | None:
         """By how much a product of a counter grows with each iteration: an addition takes its place (strength reduction)."""

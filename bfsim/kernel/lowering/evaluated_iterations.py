@@ -9,7 +9,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction, predicate
+from bfsim.kernel.ir_text import Instruction, arms_of, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 
 MOST_ITERATIONS = 1000  # [GCC: max-iterations-to-track]
@@ -40,7 +40,7 @@ def evaluated_iterations(flow: ControlFlow, loop: Loop, test: str) -> int | None
         return None
     ways = flow.blocks[loop.latch].successors
     stays = ways[0] == loop.header
-    arms = {label[1:]: value for value, label in PHI_ARM.findall(counter.text)}
+    arms = arms_of(counter)
     if set(arms) != {flow.entering(loop), loop.latch} or not _is_number(arms[flow.entering(loop)]):
         return None
     value = int(arms[flow.entering(loop)]) & WORD_MASK

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import NAME, PHI_ARM, BasicBlock, Instruction, Routine, predicate
+from bfsim.kernel.ir_text import NAME, BasicBlock, Instruction, Routine, arms_of, predicate
 from bfsim.kernel.loops import ControlFlow, Loop
 
 STEPS = {"1": ("lt", "gt"), "-1": ("gt", "lt")}
@@ -48,7 +48,7 @@ def _final(flow: ControlFlow, loop: Loop) -> Final | None:
     counter = flow.instruction(stepped.operands[0])
     if counter is None or counter.opcode != "phi" or flow.defined[counter.result or ""][0] != loop.header:
         return None
-    arms = {label[1:]: value for value, label in PHI_ARM.findall(counter.text)}
+    arms = arms_of(counter)
     relation, by = predicate(test), stepped.operands[1]
     if set(arms) != {flow.entering(loop), loop.latch} or arms[loop.latch] != step or by not in STEPS:
         return None

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, predicate
+from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine, arms_of, predicate
 from bfsim.kernel.loops import COPIED, ControlFlow, Loop
 from bfsim.kernel.lowering.jump_threading import JumpThreading
 
@@ -124,10 +124,7 @@ class _Rotation:
         self.inside = next(way for way in self.header.successors if way in loop.blocks)
         self.way_out = next(way for way in self.header.successors if way not in loop.blocks)
         phis = [each for each in self.header.instructions if each.opcode == "phi"]
-        arms = {
-            each.result or "": {label[1:]: value for value, label in PHI_ARM.findall(each.text)}
-            for each in phis
-        }
+        arms = {each.result or "": arms_of(each) for each in phis}
         self.first = {name: values[self.entering] for name, values in arms.items()}
         own = {each.result for each in self.header.instructions}
         carried = {name: values[loop.latch] for name, values in arms.items()}

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction, predicate
+from bfsim.kernel.ir_text import Instruction, arms_of, predicate
 from bfsim.kernel.loops import ControlFlow
 from bfsim.kernel.lowering.bounded_values import bound_of
 from bfsim.kernel.lowering.widths import BYTE, WORD
@@ -216,5 +216,5 @@ class IfConversion:
 
 
 def _arm_value(phi: Instruction, source: str) -> str:
-    values: dict[str, str] = {label[1:]: value for value, label in PHI_ARM.findall(phi.text)}
+    values = arms_of(phi)
     return values[source]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction, SourceLine
+from bfsim.kernel.ir_text import PHI_ARM, Instruction, SourceLine, arms_of
 from bfsim.kernel.loops import ControlFlow, Loop
 from bfsim.kernel.lowering.scalar_evolution import Affine, Increment, ScalarEvolution
 from bfsim.kernel.profile import CompilerProfile
@@ -151,7 +151,7 @@ class InductionVariables:
         each = self.flow.instruction(name)
         if each is None or each.opcode != "phi" or self.flow.defined[name][0] != loop.header:
             return name
-        arms: dict[str, str] = {label[1:]: value for value, label in PHI_ARM.findall(each.text)}
+        arms = arms_of(each)
         return arms[self.flow.entering(loop)]
 
     def _hoisted(self, label: str, variable: InductionVariable) -> str:

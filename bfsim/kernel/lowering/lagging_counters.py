@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from bfsim.kernel.ir_text import PHI_ARM, BasicBlock, Instruction, Routine
+from bfsim.kernel.ir_text import BasicBlock, Instruction, Routine, arms_of
 from bfsim.kernel.loops import ControlFlow, Loop
 
 
@@ -27,11 +27,11 @@ def without_lagging(routine: Routine) -> Routine:
 
 def _computed(flow: ControlFlow, loop: Loop, phi: Instruction) -> Instruction | None:
     """The sum that takes the place of a phi, or None."""
-    arms = _arms(phi) if phi.opcode == "phi" else {}
+    arms = arms_of(phi) if phi.opcode == "phi" else {}
     counter = flow.instruction(arms.get(loop.latch, ""))
     if counter is None or counter.opcode != "phi" or flow.defined[counter.result or ""][0] != loop.header:
         return None
-    following = _arms(counter)
+    following = arms_of(counter)
     stepped = flow.instruction(following.get(loop.latch, ""))
     entering = flow.entering(loop)
     numbers = [arms.get(entering, ""), following.get(entering, ""), stepped.operands[-1] if stepped else ""]
@@ -44,10 +44,6 @@ def _computed(flow: ControlFlow, loop: Loop, phi: Instruction) -> Instruction | 
         return None
     text = f"add nsw i32 {counter.result}, {-step}"
     return Instruction(phi.result, "add", text, (counter.result or "", str(-step)), stepped.line)
-
-
-def _arms(phi: Instruction) -> dict[str, str]:
-    return {label[1:]: value for value, label in PHI_ARM.findall(phi.text)}
 
 
 def _with(block: BasicBlock, found: dict[str | None, Instruction]) -> BasicBlock:

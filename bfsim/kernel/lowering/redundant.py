@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction, Routine
+from bfsim.kernel.ir_text import PHI_ARM, Instruction, Routine, arms_of
 from bfsim.kernel.loops import ControlFlow, Loop, pointee_nbytes
 from bfsim.kernel.lowering.preheaders import with_preheader
 
@@ -51,7 +51,7 @@ def _carried(flow: ControlFlow, loop: Loop, load: Instruction) -> Carried | None
     index = flow.instruction(address.operands[-1])
     if index is None or index.opcode != "phi" or flow.defined[index.result or ""][0] != loop.header:
         return None
-    arms = {label[1:]: value for value, label in PHI_ARM.findall(index.text)}
+    arms = arms_of(index)
     merged = flow.instruction(arms.get(loop.latch, ""))
     if set(arms) != {flow.entering(loop), loop.latch} or merged is None or merged.opcode != "phi":
         return None
@@ -92,7 +92,7 @@ def _moved(flow: ControlFlow, routine: Routine, carried: Carried) -> Routine:
     load, loop = carried.load, carried.loop
     first, following, address = (f"{load.result}.{name}" for name in ("first", "following", "address"))
     entering = flow.entering(loop)
-    arms = {label[1:]: value for value, label in PHI_ARM.findall(carried.index.text)}
+    arms = arms_of(carried.index)
     kind = _kind(load)
     start = replace(
         carried.address,

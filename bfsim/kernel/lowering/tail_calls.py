@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from bfsim.kernel.ir_text import PHI_ARM, Instruction
+from bfsim.kernel.ir_text import Instruction, arms_of
 from bfsim.kernel.isa import REGISTER_ARGUMENTS
 from bfsim.kernel.loops import ControlFlow, Loop
 
@@ -61,7 +61,7 @@ def _returning(flow: ControlFlow, label: str, value: str | None) -> Instruction 
         if way in seen or any(each.opcode != "phi" for each in before):
             return None
         for phi in before:
-            arms: dict[str, str] = {source[1:]: arm for arm, source in PHI_ARM.findall(phi.text)}
+            arms = arms_of(phi)
             if arms[label] == value:
                 value = phi.result
         seen.add(way)

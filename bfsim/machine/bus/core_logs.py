@@ -10,7 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.kernel import access_trace as log
+from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
+
+
+@native
+def site_at(core: int, site: int) -> int:
+    """Return where it is counted what accesses of a core's site stall, and kept what the site is."""
+    return w.SITES_AT + (core * w.MAX_SITES + site) * w.SITE_WORDS
 
 
 class CoreLogs:
@@ -35,14 +42,14 @@ class CoreLogs:
 
     def keep_routine(self, core: int, site: int, offset: int, nbytes: int, following: int) -> None:
         """Keep where the code of a site lies that no cache holds, and the site of the routine that is fetched behind it."""
-        row = w.SITES_AT + (core * w.MAX_SITES + site) * w.SITE_WORDS
+        row = site_at(core, site)
         self._words[row + w.CODE], self._words[row + w.CODE_WORDS] = offset, -(-nbytes // w.FETCH_BYTES)
         self._words[row + w.NEXT_ROUTINE] = following
 
     def are_routines(self, core: int, sites: NDArray[np.int64]) -> bool:
         """Whether all `sites` of a core are such of code that is kept here."""
-        rows = w.SITES_AT + (core * w.MAX_SITES + sites) * w.SITE_WORDS
-        return bool((self._state[rows + w.CODE_WORDS] > 0).all())
+        kept = self.stalls_at_sites(core, w.MAX_SITES)
+        return bool((kept[sites, w.CODE_WORDS] > 0).all())
 
     def replace(self, core: int, accesses: NDArray[np.int64]) -> None:
         """Make the log of a core that of `accesses`, a row of entries and one of sites."""
@@ -71,7 +78,7 @@ class CoreLogs:
     def _code_in_turn(self, core: int, site: int) -> Iterator[tuple[int, int]]:
         """Yield the words of a routine and those behind it, over and over: where each lies, and the routine's site."""
         while True:
-            row = w.SITES_AT + (core * w.MAX_SITES + site) * w.SITE_WORDS
+            row = site_at(core, site)
             first, words = self._words[row + w.CODE], self._words[row + w.CODE_WORDS]
             yield from ((first + number * w.FETCH_BYTES, site) for number in range(words))
             site = self._words[row + w.NEXT_ROUTINE]
@@ -81,6 +88,6 @@ class CoreLogs:
 
         The last column counts the lines that were filled.
         """
-        first = w.SITES_AT + core * w.MAX_SITES * w.SITE_WORDS
+        first = site_at(core, 0)
         found: NDArray[np.int64] = self._state[first : first + count * w.SITE_WORDS]
         return found.reshape(count, w.SITE_WORDS)

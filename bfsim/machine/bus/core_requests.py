@@ -9,6 +9,7 @@ from __future__ import annotations
 from bfsim.kernel import access_trace as log
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.bus.memory_owners import owner_for
 from bfsim.machine.bus.pacing import aligned
 from bfsim.machine.bus.runs import l2_alone_until
@@ -35,7 +36,7 @@ def site_of(state: State, core: int) -> int:
 def charge(state: State, core: int, reason: int, cycles: int) -> None:
     """Charge what the core's present access stalls."""
     state[w.JOBS_AT + core * w.JOB_WORDS + w.STALL + reason] += cycles
-    state[w.SITES_AT + (core * w.MAX_SITES + site_of(state, core)) * w.SITE_WORDS + reason] += cycles
+    state[site_at(core, site_of(state, core)) + reason] += cycles
 
 
 @native
@@ -51,7 +52,7 @@ def find_present(state: State, core: int) -> bool:
         stamp = state[job + w.FETCHED] * state[job + w.TOTAL] // state[job + w.FETCHES]
         if not is_logged or stamp < state[at] >> log.STAMP_BIT:
             site = state[job + w.SITE] = state[job + w.ROUTINE]
-            code = state[w.SITES_AT + (core * w.MAX_SITES + site) * w.SITE_WORDS + w.CODE]
+            code = state[site_at(core, site) + w.CODE]
             place = code + state[job + w.WORD] * w.FETCH_BYTES
             state[job + w.PRESENT] = stamp << log.STAMP_BIT | log.FETCH << log.KIND_BIT | place
             state[job + w.IN_TURN] = 1
@@ -69,7 +70,7 @@ def go_past(state: State, core: int) -> None:
     if not state[job + w.IN_TURN]:
         state[job + w.ENTRY] += 1
         return
-    row = w.SITES_AT + (core * w.MAX_SITES + state[job + w.SITE]) * w.SITE_WORDS
+    row = site_at(core, state[job + w.SITE])
     state[job + w.FETCHED] += 1
     state[job + w.WORD] += 1
     if state[job + w.WORD] == state[row + w.CODE_WORDS]:
@@ -250,7 +251,7 @@ def serve_core(state: State, core: int, at: int, until: int) -> int:
     else:
         done = read_l2(state, core, at, kind, offset)
     if kind == log.FILL:
-        state[w.SITES_AT + (core * w.MAX_SITES + site_of(state, core)) * w.SITE_WORDS + w.FILLS] += 1
+        state[site_at(core, site_of(state, core)) + w.FILLS] += 1
     go_past(state, core)
     return next_entry(state, core, done)
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from bfsim.errors import FirmwareError
 from bfsim.kernel.native import native
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.bus.state import State
 
 
@@ -79,7 +80,7 @@ def owner_for(state: State, core: int, offset: int, site: int) -> int:
     """Return who owns the memory that an access of a core's site is for: no buffer, if no kernel makes it."""
     if site == w.NO_SITE:
         return w.NO_BUFFER_IN_SDRAM if offset < state[w.SDRAM_END] else w.NO_BUFFER_IN_L2
-    row = w.SITES_AT + (core * w.MAX_SITES + site) * w.SITE_WORDS
+    row = site_at(core, site)
     piece = state[row + w.PIECE]
     if not state[w.PIECES_AT + piece] <= offset < state[w.PIECES_AT + piece + 1]:
         piece = state[row + w.PIECE] = piece_of(state, offset)

@@ -16,6 +16,7 @@ import simpy
 from bfsim.chip.spec import BoardSpec
 from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
+from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.bus.memory_owners import owner_for
 from bfsim.machine.detailed.arbiter import Grant, L2Port, SdramArbiter, wait_until
 from bfsim.machine.simulation import Simulation
@@ -105,7 +106,7 @@ class CorePort:
         self._words[self._at_site(access) + reason] += cycles
 
     def _at_site(self, access: CoreAccess) -> int:
-        return w.SITES_AT + (self._number * w.MAX_SITES + access.site) * w.SITE_WORDS
+        return site_at(self._number, access.site)
 
     def _access(self, entry: int, site: int) -> CoreAccess:
         kind = entry >> log.KIND_BIT & log.KIND_MASK

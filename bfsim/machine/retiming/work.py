@@ -18,7 +18,10 @@ CALL = w.AWAIT + 1
 """An operation besides those of a stretch (`bus.state`): the next call of its firmware, which is played in Python."""
 
 STAMP, KIND, OWNER, BYTE, SITE = range(5)
-"""Columns of an access: cycle in its call, kind (`kernel.access_trace`), owner of the memory, byte there, and the core's site."""
+"""Columns of an access: cycle in its call, kind (`kernel.access_trace`), owner of the memory, byte there, and the core's site.
+
+FETCHES have their number in place of the cycle, and no memory: the board that plays them knows where its code lies.
+"""
 
 STREAM, SOURCE, SOURCE_BYTE, DESTINATION, DESTINATION_BYTE, NBYTES = range(6)
 """Columns of a copy: the stream of the core, owner of the memory and byte there of each side, and how many bytes."""
