@@ -192,6 +192,42 @@ def test_c_is_compiled_with_what_it_includes(tmp_path: Path) -> None:
     assert {"half", "__mulsf3"} <= {each.name for each in kernel.compile(GCC_O2).functions}
 
 
+@pytest.mark.toolchain
+@pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
+def test_what_is_included_may_be_in_other_folders(tmp_path: Path) -> None:
+    """Above and below the file; its lines are shown, but not those of one of two files with one name."""
+    for file, text in {
+        "own/third.c": '#include "../all/deep/part.h"\n#include "part.h"\nint third(int a) { return deep(a) + part(a); }\n',
+        "own/part.h": "static __attribute__((noinline)) int part(int a) { return a * a; }\n",
+        "all/deep/part.h": '#include "../base.h"\nstatic int deep(int a) { return base(a) + 1; }\n',
+        "all/base.h": "static __attribute__((noinline)) int base(int a) { return 3 * a; }\n",
+    }.items():
+        (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / file).write_text(text)
+    kernel = kernel_from(tmp_path / "own/third.c", "third", a=i32, result=i32)
+    assert kernel(4) == 3 * 4 + 1 + 4 * 4
+    sources = {each.name: each.source for each in kernel.compile(GCC_O2).functions}
+    assert "return 3 * a" in sources["base"]
+    assert "a * a" not in sources["part"]
+    assert "R0" in sources["part"]
+
+
+@pytest.mark.parametrize("file", ["callbacks.o", "callbacks.elf"])
+def test_functions_are_called_by_their_addresses(file: str) -> None:
+    """Those of a table, and those that are handed over; what they access is known, too."""
+    which, values = np.array([0, 1, 0], np.int32), np.array([3, 5, 7], np.int32)
+    from_table = kernel_from(DATA / file, "from_table", which=i32[:], values=i32[:], n=i32, result=i32)
+    assert from_table(which, values, 3) == 1 + 3 - 5 + 7
+    handed_over = kernel_from(DATA / file, "handed_over", values=i32[:], n=i32, result=i32)
+    assert handed_over(values, 3) == (1 + 3 + 5 + 7) - 3 * 5 * 7
+    assert {each.name for each in handed_over.compile(GCC_O2).functions} >= {"add", "multiply"}
+    program = from_table.compile(GCC_O2, traced=True).program
+    accessed = {
+        (program.sites[each.site].line.routine, program.sites[each.site].array) for each in program.accesses
+    }
+    assert accessed >= {("_add", "values"), ("_subtract", "values")}
+
+
 def test_explain_shows_the_lines_of_c() -> None:
     """Each line with its operations; the text is the file's."""
     shown = explain(sums(), GCC_O2)
@@ -214,6 +250,17 @@ def test_code_behind_an_exception_is_another_function_s() -> None:
     """Nobody comes back from one to a function that is called."""
     image = LoadedImage(link(read_object((DATA / "falling.o").read_bytes(), "falling.o")))
     assert list(image.explored(image.image.symbols["_trap"]).blocks) == [image.image.symbols["_trap"]]
+
+
+@pytest.mark.toolchain
+@pytest.mark.skipif(shutil.which("bfin-elf-gcc") is None, reason="no bfin-elf toolchain on PATH")
+def test_a_stack_is_as_large_as_the_scratchpad(tmp_path: Path) -> None:
+    """Who has too many local variables is told so."""
+    (tmp_path / "large.c").write_text("int large(int n) { volatile char a[9000]; a[n] = n; return a[n]; }\n")
+    kernel = kernel_from(tmp_path / "large.c", "large", n=i32, result=i32)
+    assert kernel(8999) == 8999 % 256
+    with pytest.raises(KernelError, match="its stack must fit into the 4,096 bytes of the scratchpad"):
+        kernel(0)
 
 
 def test_a_wild_access_is_refused() -> None:

@@ -58,15 +58,16 @@ class Block:
 class Code:
     """The code that can be reached from `entries`, which are also addresses that a computed jump may lead to.
 
-    `resumes`: whether it may go on behind an event that leaves native code. `blocks`: by their addresses. `resumed`: where calls, and
-    such events, come back to. `loop_starts`: of each last instruction of a hardware loop and the number of its counter, where its
-    loops begin. Raises InstructionError where more than
+    `resumes`: whether it may go on behind an event that leaves native code. `callees`: entries that are functions which are called by
+    their addresses. `blocks`: by their addresses. `resumed`: where calls, and such events, come back to. `loop_starts`: of each last
+    instruction of a hardware loop and the number of its counter, where its loops begin. Raises InstructionError where more than
     `MOST_INSTRUCTIONS` can be reached.
     """
 
     fetch: Fetch
     entries: frozenset[int]
     resumes: bool = True
+    callees: frozenset[int] = frozenset()
     blocks: dict[int, Block] = field(default_factory=dict)
     resumed: set[int] = field(default_factory=set)
     loop_starts: dict[tuple[int, int], set[int]] = field(default_factory=dict)

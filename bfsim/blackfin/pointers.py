@@ -149,8 +149,10 @@ def arrays_accessed(code: Code, entry: int, arguments: Sequence[str]) -> dict[in
             for each in ways.get(start, ())
         ]
         last = block.instructions[-1] if block.instructions else None
-        if last and does(last) in CALLS and "t" in last.operations[0].operands:
-            behind.append((int(last.operations[0].operands["t"]), state.in_call()))
+        if last and does(last) in CALLS:
+            target = last.operations[0].operands.get("t")
+            called = sorted(code.callees) if target is None else [int(target)]
+            behind += [(each, state.in_call()) for each in called]
         for target, new in behind:
             before = begins.get(target)
             joined = new if before is None else before.joined(new)

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 STACK, STACK_BYTES = 0xFFB00000, 4096
 """[HRM] The scratchpad memory of a core."""
+STACK_OVERRUN_BYTES = 1 << 18
+"""[ours] An access so far below the stack is one of local variables: nothing else is there."""
 ARRAYS, ARRAYS_BYTES = 0x20000000, 64 << 20
 """[HRM] Asynchronous memory, which programs are not linked to: where arrays are laid."""
 ARRAY_ALIGN = 16
@@ -80,7 +82,9 @@ class LoadedImage:
     def _code(self, entries: Iterable[int]) -> Code:
         from bfsim.blackfin.blocks import Code  # most starts explore no code
 
-        return Code(self.space.fetch, frozenset(entries), resumes=False)
+        starts = frozenset(each.address for each in self.image.routines)
+        found = frozenset(entries)
+        return Code(self.space.fetch, found, resumes=False, callees=found & starts)
 
     def _counted_from(self, timing: Timing, first: frozenset[int]) -> Counted:
         """Return that with its counters, which are the same with and without reports of accesses."""
@@ -92,12 +96,16 @@ class LoadedImage:
         return self._counted[key]
 
     def _entries(self, first: set[int]) -> set[int]:
-        """Where code can be entered that starts at `first`: there, and where the switches of its functions lead to."""
+        """Where code can be entered that starts at `first`: there, where its switches lead to, and the functions that it calls by address."""
+        from bfsim.blackfin.callees import callees
+
         entries, found = set[int](), first
         while not found <= entries:
             entries |= found
-            reached = {self.image.routine_at(each) for each in self._code(entries).blocks}
-            found = {each for each in self.image.pointers if self.image.routine_at(each) in reached - {None}}
+            code = self._code(entries)
+            reached = {self.image.routine_at(each) for each in code.blocks}
+            labels = {each for each in self.image.pointers if self.image.routine_at(each) in reached - {None}}
+            found = labels | callees(code, self.image)
         return entries
 
 
@@ -120,7 +128,13 @@ class Subroutine:
         self.processor.state.slots[:] = 0
         self.translated.counts[:] = 0
         if event is Event.FAULT:
-            what = f"it accesses 0x{runner().fault.value:08X}, where there is no memory"
+            fault = runner().fault.value
+            what = f"it accesses 0x{fault:08X}, where there is no memory"
+            if STACK - STACK_OVERRUN_BYTES <= fault < STACK:
+                what += (
+                    f": its stack must fit into the {STACK_BYTES:,} bytes of the scratchpad, so large arrays must be "
+                    "static, or arguments"
+                )
         elif event is Event.UNKNOWN_TARGET:
             what = f"it goes to 0x{address:08X}, an address that neither its code nor its data names"
         else:

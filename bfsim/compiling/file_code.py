@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import posixpath
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from bfsim.blackfin.image import Routine
 from bfsim.blackfin.linking import link
@@ -19,14 +20,14 @@ from bfsim.kernel import CompilerProfile, Kernel
 from bfsim.kernel.function import Function, Parameter
 from bfsim.kernel.objects.compiled import CompiledObject, compiled_object
 from bfsim.kernel.objects.places import Places, object_function
-from bfsim.kernel.objects.sources import source_of
+from bfsim.kernel.objects.sources import SourceFiles, source_of
 from bfsim.kernel.objects.timing import timing_of
 from bfsim.kernel.types import Number
 
 SOURCES = (".c", ".s", ".S")
 OBJECTS = (".o", ".elf")
 LEVEL = "-O2"
-INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"/]+)"', re.MULTILINE)
+INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"/][^"]*)"', re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -60,16 +61,26 @@ def file_kernel(path: Path, name: str, parameters: tuple[Parameter, ...], result
     address = image.address_of(symbol)
     routine = image.routine_at(address) or Routine(symbol, address, address)
     kernels: dict[str, Function] = {}
-    places = Places(image, kernels, folder=path.parent)
-    source = source_of(image, places.lines, routine, path.parent)
+    sources = _sources(path.parent, files)
+    places = Places(image, kernels, files=sources)
+    source = source_of(image, places.lines, routine, sources)
     own = re.sub(r"\W", "_", f"{path.name}_{name}", flags=re.ASCII)
     function = kernels[routine.name] = object_function(name, own, source, parameters, result)
     digests = {path.parent / each: hashlib.sha256(octets).hexdigest() for each, octets in files.items()}
     return Kernel(function, None, FileCode(digests, function, symbol, LoadedImage(image), places))
 
 
+def _sources(folder: Path, names: Iterable[str]) -> SourceFiles:
+    """Return where the files of these names are, as seen from `folder`."""
+    found: dict[str, Path | None] = {}
+    for each in names:
+        name = PurePosixPath(each).name
+        found[name] = None if name in found else folder / each
+    return SourceFiles(folder, found)
+
+
 def _files(path: Path) -> dict[str, bytes]:
-    """Read a file, and what it includes if it is source, by their names."""
+    """Read a file, and what it includes if it is source, by their names as seen from its folder."""
     kinds = (*SOURCES, *OBJECTS)
     if path.suffix not in kinds:
         raise KernelError(f"a kernel must come from a file {', '.join(kinds)}, not from {path.name}")
@@ -79,8 +90,11 @@ def _files(path: Path) -> dict[str, bytes]:
         name = waiting.pop()
         found[name] = octets = _read(path.parent / name)
         if path.suffix in SOURCES:
-            beside = INCLUDE.findall(octets.decode(errors="replace"))
-            waiting += [each for each in beside if each not in found and (path.parent / each).is_file()]
+            folder = posixpath.dirname(name)
+            for each in INCLUDE.findall(octets.decode(errors="replace")):
+                included = posixpath.normpath(posixpath.join(folder, each))
+                if included not in found and (path.parent / included).is_file():
+                    waiting.append(included)
     return found
 
 

@@ -10,7 +10,7 @@ import hashlib
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from bfsim import store
 from bfsim.compiling.toolchain import ADVICE, CPU, GCC, Compiler, Toolchain
@@ -24,7 +24,10 @@ KEPT_COMPILER = Compiler("bfin-elf", "12.2.0", CPU)
 
 @dataclass(frozen=True, slots=True)
 class Recipe:
-    """Files by name, which of them are compiled, and what the compiler is told beside `OPTIONS`."""
+    """Files by name, which of them are compiled, and what the compiler is told beside `OPTIONS`.
+
+    A name may have folders in it, also `..`, as seen from where the files that are compiled are.
+    """
 
     texts: Mapping[str, str]
     sources: tuple[str, ...]
@@ -39,9 +42,12 @@ class Recipe:
     def made(self, toolchain: Toolchain) -> bytes:
         """Compile it now. Raises ConfigError with what the compiler says."""
         with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
+            above = max(PurePosixPath(each).parts.count("..") for each in self.texts)
+            folder = Path(name, *["folder"] * above)
             for file, text in self.texts.items():
-                (folder / file).write_text(text, encoding="utf-8")
+                path = folder / file
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text, encoding="utf-8")
             return toolchain.build_object(folder, self.sources, (*OPTIONS, *self.options)).read_bytes()
 
 

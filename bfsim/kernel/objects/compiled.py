@@ -58,7 +58,7 @@ class CompiledObject:
 
     def may_write(self, array: str) -> bool:
         """Whether it may store into an array: of what is not made of Python, nothing is known of that."""
-        return self.places.folder is not None or array in self.function.written
+        return self.places.files is not None or array in self.function.written
 
     def new_totals(self) -> NDArray[np.int64]:
         """Return zeros for the events of each counter."""
@@ -93,7 +93,7 @@ def compiled_object(
         return Costs(tuple(found), calls(counted.code, places, subroutine.address, function.array_names))
 
     key = keys.object_key(*about, f"costs of {function.symbol}")
-    if places.folder:  # lines of files that may change are looked up anew
+    if places.files:  # lines of files that may change are looked up anew
         counted = _counted(function, made())
     else:  # each run binds the code to another board: what it costs is read once
         if key not in _READ:

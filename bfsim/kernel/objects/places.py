@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bfsim.blackfin.image import Image, Routine
 from bfsim.kernel.function import Body, Function, Parameter
 from bfsim.kernel.ir_text import SourceLine
-from bfsim.kernel.objects.sources import Source, disassembly, source_of
+from bfsim.kernel.objects.sources import Source, SourceFiles, disassembly, source_of
 from bfsim.kernel.types import Number
 
 if TYPE_CHECKING:
@@ -23,13 +22,13 @@ class Places:
     """The lines of an image.
 
     `kernels`: those that are functions in it, by their symbols there. `of_file`: those whose lines the debugging information calls
-    lines of such a file. `folder`: where other source files are.
+    lines of such a file. `files`: where other source files are.
     """
 
     image: Image
     kernels: Mapping[str, Function]
     of_file: Mapping[str, Function] = field(default_factory=dict)
-    folder: Path | None = None
+    files: SourceFiles | None = None
     functions: dict[str, Function] = field(default_factory=dict)
     """All that instructions were found to be of, by their own symbols."""
     _sources: dict[str, tuple[Function, Source]] = field(default_factory=dict)
@@ -82,8 +81,8 @@ class Places:
     def _source(self, routine: Routine) -> tuple[Function, Source]:
         if routine.name not in self._sources:
             source = (
-                source_of(self.image, self.lines, routine, self.folder)
-                if self.folder
+                source_of(self.image, self.lines, routine, self.files)
+                if self.files
                 else disassembly(self.image, routine)
             )
             known = self.kernels.get(routine.name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,6 +23,22 @@ LONGEST_HEAD = 10
 
 
 @dataclass(frozen=True, slots=True)
+class SourceFiles:
+    """Where source files are, by their names without folders, as debugging information has them.
+
+    Those of `included` are where it says, or nowhere if several have the name; all others are in `folder`.
+    """
+
+    folder: Path
+    included: Mapping[str, Path | None] = field(default_factory=dict)
+
+    def named(self, file: str) -> Path | None:
+        """Return where a file is, if that is known."""
+        name = Path(file).name
+        return self.included.get(name, self.folder / name)
+
+
+@dataclass(frozen=True, slots=True)
 class Source:
     """Text of a function from line `first_line` of `file`. `lines`: of each instruction its line, counted from 1 in the text."""
 
@@ -32,10 +48,11 @@ class Source:
     lines: Mapping[int, int]
 
 
-def source_of(image: Image, table: LineTable, routine: Routine, folder: Path) -> Source:
-    """Return the source of a function. Files are looked for in `folder`, by their names without folders."""
+def source_of(image: Image, table: LineTable, routine: Routine, files: SourceFiles) -> Source:
+    """Return the source of a function."""
     first = table.at(routine.address)
-    rows = file_lines(folder / Path(first.file).name) if first else None
+    path = files.named(first.file) if first else None
+    rows = file_lines(path) if path else None
     if first is None or not rows:
         return disassembly(image, routine)
     lines, at = dict[int, int](), first.line
@@ -47,7 +64,7 @@ def source_of(image: Image, table: LineTable, routine: Routine, folder: Path) ->
     begin, end = min(lines.values(), default=1), max(lines.values(), default=1)
     begin = _head(rows, begin, routine.name.removeprefix("_"))
     return Source(
-        str(folder / Path(first.file).name),
+        str(path),
         begin,
         "\n".join(rows[begin - 1 : end]),
         {address: line - begin + 1 for address, line in lines.items()},
