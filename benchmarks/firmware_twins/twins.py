@@ -21,7 +21,8 @@ from tinyphoon.stages.circle_fit import fit_circle
 from tinyphoon.stages.circle_outline import refine_row
 from tinyphoon.stages.circle_votes import draw_lines
 from tinyphoon.stages.colour_reduction import colour_row
-from tinyphoon.stages.edge_correspondence import match_edges, store_edges3d_row
+from tinyphoon.stages.edge_correspondence import match_edges
+from tinyphoon.stages.edge_depths import store_edges3d_row
 from tinyphoon.stages.edge_detection import (
     direction_row,
     gauss3_row,
@@ -31,13 +32,13 @@ from tinyphoon.stages.edge_detection import (
     suppress_row,
 )
 from tinyphoon.stages.edge_rows import spread_left_row, spread_right_row, take_left_row, take_right_row
+from tinyphoon.stages.edge_storing import store_edges_row
 from tinyphoon.stages.hysteresis import group_edges_row, keep_edges_row, label_edges_row
 from tinyphoon.stages.line_connectors import connect_far, connect_near
 from tinyphoon.stages.line_detection import fit_lines
 from tinyphoon.stages.line_refinement import look_at_row
 from tinyphoon.stages.line_scan import segments_row
 from tinyphoon.stages.open_closing import dilate_row, erode_row
-from tinyphoon.stores.edges import store_edges_row
 
 TWINS: tuple[Kernel, ...] = (
     grey_row, colour_row, gauss3_row, sobel_row, magnitude_row, direction_row, suppress_row, store_edges_row,

@@ -35,12 +35,17 @@ COLUMNS = (
     "kept %",
     "wanted %",
     "right %",
+    "right kept %",
 )
 NOTE = (
     "In % of those judged: where the dense disparity is known. Kept: how many 3-D edges there are of those that the thesis "
-    "matches on the same edges, right or wrong; wanted: of those of both that are not too far away; right: of those within 1 px. "
+    "matches on the same edges, right or wrong; wanted: of those of both that are not too far away; right: of those within 1 px; "
+    "right kept: how many of the thesis's that are within 1 px are among ours that are, at the same pixel. "
     "Beside the truth, which on chessboards is their plane, SGBM itself at the pixels of the 3-D edges."
 )
+
+NO_SHARES = ("",) * 4
+"""Where there is nothing to keep."""
 
 ALONE = {
     "send": [{"mode": {"stereo_edges": {
@@ -140,11 +145,21 @@ def _wanted(left: Seen, points: Points, dense: Disparities) -> int:
     return int((np.nan_to_num(_around(points, dense, 1)) >= least_px).any(axis=1).sum())
 
 
+def _right(frames: Sequence[Points], dense: Sequence[Disparities]) -> frozenset[tuple[float, ...]]:
+    """Return frame, column and row of the points within 1 px of a dense disparity around."""
+    return frozenset(
+        (frame, *pixel)
+        for frame, (points, own) in enumerate(zip(frames, dense, strict=True))
+        for pixel in points[errors_at(points, own, 1) <= NEAR_PX, :2].tolist()
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class _Found:
     """3-D edges or lines of a set: points, how many were found with those that had no room, and the errors known.
 
-    `wanted`: how many are, by the dense disparities, nearer than the farthest depth.
+    `wanted`: how many are, by the dense disparities, nearer than the farthest depth. `right`: frame, column and row of
+    those within 1 px.
     """
 
     points: int
@@ -152,6 +167,7 @@ class _Found:
     near: NDArray[np.float64]
     plain: NDArray[np.float64]
     wanted: int
+    right: frozenset[tuple[float, ...]]
 
     @classmethod
     def of(
@@ -167,7 +183,8 @@ class _Found:
         )
         count = sum(len(points) + each.results("A").get("edges_3d_lost", 0) for each, points, _ in frames)
         wanted = sum(_wanted(each.taken["A"], points, own) for each, points, own in frames)
-        return cls(sum(len(points) for _, points, _ in frames), count, near, plain, wanted)
+        right = _right([points for _, points, _ in frames], dense)
+        return cls(sum(len(points) for _, points, _ in frames), count, near, plain, wanted, right)
 
     @classmethod
     def of_dense(
@@ -184,7 +201,7 @@ class _Found:
             for reach in (1, 0)
         )
         count = sum(len(points) for points in frames)
-        return cls(count, count, near, plain, wanted=count)
+        return cls(count, count, near, plain, wanted=count, right=_right(frames, truth))
 
     def of_all(self, number: int) -> int:
         """Return how many of all there are if `number` of the judged are, and those without room are like the others."""
@@ -203,10 +220,10 @@ def rows_of(
     for kind, points_of in (("edges", edge_points), ("lines", line_points)):
         for beside, disparities in dense.items():
             found, all_ = (_Found.of(played, points_of, disparities) for played in (ours, alone))
-            kept = _kept(found, all_) if kind == "edges" else ("", "", "")
+            kept = _kept(found, all_) if kind == "edges" else NO_SHARES
             rows.append([beside, kind, *_cells(found), *kept])
     if truth:
-        rows.append(["truth", "SGBM", *_cells(_Found.of_dense(ours, dense["SGBM"], truth)), "", "", ""])
+        rows.append(["truth", "SGBM", *_cells(_Found.of_dense(ours, dense["SGBM"], truth)), *NO_SHARES])
     return rows
 
 
@@ -233,10 +250,11 @@ def _cells(found: _Found) -> list[str]:
     ]
 
 
-def _kept(found: _Found, all_: _Found) -> tuple[str, str, str]:
+def _kept(found: _Found, all_: _Found) -> tuple[str, str, str, str]:
     right, all_right = ((each.near <= NEAR_PX).sum() for each in (found, all_))
     return (
         percent(found.count, all_.count),
         percent(found.of_all(found.wanted), all_.of_all(all_.wanted)),
         percent(found.of_all(right), all_.of_all(all_right)),
+        percent(len(found.right & all_.right), len(all_.right)),
     )

@@ -22,7 +22,7 @@ from tinyphoon.stages.edge_detection import (
     sobel_row,
     suppress_row,
 )
-from tinyphoon.stores.edges import store_edges_row
+from tinyphoon.stages.edge_storing import store_edges_row
 from tinyphoon.tables import arctangent_table
 
 ROWS = [rows for width in WIDTHS for rows in three_rows(width)]

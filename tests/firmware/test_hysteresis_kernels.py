@@ -11,6 +11,7 @@ from hypothesis.extra.numpy import arrays
 from tests.firmware import edge_references as references
 from tests.firmware.pictures import Bytes
 from tinyphoon.stages.edge_detection import gauss5_row
+from tinyphoon.stages.edge_storing import store_edges_row
 from tinyphoon.stages.hysteresis import (
     group_edges_row,
     group_of,
@@ -18,7 +19,6 @@ from tinyphoon.stages.hysteresis import (
     keep_edges_row,
     label_edges_row,
 )
-from tinyphoon.stores.edges import store_edges_row
 
 WEAK, STRONG = 8, 16
 GARBAGE = 170

@@ -45,7 +45,7 @@ def elected(
         edges = sorted({*partners, (3, 0, 1), (61, 0, 1)})
         words, disparities = (
             np.array([edge[0] << 16 for edge in edges], np.uint32),
-            np.zeros(WIDTH, np.uint16),
+            np.zeros(WIDTH, np.int16),
         )
         for own, other in partners.items():
             disparities[own[0]] = own[0] - other[0] + 1

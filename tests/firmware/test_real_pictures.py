@@ -44,6 +44,7 @@ def test_a_recording_is_seen_as_rectified(tmp_path: Path) -> None:
     for kind in (edges, lines):
         assert float(kind["within 1 px %"]) > 90
         assert float(kind["over 5 px off %"]) < 3
+    assert 66 < float(edges["right kept %"]) <= 100
 
 
 SQUARE_PX, SHIFT_PX, WALL = 20, 24, 100

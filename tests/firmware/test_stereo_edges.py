@@ -15,7 +15,8 @@ from bfsim.api import FrameSize
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
 from tests.firmware.line_rig import BareCore, size_of
-from tests.firmware.stereo_references import Edge, EdgeLimits, Rig, edges_3d
+from tests.firmware.stereo_edge_references import EdgeLimits, edges_3d
+from tests.firmware.stereo_references import Edge, Rig
 from tests.firmware.whole_pictures import buffer, random_frames, run, stereo
 from tinyphoon.exchange import copy_words, pack_edge_rows
 from tinyphoon.geometry import GEOMETRY_WORDS
@@ -207,6 +208,18 @@ def test_posts_of_a_fence_are_told_apart_by_their_number() -> None:
     assert found([row[:4] for row in left], [row[1:] for row in right], LIKE)[1] == 12
 
 
+def test_what_only_one_picture_can_show_is_not_missed() -> None:
+    """Of five posts of a fence the right picture shows three; two fifths further on there are three pairs, too, and steps of
+    disparity to the wall behind are less. But then the first post and the last would have no partner. And so at the right."""
+    posts = [(8 + 20 * post, 0, 50 + 5 * post) for post in range(5)]
+    left = [*posts, (150, 0, 200)]
+    right = [*[(x - 30, *rest) for x, *rest in posts[2:]], (140, 0, 200)]
+    at_right = [sorted((319 - x, *rest) for x, *rest in each) for each in (right, left)]
+    for row, other, order in ((left, right, [392, 392, 392, 1176]), (*at_right, [1176, 392, 392, 392])):
+        depths = [each[2] for each in found([row] * 3, [other] * 3, replace(LIKE, margin=10))[0]]
+        assert depths == order * 3
+
+
 def test_of_paths_with_as_many_pairs_the_one_with_smaller_steps_wins() -> None:
     """The middle one of three edges has a partner that is most like it, two pixels off the disparity of the others, and follows them."""
     left = [[(158, 0, 50), (170, 0, 110), (182, 0, 200)]] * 3
@@ -219,85 +232,6 @@ def test_a_pair_without_room_for_its_link_is_on_no_path() -> None:
     """The first link is none."""
     left, right = [[(200, 0, 80)]] * 3, [[(170, 0, 80)]] * 3
     assert [found(left, right, LIKE, links=links)[1] for links in (1, 2)] == [0, 3]
-
-
-def test_who_follows_takes_the_very_disparity_rather_than_one_beside() -> None:
-    """Unless the edge a pixel beside is more alike by more than 16."""
-    left = [[(200, 0, 80)]] * 4
-    tops = [[(169, 16, 80), (170, 16, gradient)] for gradient in (65, 63)]
-    depths = [found(left, [top, *[[(170, 0, 80)]] * 3], LIKE)[0][-1][2] for top in tops]
-    assert depths == [392, 379]
-
-
-@pytest.mark.parametrize(
-    ("columns", "disparities", "number"),
-    [
-        ([200, 200], [30, 30], 0),
-        ([200, 200, 200], [30, 30, 30], 3),
-        ([200, 201, 202], [30, 30, 30], 3),  # it leans by 45 degrees
-        ([200, 202, 204], [30, 30, 30], 0),  # other edges
-        ([200, 200, 200], [30, 30, 31], 0),  # two depths, of which one has no support
-        ([200, 200, None, 200], [30, 30, None, 30], 0),
-        ([200, None, 200, 200, 200], [30, None, 30, 30, 30], 4),  # the top one follows the others
-    ],
-)
-def test_an_edge_needs_support(columns: list[int | None], disparities: list[int | None], number: int) -> None:
-    """In two rows of the two above and the two below, the same disparity must be beside it."""
-    pairs = list(zip(columns, disparities, strict=True))
-    left = [[] if x is None else [(x, 0, 80)] for x, _ in pairs]
-    right = [[] if x is None or d is None else [(x - d, 0, 80)] for x, d in pairs]
-    assert found(left, right, LIKE)[1] == number
-
-
-def test_a_pair_needs_others_to_be_believed() -> None:
-    """Three rows agree, or would if the right edge of the lowest did not belong to another edge, which is more like it."""
-    edge, other, owner = (200, 0, 50), (170, 0, 80), (190, 0, 80)
-    assert found([[edge]] * 3, [[other]] * 3, LIKE)[1] == 3
-    left = [[edge], [edge], [owner, edge], [owner], [owner]]
-    assert [each[3] for each in found(left, [[other]] * 5, LIKE)[0]] == [5, 4, 2]
-
-
-@pytest.mark.parametrize(
-    ("x", "other", "direction", "number"),
-    [
-        (200, 170, 0, 4),
-        (200, 169, 0, 4),  # a pixel more disparity
-        (200, 168, 0, 3),
-        (212, 182, 0, 4),  # as far beside them as it may be
-        (213, 183, 0, 3),
-        (200, 170, 16, 4),  # turned by as much as those that follow may be
-        (200, 170, 17, 3),
-        (200, 170, -16, 4),
-    ],
-)
-def test_an_edge_follows_those_below(x: int, other: int, direction: int, number: int) -> None:
-    """Three rows agree; the one above is too unlike to match by itself, or has a rival, and takes their disparity."""
-    pair, rival = (other, direction % 256, 80), (100, 0, 80)
-    left, right = [[(x, 0, 80)]], [sorted([rival, pair])]
-    assert found([*left, *[[(200, 0, 80)]] * 3], [*right, *[[(170, 0, 80)]] * 3], LIKE)[1] == number
-
-
-@pytest.mark.parametrize("x", [190, 210])
-def test_an_edge_follows_those_of_its_row(x: int) -> None:
-    """To the left and to the right of one that is believed."""
-    left, right = [[(200, 0, 80)]] * 3, [[(170, 0, 80)]] * 3
-    left[2], right[2] = sorted([*left[2], (x, 0, 80)]), sorted([*right[2], (x - 30, 16, 80)])
-    assert found(left, right, LIKE)[1] == 4
-
-
-def test_an_edge_does_not_follow_those_above() -> None:
-    """They are not settled when it is."""
-    left, right = [[(200, 0, 80)]] * 4, [*[[(170, 0, 80)]] * 3, [(170, 16, 80)]]
-    assert [found(left[::step], right[::step], LIKE)[1] for step in (1, -1)] == [3, 4]
-
-
-def test_a_chain_is_followed_to_its_top() -> None:
-    """Two rows make the two above and below certain; from these on row by row upwards, not downwards."""
-    unsure = [[(100, 0, 80), (170, 0, 80)]]
-    left = [[(200, 0, 80)]] * 11
-    right = [*unsure * 5, *[[(170, 0, 80)]] * 2, *unsure * 4]
-    assert found(left, right, replace(LIKE, lack=0))[1] == 0  # without support nothing is certain
-    assert [each[3] for each in found(left, right, LIKE)[0]] == [8, 7, 6, 5, 4, 3, 2, 1, 0]
 
 
 def test_an_edge_belongs_to_one_edge_only() -> None:

@@ -15,6 +15,7 @@ from bfsim.api import Calibration
 from bfsim.recording import RecordingReader
 from bfsim.run import BUILT_IN_RECORDING
 from tests.firmware import stereo_references as references
+from tests.firmware.stereo_edge_references import partners_of
 from tests.firmware.stereo_references import Line3D, Rig, Words
 from tests.firmware.test_stereo_edges import limits_of, rows_of
 from tests.firmware.whole_pictures import buffer, run
@@ -233,7 +234,7 @@ def test_rendered_lines(mode: StereoLineThresholds) -> None:
     every = expected(*lines, mode)
     assert found(*lines, mode) == every
     edges = [rows_of(board, core) for core in ("A", "B")]
-    partners = references.partners_of(ROBOT, *edges, limits_of(INDOOR_FIELD.stereo_edges))
+    partners = partners_of(ROBOT, *edges, limits_of(INDOOR_FIELD.stereo_edges))
     wanted = references.elected(every, *lines, partners, mode.edge_range)
     assert len(wanted) > 3
     (seen,) = see_stereo(

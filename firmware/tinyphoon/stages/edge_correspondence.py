@@ -1,29 +1,29 @@
 """Which edge of the other picture shows the same as an edge of this one (T §5.2.8).
 
-The pictures are rectified, so both show a point in one row. The plain way of the thesis takes the nearest edge, which is
-the one with the least disparity. The better way, ours, asks the rows around: what has a disparity has it in the next rows
-too, along the edge. A pair's score is how unlike its gradients are, and for each of four rows around how unlike the most
+The pictures are rectified, so both show a point in one row. The plain way of the thesis (`thesis_edges.py`) takes the nearest
+edge, which is the one with the least disparity. The better way, ours, asks the rows around: what has a disparity has it in the
+next rows too, along the edge. A pair's score is how unlike its gradients are, and for each of four rows around how unlike the most
 similar pair of that disparity is that lies beside the edge. The pair with the least score must be the best of both its
-edges, by a margin, must have support in one row at least, and be on the path through the row. Whether it is believed, and
-what else is, say the disparities around (`edge_following.py`).
+edges, by a margin, must have support in one row at least, and be on the path through the row. What is on the path and fails the
+rest is an unsure pair. Which pairs are believed, and what else is, say the disparities around (`edge_following.py`).
 
 The *path* is what pairs of a row there can be in one order in both pictures, as many as possible (stereo by dynamic programming,
 as Ohta and Kanade have it). What lies side by side is seen in the same order by both cameras, unless something thin stands far
 before the rest. So where one square of a board is like the next, their number tells them apart, and what lies beyond the
-board. Of paths with as many pairs the better one has pairs that are more alike, and smaller steps of disparity between them.
+board. Left edges nearer to the border than the disparity of the path's first pair are beyond the right picture's, and so are right
+edges beyond the left picture's by the last one's: they have no partner and need none. Without that, a board that one picture cuts
+would have as many pairs a square further on, and more beyond. Of paths with as many pairs the better one has pairs that are more
+alike, and smaller steps of disparity between them.
 It is found as the pairs come in, left edges from left to right, the right ones of each from right to left: for each right edge,
-`values` says how good the best path is that ends there or before, and `ends` with which link. A link is a pair and the link
-before it; link 0 is none.
+`values` says how good the best path is that ends there or before, and `ends` with which link; behind the last one they say so of
+whole paths. A link is a pair and the link before it; link 0 is none.
 """
 
 from __future__ import annotations
 
 from bfsim.api import i16, i32, kernel, u16, u32
-from tinyphoon.geometry import store_point
 from tinyphoon.stages.edge_rows import REACH, WINDOW_ROWS
 from tinyphoon.stages.line_segments import turn_between
-from tinyphoon.stores.lines import SUBPIXELS
-from tinyphoon.stores.lines3d import EDGE3D_LEFT, EDGE3D_WORDS, EDGE3D_X
 
 WORST = 0xFFFF
 
@@ -34,6 +34,10 @@ LINK_WORDS = 3
 STEP = 4
 """What a path pays for each pixel that the disparity changes by from a pair to the next: for 8 px as for a row that lacks support."""
 
+UNSEEN = WORST // 4
+"""What a path gains by an edge beyond the other picture's border: half of what one in a pair is worth. It is explained, but nothing
+speaks for it as for a pair: with as much as in a pair, a board without ends would be explained as well at any of its disparities."""
+
 
 @kernel
 def unlike(edge: i32, other: i32, direction_range: i32) -> i32:
@@ -42,32 +46,6 @@ def unlike(edge: i32, other: i32, direction_range: i32) -> i32:
     if turn > direction_range:
         return WORST
     return 2 * turn + abs((other & 255) - (edge & 255))
-
-
-@kernel
-def match_nearest(
-    left_row: u32[:],
-    left_count: i32,
-    right_row: u32[:],
-    right_count: i32,
-    partners: u16[:],
-    direction_range: i32,
-    min_disparity: i32,
-    max_disparity: i32,
-) -> None:
-    """Set for each left edge the place of the nearest right one in the row, from 1 on, or 0 (T §5.2.8)."""
-    for left in range(left_count):
-        edge = left_row[left]
-        partners[left] = 0
-        # the others go to the right: their disparities fall
-        for right in range(right_count):
-            other = right_row[right]
-            disparity = i32(edge >> 16) - i32(other >> 16)
-            if disparity < min_disparity:
-                break
-            off = unlike(i32(edge & 0xFFFF), i32(other & 0xFFFF), direction_range)
-            if disparity <= max_disparity and off < WORST:
-                partners[left] = right + 1
 
 
 @kernel
@@ -135,7 +113,7 @@ def first_behind(row: u32[:], first: i32, count: i32, x: i32) -> i32:
 @kernel
 def clear_path(values: i32[:], ends: u16[:], right_count: i32) -> None:
     """Begin without a pair."""
-    for right in range(right_count):
+    for right in range(right_count + 1):
         values[right] = 0
         ends[right] = 0
 
@@ -154,6 +132,8 @@ def add_pair(
     right: i32,
     right_count: i32,
     score: i32,
+    unseen_left: i32,
+    unseen_right: i32,
     values: i32[:],
     ends: u16[:],
     links: u16[:],
@@ -161,23 +141,31 @@ def add_pair(
 ) -> i32:
     """Take a pair into the paths that are better with it; `used` links are taken. Returns how many are now.
 
+    `unseen_left` and `unseen_right` are how many edges of each picture lie beyond the other one's border at the pair's disparity.
     A pair that finds no room for its link is in no path.
     """
-    value = WORST - score  # so much that the path with more pairs wins
+    gain = WORST - score  # so much that the path with more pairs wins
+    value = gain + UNSEEN * unseen_left
     before = 0
-    if right > 0:
-        before = i32(ends[right - 1])
-        value = value + values[right - 1]
-    if before != 0:
-        link = LINK_WORDS * before
-        last = disparity_of(left_row, i32(links[link + LINK_LEFT]), right_row, i32(links[link + LINK_RIGHT]))
-        value = value - STEP * abs(disparity_of(left_row, left, right_row, right) - last)
+    if right > 0 and ends[right - 1] != 0:
+        last = LINK_WORDS * ends[right - 1]
+        step = disparity_of(left_row, left, right_row, right) - disparity_of(
+            left_row, i32(links[last + LINK_LEFT]), right_row, i32(links[last + LINK_RIGHT])
+        )
+        onward = gain + values[right - 1] - STEP * abs(step)
+        if onward > value:
+            value = onward
+            before = i32(ends[right - 1])
+    whole = value + UNSEEN * unseen_right
     link = LINK_WORDS * used
-    if value <= values[right] or link + LINK_WORDS > len(links):
+    if (value <= values[right] and whole <= values[right_count]) or link + LINK_WORDS > len(links):
         return used
     links[link + LINK_BEFORE] = before
     links[link + LINK_LEFT] = left
     links[link + LINK_RIGHT] = right
+    if whole > values[right_count]:
+        values[right_count] = whole
+        ends[right_count] = used
     place = right
     while place < right_count and values[place] < value:
         values[place] = value
@@ -197,7 +185,7 @@ def take_path(
     left_row: u32[:],
     left_count: i32,
     right_row: u32[:],
-    partners: u16[:],
+    partners: i16[:],
     bests: u16[:],
     rivals: u16[:],
     owners: u16[:],
@@ -205,7 +193,7 @@ def take_path(
     links: u16[:],
     end: i32,
 ) -> None:
-    """Give left edges the partners of the path that ends with link `end`, if these are the best of both, or a pixel beside.
+    """Give left edges the partners of the path that ends with link `end`, negative if unsure: not the best of both, or a pixel beside.
 
     `partners` comes with the best of each left edge, or 0 where that has a rival.
     """
@@ -216,6 +204,7 @@ def take_path(
         if link != 0 and i32(links[link + LINK_LEFT]) == left:
             right = i32(links[link + LINK_RIGHT])
             link = LINK_WORDS * i32(links[link + LINK_BEFORE])
+            partners[left] = -(right + 1)
             has_rival = best == 0 or i32(bests[right]) + margin > i32(rivals[right])
             if not has_rival and (
                 columns_apart(right_row, best - 1, right) <= 1
@@ -233,7 +222,7 @@ def match_edges(
     left_window: u16[:],
     right_window: u16[:],
     slot: i32,
-    partners: u16[:],
+    partners: i16[:],
     bests: u16[:],
     rivals: u16[:],
     owners: u16[:],
@@ -245,7 +234,7 @@ def match_edges(
     lack: i32,
     margin: i32,
 ) -> None:
-    """Set for each left edge the place of its partner in the right row, from 1 on, or 0.
+    """Set for each left edge the place of its partner in the right row, from 1 on, negative if that is unsure, or 0.
 
     `bests`, `rivals` and `owners` are room for the right row: least score, that of the rival, and whose the least is;
     `values`, `ends` and `links` for the path. A rival is the best of the others that are more than a pixel away. Pairs farther
@@ -267,15 +256,18 @@ def match_edges(
         best_x = x
         partner = 0
         behind = first_behind(right_row, behind, right_count, x)
+        seen_left = 0
+        seen_right = right_count
         for right in range(behind - 1, -1, -1):
             other = right_row[right]
             other_x = i32(other >> 16)
-            if x - other_x > max_disparity:
+            disparity = x - other_x
+            if disparity > max_disparity:
                 break
             score = unlike(i32(edge & 0xFFFF), i32(other & 0xFFFF), direction_range)
             if score < WORST:
                 around = unlike_around(
-                    left_window, right_window, pitch, slot, x, x - other_x, direction_range, lack
+                    left_window, right_window, pitch, slot, x, disparity, direction_range, lack
                 )
                 score = score + around
                 if score < best:
@@ -287,57 +279,23 @@ def match_edges(
                 elif best_x - other_x > 1:
                     rival = min(rival, score)
                 offer(left_row, left, right, score, bests, rivals, owners)
+                seen_left = first_behind(left_row, seen_left, left, disparity - 1)
+                while i32(right_row[seen_right - 1] >> 16) + disparity >= pitch:
+                    seen_right = seen_right - 1
                 used = add_pair(
-                    left_row, left, right_row, right, right_count, score, values, ends, links, used
+                    left_row,
+                    left,
+                    right_row,
+                    right,
+                    right_count,
+                    score,
+                    seen_left,
+                    right_count - seen_right,
+                    values,
+                    ends,
+                    links,
+                    used,
                 )
         partners[left] = partner if best + margin <= rival else 0
-    if right_count > 0:
-        end = i32(ends[right_count - 1])
-        take_path(left_row, left_count, right_row, partners, bests, rivals, owners, margin, links, end)
-
-
-@kernel
-def store_edges3d_row(
-    edge_data: u32[:],
-    edge_index: u32[:],
-    y: i32,
-    left_row: u32[:],
-    left_count: i32,
-    disparities: u16[:],
-    min_disparity: i32,
-    geometry: i32[:],
-    width: i32,
-    height: i32,
-    edges_3d: i16[:],
-    found: i32,
-) -> i32:
-    """Store the 3-D edges of row `y`: left edges with a disparity, in `disparities` and 1 more, that are not too far away.
-
-    `found` is how many the rows before gave; returns it with this row. Those beyond the length of `edges_3d` are counted,
-    not stored.
-    """
-    place = i32(edge_index[y])
-    for left in range(left_count):
-        edge = left_row[left]
-        x = i32(edge >> 16)
-        disparity = i32(disparities[x]) - 1
-        if disparity >= min_disparity:
-            base = EDGE3D_WORDS * found
-            stored = 1
-            if base < len(edges_3d):
-                stored = store_point(
-                    geometry,
-                    SUBPIXELS * x,
-                    SUBPIXELS * y,
-                    SUBPIXELS * disparity,
-                    width,
-                    height,
-                    edges_3d,
-                    base + EDGE3D_X,
-                )
-            if stored != 0 and base < len(edges_3d):
-                while edge_data[place] != edge:
-                    place = place + 1
-                edges_3d[base + EDGE3D_LEFT] = place
-            found = found + stored
-    return found
+    end = i32(ends[right_count])
+    take_path(left_row, left_count, right_row, partners, bests, rivals, owners, margin, links, end)

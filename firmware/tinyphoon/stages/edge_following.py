@@ -1,18 +1,19 @@
 """What the disparities around say of an edge's: most things go on in the next rows, at nearly the depth that they have here.
 
 A pair that matched by itself (`edge_correspondence.py`) is believed if pairs in two of the four rows around have its disparity,
-to a pixel. An edge without a pair then follows those that are believed, in its row and the two below: it takes the most similar
-of the right edges at their disparities. The rows above it must not follow: whether they are believed is not known yet, and what
-is wrong there would be followed here and then believed for it. There are few disparities to choose from, so its gradient may be
-turned farther than that of a pair which had the whole row, and they may lie farther beside it: contours lean, and many things
-are as deep a little farther on.
+to a pixel. An unsure pair, which is on its row's path but has rivals, is believed if the next pair in its row that is believed has
+its disparity, to a pixel, and all four rows have it on their paths. An edge that is left then follows those that are believed, in
+its row and the two below: it takes the most similar of the right edges at their disparities. The rows above it must not follow:
+whether they are believed is not known yet, and what is wrong there would be followed here and then believed for it. There are few
+disparities to choose from, so its gradient may be turned farther than that of a pair which had the whole row, and they may lie
+farther beside it: contours lean, and many things are as deep a little farther on.
 
-A row of disparities holds by the column of each left edge its disparity in pixels and 1, or 0 where there is none.
+A row of disparities holds by the column of each left edge its disparity in pixels and 1, negative if that is unsure, or 0 for none.
 """
 
 from __future__ import annotations
 
-from bfsim.api import i32, kernel, u16, u32
+from bfsim.api import i16, i32, kernel, u16, u32
 from tinyphoon.stages.edge_correspondence import WORST, unlike
 
 OFFER_BITS = 12
@@ -39,22 +40,34 @@ def clear_disparities(words: u32[:]) -> None:
 
 @kernel
 def place_disparities(
-    left_row: u32[:], left_count: i32, right_row: u32[:], partners: u16[:], disparities: u16[:]
+    left_row: u32[:], left_count: i32, right_row: u32[:], partners: i16[:], disparities: i16[:]
 ) -> None:
     """Put the disparities of the left edges of a row that have a partner into a cleared row."""
     for left in range(left_count):
-        if partners[left] != 0:
-            x = left_row[left] >> 16
-            disparities[i32(x)] = x - (right_row[partners[left] - 1] >> 16) + 1
+        partner = i32(partners[left])
+        if partner != 0:
+            x = i32(left_row[left] >> 16)
+            disparity = x - i32(right_row[abs(partner) - 1] >> 16) + 1
+            disparities[x] = disparity if partner > 0 else -disparity
 
 
 @kernel
-def has_like(disparities: u16[:], x: i32, away: i32, disparity: i32) -> i32:
-    """Return 1 if an edge `away` from column `x` at most has a disparity (and 1), to a pixel; else 0."""
+def is_beside(disparities: i16[:], x: i32, away: i32, disparity: i32) -> i32:
+    """Return 1 if an edge `away` from column `x` at most has a sure disparity (and 1) that is this one to a pixel; else 0."""
     for column in range(max(x - away, 0), min(x + away, len(disparities) - 1) + 1):
         known = i32(disparities[column])
-        if known != 0 and abs(known - disparity) <= 1:
+        if known > 0 and abs(known - disparity) <= 1:
             return 1
+    return 0
+
+
+@kernel
+def like_beside(disparities: i16[:], x: i32, away: i32, disparity: i32) -> i32:
+    """Return the disparity (and 1), sure or not, of an edge `away` from column `x` at most that is this one to a pixel; else 0."""
+    for column in range(max(x - away, 0), min(x + away, len(disparities) - 1) + 1):
+        known = abs(i32(disparities[column]))
+        if known != 0 and abs(known - disparity) <= 1:
+            return known
     return 0
 
 
@@ -62,27 +75,64 @@ def has_like(disparities: u16[:], x: i32, away: i32, disparity: i32) -> i32:
 def believe_edges(
     left_row: u32[:],
     left_count: i32,
-    above2: u16[:],
-    above: u16[:],
-    here: u16[:],
-    below: u16[:],
-    below2: u16[:],
+    above2: i16[:],
+    above: i16[:],
+    here: i16[:],
+    below: i16[:],
+    below2: i16[:],
     right_edges: u16[:],
 ) -> None:
-    """Take the disparities of a row away that the rows around do not believe, and from `right_edges` the edges of the others.
+    """Take the sure disparities of a row away that the rows around do not believe, and from `right_edges` the edges of the others.
 
     `right_edges` has the row's gradients and directions by column, or 0, as a window of `spread_edges`.
     """
     for left in range(left_count):
         x = i32(left_row[left] >> 16)
         disparity = i32(here[x])
-        if disparity != 0:
-            support = has_like(below, x, 1, disparity) + has_like(above, x, 1, disparity)
-            support = support + has_like(below2, x, 2, disparity) + has_like(above2, x, 2, disparity)
+        if disparity > 0:
+            support = is_beside(below, x, 1, disparity) + is_beside(above, x, 1, disparity)
+            support = support + is_beside(below2, x, 2, disparity) + is_beside(above2, x, 2, disparity)
             if support >= LEAST_SUPPORT:
                 right_edges[x - disparity + 1] = 0
             else:
                 here[x] = 0
+
+
+@kernel
+def believe_unsure(
+    left_row: u32[:],
+    left_count: i32,
+    above2: i16[:],
+    above: i16[:],
+    here: i16[:],
+    below: i16[:],
+    below2: i16[:],
+    right_edges: u16[:],
+) -> None:
+    """Make the unsure disparities of a row sure that all rows around have, and the nearest sure one on a side of the row.
+
+    Those to the right of what is believed come first, then those to the left of it. A right edge belongs to one only.
+    """
+    for side in range(2):
+        beside = 0
+        for number in range(left_count):
+            place = number if side == 0 else left_count - 1 - number
+            x = i32(left_row[place] >> 16)
+            known = i32(here[x])
+            if known > 0:
+                beside = known
+            elif known < 0 and beside != 0 and abs(known + beside) <= 1:
+                disparity = -known
+                if (
+                    right_edges[x - disparity + 1] != 0
+                    and like_beside(below, x, 1, disparity) != 0
+                    and like_beside(above, x, 1, disparity) != 0
+                    and like_beside(below2, x, 2, disparity) != 0
+                    and like_beside(above2, x, 2, disparity) != 0
+                ):
+                    here[x] = disparity
+                    right_edges[x - disparity + 1] = 0
+                    beside = disparity
 
 
 @kernel
@@ -91,7 +141,7 @@ def best_offer(
     row: u32[:],
     first: i32,
     count: i32,
-    disparities: u16[:],
+    disparities: i16[:],
     right_edges: u16[:],
     follow_range: i32,
     max_disparity: i32,
@@ -138,21 +188,21 @@ def follow_edges(
     below_count: i32,
     below2_row: u32[:],
     below2_count: i32,
-    here: u16[:],
-    below: u16[:],
-    below2: u16[:],
+    here: i16[:],
+    below: i16[:],
+    below2: i16[:],
     right_edges: u16[:],
     follow_range: i32,
     max_disparity: i32,
 ) -> None:
-    """Give the left edges of a row that have no disparity one of those around; a right edge belongs to one only."""
+    """Give the left edges of a row that have no sure disparity one of those around; a right edge belongs to one only."""
     first = 0
     first_below = 0
     first_below2 = 0
     for left in range(left_count):
         edge = left_row[left]
         x = i32(edge >> 16)
-        if here[x] == 0:
+        if here[x] <= 0:
             first = first_in_reach(left_row, first, left_count, x)
             first_below = first_in_reach(below_row, first_below, below_count, x)
             first_below2 = first_in_reach(below2_row, first_below2, below2_count, x)

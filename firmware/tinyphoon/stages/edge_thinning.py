@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.api import Buffer, Core, FrameSize, InputRing, OutputRing, Row, i32, kernel, u8, u16, u32
-from tinyphoon.stores.edges import EDGE_CAPACITY, edge_store, store_edges_row
+from tinyphoon.stages.edge_storing import store_edges_row
+from tinyphoon.stores.edges import EDGE_CAPACITY, edge_store
 
 BANDS = 8
 LEVELS = 256

@@ -11,7 +11,7 @@ from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Any
 
-from bfsim.api import Core, Row, i16, i32, kernel, u16, u32
+from bfsim.api import Core, Row, i16, i32, kernel, u32
 from tinyphoon.stages.line_correspondence import column_at
 from tinyphoon.stores.lines import LINE_WORDS, LINE_Y0, LINE_Y1, SUBPIXELS
 from tinyphoon.stores.lines3d import LINE3D_LEFT, LINE3D_RIGHT, LINE3D_WORDS
@@ -28,7 +28,7 @@ def clear_votes(votes: i32[:]) -> None:
 def majority_at(
     left_row: u32[:],
     left_count: i32,
-    disparities: u16[:],
+    disparities: i16[:],
     column: i32,
     disparity: i32,
     edge_range: i32,
@@ -36,14 +36,14 @@ def majority_at(
     """Return how many more edges of a row are for a line than against it: those `edge_range` from its `column` at most.
 
     They are for it if their disparity is that of the line as nearly. All in 1/16 px, but `disparities`: by column, in
-    pixels and 1, or 0 for none.
+    pixels and 1, or 0 or less for none.
     """
     majority = 0
     for left in range(left_count):
         x = i32(left_row[left] >> 16)
         if SUBPIXELS * x > column + edge_range:
             break
-        if SUBPIXELS * x >= column - edge_range and disparities[x] != 0:
+        if SUBPIXELS * x >= column - edge_range and disparities[x] > 0:
             off = SUBPIXELS * (i32(disparities[x]) - 1) - disparity
             majority = majority + 1 if abs(off) <= edge_range else majority - 1
     return majority
@@ -60,13 +60,13 @@ def vote_row(
     y: i32,
     left_row: u32[:],
     left_count: i32,
-    disparities: u16[:],
+    disparities: i16[:],
     votes: i32[:],
     edge_range: i32,
 ) -> None:
     """Add the votes of row `y` for each of `count` 3-D lines that cross it.
 
-    `left_row` has the row's edges, and `disparities` by column theirs and 1, in pixels, or 0 for none.
+    `left_row` has the row's edges, and `disparities` by column theirs and 1, in pixels, or 0 or less for none.
     """
     row = SUBPIXELS * y
     for number in range(count):

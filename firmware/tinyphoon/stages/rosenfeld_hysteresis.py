@@ -16,6 +16,7 @@ from typing import Any
 from bfsim.api import Core, Frame, OutputRing, Row, i32, kernel, u8, u16
 from tinyphoon.areas import WHOLE_PICTURE, Area
 from tinyphoon.stages.edge_detection import EdgeThresholds, scan
+from tinyphoon.stages.edge_storing import store_edges_row
 from tinyphoon.stages.hysteresis import (
     LABELS,
     EdgeGroups,
@@ -26,7 +27,7 @@ from tinyphoon.stages.hysteresis import (
     known_label,
     new_label,
 )
-from tinyphoon.stores.edges import EDGE_CAPACITY, edge_columns, edge_store, store_edges_row
+from tinyphoon.stores.edges import EDGE_CAPACITY, edge_columns, edge_store
 
 
 @kernel

@@ -1,8 +1,9 @@
 """3-D edges: edges of the left picture that an edge of the right one corresponds to, for obstacles of any kind (T §5.2.8).
 
 The corresponding edge lies in the same row, has nearly the same gradient direction and a disparity within limits; which one
-it is say `edge_correspondence.py` and, two rows later, `edge_following.py`. Edges whose gradient looks up or down belong to lines along the row, all of whose edges
-are alike: with `level_range` they are left out, as T §5.2.7 leaves out such lines.
+it is say `edge_correspondence.py` and, two rows later, `edge_following.py`; how far away it is, `edge_depths.py`. Edges whose
+gradient looks up or down belong to lines along the row, all of whose edges are alike: with `level_range` they are left out, as
+T §5.2.7 leaves out such lines.
 """
 
 from __future__ import annotations
@@ -14,9 +15,11 @@ from typing import Any
 from bfsim.api import Buffer, Core, Frame, Row, i16, i32, u16, u32
 from tinyphoon.fields import allowed
 from tinyphoon.geometry import FARTHEST_MM, disparity_at
-from tinyphoon.stages.edge_correspondence import match_edges, match_nearest, store_edges3d_row
+from tinyphoon.stages.edge_correspondence import match_edges
+from tinyphoon.stages.edge_depths import mean_disparities, store_edges3d_row
 from tinyphoon.stages.edge_following import (
     believe_edges,
+    believe_unsure,
     clear_disparities,
     follow_edges,
     place_disparities,
@@ -31,6 +34,7 @@ from tinyphoon.stages.edge_rows import (
 )
 from tinyphoon.stages.line_votes import LineVote
 from tinyphoon.stages.stereo_lines import Correspondence, check_depths
+from tinyphoon.stages.thesis_edges import match_nearest
 from tinyphoon.stores.edges import edge_columns, edge_store
 from tinyphoon.stores.lines import SUBPIXELS
 from tinyphoon.stores.lines3d import EDGE3D_CAPACITY, EDGE3D_WORDS
@@ -139,7 +143,8 @@ class _Search:
     """The search for the disparities of left edges, row by row from the bottom of the picture.
 
     They are found in two steps: `match` asks the edges, and `settle`, `delay` rows later, the disparities around; the
-    thesis's way has the first one only. `least` and `most` are the disparities that are wanted, in pixels.
+    thesis's way has the first one only, and one row of disparities: those around stay empty. `least` and `most` are the
+    disparities that are wanted, in pixels.
     """
 
     core: Core
@@ -156,14 +161,15 @@ class _Search:
 
     @classmethod
     def of(cls, core: Core, frame: Frame, thresholds: StereoEdgeThresholds, least: int, most: int) -> _Search:
-        partners, *scores = core.overlay(_SCORES, u16, frame.width)
+        partners, *_ = core.overlay(_SCORES, i16, frame.width)
+        _, *scores = core.overlay(_SCORES, u16, frame.width)
         values, *_ = core.overlay("camera_ring", i32, frame.width)
         ends, *_ = core.overlay("grey_ring", u16, frame.width)
         return cls(
             core=core, rows=_Rows.of(core, frame.width, thresholds.level_range), thresholds=thresholds,
             height=frame.height, least=least, most=most, partners=partners, scores=tuple(scores),
             path=(values, ends, core.array("edge_groups")),
-            disparities=_disparity_rows(core, u16, frame.width),
+            disparities=_disparity_rows(core, i16, frame.width),
             words=_disparity_rows(core, u32, frame.width // 2),
         )  # fmt: skip
 
@@ -177,6 +183,11 @@ class _Search:
         """How many rows later a row is settled than matched."""
         return REACH if self.is_mutual else 0
 
+    def around(self, y: int) -> list[Row]:
+        """Return the disparities of the rows around row `y` and, in their middle, its own."""
+        middle = y if self.is_mutual else 0
+        return [self.disparities[(middle + step) % WINDOW_ROWS] for step in range(-REACH, REACH + 1)]
+
     def open(self) -> Generator[Any, Any, None]:
         """Begin below the picture."""
         for words in self.words:
@@ -188,9 +199,11 @@ class _Search:
     def match(self, y: int) -> Generator[Any, Any, None]:
         """Look for partners of the edges of row `y`; it may lie above the picture."""
         slot = y % WINDOW_ROWS
-        yield self.core.run(clear_disparities, self.words[slot])
         if self.is_mutual:
+            yield self.core.run(clear_disparities, self.words[slot])
             yield from self.rows.spread(y - REACH)
+        else:
+            yield self.core.run(clear_disparities, self.words[0])
         if y < 0:
             return
         left = yield from self.rows.take_left(y)
@@ -202,20 +215,26 @@ class _Search:
             yield self.core.run(match_edges, *left, *right, *self.rows.windows, slot, *room, *limits)
         else:
             yield self.core.run(match_nearest, *left, *right, self.partners, limit, self.least, self.most)
-        yield self.core.run(place_disparities, *left, right[0], self.partners, self.disparities[slot])
+        yield self.core.run(place_disparities, *left, right[0], self.partners, self.around(y)[REACH])
 
     def settle(self, y: int) -> Generator[Any, Any, tuple[Row, int, Row]]:
         """Return the edges of the left picture in row `y`, how many, and their disparities."""
         left = yield from self.rows.take_left(y)
-        slot = y % WINDOW_ROWS
+        around = self.around(y)
         if self.is_mutual:
-            around = [self.disparities[(y + step) % WINDOW_ROWS] for step in range(-REACH, REACH + 1)]
-            right = self.rows.right_window_rows[slot]
+            right = self.rows.right_window_rows[y % WINDOW_ROWS]
             yield self.core.run(believe_edges, *left, *around, right)
+            yield self.core.run(believe_unsure, *left, *around, right)
             below = yield from self.rows.take_below(y, self.height)
             limits = self.thresholds.follow_range, self.most
             yield self.core.run(follow_edges, *left, *below, *around[REACH:], right, *limits)
-        return *left, self.disparities[slot]
+        return *left, around[REACH]
+
+    def means(self, y: int, left: Row, count: int) -> Generator[Any, Any, Row]:
+        """Return the disparities of the `count` edges of a settled row, in 1/16 px: the means with those around."""
+        means = self.partners  # which have been placed
+        yield self.core.run(mean_disparities, left, count, *self.around(y), means)
+        return means
 
 
 def stereo_edges(
@@ -243,8 +262,10 @@ def stereo_edges(
             core.at(y, edge_columns(core, y))
             row = yield from search.settle(y)
             yield from vote.add(y, row)
+            edges = row[:2]
+            means = yield from search.means(y, *edges)
             found = yield core.run(
-                store_edges3d_row, *store, y, *row, least, geometry, *size, edges_3d, found
+                store_edges3d_row, *store, y, *edges, means, far, geometry, *size, edges_3d, found
             )
     core.at()
     kept = min(found, EDGE3D_CAPACITY)

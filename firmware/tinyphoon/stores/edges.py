@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from bfsim.api import Core, Row, i32, kernel, u8, u16, u32
+from bfsim.api import Core, Row
 
 # 32 KB: the thesis has its store in L1, which holds half as many beside the line rings; real rooms have two to four
 # times those. So it lies in L2, where a load waits 9 cycles: a few tenths of a millisecond a frame. At 320x240 it holds an
@@ -36,28 +36,3 @@ def edge_columns(core: Core, y: int) -> Callable[[], list[int]]:
         return found
 
     return columns
-
-
-@kernel
-def store_edges_row(
-    gradient: u8[:],
-    direction: u8[:],
-    edge_data: u32[:],
-    edge_index: u32[:],
-    edge_counts: u16[:],
-    y: i32,
-    found: i32,
-) -> i32:
-    """Store the edges of row `y`, the pixels with a gradient, and return how many the picture has so far.
-
-    `found` is that number before this row. Edges beyond the length of `edge_data` are counted, not stored.
-    """
-    first = min(found, len(edge_data))
-    for x in range(len(gradient)):
-        if gradient[x] != 0:
-            if found < len(edge_data):
-                edge_data[found] = gradient[x] | direction[x] << 8 | x << 16
-            found = found + 1
-    edge_index[y] = first
-    edge_counts[y] = min(found, len(edge_data)) - first
-    return found

@@ -1,4 +1,4 @@
-/* Twin of tinyphoon/stores/edges.py. */
+/* Twin of tinyphoon/stages/edge_storing.py. */
 #include "twin.h"
 
 KERNEL int32_t store_edges_row(const uint8_t gradient[], const uint8_t direction[], uint32_t edge_data[],
