@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.device_script import read_script
-from bfsim.errors import BfsimError, ConfigError, FirmwareError
+from bfsim.errors import BfsimError, ConfigError, FirmwareError, with_article
 from bfsim.loading import LoadedFirmware, load_firmware
 from bfsim.machine.firmware_lines import line_of
 from bfsim.machine.peripherals.device import Script
@@ -102,7 +102,7 @@ def _named(loaded: LoadedFirmware, picture: NDArray[np.uint8], told: Script, fra
         raise FirmwareError(f"colours of {loaded.name} failed with {what}") from error
     if not isinstance(found, PictureColours):
         raise FirmwareError(
-            f"colours of {loaded.name} must return a bfsim.api.PictureColours, not a {type(found).__name__}"
+            f"colours of {loaded.name} must return a bfsim.api.PictureColours, not {with_article(type(found).__name__)}"
         )
     shape = picture.shape[0], picture.shape[1] // 2
     if found.numbers.shape != shape or found.numbers.dtype != np.uint8:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from bfsim.errors import ConfigError
+from bfsim.errors import ConfigError, with_article
 from bfsim.file_content import read_bounded
 
 _PARSERS = {".json": json.loads, ".toml": tomllib.loads}
@@ -33,5 +33,7 @@ def read_script(path: Path) -> tuple[Mapping[str, Any], str]:
     except ValueError as error:  # of either parser, and of the text's encoding
         raise ConfigError(f"{path} must be {path.suffix[1:].upper()}: {error}") from error
     if not isinstance(script, dict):
-        raise ConfigError(f"{path} must have keys with values at its top, not be a {type(script).__name__}")
+        raise ConfigError(
+            f"{path} must have keys with values at its top, not be {with_article(type(script).__name__)}"
+        )
     return script, hashlib.sha256(octets).hexdigest()

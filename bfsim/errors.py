@@ -27,6 +27,11 @@ def cut(text: str) -> str:
     return "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
 
 
+def with_article(name: str) -> str:
+    """Return the name of a type with its article, as one says it: an int, a uint8, an f32, an ndarray."""
+    return f"{'an' if name.lower().startswith((*'aeio', 'f32', 'ndarray')) else 'a'} {name}"
+
+
 class BfsimError(Exception):
     """Parent of every error that bfsim raises on purpose."""
 

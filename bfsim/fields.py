@@ -15,7 +15,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from bfsim.errors import ConfigError, cut, shown
+from bfsim.errors import ConfigError, cut, shown, with_article
 
 NEAREST_FIELDS = 3
 """As many names are offered to who asked for one that there is not."""
@@ -80,7 +80,7 @@ def require_types(record: Any, what: str) -> None:
                 f", such as Fraction({value!r})" if hint is Fraction and type(value) in {int, float} else ""
             )
             raise ConfigError(
-                f"{what}.{field.name} must be of the type {kind}{advice}, not {shown(value)}, a {type(value).__name__}"
+                f"{what}.{field.name} must be of the type {kind}{advice}, not {shown(value)}, {with_article(type(value).__name__)}"
             )
         inner = value if isinstance(value, tuple) else (value,)
         for number, each in enumerate(inner):

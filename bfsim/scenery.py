@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TypeGuard
 
 from bfsim import shipped
-from bfsim.errors import RecordingError, shown
+from bfsim.errors import RecordingError, shown, with_article
 from bfsim.loading import SHIPPED, import_own
 from bfsim.locating import located
 from bfsim.recording.scenes import Scene, SceneAtDistances, Scenes
@@ -20,7 +20,7 @@ def load_scenes(name: str) -> Scenes:
     module, _ = import_own(*located(place))
     found = getattr(module, attribute, None)
     if not _are_scenes(found):
-        is_what = f"is a {type(found).__name__}" if hasattr(module, attribute) else "is missing"
+        is_what = f"is {with_article(type(found).__name__)}" if hasattr(module, attribute) else "is missing"
         raise RecordingError(
             f"{name} must be a Scene, a SceneAtDistances or a dict of Scenes of bfsim.recording.scenes, but it {is_what}"
         )
