@@ -73,8 +73,8 @@ def with_numba(kernel: Any) -> Callable[..., Any]:
     """Compile the source of a kernel, and of those it calls, with numba."""
     text = "\n".join(line for line in kernel.function.source.splitlines() if line.strip() != "@kernel")
     names: dict[str, Any] = dict(NAMES)
-    for name, value in kernel.python.__globals__.items():
-        if name in kernel.python.__code__.co_names and hasattr(value, "function"):
+    for name, value in kernel.definition.__globals__.items():
+        if name in kernel.definition.__code__.co_names and hasattr(value, "function"):
             names[name] = with_numba(value)
     exec(compile("from __future__ import annotations\n" + text, kernel.name, "exec"), names)  # its own source
     return numba.njit(names[kernel.name])

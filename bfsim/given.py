@@ -92,7 +92,7 @@ def _add_sources(sources: dict[str, ImportedFile], namespace: Namespace) -> None
         _add_imported(sources, [module], (root, SHIPPED))
         return
     functions = [
-        (value.python or value) if isinstance(value, Kernel) else value for value in namespace.values()
+        (value.definition or value) if isinstance(value, Kernel) else value for value in namespace.values()
     ]
     cells = {each.__code__.co_filename for each in functions if isinstance(each, FunctionType)}
     for cell in sorted(cells):

@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import Generic, TypeVar
 
 from bfsim import shipped
-from bfsim.errors import BfsimError, FirmwareError, cut, shown
+from bfsim.errors import BfsimError, FirmwareError, cut, shown, with_article
 from bfsim.importing import ImportedFile, OwnModules, Root
 from bfsim.kernel import Kernel
 from bfsim.locating import located, parted
@@ -117,7 +117,7 @@ def load_named(name: str, kind: Kind[Wanted], apart: Collection[Wanted] = ()) ->
     attribute = attribute or _only_one(module, name, kind, apart)
     value = getattr(module, attribute, None)
     if not isinstance(value, kind.type):
-        found = f"a {type(value).__name__}" if hasattr(module, attribute) else "missing"
+        found = with_article(type(value).__name__) if hasattr(module, attribute) else "missing"
         raise FirmwareError(
             f"{kind.option}: {attribute} must be a {kind.module}.{kind.type.__name__}, but is {found} "
             f"({_path_of(module)}){kind.advice(attribute)}"
@@ -159,7 +159,7 @@ def entries_of(firmware: Firmware) -> set[Kernel]:
 
 def _apart(kernels: list[Kernel]) -> str:
     """Say by which names kernels of one name are told apart."""
-    names = sorted(f"{getattr(each.python, '__module__', each.place)}:{each.name}" for each in kernels)
+    names = sorted(f"{getattr(each.definition, '__module__', each.place)}:{each.name}" for each in kernels)
     return f"write {' or '.join(names)}"
 
 

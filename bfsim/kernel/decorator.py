@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from contextvars import ContextVar
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, wraps
 from itertools import combinations
 from operator import itemgetter
 from pathlib import Path
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 
 AS_WRITTEN = GCC_O0
 """A profile that leaves every access and division in the code."""
+_IN_PYTHON = ContextVar("_IN_PYTHON", default=False)
+"""Whether a kernel is running as plain Python."""
 
 
 class ObjectCode(Protocol):
@@ -59,15 +62,32 @@ class RunnableCall(Protocol):
 class Kernel:
     """A kernel. Calling it runs the compiled code on numpy arrays, and `cost` says the cycles of a call.
 
-    `python` is the function as it was written, to be called with lists and ints: elements of numpy arrays would wrap at
-    their own width. A kernel of another language has none, but `object_code`, which runs as it is; the profile says how it is timed.
+    `definition` is the function as it was written. A kernel of another language has none, but `object_code`, which runs as it is; the
+    profile says how it is timed.
     `own_code` finds the code that a profile's compiler makes of one in Python, if there is any.
     """
 
     function: Function
-    python: Callable[..., Any] | None
+    definition: Callable[..., Any] | None
     object_code: ObjectCode | None = None
     own_code: Callable[[Kernel, CompilerProfile], CompiledObject | None] | None = None
+
+    @cached_property
+    def python(self) -> Callable[..., Any] | None:
+        """The function as plain Python, and so the kernels that it calls: for lists and ints, since elements of numpy arrays would wrap at their own width."""
+        definition = self.definition
+        if definition is None:
+            return None
+
+        @wraps(definition)
+        def plain(*arguments: Any) -> Any:
+            before = _IN_PYTHON.set(True)
+            try:
+                return definition(*arguments)
+            finally:
+                _IN_PYTHON.reset(before)
+
+        return plain
 
     @property
     def name(self) -> str:
@@ -245,7 +265,10 @@ class Kernel:
         where = f"({parameter.name} of {self.name}, {self.place})"
         if not isinstance(array, np.ndarray):
             what = f"be an array {parameter.type}, not {type(array).__name__}"
-        elif array.dtype != wanted or array.ndim != 1 or not array.flags.c_contiguous:
+        elif array.dtype == wanted and array.ndim == 1 and not array.flags.c_contiguous:
+            step = array.strides[0] // wanted.itemsize
+            what = f"be one contiguous row of {wanted}, not a view in steps of {step} elements; pass a copy, array.copy()"
+        elif array.dtype != wanted or array.ndim != 1:
             shape = "x".join(map(str, array.shape))
             what = f"be one contiguous row of {wanted}, not {array.dtype} of shape {shape}"
         elif not array.flags.aligned:
@@ -300,6 +323,8 @@ class Kernel:
             raise KernelError(
                 f"{self.name} must get {names} by their places, not {', '.join(named)} by name ({self.place})"
             )
+        if _IN_PYTHON.get() and self.definition:
+            return self.definition(*arguments)
         self.check(arguments)
         return self._run(arguments, self.compile(DEFAULT)).value
 

@@ -8,21 +8,18 @@ because the conversion is a call that should be seen.
 from __future__ import annotations
 
 import ast
-import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import replace
 
 from bfsim.kernel import tree
+from bfsim.kernel.names import Names
 from bfsim.kernel.operators import ALIKE, BINARY, COMPARE, DIVISIONS, FOLD, ON_FLOATS, in_words
-from bfsim.kernel.refusal import KernelSource
 from bfsim.kernel.types import (
     BOOL,
     PAIR,
-    ArrayType,
     FloatType,
     IntType,
     Number,
-    Value,
     f32,
     i32,
     promoted,
@@ -30,21 +27,10 @@ from bfsim.kernel.types import (
 )
 
 
-@dataclass(slots=True)
-class Expressions:
-    """What names mean inside one kernel: parameters, locals seen so far, and the module's constants and kernels.
+class Expressions(Names):
+    """Reads the expressions of one kernel; calls are read in `scope`."""
 
-    Calls are read in `calls`. `own` are all names that Python keeps for the function `kernel` itself, wherever it assigns them.
-    """
-
-    source: KernelSource
-    outer: Mapping[str, object]
-    kernel: str
-    own: tuple[str, ...]
-    arrays: dict[str, ArrayType] = field(default_factory=dict)
-    locals: dict[str, Value] = field(default_factory=dict)
-    assigned: set[str] = field(default_factory=set)
-    """Locals that hold a value on every way to the statement being read."""
+    __slots__ = ()
 
     def expression(self, node: ast.expr) -> tree.Expr:
         """Read an expression of any type."""
@@ -63,30 +49,29 @@ class Expressions:
         result = self.expression(node)
         if isinstance(result.type, IntType):
             return self._as_type(node, result, wanted)
-        self._refuse_nothing(node, result)
-        if isinstance(result.type, FloatType):
-            self.source.refuse(
-                node, "an integer is needed here, not an f32", "write i32(...) round it: it rounds to 0"
-            )
-        self.source.refuse(node, "a number is needed here, not a truth value", "write `1 if test else 0`")
+        self._as_number(node, result)
+        self.source.refuse(
+            node, "an integer is needed here, not an f32", "write i32(...) around it: it rounds to 0"
+        )
 
     def number(self, node: ast.expr, wanted: Number | None = None) -> tree.Expr:
         """Read an expression that must be a number, of type `wanted` if that is given."""
         if isinstance(wanted, IntType):
             return self.integer(node, wanted)
-        result = self.expression(node)
-        if isinstance(result.type, FloatType) or (wanted is None and isinstance(result.type, IntType)):
+        result = self._as_number(node, self.expression(node))
+        if wanted is None or isinstance(result.type, FloatType):
             return result
-        self._refuse_nothing(node, result)
-        if isinstance(result.type, IntType):
-            self.source.refuse(
-                node, f"f32 is needed here, not {result.type}", "write f32(...) round it: a call"
-            )
+        self.source.refuse(node, f"f32 is needed here, not {result.type}", "write f32(...) around it: a call")
+
+    def _as_number(self, node: ast.expr, value: tree.Expr) -> tree.Expr:
+        if isinstance(value.type, (IntType, FloatType)):
+            return value
+        self._refuse_nothing(node, value)
         self.source.refuse(node, "a number is needed here, not a truth value", "write `1 if test else 0`")
 
     def condition(self, node: ast.expr) -> tree.Expr:
-        """Read an expression as a truth value; an integer counts as `!= 0`."""
-        result = self.expression(node)
+        """Read an expression as a truth value; an integer counts as `!= 0`, and so does one beside `and` or `or`."""
+        result = self._joined(node, self.condition) if isinstance(node, ast.BoolOp) else self.expression(node)
         if isinstance(result.type, IntType):
             zero = tree.Const(0, result.type, result.line)
             return tree.Compare("!=", result, zero, BOOL, result.line)
@@ -103,10 +88,6 @@ class Expressions:
         if value.type is None:
             self.source.refuse(node, "this kernel returns nothing", "call it on a line of its own")
 
-    def is_builtin(self, node: ast.Name, function: object) -> bool:
-        """Whether a name means this function of Python, and nothing of the kernel's or the module's own."""
-        return node.id not in self.own and self.outer.get(node.id) is function
-
     def _as_type(self, node: ast.expr, value: tree.Expr, wanted: IntType | None) -> tree.Expr:
         if wanted is None or value.type is wanted:
             return value
@@ -122,58 +103,7 @@ class Expressions:
         self.source.refuse(
             node,
             f"{wanted} is needed here, not {value.type}",
-            f"write {wanted}(...) round it if that is meant",
-        )
-
-    def _constant(self, node: ast.Constant) -> tree.Expr:
-        if type(node.value) is bool:
-            truth = tree.Const(int(node.value), i32, node.lineno)
-            return tree.Compare("!=", truth, tree.Const(0, i32, node.lineno), BOOL, node.lineno)
-        if type(node.value) is int:
-            return replace(self._literal(node, node.value), written=self._hexadecimal(node))
-        if type(node.value) is float:
-            return tree.Const(f32(node.value), f32, node.lineno)
-        self.source.refuse(node, f"a kernel cannot use the constant {node.value!r}", "use numbers")
-
-    def _hexadecimal(self, node: ast.Constant) -> str:
-        """A hexadecimal number as it is written; '' for others."""
-        written = self.source.text_of(node).replace("_", "")
-        return written if re.fullmatch("0[xX][0-9a-fA-F]+", written) else ""
-
-    def _literal(self, node: ast.expr, value: int) -> tree.Const:
-        if not i32.bounds[0] <= value <= u32.bounds[1]:
-            self.source.refuse(
-                node, f"{value} does not fit in 32 bits", "use a value in -2147483648..4294967295"
-            )
-        return tree.Const(value, i32 if value <= i32.bounds[1] else u32, node.lineno)
-
-    def _name(self, node: ast.Name) -> tree.Expr:
-        name = node.id
-        if name in self.arrays:
-            self.source.refuse(
-                node, f"the array {name} is used like a number", f"write {name}[i] or len({name})"
-            )
-        if name in self.assigned:
-            return tree.Local(name, self.locals[name], node.lineno)
-        if name in self.own:
-            self.source.refuse(
-                node,
-                f"{name} may be used before it has a value",
-                f"give {name} a value on every way to this line",
-            )
-        constant = self.outer.get(name)
-        if type(constant) is int:
-            return replace(self._literal(node, constant), written=name)
-        if type(constant) is float:
-            return tree.Const(f32(constant), f32, node.lineno, written=name)
-        if name not in self.outer:
-            self.source.refuse(
-                node, f"the name {name} is not defined", "assign it first, or make it a parameter"
-            )
-        self.source.refuse(
-            node,
-            f"a kernel cannot read {name}, which is a {type(constant).__name__}",
-            "pass it as an array or integer parameter; only int and float constants of the module can be read",
+            f"write {wanted}(...) around it if that is meant",
         )
 
     def _binop(self, node: ast.BinOp) -> tree.Expr:
@@ -218,7 +148,7 @@ class Expressions:
             self.source.refuse(
                 node,
                 f"the two sides are {left.type} and {right.type}",
-                "write f32(...) round the integer, or 2.0 for 2: the conversion is a call",
+                "write f32(...) around the integer, or 2.0 for 2: the conversion is a call",
             )
         if left.type is not f32:
             self.source.refuse(
@@ -230,9 +160,11 @@ class Expressions:
             self.source.refuse(node, f"{op} is not for f32", "use + - * / min max, or convert with i32(...)")
         return tree.Binary(op, left, right, f32, node.lineno)
 
-    def _pair(self, left_node: ast.expr, right_node: ast.expr) -> tuple[tree.Expr, tree.Expr, Number]:
+    def _pair(
+        self, left_node: ast.expr, left: tree.Expr, right_node: ast.expr, right: tree.Expr
+    ) -> tuple[tree.Expr, tree.Expr, Number]:
         """Both sides of a comparison or a choice in one type."""
-        left, right = self.number(left_node), self.number(right_node)
+        left, right = self._as_number(left_node, left), self._as_number(right_node, right)
         if f32 in (left.type, right.type):
             if left.type is not right.type:
                 self._float_arithmetic(right_node, "", left, right)
@@ -251,7 +183,7 @@ class Expressions:
             self.source.refuse(
                 right_node,
                 f"the two sides are {left.type} and {right.type}",
-                "write i32(...) or u32(...) round one of them",
+                "write i32(...) or u32(...) around one of them",
             )
         return left.type
 
@@ -286,7 +218,7 @@ class Expressions:
             op = COMPARE.get(type(operator))
             if op is None:
                 self.source.refuse(node, f"a kernel cannot use {in_words(operator)}", "write < <= > >= == !=")
-            left, right, _ = self._pair(left_node, right_node)
+            left, right = self._compared(op, left_node, right_node)
             if right_node is not node.comparators[-1] and tree.calls_in(right):
                 self.source.refuse(
                     right_node, "this call would run twice", "put its result in a local name first"
@@ -296,23 +228,47 @@ class Expressions:
         assert result is not None
         return result
 
+    def _compared(self, op: str, left_node: ast.expr, right_node: ast.expr) -> tuple[tree.Expr, tree.Expr]:
+        """Both sides of a comparison: two numbers, or two truth values that are equal or not."""
+        left, right = self.expression(left_node), self.expression(right_node)
+        if left.type is BOOL and right.type is BOOL and op in ("==", "!="):
+            return left, right
+        left, right, _ = self._pair(left_node, left, right_node, right)
+        return left, right
+
     def _boolop(self, node: ast.BoolOp) -> tree.Expr:
+        """`and` or `or` where its value is used: Python's is one of the two sides, which must be a truth value then."""
+        return self._joined(node, self._truth_value)
+
+    def _joined(self, node: ast.BoolOp, read: Callable[[ast.expr], tree.Expr]) -> tree.Expr:
         op = "and" if isinstance(node.op, ast.And) else "or"
-        parts = [self.expression(each) for each in node.values]
-        for part_node, part in zip(node.values, parts, strict=True):
-            if part.type is not BOOL:
-                self._refuse_nothing(part_node, part)
-                self.source.refuse(
-                    part_node, f"`{op}` needs truth values, not numbers", "write a comparison, `x != 0`"
-                )
-        result = parts[0]
-        for part in parts[1:]:
-            result = tree.Logic(op, result, part, BOOL, node.lineno)
+        result, *others = map(read, node.values)
+        for each in others:
+            result = tree.Logic(op, result, each, BOOL, node.lineno)
+        return result
+
+    def _truth_value(self, node: ast.expr) -> tree.Expr:
+        result = self.expression(node)
+        if result.type is not BOOL:
+            self._refuse_nothing(node, result)
+            self.source.refuse(
+                node,
+                "`and` and `or` give truth values, not numbers, outside of a condition",
+                "write a comparison, `x != 0`",
+            )
         return result
 
     def _ifexp(self, node: ast.IfExp) -> tree.Expr:
         test = self.condition(node.test)
-        yes, no, kind = self._pair(node.body, node.orelse)
+        for each in (node.body, node.orelse):
+            if isinstance(each, ast.Name) and each.id in self.arrays:
+                self.source.refuse(
+                    each,
+                    f"a choice is between numbers, and {each.id} is an array",
+                    "let the caller pass the one that is meant, or write an `if` with a line for each array",
+                )
+        yes, no = self.expression(node.body), self.expression(node.orelse)
+        yes, no, kind = self._pair(node.body, yes, node.orelse, no)
         return tree.Choose(test, yes, no, kind, node.lineno)
 
     def _subscript(self, node: ast.Subscript) -> tree.Expr:

@@ -95,7 +95,7 @@ def compiler() -> str:
 def _writer() -> str:
     """Digest of the sources that write C: what the reader makes of kernels is in their own digests."""
     here = Path(__file__).parent
-    names = ("function.py", "operators.py", "tree.py", "types.py")
+    names = ("constants.py", "function.py", "operators.py", "tree.py", "types.py")
     found = [here / each for each in names]
     found += [each for folder in ("c", "intrinsics") for each in sorted((here / folder).rglob("*.[hp]*"))]
     return hashlib.sha256(b"".join(each.read_bytes() for each in found if each.suffix != ".pyc")).hexdigest()

@@ -15,6 +15,7 @@ from itertools import count
 from types import CodeType, FunctionType
 from typing import NamedTuple
 
+from bfsim.errors import with_article
 from bfsim.kernel import tree
 from bfsim.kernel.function import Body, Parameter
 from bfsim.kernel.operators import BINARY
@@ -53,7 +54,7 @@ def read_definition(source: KernelSource, outer: Mapping[str, object], python: F
         source.refuse(
             definition,
             f"{definition.name} can end without a value",
-            f"return an {reader.result} on every way",
+            f"return {with_article(reader.result.name)} on every way",
         )
     return Read(parameters, reader.result, Body(tuple(scope.locals.items()), block))
 

@@ -31,14 +31,14 @@ ALIKE = frozenset(["+", "-", "*", "<<", ">>", "&", "|", "^"])
 DIVISIONS = ("//", "%", "quotient", "remainder")
 
 
-BUILT_IN = ("len", "min", "max", "abs")
+BUILT_IN = ("len", "min", "max", "abs", "ord")
 """Functions of Python that the language has."""
 INSTEAD = {
     "print input open breakpoint": "return a number, or store it in an array that the firmware publishes; to print while you "
     "search a mistake, call the kernel's `.python(...)` in a test, which runs it as plain Python",
     "sum any all sorted reversed enumerate zip map filter iter next": "write a loop, for i in range(...)",
     "range slice": "it counts a loop only, for i in range(...)",
-    "list tuple dict set frozenset bytes bytearray memoryview str chr ord repr format": "a kernel has numbers and the arrays "
+    "list tuple dict set frozenset bytes bytearray memoryview str chr repr format": "a kernel has numbers and the arrays "
     "that it is given; pass an array as a parameter",
     "int bool": "write i32(x), or a comparison such as x != 0",
     "float complex": "write f32(x)",
@@ -60,7 +60,7 @@ def instead_of(name: str) -> str:
 def in_words(node: ast.AST) -> str:
     """What `node` is, in words."""
     names = {"listcomp": "comprehensions", "joinedstr": "strings", "tuple": "tuples", "list": "lists",
-             "dict": "dictionaries", "attribute": "attributes", "lambda": "lambda", "namedexpr": "`:=`",
+             "dict": "dictionaries", "lambda": "lambda", "namedexpr": "`:=`",
              "pow": "**", "matmult": "@", "is": "`is`", "in": "`in`"}  # fmt: skip
     name = type(node).__name__.lower()
     return names.get(name, f"`{name}`")

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from bfsim import store
 from bfsim.errors import KernelError
 from bfsim.kernel import keys
+from bfsim.kernel.constants import constant_of, members_of
 from bfsim.kernel.function import Function, Parameter
 from bfsim.kernel.intrinsics import INTRINSICS, TO_THE_RIGHT
 from bfsim.kernel.intrinsics.fract import high_of_fr2x16, low_of_fr2x16
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 WORD = re.compile(r"[\w\x80-\U0010ffff]+")
 """All names of a text and more, such as the words of comments."""
 HALVES = (high_of_fr2x16, low_of_fr2x16)
-FUNCTIONS: tuple[Any, ...] = (*INTRINSICS, *TO_THE_RIGHT, *OF_TWO, *HALVES, abs, len, range, sqrt)
+FUNCTIONS: tuple[Any, ...] = (*INTRINSICS, *TO_THE_RIGHT, *OF_TWO, *HALVES, abs, len, ord, range, sqrt)
 MEANINGS = {id(each): f"{each.__module__}.{each.__qualname__}" for each in FUNCTIONS}
 """Of the functions that the language knows."""
 
@@ -100,10 +101,10 @@ def _meant(text: str, names: Mapping[str, Any]) -> dict[str, Any]:
 
 def _meaning(value: object) -> str:
     """Return what decides how a name is understood that stands for `value`; nothing for what no kernel can use."""
-    if type(value) is int:
-        return hex(value)
-    if type(value) is float:
-        return value.hex()
+    if (constant := constant_of(value)) is not None:
+        return constant.hex() if isinstance(constant, float) else repr(constant)
+    if members := members_of(value):
+        return repr(members)
     if isinstance(value, (IntType, FloatType)):
         return str(value)
     if isinstance(function := getattr(value, "function", None), Function):

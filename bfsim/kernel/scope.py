@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import builtins
 from dataclasses import replace
+from typing import NoReturn
 
 from bfsim.kernel import tree
 from bfsim.kernel.expressions import Expressions
@@ -28,8 +29,6 @@ class KernelScope(Expressions):
         callee = getattr(target, "function", None)
         if isinstance(callee, Function):
             return self._kernel_call(node, callee)
-        if target is len:
-            return self._length(node)
         if (intrinsic := INTRINSICS.get(target)) is not None:
             return self._intrinsic(node, intrinsic)
         if (to_left := TO_THE_RIGHT.get(target)) is not None:
@@ -37,15 +36,37 @@ class KernelScope(Expressions):
             return replace(call, arguments=(call.arguments[0], self._minus(node.args[1], call.arguments[1])))
         if target in (high_of_fr2x16, low_of_fr2x16) and len(node.args) == 1:
             return self._half(node, upper=target is high_of_fr2x16)
+        return self._of_python(node, target)
+
+    def _of_python(self, node: ast.Call, target: object) -> tree.Expr:
+        """A call of one of the few functions of Python, or of those that stand for C's."""
+        if target is len:
+            return self._length(node)
         known = OF_TWO.get(target) if callable(target) else None
-        if known is not None and len(node.args) == 2:
-            return self._arithmetic(node, known, node.args[0], node.args[1])
+        if known is not None and len(node.args) > 1:
+            return self._of_two(node, known)
+        if target is ord:
+            return self._letter(node)
         if target is abs and len(node.args) == 1:
             return self._absolute(node)
         if target is sqrt and len(node.args) == 1:
             return tree.Unary("sqrt", self.number(node.args[0], f32), f32, node.lineno)
-        advice = f"give {name} two arguments" if known else f"make {name} a @kernel, or inline it"
-        self.source.refuse(node, f"a kernel cannot call {name} like this", advice)
+        name = ast.unparse(node.func)
+        self._refuse_call(
+            node, f"give {name} two arguments" if known else f"make {name} a @kernel, or inline it"
+        )
+
+    def _refuse_call(self, node: ast.Call, advice: str) -> NoReturn:
+        self.source.refuse(node, f"a kernel cannot call {ast.unparse(node.func)} like this", advice)
+
+    def _of_two(self, node: ast.Call, op: str) -> tree.Expr:
+        """An operation on two numbers that is written as a function; a minimum of more is that of two at a time, from the left."""
+        *others, last = node.args
+        if len(others) == 1:
+            return self._arithmetic(node, op, others[0], last)
+        if op not in ("min", "max"):
+            self._refuse_call(node, f"give {op} two arguments")
+        return self._arithmetic(node, op, ast.copy_location(ast.Call(node.func, others, []), node), last)
 
     def _called(self, node: ast.Call) -> str:
         """Return the name of what is called; refuse what can never be."""
@@ -68,6 +89,17 @@ class KernelScope(Expressions):
                 node, f"{name} is a variable here, not a function", "give the variable another name"
             )
         return name
+
+    def _letter(self, node: ast.Call) -> tree.Expr:
+        """The number of a character, which is a constant."""
+        letter = (
+            node.args[0].value if len(node.args) == 1 and isinstance(node.args[0], ast.Constant) else None
+        )
+        if not isinstance(letter, (str, bytes)) or len(letter) != 1:
+            self.source.refuse(
+                node, "ord is for one constant character", "write ord('x'); elements of arrays are numbers"
+            )
+        return self._literal(node, ord(letter))
 
     def _absolute(self, node: ast.Call) -> tree.Expr:
         operand = self.number(node.args[0])
@@ -131,6 +163,10 @@ class KernelScope(Expressions):
             return self.number(node, parameter.type)
         if isinstance(node, ast.Name) and self.arrays.get(node.id) == parameter.type:
             return node.id
-        self.source.refuse(
-            node, f"{parameter.name} must be an array {parameter.type}", "pass such a parameter on"
+        is_part = isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Slice)
+        advice = (
+            "pass the whole array on, and where its part begins as an i32"
+            if is_part
+            else "pass such a parameter on"
         )
+        self.source.refuse(node, f"{parameter.name} must be an array {parameter.type}", advice)

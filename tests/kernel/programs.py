@@ -91,10 +91,10 @@ class Writer:
             return self.cast(kind, depth)
         if form == 8:
             yes, no = self.value(kind, depth - 1), self.value(kind, depth - 1)
-            return f"({yes} if {self.test(depth - 1)} else {no})"
+            return f"({yes} if {self.condition(depth - 1)} else {no})"
         if form == 9:
-            function = self.pick("min", "max")
-            return f"{function}({self.value(kind, depth - 1)}, {self.value(kind, depth - 1)})"
+            parts = [self.value(kind, depth - 1) for _ in range(self.draw(st.sampled_from((2, 2, 3))))]
+            return f"{self.pick('min', 'max')}({', '.join(parts)})"
         array = self.pick(*("e" if kind == UNSIGNED else "abcdf"))
         return f"{array}[{self.index(depth)}]"
 
@@ -120,9 +120,16 @@ class Writer:
         to = UNSIGNED if kind == UNSIGNED else self.pick("u8", "i8", "u16", "i16", "i32")
         return f"{to}({inner})"
 
+    def condition(self, depth: int) -> str:
+        """Write what stands for a truth value where a branch is decided: that, or beside it an integer."""
+        if self.draw(st.integers(0, 3)):
+            return self.test(depth)
+        number = self.value(self.pick(SIGNED, UNSIGNED), depth - 1)
+        return f"{self.pick('', 'not ')}{number} {self.pick('and', 'or')} {self.test(depth - 1)}"
+
     def test(self, depth: int) -> str:
         """Write a truth value."""
-        form = self.draw(st.integers(0, 5)) if depth > 0 else 0
+        form = self.draw(st.integers(0, 6)) if depth > 0 else 0
         kind = self.pick(SIGNED, UNSIGNED)
         if form == 1:
             return f"({self.test(depth - 1)} {self.pick('and', 'or')} {self.test(depth - 1)})"
@@ -133,6 +140,8 @@ class Writer:
             return f"({parts[0]} {self.pick('<', '<=')} {parts[1]} {self.pick('<', '!=')} {parts[2]})"
         if form == 4:
             return "t"
+        if form == 6:
+            return f"({self.test(depth - 1)} {self.pick('==', '!=')} {self.test(depth - 1)})"
         operator = self.pick("<", "<=", ">", ">=", "==", "!=")
         return f"({self.value(kind, depth - 1)} {operator} {self.value(kind, depth - 1)})"
 
@@ -171,13 +180,13 @@ class Writer:
 
     def branch(self, margin: str, depth: int, *, in_loop: bool) -> None:
         """Write an if, with elif and else at times; in a loop it may jump."""
-        self.rows.append(f"{margin}if {self.test(2)}:")
+        self.rows.append(f"{margin}if {self.condition(2)}:")
         jump = self.draw(st.integers(0, 3))
         if jump == 0 and in_loop:
             self.rows.append(f"{margin}    {self.pick('break', 'continue')}")
             return
         self.block(margin + "    ", depth - 1, in_loop=in_loop)
-        for head in (f"elif {self.test(2)}:", "else:")[self.draw(st.integers(0, 1)) :]:
+        for head in (f"elif {self.condition(2)}:", "else:")[self.draw(st.integers(0, 1)) :]:
             if self.draw(st.booleans()):
                 self.rows.append(f"{margin}{head}")
                 self.block(margin + "    ", depth - 1, in_loop=in_loop)
@@ -191,7 +200,9 @@ class Writer:
             self.rows.append(f"{margin}for {name} in range({start}, {self.value(SIGNED, 1)} & 15, {step}):")
         else:
             self.rows.append(f"{margin}{name} = i32(0)")
-            self.rows.append(f"{margin}while {name} < {self.draw(st.integers(0, 9))} and {self.test(1)}:")
+            self.rows.append(
+                f"{margin}while {name} < {self.draw(st.integers(0, 9))} and ({self.condition(1)}):"
+            )
             self.rows.append(f"{margin}    {name} += 1")
         self.counters.append(name)
         self.block(margin + "    ", depth - 1, in_loop=True)

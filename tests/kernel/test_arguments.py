@@ -52,7 +52,14 @@ PLACE = re.escape(f"{__file__}:{shade.function.first_line})")
         ),
         ((ROW, TABLE.astype(">i2"), 1, 2), "table must be one contiguous row of int16, not >i2 of shape 8"),
         ((ROW.reshape(2, 4), TABLE, 1, 2), "row must be one contiguous row of uint8, not uint8 of shape 2x4"),
-        ((ROW[::2], TABLE, 1, 2), "row must be one contiguous row of uint8, not uint8 of shape 4"),
+        (
+            (ROW[::2], TABLE, 1, 2),
+            "row must be one contiguous row of uint8, not a view in steps of 2 elements; pass a copy",
+        ),
+        (
+            (ROW, TABLE[::-1], 1, 2),
+            "table must be one contiguous row of int16, not a view in steps of -1 elements; pass",
+        ),
         ((ROW, np.zeros(9, np.uint8)[1:].view(np.int16), 1, 2), "table must lie at a multiple of 2 bytes"),
         ((ROW, TABLE, 1.5, 2), "gain must be an int in -2147483648..2147483647, not 1.5"),
         ((ROW, TABLE, "1", 2), "gain must be an int in -2147483648..2147483647, not '1'"),

@@ -128,13 +128,13 @@ def test_a_profile_without_a_library_refuses_floats() -> None:
 @pytest.mark.parametrize(
     ("line", "what"),
     [
-        ("y = x + 1", "the two sides are f32 and i32; write f32(...) round the integer, or 2.0 for 2"),
+        ("y = x + 1", "the two sides are f32 and i32; write f32(...) around the integer, or 2.0 for 2"),
         ("y = x // 2.0", "// is not for f32"),
         ("y = x & 1.0", "& is not for f32"),
         ("y = ~x", "~ is not for f32"),
         ("if x: y = 1", "an f32 is no truth value; write `x != 0.0`"),
-        ("y = a[x]", "an integer is needed here, not an f32; write i32(...) round it"),
-        ("a[0] = 1", "f32 is needed here, not i32; write f32(...) round it"),
+        ("y = a[x]", "an integer is needed here, not an f32; write i32(...) around it"),
+        ("a[0] = 1", "f32 is needed here, not i32; write f32(...) around it"),
     ],
 )
 def test_floats_and_integers_do_not_mix_by_themselves(line: str, what: str, tmp_path: Path) -> None:

@@ -153,7 +153,7 @@ def fails(how: str, called: Kernel, *arguments: Any) -> str:
 def test_a_kernel_that_was_read_twice_tells_its_own_failure() -> None:
     """As firmware is that one process loads again: both have the same code."""
     row = row_of(np.uint8)
-    for each in (load, kernel(load.python)):
+    for each in (load, kernel(load.definition)):
         assert each(row, 1) == 1
     assert "index 8 is outside of row" in fails("checked", load, row, 8)
 

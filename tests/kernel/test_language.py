@@ -16,9 +16,19 @@ from tests.kernel.modules import HEADER_LINES, import_text
 from tests.tiers import exhaustive
 
 BEFORE = """
+from enum import Enum, IntEnum
+import numpy as np
+
 SIZE = 4
 RATIO = 0.5
 NAMES = ["a"]
+LEVELS = np.int32(3)
+
+class Mode(IntEnum):
+    OFF, RUN = 0, 3
+
+class Colour(Enum):
+    RED = 1
 
 def plain(x):
     return x
@@ -48,7 +58,7 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
 @pytest.mark.parametrize(
     ("line", "at", "what"),
     [
-        ("y = x * 0.5", "x * 0.5", "the two sides are i32 and f32; write f32(...) round the integer"),
+        ("y = x * 0.5", "x * 0.5", "the two sides are i32 and f32; write f32(...) around the integer"),
         ("y = x / 2", "x / 2", "cannot use the float division / on integers; write // (rounds down) or quotient(x, y)"),
         ("y = x ** 2", "x ** 2", "cannot use **; write it with"),
         ("y = x @ x", "x @ x", "cannot use @; write it with"),
@@ -59,7 +69,7 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("y = [i for i in range(3)]", "[i for", "cannot use comprehensions"),
         ("y = lambda: 1", "lambda: 1", "cannot use lambda"),
         ("y = row.shape[0]", "row.shape", "an array has one dimension and no shape; write len(row)"),
-        ("y = row.size", "row.size", "cannot use attributes"),
+        ("y = row.size", "row.size", "cannot use attributes; write len(row) for how many elements it has"),
         ("y = (z := x)", "z := x", "cannot use `:=`"),
         ("y = x is x", "x is x", "cannot use `is`; write < <= > >= == !="),
         ("y = x in row", "x in row", "cannot use `in`; write < <= > >= == !="),
@@ -87,7 +97,7 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("return x\n    x = 1", "x = 1", "this line is never reached"),
         ("return", "return", "this kernel must return a value"),
         ("return x < 1", "x < 1", "a number is needed here, not a truth value; write `1 if test else 0`"),
-        ("return w", "w", "i32 is needed here, not u32; write i32(...) round it"),
+        ("return w", "w", "i32 is needed here, not u32; write i32(...) around it"),
         ("if x:\n        y = 1\n    x = y", "y", "y may be used before it has a value; give y a value on every way"),
         ("for i in range(3):\n        pass\n    x = i", "i", "i may be used before it has a value"),
         ("while True:\n        y = 1\n        if y:\n            break\n    x = y", "y", "y may be used before it has a value"),
@@ -95,7 +105,7 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("x = RATIO", "RATIO", "an integer is needed here, not an f32"),
         ("x = NAMES[0]", "NAMES[0]", "only array parameters can be indexed; pass the array as a parameter"),
         ("x = nothing", "nothing", "the name nothing is not defined"),
-        ("x = x + w", "w", "the two sides are i32 and u32; write i32(...) or u32(...) round one of them"),
+        ("x = x + w", "w", "the two sides are i32 and u32; write i32(...) or u32(...) around one of them"),
         ("x = x + 3000000000", "3000000000", "3000000000 does not fit in i32"),
         ("w = w & -2", "-2", "-2 does not fit in u32; use a value in 0..4294967295"),
         ("x = 5000000000", "5000000000", "5000000000 does not fit in 32 bits"),
@@ -113,8 +123,28 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("x = x << 40", "40", "a shift must be by 0..31, not by 40"),
         ("x >>= -1", "-1", "a shift must be by 0..31, not by -1"),
         ("x **= 2", "x **= 2", "cannot use this operator"),
-        ("y = x and x", "x and", "`and` needs truth values, not numbers; write a comparison, `x != 0`"),
-        ("y = x < 1 or x", "x", "`or` needs truth values, not numbers"),
+        ("y = x and x", "x and x", "`and` and `or` give truth values, not numbers, outside of a condition; write a comparison, `x != 0`"),
+        ("y = x < 1 or x", "x", "`and` and `or` give truth values, not numbers"),
+        ("y = (1 if x else 2) + (x and 3)", "x and 3", "give truth values, not numbers, outside of a condition"),
+        ("return x or 3", "x or 3", "give truth values, not numbers, outside of a condition"),
+        ("y = (x < 0) < (w < 1)", "x < 0", "a number is needed here, not a truth value; write `1 if test else 0`"),
+        ("y = x == (w < 1)", "w < 1", "a number is needed here, not a truth value"),
+        ("if x and silent(row):\n        pass", "silent(row)", "this kernel returns nothing"),
+        ("if x or 0.5:\n        pass", "0.5", "an f32 is no truth value; write `x != 0.0`"),
+        ("x = LEVELS", "LEVELS", "cannot read LEVELS, which is an int32; pass it as an array or integer parameter; of the module only"),
+        ("x = NAMES", "NAMES", "cannot read NAMES, which is a list"),
+        ("x = Mode", "Mode", "cannot read Mode, which is an EnumType"),
+        ("x = Mode.IDLE", "Mode.IDLE", "Mode has no member IDLE; it has OFF, RUN"),
+        ("x = Colour.RED", "Colour.RED", "cannot use attributes; write RED = Colour.RED in the module, if it is a number, and use that"),
+        ("x = np.pi", "np.pi", "cannot use attributes; write PI = np.pi in the module"),
+        ("Mode = 3\n    x = Mode.RUN", "Mode.RUN", "cannot use attributes"),
+        ("x = row[0] == '$'", "'$'", "cannot use the constant '$'; write its number, ord('$')"),
+        ("x = ord(x)", "ord(x)", "ord is for one constant character; write ord('x')"),
+        ("x = ord('ab')", "ord('ab')", "ord is for one constant character"),
+        ("x = ord()", "ord()", "ord is for one constant character"),
+        ("x = other(x, row[2:])", "row[2:]", "row must be an array u8[:]; pass the whole array on, and where its part begins as an i32"),
+        ("y = row if x else col", "row if", "a choice is between numbers, and row is an array; let the caller pass the one that is meant"),
+        ("y = 1 if x else col", "col", "a choice is between numbers, and col is an array"),
         ("y = x < 1\n    y = 2", "2", "y holds bool, not i32; use another name"),
         ("y: u8 = 1", "y: u8", "a local is an i32, a u32 or an f32 with a value; write x: u32 = 0"),
         ("x: u32 = 1", "x: u32", "x is i32 already, not u32; use another name"),
@@ -128,7 +158,8 @@ def refusal_of(text: str, folder: Path) -> tuple[str, str, str]:
         ("y = list(row)", "list(row)", "cannot call list, which is Python's; a kernel has numbers and the arrays"),
         ("x = exit(1)", "exit(1)", "cannot call exit, which is Python's; use numbers, arrays, loops, len"),
         ("x = max(x, x, x)", "max(x", "cannot call max like this; make max a @kernel"),
-        ("x = min(x, 1, 2)", "min(x", "cannot call min like this; give min two arguments"),
+        ("x = min(x)", "min(x", "cannot call min like this; give min two arguments"),
+        ("x = min(x, 1, w)", "w", "the two sides are i32 and u32"),
         ("x = row.sum()", "row.sum()", "can only call kernels, len, min, max, abs, quotient, remainder, sqrt and casts"),
         ("x = other(x, row=row)", "other(x", "call by name, without keywords"),
         ("x = other(x)", "other(x)", "other takes 2 arguments, not 1; match its def"),

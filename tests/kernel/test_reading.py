@@ -124,3 +124,13 @@ def test_a_file_is_looked_through_once(monkeypatch: pytest.MonkeyPatch, tmp_path
     again = import_text(TEXT, tmp_path, "same").whole
     assert again.function.source == first.function.source
     assert again.code_bytes(VDSP_O2) == first.code_bytes(VDSP_O2)
+
+
+def test_a_member_of_an_enumeration_that_changes_is_read_anew(read: list[str], tmp_path: Path) -> None:
+    """What a kernel reads of an enumeration are its numbers."""
+    text = "from enum import IntEnum\nclass Step(IntEnum):\n    SHIFT = 2\n" + TEXT.replace(
+        "x >> SHIFT", "x >> Step.SHIFT"
+    )
+    assert result_of(text, tmp_path) == 10
+    assert result_of(text.replace("    SHIFT = 2", "    SHIFT = 0x3"), tmp_path) == 5
+    assert read == ["part", "whole", "part", "whole"]

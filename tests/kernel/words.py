@@ -120,10 +120,10 @@ def _range(*bounds: Any) -> Iterator[Word]:
     return (Word(each, signed=True) for each in builtins.range(*map(int, bounds)))
 
 
-def _chosen(function: Callable[[int, int], int]) -> Callable[[Any, Any], Word]:
-    def choose(left: Any, right: Any) -> Word:
-        signed = left.signed if isinstance(left, Word) else right.signed
-        return Word(function(int(left), int(right)), signed=signed)
+def _chosen(function: Callable[..., int]) -> Callable[..., Word]:
+    def choose(*numbers: Any) -> Word:
+        signed = next(each.signed for each in numbers if isinstance(each, Word))
+        return Word(function(*map(int, numbers)), signed=signed)
 
     return choose
 

@@ -181,7 +181,7 @@ def number(value: float, kind: Number) -> str:
         return _float(value)
     if kind is u32:
         return f"{value}u" if value < 1 << 16 else f"0x{value:X}u"
-    return "INT32_MIN" if value == i32.bounds[0] else str(value)
+    return "INT32_MIN" if value == i32.bounds[0] else str(int(value))
 
 
 def _float(value: float) -> str:

@@ -16,6 +16,7 @@ from bfsim.kernel.c.intrinsics import INTRINSICS, intrinsics_header, intrinsics_
 from bfsim.kernel.c.library import LIBRARY
 from bfsim.kernel.c.names import WORD, free_name, is_free
 from bfsim.kernel.c.statements import Definition, Place, signature
+from bfsim.kernel.constants import constant_of
 from bfsim.kernel.function import Function
 from bfsim.kernel.types import Number, f32, i32, u32
 
@@ -180,8 +181,8 @@ def _constants(members: Iterable[Function], names: Mapping[Function, str]) -> di
         for node in tree.parts(function.body):
             if isinstance(node, tree.Const):
                 for name in WORD.findall(node.written):
-                    value = function.names.get(name)
-                    if isinstance(value, (int, float)) and not isinstance(value, bool):
+                    value = constant_of(function.names.get(name))
+                    if value is not None:
                         wanted[name] = value
     return {name: value for name, value in sorted(wanted.items()) if name not in taken and is_free(name)}
 

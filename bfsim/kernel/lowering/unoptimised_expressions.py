@@ -11,7 +11,8 @@ from bfsim.kernel.lowering.widths import WORD
 
 SWAPPED = {"slt": "sgt", "sgt": "slt", "sle": "sge", "sge": "sle",
            "ult": "ugt", "ugt": "ult", "ule": "uge", "uge": "ule", "eq": "eq", "ne": "ne"}  # fmt: skip
-
+INVERTED = {"slt": "sge", "sge": "slt", "sle": "sgt", "sgt": "sle",
+            "ult": "uge", "uge": "ult", "ule": "ugt", "ugt": "ule", "eq": "ne", "ne": "eq"}  # fmt: skip
 
 SIGN = 1 << (WORD - 1)
 DIVISIONS = ("sdiv", "srem", "udiv", "urem")
@@ -20,7 +21,7 @@ BITWISE = ("&", "|", "^")
 
 @dataclass(frozen=True, slots=True)
 class Expr:
-    """A value. `op`: const, local, register, load, widen, narrow, compare, not, call, or an operator of ARITHMETIC."""
+    """A value. `op`: const, local, register, load, widen, narrow, compare, differ, not, call, or an operator of ARITHMETIC."""
 
     op: str
     args: tuple[Expr, ...] = ()
@@ -103,6 +104,8 @@ def simplified(op: str, left: Expr, right: Expr, *, unsigned: bool = False) -> E
 
 def compare(predicate: str, left: Expr, right: Expr) -> Expr:
     """Write a comparison as GCC's front end does: numbers on the right and near zero, single bits as tests of a mask."""
+    if left.op == right.op == "compare":
+        return _compared_truths(predicate, left, right)
     if left.is_const:
         predicate, left, right = SWAPPED[predicate], right, left
     if predicate[0] == "s":
@@ -114,6 +117,19 @@ def compare(predicate: str, left: Expr, right: Expr) -> Expr:
         if left.op == "&" and left.args[1].is_const:
             left, right = _bit_test(predicate, left, right)
     return Expr("compare", (left, right), name=predicate)
+
+
+def _compared_truths(predicate: str, left: Expr, right: Expr) -> Expr:
+    """Compare two comparisons: two signs as the sign of a ^ b, others as a ^ b, the first of which is inverted if they are to be equal."""
+    signs = [
+        each.args[0] for each in (left, right) if each.name in ("slt", "sge") and each.args[1] == const(0)
+    ]
+    if len(signs) == 2:
+        inversions = (predicate == "eq") + (left.name == "sge") + (right.name == "sge")
+        return Expr("compare", (Expr("^", tuple(signs)), const(0)), name="sge" if inversions % 2 else "slt")
+    if predicate == "eq":
+        left = Expr("compare", left.args, name=INVERTED[left.name])
+    return Expr("differ", (left, right))
 
 
 def _without_one(predicate: str, left: Expr, right: Expr) -> tuple[Expr, Expr]:

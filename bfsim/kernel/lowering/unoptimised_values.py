@@ -72,6 +72,7 @@ class ExpressionCode(Registers):
                 "local": self._local, "decided": self._decided, "load": self.load, "call": self._call,
                 "widen": self._cast, "narrow": self._cast, "compare": self._truth, "not": self._truth,
                 "<<": self._shift, ">>": self._shift, "intrinsic": self._intrinsic, "word": self._word,
+                "differ": self._differ,
                 "min": self._extreme, "max": self._extreme, "umin": self._extreme, "umax": self._extreme,
             }  # fmt: skip
             handlers[each.op](each)
@@ -95,6 +96,14 @@ class ExpressionCode(Registers):
     def _truth(self, each: Expr) -> None:
         self.condition(each)
         self.op(Op.CC_MOVE)
+
+    def _differ(self, each: Expr) -> None:
+        """Whether two truth values differ, as bits: CC has no comparison with more than a number, so that one is inverted afterwards."""
+        for part in each.args:
+            self._truth(part)
+            is_inverted = part.name == "ne" or (part.args[1].is_const and part.name[1:] in ("gt", "ge"))
+            self.op(*(Op.ALU,) * is_inverted)
+        self.op(Op.MOVE, Op.ALU, Op.EXTEND)
 
     def _extreme(self, each: Expr) -> None:
         """Minimum or maximum: an instruction for signed words only; GCC compares bytes as bytes."""

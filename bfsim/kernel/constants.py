@@ -1,0 +1,23 @@
+"""What a kernel can read of its module beside kernels: numbers, truth values, and members of enumerations of integers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import IntEnum, IntFlag
+
+OF_INTEGERS = (IntEnum, IntFlag)
+"""Enumerations whose members are integers."""
+
+
+def constant_of(value: object) -> float | None:
+    """Return the number, or the truth value, that a name of the module stands for; None for what is none."""
+    if isinstance(value, OF_INTEGERS):
+        return int(value)
+    return value if type(value) in (int, float, bool) else None  # type: ignore[return-value]
+
+
+def members_of(value: object) -> Mapping[str, int]:
+    """Return the members of an enumeration of integers by their names; none of anything else."""
+    if not isinstance(value, type) or not issubclass(value, OF_INTEGERS):
+        return {}
+    return {name: int(each) for name, each in value.__members__.items()}
