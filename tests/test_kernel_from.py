@@ -263,6 +263,15 @@ def test_a_stack_is_as_large_as_the_scratchpad(tmp_path: Path) -> None:
         kernel(0)
 
 
+def test_a_word_lies_at_a_multiple_of_its_bytes() -> None:
+    """The Blackfin raises an exception where it does not; code that aligns its addresses may have any."""
+    kernel = kernel_from(DATA / "wild.o", "wild", at=i32)
+    with pytest.raises(
+        KernelError, match=r"_wild must run .* accesses an address that is no multiple of the 2 or 4 bytes"
+    ):
+        kernel(0x20000002)
+
+
 def test_a_wild_access_is_refused() -> None:
     """It is no access of the process, and the kernel can be called again."""
     kernel = kernel_from(DATA / "wild.o", "wild", at=i32)

@@ -32,7 +32,7 @@ class Flow:
 
 
 class Report(Protocol):
-    """Is told of each access to memory."""
+    """Is told of each access to memory, before it is made."""
 
     def __call__(self, address: Value, nbytes: int, *, writes: bool) -> None:
         """Tell an access of so many bytes."""

@@ -26,3 +26,5 @@ class Event(IntEnum):
     """As many blocks were run as were allowed."""
     FAULT = 9
     """An access to an address where there is no memory. Registers are lost."""
+    MISALIGNED = 10
+    """An access in the block at PC is to an address that is no multiple of its size, which code was to be held to."""

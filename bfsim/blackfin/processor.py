@@ -24,7 +24,7 @@ from bfsim.machine_code import Effort
 
 if TYPE_CHECKING:
     from bfsim.blackfin.blocks import Code
-    from bfsim.blackfin.translate import Counted
+    from bfsim.blackfin.counters import Counted
 
 NAME = "blackfin"
 """What native code is called; what is kept is called by this and its own name."""
@@ -100,7 +100,8 @@ class Processor:
     code is translated anew with them. `fuel`: with it, at most so many blocks are run by a call of `run`. `effort`: of LLVM, if
     not by the code's size. `name`: under which the first native code is kept, so that it need not be made of the instructions again.
     `tracing`: how accesses to memory are reported. `explore`: finds the code that can be reached from entries, if not from them alone.
-    `results`: registers that are read when it has run, if not all; others are not kept.
+    `results`: registers that are read when it has run, if not all; others are not kept. `aligned`: code is left where an access is to
+    an address that is no multiple of its size, as the Blackfin does by an exception.
     """
 
     space: AddressSpace
@@ -114,6 +115,7 @@ class Processor:
     tracing: Tracing | None = None
     explore: Callable[[frozenset[int]], Counted] | None = None
     results: frozenset[str] | None = None
+    aligned: bool = False
 
     def prepared(self) -> Translated:
         """Return the native code of all that can be reached from the entries."""
@@ -188,7 +190,12 @@ class Processor:
         from bfsim.blackfin.translate import is_large, translate  # most starts find all native code
 
         text = translate(
-            found, symbol, fuel=self.fuel is not None, tracing=self.tracing, results=self.results
+            found,
+            symbol,
+            fuel=self.fuel is not None,
+            tracing=self.tracing,
+            results=self.results,
+            aligned=self.aligned,
         )
         if self.effort is not None:
             return text, self.effort
@@ -202,7 +209,7 @@ class Processor:
         if self.explore:
             return self.explore(entries)
         from bfsim.blackfin.blocks import Code  # what is kept has been explored
-        from bfsim.blackfin.translate import Counted
+        from bfsim.blackfin.counters import Counted
 
         return Counted(Code(self.space.fetch, entries), self.timing)
 

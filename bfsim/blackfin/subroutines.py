@@ -26,7 +26,7 @@ from bfsim.errors import KernelError
 
 if TYPE_CHECKING:
     from bfsim.blackfin.blocks import Code
-    from bfsim.blackfin.translate import Counted
+    from bfsim.blackfin.counters import Counted
 
 STACK, STACK_BYTES = 0xFFB00000, 4096
 """[HRM] The scratchpad memory of a core."""
@@ -59,8 +59,13 @@ class LoadedImage:
         for each in self.image.segments:
             self.space.at(each.address, len(each.octets))[:] = np.frombuffer(each.octets, np.uint8)
 
-    def subroutine(self, symbol: str, timing: Timing = GNU, name: str = "") -> Subroutine:
-        """Return the function called `symbol`; its native code is kept under `name`. Raises KernelError if there is none."""
+    def subroutine(
+        self, symbol: str, timing: Timing = GNU, name: str = "", *, aligned: bool = False
+    ) -> Subroutine:
+        """Return the function called `symbol`; its native code is kept under `name`. Raises KernelError if there is none.
+
+        `aligned`: it is refused an access that is not.
+        """
         address = self.image.address_of(symbol)
         processor = Processor(
             self.space,
@@ -69,6 +74,7 @@ class LoadedImage:
             name=name,
             explore=partial(self._counted_from, timing),
             results=frozenset({RESULT}),
+            aligned=aligned,
         )
         return Subroutine(symbol, address, processor)
 
@@ -90,7 +96,7 @@ class LoadedImage:
         """Return that with its counters, which are the same with and without reports of accesses."""
         key = first, timing.digest
         if key not in self._counted:
-            from bfsim.blackfin.translate import Counted
+            from bfsim.blackfin.counters import Counted
 
             self._counted[key] = Counted(self.explored(*first), timing)
         return self._counted[key]
@@ -135,6 +141,11 @@ class Subroutine:
                     f": its stack must fit into the {STACK_BYTES:,} bytes of the scratchpad, so large arrays must be "
                     "static, or arguments"
                 )
+        elif event is Event.MISALIGNED:
+            what = (
+                f"in the instructions from 0x{address:08X} on it accesses an address that is no multiple of the 2 or 4 bytes "
+                "accessed, for which the Blackfin raises an exception"
+            )
         elif event is Event.UNKNOWN_TARGET:
             what = f"it goes to 0x{address:08X}, an address that neither its code nor its data names"
         else:

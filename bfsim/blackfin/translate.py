@@ -1,29 +1,27 @@
 """Object code → one native function of all that can be reached, with counters of its blocks.
 
 The function is `int(memory, state, counts)`: it goes on from the address in the PC of the state until it meets an event
-(`effects.Event`), which it returns; registers are in the state again then, and the counts are added to.
-Registers are slots on its stack, which LLVM turns into its own; within a block they are values, and slots are written at its end. Jumps whose target is computed go through one switch over all
-addresses that they may lead to; another address is an event as well, and whoever runs the code may translate it anew with that
-address among its entries. The hardware's loops are checked for behind each instruction with which one ends, as the hardware does:
+(`effects.Event`), which it returns; registers are in the state again then, and the counts are added to. Registers are slots on its
+stack, which LLVM turns into its own; within a block they are values, and slots are written at its end. Jumps whose target is computed
+go through one switch over all addresses that they may lead to; another address is an event as well, and whoever runs the code may
+translate it anew with that address among its entries. The hardware's loops are checked for behind each instruction with which one ends, as the hardware does:
 by the registers LC, LT and LB, so that code may also leave, save and restore them.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 
 from llvmlite import ir
 
 from bfsim.blackfin.blocks import Block, Code
+from bfsim.blackfin.counters import Counted
 from bfsim.blackfin.decode import Instruction
 from bfsim.blackfin.effects import I8, I32, I64, Effects, Flow
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.flow import Edge, Way
 from bfsim.blackfin.registers import SLOTS, width
 from bfsim.blackfin.semantics import SEMANTICS
-from bfsim.blackfin.stalls import Waits, stalls
-from bfsim.blackfin.timing import Timing
 from bfsim.blackfin.tracing import Tracing
 from bfsim.blackfin.value import Value
 
@@ -34,60 +32,9 @@ LARGE_PROGRAM_BLOCKS = 500
 """[ours] LLVM's time to optimise one function of more blocks grows with their square: minutes for a program with newlib's printf."""
 
 
-@dataclass(frozen=True, slots=True)
-class Counter:
-    """How often a block was executed, with `taken` left by its branch, or with `along` entered that way.
-
-    `cclk`: the cycles that each time adds, without waits; `waits`: of each instruction of the block the wait that each time adds, and
-    of those along an edge the ones in place of which they are.
-    """
-
-    block: Block
-    cclk: int
-    taken: bool = False
-    along: Edge | None = None
-    waits: Waits = ()
-    instead: Waits = ()
-
-    @property
-    def stall_cclk(self) -> int:
-        """Cycles of waits that each time adds."""
-        return sum(each.cclk for each in self.waits) - sum(each.cclk for each in self.instead)
-
-
 def is_large(code: Code) -> bool:
     """Whether registers stay in the state and LLVM does not optimise."""
     return len(code.blocks) > LARGE_PROGRAM_BLOCKS
-
-
-@dataclass(frozen=True)
-class Counted:
-    """Code, and what is counted of it with a timing."""
-
-    code: Code
-    timing: Timing
-
-    @cached_property
-    def counters(self) -> list[Counter]:
-        """What is counted, in the order of the counts."""
-        return _counters(self.code, self.timing)
-
-
-def _counters(code: Code, timing: Timing) -> list[Counter]:
-    waits = stalls(code, timing)
-    found = [
-        Counter(each, sum(map(timing.of, each.instructions)), waits=waits.jumped[start])
-        for start, each in code.blocks.items()
-    ]
-    for each in code.blocks.values():
-        if each.branches:
-            last = each.instructions[-1]
-            found.append(Counter(each, timing.taken(last) - timing.of(last), taken=True))
-    for edge, carried in waits.carried.items():
-        found.append(
-            Counter(code.blocks[edge.target], 0, along=edge, waits=carried, instead=waits.jumped[edge.target])
-        )
-    return found
 
 
 def translate(
@@ -97,13 +44,15 @@ def translate(
     fuel: bool = False,
     tracing: Tracing | None = None,
     results: frozenset[str] | None = None,
+    aligned: bool = False,
 ) -> str:
     """Return the LLVM module of code; its function is called `symbol`. With `fuel`, the FUEL of the state is how many blocks it may run.
 
     With `tracing`, accesses to memory are reported, each with the cycle of this call of the function at which its instruction is issued.
-    `results`: registers that somebody reads when it is left, if not all.
+    `results`: registers that somebody reads when it is left, if not all. `aligned`: it is left at an access that is not.
     """
-    return str(_Translation(of, symbol, fuel=fuel, tracing=tracing, results=results).module())
+    made = _Translation(of, symbol, fuel=fuel, tracing=tracing, results=results, aligned=aligned)
+    return str(made.module())
 
 
 class _Translation:
@@ -117,8 +66,11 @@ class _Translation:
         fuel: bool,
         tracing: Tracing | None,
         results: frozenset[str] | None,
+        aligned: bool,
     ) -> None:
         self.code, self.timing, self.fuel, self.tracing = of.code, of.timing, fuel, tracing
+        self.aligned = aligned
+        self.astray: ir.Value | None = None  # of the accesses of a block, which are not aligned
         self.results = None if results is None else results | ALWAYS_READ
         counted = self.counted = of.counters
         self.made = ir.Module(symbol)
@@ -169,6 +121,7 @@ class _Translation:
     def _block(self, block: Block) -> None:
         builder = ir.IRBuilder(self.at[block.start])
         self.values.clear()
+        self.astray = None
         written: dict[str, None] = {}
         if self.fuel:
             self._burn(builder, block.start)
@@ -183,6 +136,8 @@ class _Translation:
                 written[register] = None
             flow = effects.flow
             cclk += self.timing.of(instruction)
+        if self.astray is not None:
+            self._hold_aligned(builder, block.start, self.astray)
         for register in written:
             builder.store(self.values[register], self.slot(register))
         self._add(builder, number, I64(1))
@@ -215,11 +170,36 @@ class _Translation:
             lambda: self._clock(builder),
             instruction.address,
             lambda: self._following(builder, instruction),
-            report=partial(self._report, builder, instruction, block, cclk) if self.tracing else None,
+            report=partial(self._access, builder, instruction, block, cclk),
         )
         for each in instruction.operations:
             SEMANTICS[each.form.does](effects, **each.operands, **each.form.given)
         return effects
+
+    def _access(
+        self,
+        builder: ir.IRBuilder,
+        instruction: Instruction,
+        block: int,
+        cclk: int,
+        address: Value,
+        nbytes: int,
+        *,
+        writes: bool,
+    ) -> None:
+        """Report an access, and take note of whether it is aligned, where that is asked for."""
+        if self.tracing:
+            self._report(builder, instruction, block, cclk, address, nbytes, writes=writes)
+        if self.aligned and nbytes > 1:
+            off = builder.and_(address.ir, I32(nbytes - 1))
+            self.astray = off if self.astray is None else builder.or_(self.astray, off)
+
+    def _hold_aligned(self, builder: ir.IRBuilder, block: int, astray: ir.Value) -> None:
+        """Leave native code if accesses of a block went astray."""
+        leaves, goes_on = self._new("astray"), self._new("aligned")
+        builder.cbranch(builder.icmp_unsigned("!=", astray, I32(0)), leaves, goes_on)
+        self._event(ir.IRBuilder(leaves), Event.MISALIGNED, I32(block))
+        builder.position_at_end(goes_on)
 
     def _report(
         self,

@@ -79,7 +79,9 @@ def compiled_object(
     `timing`: that of the image's code (`Timing.placed`). With `traced` its accesses to memory are reported.
     """
     about = loaded.image.digest, symbol, f"{timing.digest} {traced}"
-    subroutine = loaded.subroutine(symbol, timing, keys.object_key(*about, "native code"))
+    is_checked = places.files is not None  # what is made of Python keeps its arrays aligned
+    what = "native code, aligned" if is_checked else "native code"
+    subroutine = loaded.subroutine(symbol, timing, keys.object_key(*about, what), aligned=is_checked)
     words = [each.name if isinstance(each.type, ArrayType) else "" for each in function.parameters]
     arrays = (*function.array_names, NO_ARRAY) if traced else ()
 
@@ -93,7 +95,7 @@ def compiled_object(
         return Costs(tuple(found), calls(counted.code, places, subroutine.address, function.array_names))
 
     key = keys.object_key(*about, f"costs of {function.symbol}")
-    if places.files:  # lines of files that may change are looked up anew
+    if is_checked:  # lines of files that may change are looked up anew
         counted = _counted(function, made())
     else:  # each run binds the code to another board: what it costs is read once
         if key not in _READ:

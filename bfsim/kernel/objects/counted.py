@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from bfsim.blackfin import translate
 from bfsim.blackfin.blocks import CALLS, DIRECT, Code, does
+from bfsim.blackfin.counters import Counter as BlockCounter
 from bfsim.blackfin.decode import Instruction
 from bfsim.blackfin.interlocks import Wait
 from bfsim.blackfin.pointers import Accesses
@@ -20,7 +20,7 @@ from bfsim.kernel.objects.places import Places
 
 
 def counters(
-    counted: Iterable[translate.Counter],
+    counted: Iterable[BlockCounter],
     places: Places,
     timing: Timing,
     accessed: Mapping[int, Accesses],
@@ -34,7 +34,7 @@ def counters(
 
 
 def _counter(
-    each: translate.Counter,
+    each: BlockCounter,
     places: Places,
     timing: Timing,
     accessed: Mapping[int, Accesses],
