@@ -89,7 +89,8 @@ class _Selector(Accesses):
         elif each.opcode == "sub" and left == "0":
             self.append(Op.ALU, each, each.result, DATA, (right, DATA))
         else:
-            self.append(Op.ALU, each, each.result, ANY, (left, ANY), (right, ANY))
+            less = left if each.opcode == "sub" else ""
+            self.append(Op.ALU, each, each.result, ANY, (left, ANY), (right, ANY), less=less)
 
     def shift(self, each: Instruction) -> None:
         if self.context.is_alias(each):
