@@ -49,7 +49,7 @@ def test_a_scene_of_ones_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     ("name", "message"),
     [
         ("socker", "SCENE must be FILE.py:NAME, PACKAGE:NAME, or one of soccer, .*, not 'socker'"),
-        ("mine.py:lamp", "mine.py:lamp must be a Scene, .* of bfsim.recording.scenes, but it is a int"),
+        ("mine.py:lamp", "mine.py:lamp must be a Scene, .* of bfsim.recording.scenes, but it is an int"),
         ("mine.py:nothing", "but it is a dict"),
         ("mine.py:dusk", "but it is missing"),
         ("yours.py:night", "yours.py must be a file, but there is none"),
