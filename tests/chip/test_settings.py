@@ -198,7 +198,7 @@ def test_a_boards_own_fields_are_of_their_types() -> None:
     """A float is not exact; yes is no number; and what is in a tuple is looked at, too."""
     for board, problem in (
         (replace(CM_BF561, spi_clk_hz=1e7), r"board.spi_clk_hz must be of the type Fraction, such as Fraction\(10000000.0\)"),
-        (replace(CM_BF561, spi_clk_hz=10), r"of the type Fraction, such as Fraction\(10\), not 10, a int"),
+        (replace(CM_BF561, spi_clk_hz=10), r"of the type Fraction, such as Fraction\(10\), not 10, an int"),
         (replace(CM_BF561, sdram=replace(CM_BF561.sdram, nRP=True)), "board.sdram.nRP must be of the type int, not True"),
         (replace(CM_BF561, sdram=None), "board.sdram must be of the type SdramSpec, not None"),
         (replace(CM_BF561, cameras=list(CM_BF561.cameras)), "board.cameras must be of the type tuple"),
