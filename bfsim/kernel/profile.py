@@ -173,9 +173,8 @@ GCC = replace(GCC_O2, name="gcc")
 VDSP_O2 = CompilerProfile(
     name="vdsp-O2", optimises=True, interlocks=True, parallel_issue=True, accumulates=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]
     library=ADI, floats=ADI_FLOATS, inlines=Inlines.FILE,  # [assumed] as GCC
-    without=(Rule.LAGGING_COUNTERS, Rule.FINAL_VALUES, Rule.PARALLEL_COUNTS, Rule.DOWNWARD_POINTERS,
-             Rule.FREQUENT_COUNTERS, Rule.COPIED_BREAKS, Rule.COLOURING, Rule.BUNDLES,
-             Rule.ROW_INDICES, Rule.SCALED_INDICES),  # GCC's alone: nothing says that VisualDSP++ does so
+    without=(Rule.LAGGING_COUNTERS, Rule.SPILLED_RANGES, Rule.FINAL_VALUES, Rule.PARALLEL_COUNTS, Rule.DOWNWARD_POINTERS,
+             Rule.FREQUENT_COUNTERS, Rule.COPIED_BREAKS),  # GCC's alone: nothing says that VisualDSP++ does so
 )  # fmt: skip
 GCC_ADI = replace(
     GCC, name="gcc-adi", interlocks=True, push_multiple_cclk=None, pop_multiple_cclk=None,  # [EE-171]

@@ -18,6 +18,7 @@ class Rule(StrEnum):
     LATE_EXTENSION = (
         "a narrow load with a post-increment is extended on its own if others follow before its use"
     )
+    RELOAD_REGISTER = "where values do not fit in registers, one register serves the reloads"
     POINTER_COPIES = "a loop with two exits that are not counted keeps a pointer before and after its step"
     COPIED_END = "the end of a loop is copied behind each exit of the loop inside it"
     SUNK_MASK = "16-bit masks that end both sides of a test are done once behind them"
@@ -27,6 +28,7 @@ class Rule(StrEnum):
     COMPARED = "a constant that is compared with is loaded where it is, not before the loop"
     GUARDS = "a condition that does not change in a loop is kept in a register, and moved to CC and back"
     FACTORED_SUMS = "a sum with a constant is added up before it is multiplied"
+    ACCUMULATORS = "what a loop only adds to may live in another bank, for one move"
     DIFFERENCE = "the absolute value of a difference, written as an `if`, is a branch"
     COMMON_LOADS = "what both sides of a test load first is loaded before it"
     CLEARED_BIT = "half of a number that is the index of half-words is the number with its last bit cleared"
@@ -50,6 +52,7 @@ class Rule(StrEnum):
     REMAINDERS = "x - x / y * y is the remainder"
     KEPT_BITS = "a conversion that keeps every bit that may be set is none"
     STEPPED_COUNTERS = "a counter that only the next iteration wants is stepped in place, last"
+    CONSTANT_MOVES = "constants that do not fit in the registers of a loop come from others, by a move"
     KEPT_RESULTS = "a result that is wanted behind the next call moves out of R0"
     SINGLE_BITS = "a single bit is set, cleared or toggled by its number, without a mask"
     BIT_COUNTS = "a loop that clears the lowest bit until none is left is an instruction"
@@ -69,11 +72,8 @@ class Rule(StrEnum):
         "what a loop carries to have its counter an iteration later is the counter less its step"
     )
     PARALLEL_COUNTS = "bits that are counted in parallel are counted by an instruction"
+    SPILLED_RANGES = "what is reloaded is used least for the places at which it is in the way"
     FINAL_VALUES = "a counter that is wanted behind its loop is what it was compared with"
-    BUNDLES = "a 32-bit DSP operation takes along the access that comes next"
-    ROW_INDICES = "the place in a row is added to the row's before both are to the address"
-    SCALED_INDICES = "an index of several addresses is scaled once"
-    COLOURING = "values are given registers by what each class of registers costs, the most frequent first"
     DOWNWARD_POINTERS = "a pointer that walks down is stepped by an access, as one that walks up"
 
 
@@ -87,11 +87,8 @@ GCC: dict[Rule, str] = {
     Rule.FREQUENT_COUNTERS: "get_scaled_computation_cost_at in tree-ssa-loop-ivopts.cc",
     Rule.LAGGING_COUNTERS: '"Too few iterations" in loop-doloop.cc, of a distance that is known',
     Rule.PARALLEL_COUNTS: '"branchless implementations of popcount" in match.pd',
+    Rule.SPILLED_RANGES: "allocno_spill_priority in ira-color.cc",
     Rule.FINAL_VALUES: "final_value_replacement_loop in tree-scalar-evolution.cc",
-    Rule.BUNDLES: "bfin_gen_bundles in bfin.cc",
-    Rule.ROW_INDICES: "pointer_int_sum in c-common.cc",
-    Rule.SCALED_INDICES: "pointer_int_sum in c-common.cc",
-    Rule.COLOURING: "ira-costs.cc, ira-color.cc and reload1.cc",
     Rule.DOWNWARD_POINTERS: "add_autoinc_candidates in tree-ssa-loop-ivopts.cc",
     Rule.SPLIT_TESTS: "LOGICAL_OP_NON_SHORT_CIRCUIT in fold-const.cc",
     Rule.COPIED_END: "copy_bb_p in bb-reorder.cc",
@@ -113,6 +110,7 @@ GCC: dict[Rule, str] = {
 # The kernels that each rule was learnt from; of a rule that one kernel alone needs, that one.
 LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.LATE_EXTENSION: ("gauss3_row",),
+    Rule.RELOAD_REGISTER: ("match_lines",),
     Rule.POINTER_COPIES: ("insertion_sort_u16", "shell_sort"),
     Rule.COPIED_END: ("shell_sort",),
     Rule.SUNK_MASK: ("crc16_bits",),
@@ -122,6 +120,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.COMPARED: ("match_lines", "alpha_blend", "conv3x3"),
     Rule.GUARDS: ("circle_vote", "cordic_atan"),
     Rule.FACTORED_SUMS: ("split_uyvy", "yuv_to_rgb"),
+    Rule.ACCUMULATORS: ("moments",),
     Rule.DIFFERENCE: ("sad_search",),
     Rule.COMMON_LOADS: ("cordic_atan",),
     Rule.CLEARED_BIT: ("lower_bound", "table_search", "quick_sort"),
@@ -143,6 +142,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.REMAINDERS: ("count_islands",),
     Rule.KEPT_BITS: ("crc16_table",),
     Rule.STEPPED_COUNTERS: ("percentiles",),
+    Rule.CONSTANT_MOVES: ("hamming_pairs",),
     Rule.KEPT_RESULTS: ("morton",),
     Rule.SINGLE_BITS: ("heap_sort",),
     Rule.BIT_COUNTS: ("popcount_words",),
@@ -156,10 +156,7 @@ LEARNT_FROM: dict[Rule, tuple[str, ...]] = {
     Rule.FREQUENT_COUNTERS: ("label_boxes",),
     Rule.LAGGING_COUNTERS: ("border_strength",),
     Rule.PARALLEL_COUNTS: ("nearest_words",),
+    Rule.SPILLED_RANGES: ("thin_once", "keep_ridges"),
     Rule.FINAL_VALUES: ("two_sums",),
-    Rule.BUNDLES: ("spread_distances", "crc16_table"),
-    Rule.ROW_INDICES: ("polar_rows", "circle_vote"),
-    Rule.SCALED_INDICES: ("keep_largest", "curve_lookup"),
-    Rule.COLOURING: ("gradient_sums", "flow_step", "pyramid_down"),
     Rule.DOWNWARD_POINTERS: ("keep_connected", "chamfer"),
 }

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bfsim.kernel import GCC_O2, VDSP_O2
+from bfsim.kernel import GCC_O2
 from bfsim.kernel.isa import Op
 from tests.kernel.modules import import_text
 from tests.kernel.running import run
@@ -140,8 +140,8 @@ def test_what_was_loaded_to_be_tested_is_not_loaded_again(
 
 def test_a_moved_operand_does_not_share_the_register_of_the_sum(tmp_path: Path) -> None:
     """`halved` has three pointers; a moved index beside them is the fourth, which the caller's code needs: it is saved."""
-    counters = import_text(CHAINS, tmp_path).halved.counters(VDSP_O2)
+    counters = import_text(CHAINS, tmp_path).halved.counters(GCC_O2)
     entry = [each.op for counter in counters for each in counter.charges if counter.value is None]
     assert Op.PUSH_MULTIPLE in entry
-    root = [each.op for each in import_text(CHAINS, tmp_path).root.counters(VDSP_O2)[0].charges]
+    root = [each.op for each in import_text(CHAINS, tmp_path).root.counters(GCC_O2)[0].charges]
     assert Op.PUSH_MULTIPLE not in root

@@ -12,7 +12,6 @@ from bfsim.kernel.lowering.calls import Calls
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.induction_variables import InductionVariable
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
-from bfsim.kernel.lowering.shared_indices import continued, row_of, shared_by
 from bfsim.kernel.rules import Rule
 
 ANY, DATA, POINTER = RegisterBank.ANY, RegisterBank.DATA, RegisterBank.POINTER
@@ -26,8 +25,6 @@ class Accesses(Calls):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         self.flow = context.flow
-        self.scaled: dict[tuple[str, int], list[str]] = {}
-        """Blocks in which an index is scaled, by the size of the elements."""
         self.beside: dict[str, list[str]] = {}
         """Blocks in which the pointer of a variable is computed from its neighbour's."""
 
@@ -100,43 +97,11 @@ class Accesses(Calls):
         if not index.startswith("%"):
             return
         nbytes = pointee_nbytes(each)
-        rows = self.context.profile.applies(Rule.ROW_INDICES)
-        if rows and continued(self.context, each) is not None:
-            return
-        if rows and (row := row_of(self.context, each)) is not None:
-            self._in_row(each, row)
-            return
         if (halved := self.halved(each)) is not None:
             self._at_even_distance(each, halved)
             return
-        scaled = index if nbytes == 1 else self._scaled_once(each, index, nbytes)
-        bank = ANY if scaled and self.context.profile.applies(Rule.COLOURING) else POINTER
-        op = Op.ALU if scaled else Op.ADD_SHIFT
-        self.append(op, each, each.result, bank, (self.context.base(base), bank), (scaled or index, bank))
-
-    def _in_row(self, each: Instruction, row: Instruction) -> None:
-        """The place in the picture, then the address."""
-        pair, total = (row.operands[-1], each.operands[-1]), f"{each.result}.index"
-        if pointee_nbytes(each) == 1:
-            self.append(Op.ALU, each, total, ANY, *((name, ANY) for name in pair))
-        else:
-            self.append(Op.ADD_SHIFT, each, total, ANY, *((name, ANY) for name in pair), overwrites=pair)
-        self.append(Op.ALU, each, each.result, ANY, (self.context.base(row.operands[0]), ANY), (total, ANY))
-
-    def _scaled_once(self, each: Instruction, index: str, nbytes: int) -> str | None:
-        """The index in bytes, if several addresses take it: the first one computes it."""
-        if not self.context.profile.applies(Rule.SCALED_INDICES):
-            return None
-        others, known = shared_by(self.context, each), self.scaled.setdefault((index, nbytes), [])
-        for label in known if others else ():
-            if label in self.flow.dominators[self.label]:
-                return f"{index}.{nbytes}.{label}"
-        if not any(self.label in self.flow.dominators[label] for label in others):
-            return None
-        known.append(self.label)
-        scaled = f"{index}.{nbytes}.{self.label}"
-        self.append(Op.SHIFT, each, scaled, ANY, (index, ANY))
-        return scaled
+        op = Op.ALU if nbytes == 1 else Op.ADD_SHIFT
+        self.append(op, each, each.result, POINTER, (self.context.base(base), POINTER), (index, POINTER))
 
     def halved(self, each: Instruction) -> str | None:
         """What the index of an address is half of, if the elements have two bytes."""

@@ -27,26 +27,14 @@ class Calls:
         self.label = ""
 
     def append(self, op: Op, each: Instruction, result: str | None, bank: RegisterBank, *uses: tuple[str, RegisterBank],
-             overwrites: tuple[str, ...] = (), less: str = "", cclk: int | None = None, nbytes: int | None = None, access: Instruction | None = None, routine: str = "") -> None:  # fmt: skip
+             overwrites: tuple[str, ...] = (), cclk: int | None = None, nbytes: int | None = None, access: Instruction | None = None, routine: str = "") -> None:  # fmt: skip
         named = tuple(
             (value if value.startswith("#") else self.context.name(value), where) for value, where in uses
         )
         over = tuple(self.context.name(value) for value in overwrites)
         self.code.add(
             self.label,
-            MachineInstruction(
-                op,
-                each.line,
-                result,
-                bank,
-                named,
-                over,
-                less and self.context.name(less),
-                cclk,
-                nbytes,
-                access,
-                routine,
-            ),
+            MachineInstruction(op, each.line, result, bank, named, over, cclk, nbytes, access, routine),
         )
 
     def call(self, each: Instruction) -> None:

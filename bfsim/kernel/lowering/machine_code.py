@@ -15,10 +15,6 @@ class RegisterBank(Enum):
     DATA = "R"
     POINTER = "P"
     ANY = "R/P"
-    INDEX = "I"
-    MODIFY = "M"
-    BASE = "B"
-    MEMORY = "[SP]"
 
 
 @dataclass(slots=True)
@@ -31,8 +27,6 @@ class MachineInstruction:
     bank: RegisterBank
     uses: tuple[tuple[str, RegisterBank], ...] = ()
     overwrites: tuple[str, ...] = ()
-    less: str = ""
-    """What pointer registers can only subtract from in place."""
     cclk: int | None = None
     """Cycles, where they are not those of the operation."""
     nbytes: int | None = None

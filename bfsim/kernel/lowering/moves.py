@@ -6,12 +6,9 @@ import re
 
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import Loop
-from bfsim.kernel.lowering.colouring import Colouring
 from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
-from bfsim.kernel.lowering.reloads import reload
 from bfsim.kernel.lowering.webs import Webs
-from bfsim.kernel.rules import Rule
 
 DECLARED = re.compile(r"\.v(\d+)")
 LAST = 1 << 16
@@ -26,11 +23,7 @@ class Moves:
         self.on_edges: dict[tuple[str, str], list[MachineInstruction]] = {}
         self._copies()
         self._overwrites()
-        self.registers: dict[str, str | None] = {}
-        if webs.context.profile.applies(Rule.COLOURING):
-            self._colour()
-        else:
-            self._moves()
+        self._moves()
         self._results()
         self._constants()
 
@@ -42,11 +35,7 @@ class Moves:
             line = self.flow.defined[phi][1].line
             for value, label in arms:
                 if value.startswith("#"):
-                    self._on_edge(
-                        label,
-                        home,
-                        load_constant(value, line, phi, self.bank.get(self.find(phi), RegisterBank.ANY)),
-                    )
+                    self._on_edge(label, home, load_constant(value, line, phi, self.bank[self.find(phi)]))
                 elif self.find(value) != self.find(phi):
                     move = MachineInstruction(
                         Op.MOVE, line, phi, RegisterBank.ANY, ((value, RegisterBank.ANY),)
@@ -66,14 +55,6 @@ class Moves:
             if _is_circular(copies):
                 line = self.flow.blocks[home].instructions[0].line
                 self._on_edge(label, home, MachineInstruction(Op.MOVE, line, None, RegisterBank.ANY))
-
-    def _colour(self) -> None:
-        """A register for each value, and moves as one comes to be used."""
-        self.webs.analyse()
-        colouring = Colouring(self.webs)
-        reload(colouring)
-        self.bank = self.webs.bank
-        self.registers = {name: colouring.register.get(self.find(name)) for name in self.webs.defined}
 
     def _is_kept_apart(self, phi: str, value: str, label: str, home: str) -> bool:
         """Whether the old value is copied in the header, before the new one is computed there [insert_backedge_copies].

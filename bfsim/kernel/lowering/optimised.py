@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from bfsim.kernel import isa
 from bfsim.kernel.ir_text import BasicBlock, Routine, SourceLine
@@ -50,7 +49,6 @@ class _OptimisedLowering:
             frozenset(self._way_back(loop) for loop in self._counted()),
             dict(self._threaded()),
         )
-        self.issued = dict(self._issued())
         self.hardware = {loop.header for loop in self.flow.loops if self._is_hardware(loop)}
 
     def _nbytes(self, name: str) -> int:
@@ -148,7 +146,7 @@ class _OptimisedLowering:
         before = len(cost.charges)
         cost.charges += [
             self._charge(instruction, issue)
-            for instruction, issue in zip(instructions, self.issued[block.label], strict=True)
+            for instruction, issue in zip(instructions, self._issues(instructions), strict=True)
         ]
         self._loops(block, cost)
         self._leave_block(block, cost)
@@ -176,39 +174,10 @@ class _OptimisedLowering:
             for value, cclk in parts
         ]
 
-    def _issued(self) -> Iterator[tuple[str, list[Issue]]]:
-        """When the operations of each block are issued; blocks between which no branch is left are scheduled as one."""
-        seen: set[str] = set()
-        for label in [*self.flow.order, *self.flow.blocks]:
-            if label in seen:
-                continue
-            joined = [label]
-            if self.profile.applies(Rule.BUNDLES):
-                while (following := self._joined(joined[-1])) is not None and following not in seen | {
-                    *joined
-                }:
-                    joined.append(following)
-            seen |= {*joined}
-            found = iter(self._issues([each for part in joined for each in self.code.of[part]]))
-            yield from ((part, [next(found) for _ in self.code.of[part]]) for part in joined)
-
-    def _joined(self, label: str) -> str | None:
-        """The block behind an `if` that is done without a branch."""
-        conversion = self.context.if_conversion.by_label.get(label)
-        if conversion is None:
-            return None
-        join, _ = self.flow.defined[conversion.phi.result or ""]
-        around = set(self.flow.predecessors[join]) - self.context.if_conversion.gone - {label}
-        return None if around else join
-
     def _issues(self, instructions: list[MachineInstruction]) -> list[Issue]:
-        bank_of, bundles = self.allocation.bank.get, self.profile.applies(Rule.BUNDLES)
-        if not self.profile.interlocks and not bundles:
+        if not self.profile.interlocks:
             return [Issue()] * len(instructions)
-        parallel = self.profile.parallel_issue or bundles
-        register_of = self.allocation.register.get if bundles else None
-        found = issues(instructions, bank_of, parallel=parallel, register_of=register_of)
-        return found if self.profile.interlocks else [replace(each, stall_cclk=0) for each in found]
+        return issues(instructions, self.allocation.bank.get, parallel=self.profile.parallel_issue)
 
     def _charge(self, instruction: MachineInstruction, issue: Issue = ALONE) -> Charge:
         cclk = COSTS[instruction.op].cclk if instruction.cclk is None else instruction.cclk

@@ -1,15 +1,22 @@
-"""Register pressure, where no register is chosen for a value: what does not fit in those of a loop is reloaded where it is used.
+"""Register pressure: what does not fit in the registers of a loop is reloaded where it is used.
 
-The one to go is used least. Values come from the stack; constants from registers that can do nothing else (I, M, B), which takes a move.
+The one to go is used least for the room it takes: the places where there are too many while it is alive [allocno_spill_priority in
+ira-color.cc of GCC 12].
+
+Values come from the stack; constants from registers that can do nothing else (I, M, B), which takes a move.
 """
 
 from __future__ import annotations
 
+from collections import Counter as Tally
+
 from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
 from bfsim.kernel.loops import Loop
+from bfsim.kernel.lowering.constants import load_constant
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.webs import Webs
+from bfsim.kernel.rules import Rule
 
 POINTERS = isa.POINTER_REGISTERS + 1  # with FP, which -O2 frees
 KEPT = {RegisterBank.DATA: 4, RegisterBank.POINTER: 4}  # R4-R7, P3-P5 and FP survive a call
@@ -17,15 +24,14 @@ ROOM = {RegisterBank.DATA: isa.DATA_REGISTERS, RegisterBank.POINTER: POINTERS}
 
 
 class Pressure:
-    """Inserts the reloads into the code of a routine; where every value has a register, there are none to insert (`spills`)."""
+    """Inserts the reloads into the code of a routine."""
 
-    def __init__(self, webs: Webs, *, spills: bool = True) -> None:
+    def __init__(self, webs: Webs) -> None:
         self.webs, self.flow, self.code = webs, webs.flow, webs.code
         self.find, self.bank, self.frequency = webs.find, webs.bank, webs.frequency
         self.reloading: set[tuple[str, RegisterBank]] = set()
         webs.analyse()
-        if spills:
-            self._spill()
+        self._spill()
 
     def _spill(self) -> None:
         """Innermost loops first: what is used least there gives up its register."""
@@ -58,7 +64,10 @@ class Pressure:
             for instruction in self.code.of[label]
         )
         room = KEPT[bank] if has_call else ROOM[bank]
-        reloading = (loop.header, bank) in self.reloading  # which takes a register
+        # once something is spilled, one register is taken by the reloads
+        reloading = (loop.header, bank) in self.reloading and self.webs.context.profile.applies(
+            Rule.RELOAD_REGISTER
+        )
         crowded: list[set[str]] = []
         for label in self.flow.inside(loop):
             for alive in self.points(label, across_calls=has_call):
@@ -68,9 +77,14 @@ class Pressure:
         if not crowded:
             return None
         self.reloading.add((loop.header, bank))
-        names = [*max(crowded, key=len), *(constants if extra else ())]
-        weights = {name: constants.get(name, 0) or self._weight(name, loop) for name in names}
-        return min(weights, key=lambda name: (weights[name], name), default=None)
+        places = Tally(name for here in crowded for name in here) + Tally(
+            dict.fromkeys(constants if extra else (), len(crowded))
+        )
+        if not self.webs.context.profile.applies(Rule.SPILLED_RANGES):
+            busiest = max(crowded, key=len)
+            places = Tally(dict.fromkeys([*busiest, *(constants if extra else ())], 1))
+        weights = {name: constants.get(name, 0) or self._weight(name, loop) for name in places}
+        return min(weights, key=lambda name: (weights[name] / (places[name] + 1), name), default=None)
 
     def points(self, label: str, *, across_calls: bool) -> list[set[str]]:
         """Webs alive after each instruction of a block (only across calls, if asked for)."""
@@ -105,7 +119,13 @@ class Pressure:
             if self.find(instruction.result or "") == web
             or any(self.find(name) == web for name, _ in instruction.uses)
         ]
-        return len(touching) == 1 and touching[0].op is Op.ALU and self.find(touching[0].result or "") == web
+        fitted = self.webs.context.profile.applies(Rule.ACCUMULATORS)
+        return (
+            fitted
+            and len(touching) == 1
+            and touching[0].op is Op.ALU
+            and self.find(touching[0].result or "") == web
+        )
 
     def _reload(self, web: str, loop: Loop) -> None:
         if self._accumulates(web, loop):
@@ -132,8 +152,12 @@ class Pressure:
 
     def _reloading(self, web: str, instruction: MachineInstruction) -> MachineInstruction:
         """What brings a value, or a constant, to where an instruction uses it."""
-        op = Op.MOVE if web.startswith("#") else Op.LOAD32
-        return MachineInstruction(op, instruction.line, None, RegisterBank.ANY)
+        constant = web.startswith("#")
+        if constant and not self.webs.context.profile.applies(Rule.CONSTANT_MOVES):
+            return load_constant(web, instruction.line)
+        return MachineInstruction(
+            Op.MOVE if constant else Op.LOAD32, instruction.line, None, RegisterBank.ANY
+        )
 
     def _move_in(self, web: str, loop: Loop) -> None:
         """What is added to a value in another bank has to be moved there."""

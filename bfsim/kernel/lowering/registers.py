@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 
 from bfsim.kernel import isa
 from bfsim.kernel.isa import Op
-from bfsim.kernel.lowering.constants import keep_constants
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
 from bfsim.kernel.lowering.moves import Moves
@@ -22,10 +21,9 @@ from bfsim.kernel.rules import Rule
 
 @dataclass(slots=True)
 class Allocation:
-    """What the registers of one routine cost beside its operations, and the bank, and if it is known the register, of each value."""
+    """What the registers of one routine cost beside its operations, and the bank of each value."""
 
     bank: dict[str, RegisterBank]
-    register: dict[str, str | None]
     on_edges: dict[tuple[str, str], list[MachineInstruction]]
     calls: bool
     entry: list[MachineInstruction] = field(default_factory=list)
@@ -36,16 +34,12 @@ class Allocation:
 
 def allocate(context: Context, code: MachineCode) -> Allocation:
     """Insert moves, constants and reloads into `code`; return what belongs to edges and to the function's ends."""
-    colours = context.profile.applies(Rule.COLOURING)
-    if colours:
-        keep_constants(context.flow, code)
     webs = Webs(context, code)
     moves = Moves(webs)
-    pressure = Pressure(webs, spills=not colours)
+    pressure = Pressure(webs)
     names = (*webs.web, *webs.bank)
     result = Allocation(
         bank={name: webs.bank[webs.find(name)] for name in names if webs.find(name) in webs.bank},
-        register=moves.registers,
         on_edges=moves.on_edges,
         calls=any(instruction.op is Op.CALL for block in code.of.values() for instruction in block),
     )
@@ -73,7 +67,7 @@ class _Ends:
                 peak[RegisterBank.POINTER] = max(peak[RegisterBank.POINTER], pointers)
             for alive in self.pressure.points(label, across_calls=True):
                 for name in alive:
-                    across.setdefault(self.bank.get(name, RegisterBank.DATA), set()).add(name)
+                    across[self.bank.get(name, RegisterBank.DATA)].add(name)
         constants = {name for loop in self.flow.loops for name in self.pressure.constants_in(loop)}
         data = min(peak[RegisterBank.DATA] + len(constants), isa.DATA_REGISTERS) - isa.SCRATCH_DATA_REGISTERS
         pointers = min(peak[RegisterBank.POINTER], POINTERS) - isa.SCRATCH_POINTER_REGISTERS
@@ -132,11 +126,7 @@ class _Ends:
             if name not in used:
                 continue
             bank = self.bank.get(self.webs.find(name), RegisterBank.DATA)
-            if number >= isa.REGISTER_ARGUMENTS and bank is RegisterBank.MEMORY:
-                continue
             if number >= isa.REGISTER_ARGUMENTS:
                 self.result.entry.append(MachineInstruction(Op.LOAD32, line, None, bank))
-                if bank not in (RegisterBank.DATA, RegisterBank.POINTER):
-                    self.result.entry.append(MachineInstruction(Op.MOVE, line, None, bank))
-            elif bank is not RegisterBank.DATA or name in across[bank]:
+            elif bank is RegisterBank.POINTER or name in across[bank]:
                 self.result.entry.append(MachineInstruction(Op.MOVE, line, None, bank))

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from bfsim.kernel import isa
 from bfsim.kernel.isa import COSTS, LOAD_TO_POINTER_STALL, MOVE_TO_POINTER_STALL, Op
 from bfsim.kernel.lowering.machine_code import MachineInstruction, RegisterBank
 
@@ -37,96 +36,33 @@ def issues(
     bank_of: Callable[[str], RegisterBank | None],
     *,
     parallel: bool,
-    register_of: Callable[[str], str | None] | None = None,
 ) -> list[Issue]:
-    """Return for each instruction of a block when it is issued; with `parallel`, 32-bit DSP operations take accesses along.
-
-    With `register_of`, registers are known: what is written waits for what reads the register, and the longest way to the end of
-    the block goes first, as in GCC [haifa-sched.cc, bfin_gen_bundles in bfin.cc].
-    """
-    behind = _dependences(instructions, bank_of, register_of)
-    urgent = _distances(instructions, behind) if register_of else [0] * len(instructions)
+    """Return for each instruction of a block when it is issued; with `parallel`, 32-bit DSP operations take accesses along."""
+    behind: list[dict[int, int]] = []
+    for number, instruction in enumerate(instructions):
+        gaps = {earlier: _gap(instructions[earlier], instruction, bank_of) for earlier in range(number)}
+        behind.append({earlier: gap for earlier, gap in gaps.items() if gap is not None})
     issued: dict[int, int] = {}
     found = [Issue()] * len(instructions)
     now = 0
     while len(issued) < len(instructions):
-        ready = _ready(behind, issued)
-        number = min(ready, key=lambda each: (max(ready[each], now), -urgent[each], each))
+        ready = {
+            number: max((issued[before] + gap for before, gap in gaps.items()), default=0)
+            for number, gaps in enumerate(behind)
+            if number not in issued and all(before in issued for before in gaps)
+        }
+        number = min(ready, key=lambda each: (max(ready[each], now), each))
         found[number] = Issue(max(0, ready[number] - now))
         now = max(now, ready.pop(number))
         issued[number] = now
-        ready = _ready(behind, issued) if register_of else ready  # what is read may be written
-        taken_along = [
-            each
-            for each in sorted(ready, key=lambda each: (-urgent[each], each))
-            if ready[each] <= now
-            and _bundles(instructions[number], instructions[each], exact=bool(register_of))
-        ]
-        for other in taken_along[: int(parallel)]:
-            found[other], issued[other] = Issue(paired=True), now
+        if parallel and instructions[number].op in BUNDLING:
+            for other in [
+                each
+                for each in sorted(ready)
+                if ready[each] <= now and instructions[each].op in LOADS | STORES
+            ][:1]:
+                found[other], issued[other] = Issue(paired=True), now
         now += _cclk(instructions[number])
-    return found
-
-
-def _ready(behind: list[dict[int, int]], issued: dict[int, int]) -> dict[int, int]:
-    """Of the instructions that wait for none that is not issued: when they can be."""
-    return {
-        number: max((issued[before] + gap for before, gap in gaps.items()), default=0)
-        for number, gaps in enumerate(behind)
-        if number not in issued and gaps.keys() <= issued.keys()
-    }
-
-
-def _bundles(instruction: MachineInstruction, access: MachineInstruction, *, exact: bool) -> bool:
-    """Whether a 32-bit DSP operation takes an access along; exactly, one of 16 bits, and a shift of three operands does so, too."""
-    if access.op not in LOADS | STORES or (exact and access.nbytes == isa.LONG_FORM_BYTES):
-        return False
-    is_shift = instruction.op is Op.SHIFT and instruction.nbytes == isa.LONG_FORM_BYTES
-    return instruction.op in BUNDLING or (exact and is_shift)
-
-
-def _dependences(
-    instructions: Sequence[MachineInstruction],
-    bank_of: Callable[[str], RegisterBank | None],
-    register_of: Callable[[str], str | None] | None,
-) -> list[dict[int, int]]:
-    """Of each instruction: those before it that it waits for, and how long."""
-    found: list[dict[int, int]] = []
-    for number, then in enumerate(instructions):
-        gaps = {earlier: _gap(instructions[earlier], then, bank_of) for earlier in range(number)}
-        if register_of:
-            gaps |= {
-                earlier: _reuse(instructions[earlier], then, register_of, gap)
-                for earlier, gap in gaps.items()
-            }
-        found.append({earlier: gap for earlier, gap in gaps.items() if gap is not None})
-    return found
-
-
-def _reuse(
-    first: MachineInstruction,
-    then: MachineInstruction,
-    register_of: Callable[[str], str | None],
-    gap: int | None,
-) -> int | None:
-    """The gap, where registers are known: one that is read may be written in the same cycle."""
-    own = register_of(then.result) if then.result else None
-    read = {register_of(name) or name for name, _ in first.uses}
-    if own is None or (first.result is not None and first.result in {name for name, _ in then.uses}):
-        return gap
-    if first.result and (first.result == then.result or register_of(first.result) == own):
-        return _cclk(first)
-    if gap is None or then.result in {name for name, _ in first.uses}:
-        return 0 if own in read else gap
-    return gap
-
-
-def _distances(instructions: Sequence[MachineInstruction], behind: list[dict[int, int]]) -> list[int]:
-    """Cycles from each instruction to the end of the block at the earliest."""
-    found = [_cclk(each) for each in instructions]
-    for number in reversed(range(len(instructions))):
-        for before, gap in behind[number].items():
-            found[before] = max(found[before], gap + found[number])
     return found
 
 

@@ -89,8 +89,7 @@ class _Selector(Accesses):
         elif each.opcode == "sub" and left == "0":
             self.append(Op.ALU, each, each.result, DATA, (right, DATA))
         else:
-            less = left if each.opcode == "sub" else ""
-            self.append(Op.ALU, each, each.result, ANY, (left, ANY), (right, ANY), less=less)
+            self.append(Op.ALU, each, each.result, ANY, (left, ANY), (right, ANY))
 
     def shift(self, each: Instruction) -> None:
         if self.context.is_alias(each):

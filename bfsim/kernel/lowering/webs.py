@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections import Counter as Tally
 from collections import defaultdict
-from collections.abc import Iterator
 
 from bfsim.kernel.lowering.context import Context
 from bfsim.kernel.lowering.induction_variables import is_merged_pointer
 from bfsim.kernel.lowering.liveness import Liveness, liveness
-from bfsim.kernel.lowering.machine_code import MachineCode, MachineInstruction, RegisterBank
+from bfsim.kernel.lowering.machine_code import MachineCode, RegisterBank
 from bfsim.kernel.rules import Rule
 
 ROUNDS = 3  # in which values settle in the bank of those they are computed with
@@ -24,12 +23,10 @@ class Webs:
         self.phis = self._phis()
         self.web: dict[str, str] = {}
         self.bank: dict[str, RegisterBank] = {}
-        self.defined = self._defined()
         self.live = Liveness()
         self.analyse()
         self._coalesce()
-        if not context.profile.applies(Rule.COLOURING):
-            self._choose_banks()
+        self._choose_banks()
 
     def _phis(self) -> dict[str, list[tuple[str, str]]]:
         found: dict[str, list[tuple[str, str]]] = {}
@@ -59,56 +56,6 @@ class Webs:
             for phi, arms in self.phis.items()
         }
         self.live = liveness(self.flow, self.code, merged)
-
-    def _defined(self) -> set[str]:
-        """Names that stand for a register: what is computed, passed or merged, and addresses; not a counter that a pointer stands for."""
-        instructions = [instruction for block in self.code.of.values() for instruction in block]
-        return {
-            *self.phis,
-            *self.context.parameters(),
-            *(each.result for each in instructions if each.result),
-            *(name for each in instructions for name, bank in each.uses if bank is RegisterBank.POINTER),
-        }
-
-    def names(self) -> list[str]:
-        """All webs, by name."""
-        arms = {value for each in self.phis.values() for value, _ in each}
-        return sorted({self.find(name) for name in (self._names() | arms) & self.defined})
-
-    def inputs(self, instruction: MachineInstruction) -> list[str]:
-        """The webs that an instruction uses."""
-        return [self.find(name) for name, _ in instruction.uses if name in self.defined]
-
-    def results(self, instruction: MachineInstruction) -> list[str]:
-        """The web that an instruction computes, if any."""
-        return [self.find(instruction.result)] if instruction.result else []
-
-    def operands(self, instruction: MachineInstruction) -> list[str]:
-        """The webs that an instruction uses or computes."""
-        return [*self.inputs(instruction), *self.results(instruction)]
-
-    def backwards(self, label: str) -> Iterator[tuple[MachineInstruction, set[str]]]:
-        """Yield the instructions of a block, the last one first, each with the webs alive behind it."""
-        alive = {self.find(name) for name in self.live.out[label] & self.defined}
-        for instruction in reversed(self.code.of[label]):
-            yield instruction, set(alive)
-            alive.difference_update(self.results(instruction))
-            alive.update(self.inputs(instruction))
-
-    def forwards(self, label: str) -> list[tuple[MachineInstruction, set[str]]]:
-        """Return the instructions of a block, each with the webs alive behind it."""
-        return [*self.backwards(label)][::-1]
-
-    def conflicts(self) -> dict[str, set[str]]:
-        """Return, of each web, those that are alive at the same time."""
-        found: dict[str, set[str]] = {name: set() for name in self.names()}
-        for name, others in self._interference().items():
-            own = self.find(name)
-            for there in map(self.find, others):
-                if own != there and {own, there} <= found.keys():
-                    found[own].add(there)
-                    found[there].add(own)
-        return found
 
     def find(self, name: str) -> str:
         """The web that a value belongs to: values that share a register."""
