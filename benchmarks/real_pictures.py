@@ -126,6 +126,10 @@ def main(sets: tuple[Path, ...], size: str, pictures: Path | None) -> None:
     """Print what the firmware makes of the pictures in SETS."""
     width, height = (int(each) for each in size.split("x"))
     found = [one for each in sets for one in sets_in(each)]
+    if not found:
+        raise click.UsageError(
+            f"SETS must be recordings or folders with pictures, but in {', '.join(map(str, sets))} are none"
+        )
     seen = [see(each, (width, height)) for each in found]
     tables = [edge_table(seen), cost_table(seen)]
     if any(each.pictures.is_stereo for each in seen):

@@ -26,7 +26,7 @@ def assumed_geometry(program: Firmware, calibration: Calibration) -> Iterator[Ru
         unknown = " and ".join(name for name, value in stance.items() if value is None)
         if unknown:
             text = (
-                f"the recording does not say the {unknown} of its cameras: taken from an assumed geometry, "
+                f"the recording does not say the {unknown} of its cameras: only that is taken from an assumed geometry, "
                 f"{program.assumed_geometry}, and what is measured by it may be wrong; `bfsim record calibrate --height "
                 "--tilt` or `bfsim record import --geometry` puts yours into a recording"
             )

@@ -11,7 +11,7 @@ from bfsim.run import PLACEMENTS
 
 CODE = "INPUT_SECTIONS($OBJECTS(program))"
 BEYOND_L1 = "INPUT_SECTIONS($OBJECTS(noncache_code program))"
-CACHED_CODE_IN_SDRAM = "#if !CACHES                    // with the code cache on"
+CACHED_CODE_IN_SDRAM = "#if !CACHES                    // what L1 has no room for"
 
 
 @cache
