@@ -82,15 +82,23 @@ class LoadedImage:
         """Return the code that is entered at `first`; it is looked for once."""
         key = frozenset(first)
         if key not in self._codes:
-            self._codes[key] = self._code(self._entries(set(first)))
+            self._codes[key] = self._explored(key)
         return self._codes[key]
 
-    def _code(self, entries: Iterable[int]) -> Code:
+    def _explored(self, first: frozenset[int]) -> Code:
+        """Find code that is entered at `first`, where its switches lead to, and at functions that are called by their addresses."""
         from bfsim.blackfin.blocks import Code  # most starts explore no code
+        from bfsim.blackfin.callees import callees
 
-        starts = frozenset(each.address for each in self.image.routines)
-        found = frozenset(entries)
-        return Code(self.space.fetch, found, resumes=False, callees=found & starts)
+        entries, called = first, frozenset[int]()
+        while True:
+            code = Code(self.space.fetch, entries, resumes=False, callees=called)
+            reached = {self.image.routine_at(each) for each in code.blocks} - {None}
+            labels = {each for each in self.image.pointers if self.image.routine_at(each) in reached}
+            found = frozenset(callees(code, self.image))
+            if labels | found <= entries and found == called:
+                return code
+            entries, called = entries | labels | found, found
 
     def _counted_from(self, timing: Timing, first: frozenset[int]) -> Counted:
         """Return that with its counters, which are the same with and without reports of accesses."""
@@ -100,19 +108,6 @@ class LoadedImage:
 
             self._counted[key] = Counted(self.explored(*first), timing)
         return self._counted[key]
-
-    def _entries(self, first: set[int]) -> set[int]:
-        """Where code can be entered that starts at `first`: there, where its switches lead to, and the functions that it calls by address."""
-        from bfsim.blackfin.callees import callees
-
-        entries, found = set[int](), first
-        while not found <= entries:
-            entries |= found
-            code = self._code(entries)
-            reached = {self.image.routine_at(each) for each in code.blocks}
-            labels = {each for each in self.image.pointers if self.image.routine_at(each) in reached - {None}}
-            found = labels | callees(code, self.image)
-        return entries
 
 
 @dataclass(frozen=True, slots=True)

@@ -70,7 +70,7 @@ class _Translation:
     ) -> None:
         self.code, self.timing, self.fuel, self.tracing = of.code, of.timing, fuel, tracing
         self.aligned = aligned
-        self.astray: ir.Value | None = None  # of the accesses of a block, which are not aligned
+        self.misaligned: ir.Value | None = None  # not 0 if an access of the block is not aligned
         self.results = None if results is None else results | ALWAYS_READ
         counted = self.counted = of.counters
         self.made = ir.Module(symbol)
@@ -121,7 +121,7 @@ class _Translation:
     def _block(self, block: Block) -> None:
         builder = ir.IRBuilder(self.at[block.start])
         self.values.clear()
-        self.astray = None
+        self.misaligned = None
         written: dict[str, None] = {}
         if self.fuel:
             self._burn(builder, block.start)
@@ -136,8 +136,8 @@ class _Translation:
                 written[register] = None
             flow = effects.flow
             cclk += self.timing.of(instruction)
-        if self.astray is not None:
-            self._hold_aligned(builder, block.start, self.astray)
+        if self.misaligned is not None:
+            self._hold_aligned(builder, block.start, self.misaligned)
         for register in written:
             builder.store(self.values[register], self.slot(register))
         self._add(builder, number, I64(1))
@@ -189,37 +189,24 @@ class _Translation:
     ) -> None:
         """Report an access, and take note of whether it is aligned, where that is asked for."""
         if self.tracing:
-            self._report(builder, instruction, block, cclk, address, nbytes, writes=writes)
+            access = nbytes + self.tracing.write * writes
+            self._report(builder, address, access, cclk, self.tracing.site_of(block, instruction.address))
         if self.aligned and nbytes > 1:
             off = builder.and_(address.ir, I32(nbytes - 1))
-            self.astray = off if self.astray is None else builder.or_(self.astray, off)
+            self.misaligned = off if self.misaligned is None else builder.or_(self.misaligned, off)
 
-    def _hold_aligned(self, builder: ir.IRBuilder, block: int, astray: ir.Value) -> None:
-        """Leave native code if accesses of a block went astray."""
-        leaves, goes_on = self._new("astray"), self._new("aligned")
-        builder.cbranch(builder.icmp_unsigned("!=", astray, I32(0)), leaves, goes_on)
+    def _hold_aligned(self, builder: ir.IRBuilder, block: int, misaligned: ir.Value) -> None:
+        """Leave native code if one of the accesses of a block is not aligned."""
+        leaves, goes_on = self._new("misaligned"), self._new("aligned")
+        builder.cbranch(builder.icmp_unsigned("!=", misaligned, I32(0)), leaves, goes_on)
         self._event(ir.IRBuilder(leaves), Event.MISALIGNED, I32(block))
         builder.position_at_end(goes_on)
 
-    def _report(
-        self,
-        builder: ir.IRBuilder,
-        instruction: Instruction,
-        block: int,
-        cclk: int,
-        address: Value,
-        nbytes: int,
-        *,
-        writes: bool,
-    ) -> None:
-        """Report an access."""
-        assert self.tracing
+    def _report(self, builder: ir.IRBuilder, address: Value, access: int, cclk: int, site: int) -> None:
         told = builder.inttoptr(self._read(builder, "TRACE"), POINTER)
         tracer = builder.load(told, typ=REPORT.as_pointer())
         stamp = builder.add(builder.load(self.stamp), I64(cclk))
-        access = I64(nbytes + self.tracing.write * writes)
-        site = I64(self.tracing.site_of(block, instruction.address))
-        builder.call(tracer, [told, address.zero_extended(64).ir, access, stamp, site])
+        builder.call(tracer, [told, address.zero_extended(64).ir, I64(access), stamp, I64(site)])
 
     def _pass(self, builder: ir.IRBuilder, cclk: ir.Value) -> None:
         """Let cycles pass for what is reported."""
