@@ -1,7 +1,7 @@
-"""Calls of subroutines by one native function: memory is copied in and out, arguments are handed over, and counts are added up.
+"""Calls of subroutines by one native function: arguments are handed over, memory is copied in and out, and counts are added up.
 
-From Python a call is a C call without arguments, which is the cheapest that Python has: the variable `BLOCK` holds the address of words
-of 64 bits with all that it needs.
+For Python it is a built-in function, `f(*arguments)`, with the C interface of CPython: to go through ctypes takes longer than many a
+subroutine. What it is bound to (`self`) is the address of words of 64 bits with all else that it needs.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 from functools import cache
 from typing import Any, NamedTuple, NoReturn
 
@@ -26,20 +27,38 @@ from bfsim.blackfin.subroutines import REGISTERS, RESULT, STACK, STACK_BYTES, WO
 (
     RUN, CODE, MEMORY, STATE, COUNTS, COUNTED,  # what runs native code, the code, its memory, registers and counts, and how many these are
     TOTALS, ORDER, TOTALLED,  # where counts are added, in which order, and how many
-    ADDRESS, TOP, WORDS, PARTS,  # of the subroutine, of its stack; numbers of arguments and of copied parts
+    ADDRESS, TOP, GIVEN, WORDS, PARTS,  # of the subroutine, of its stack; numbers of Python's arguments, of all, and of copied parts
     TRACE,  # where accesses are reported to (`tracing`)
-) = range(14)  # fmt: skip
-HEAD = 14
+) = range(15)  # fmt: skip
+HEAD = 15
 PART_WORDS = 4
 """Of memory that is copied: its address here, that of its copy, how many bytes, and how many of them are copied back."""
-ENTRY, BLOCK = "bfsim_run_object", "bfsim_object_block"
+ENTRY = "bfsim_run_object"
+METH_FASTCALL = 0x80
+"""CPython: a function gets an object, the address of its arguments and their number."""
 STALL_SHIFT = 32
 """Of the result of a call, the lower half is cycles without waits, and the upper one waits."""
 ISSUE_MASK = (1 << STALL_SHIFT) - 1
 REFUSED = -(1 << 63)
 """Returned in place of cycles when an argument does not fit; nothing was run then."""
 WORDS_OF_ARGUMENT = 3
-"""Its value, and the least and the largest that it may have."""
+"""Its kind, and the least and the largest value that it may have."""
+
+
+class Kind(IntEnum):
+    """Where the value of an argument comes from: it is always the same, or Python's argument is an integer, or a float."""
+
+    FIXED = 0
+    INTEGER = 1
+    FLOAT = 2
+
+
+class Argument(NamedTuple):
+    """What a subroutine takes in 32 bits."""
+
+    kind: Kind
+    least: int
+    largest: int
 
 
 def _field(name: str, number: int, kind: str = "i64") -> str:
@@ -96,29 +115,54 @@ FIELDS = "".join(
     for name, number, kind in (
         ("run", RUN, "ptr"), ("code", CODE, "ptr"), ("memory", MEMORY, "ptr"), ("state", STATE, "ptr"), ("counts", COUNTS, "ptr"),
         ("counted", COUNTED, "i64"), ("totals", TOTALS, "ptr"), ("order", ORDER, "ptr"), ("totalled", TOTALLED, "i64"),
-        ("address", ADDRESS, "i64"), ("top", TOP, "i64"), ("words", WORDS, "i64"), ("parts", PARTS, "i64"),
+        ("address", ADDRESS, "i64"), ("top", TOP, "i64"), ("given", GIVEN, "i64"), ("words", WORDS, "i64"), ("parts", PARTS, "i64"),
         ("trace", TRACE, "i64"),
     )
 )  # fmt: skip
-CHECK = """\
-  %value.at = getelementptr i64, ptr %arguments, i64 %checked
-  %value = load i64, ptr %value.at
-  %least.at = getelementptr i64, ptr %bounds, i64 %checked
+HAND_OVER = f"""\
+  %kind.at = getelementptr i64, ptr %kinds, i64 %argument
+  %kind = load i64, ptr %kind.at
+  %least.at = getelementptr i64, ptr %kind.at, i64 %words
   %least = load i64, ptr %least.at
   %largest.at = getelementptr i64, ptr %least.at, i64 %words
   %largest = load i64, ptr %largest.at
+  %object.at = getelementptr ptr, ptr %objects, i64 %argument
+  switch i64 %kind, label %known [ i64 {Kind.INTEGER:d}, label %integer i64 {Kind.FLOAT:d}, label %float ]
+integer:
+  %integer.object = load ptr, ptr %object.at
+  %integer.value = call i64 @PyLong_AsLongLong(ptr %integer.object)
+  %integer.odd = icmp eq i64 %integer.value, -1
+  br i1 %integer.odd, label %ask, label %known
+float:
+  %float.object = load ptr, ptr %object.at
+  %double = call double @PyFloat_AsDouble(ptr %float.object)
+  %single = fptrunc double %double to float
+  %float.bits = bitcast float %single to i32
+  %float.value = zext i32 %float.bits to i64
+  %double.size = call double @llvm.fabs.f64(double %double)
+  %single.size = call float @llvm.fabs.f32(float %single)
+  %double.finite = fcmp one double %double.size, 0x7FF0000000000000
+  %single.infinite = fcmp oeq float %single.size, 0x7FF0000000000000
+  %too.large = and i1 %double.finite, %single.infinite
+  br i1 %too.large, label %unfit, label %small
+small:
+  %float.odd = fcmp oeq double %double, -1.0
+  br i1 %float.odd, label %ask, label %known
+ask:
+  %asked = phi i64 [ %integer.value, %integer ], [ %float.value, %small ]
+  %error = call ptr @PyErr_Occurred()
+  %is.error = icmp ne ptr %error, null
+  br i1 %is.error, label %unfit, label %known
+known:
+  %value = phi i64 [ %least, %body.argument ], [ %integer.value, %integer ], [ %float.value, %small ], [ %asked, %ask ]
   %below = icmp slt i64 %value, %least
   %above = icmp sgt i64 %value, %largest
   %outside = or i1 %below, %above
   br i1 %outside, label %unfit, label %fits
 fits:
-"""
-HAND_OVER = """\
-  %word.at = getelementptr i64, ptr %arguments, i64 %argument
-  %word = load i64, ptr %word.at
-  %word.low = trunc i64 %word to i32
-  %argument.at = getelementptr i32, ptr %stack, i64 %argument
-  store i32 %word.low, ptr %argument.at
+  %low = trunc i64 %value to i32
+  %place = getelementptr i32, ptr %stack, i64 %argument
+  store i32 %low, ptr %place
 """
 ADD_UP = """\
   %number.at = getelementptr i64, ptr %order, i64 %total
@@ -142,21 +186,29 @@ START = "".join(
     )
 )
 MODULE = f"""
-@{BLOCK} = global ptr null
+declare ptr @PyLong_AsVoidPtr(ptr)
+declare i64 @PyLong_AsLongLong(ptr)
+declare ptr @PyLong_FromLongLong(i64)
+declare double @PyFloat_AsDouble(ptr)
+declare ptr @PyErr_Occurred()
+declare void @PyErr_Clear()
+declare double @llvm.fabs.f64(double)
+declare float @llvm.fabs.f32(float)
 declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)
 declare void @llvm.memset.p0.i64(ptr, i8, i64, i1)
 
-define i64 @{ENTRY}() {{
-  %block = load ptr, ptr @{BLOCK}
+define ptr @{ENTRY}(ptr %self, ptr %objects, i64 %handed) {{
+  %block = call ptr @PyLong_AsVoidPtr(ptr %self)
 {FIELDS}\
-  %arguments = getelementptr i64, ptr %block, i64 {HEAD}
-  %bounds = getelementptr i64, ptr %arguments, i64 %words
+  %kinds = getelementptr i64, ptr %block, i64 {HEAD}
   %argument.words = mul i64 %words, {WORDS_OF_ARGUMENT}
-  %copied = getelementptr i64, ptr %arguments, i64 %argument.words
-{_loop("checked", "%words", CHECK, "bring")}\
-{_loop("brought", "%parts", _copy("brought", back=False), "hand_over")}\
+  %copied = getelementptr i64, ptr %kinds, i64 %argument.words
   %stack = getelementptr i8, ptr %memory, i64 %top
-{_loop("argument", "%words", HAND_OVER, "start")}\
+  %is.whole = icmp eq i64 %handed, %given
+  br i1 %is.whole, label %hand_over, label %unfit
+hand_over:
+{_loop("argument", "%words", HAND_OVER, "bring")}\
+{_loop("brought", "%parts", _copy("brought", back=False), "start")}\
 {_registers()}\
 {START}\
   %event = call i32 %run(ptr %code, ptr %memory, ptr %state, ptr %counts)
@@ -168,9 +220,10 @@ define i64 @{ENTRY}() {{
 refuse:
   %event.wide = zext i32 %event to i64
   %failed = sub i64 -1, %event.wide
-  ret i64 %failed
+  br label %give
 unfit:
-  ret i64 {REFUSED}
+  call void @PyErr_Clear()
+  br label %give
 take:
 {_loop("fetched", "%parts", _copy("fetched", back=True), "add_up")}\
 {_loop("total", "%totalled", ADD_UP, "done")}\
@@ -181,25 +234,39 @@ take:
   %waited = load i64, ptr %waited.at
   %waited.high = mul i64 %waited, {(1 << STALL_SHIFT) - 1}
   %result = add i64 %cclk, %waited.high
-  ret i64 %result
+  br label %give
+give:
+  %outcome = phi i64 [ %failed, %refuse ], [ {REFUSED}, %unfit ], [ %result, %done ]
+  %object = call ptr @PyLong_FromLongLong(i64 %outcome)
+  ret ptr %object
 }}
 """
 """Its result: the cycles without waits, and above them the waits; REFUSED; or -1 less the number of the event for which the code was left."""
 
 
-class _Entry(NamedTuple):
-    """`call()` makes the call whose block `cell` has the address of."""
+class _Method(ctypes.Structure):
+    """CPython's `PyMethodDef`."""
 
-    call: Callable[[], int]
-    cell: ctypes.c_int64
+    _fields_ = (
+        ("name", ctypes.c_char_p),
+        ("function", ctypes.c_void_p),
+        ("flags", ctypes.c_int),
+        ("about", ctypes.c_char_p),
+    )
 
 
 @cache
-def _entry() -> _Entry:
+def _method() -> _Method:
     machine_code.add(native_code(MODULE))
-    kind = ctypes.CFUNCTYPE(ctypes.c_int64)
-    cell = ctypes.c_int64.from_address(machine_code.address_of(BLOCK))
-    return _Entry(kind(machine_code.address_of(ENTRY)), cell)
+    return _Method(ENTRY.encode(), machine_code.address_of(ENTRY), METH_FASTCALL, None)
+
+
+def _bound(block: int) -> Callable[..., int]:
+    """Return the built-in function for the words at an address."""
+    make = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p)
+    new = make(("PyCFunction_NewEx", ctypes.pythonapi))
+    function: Callable[..., int] = new(ctypes.addressof(_method()), block, None)
+    return function
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,26 +278,30 @@ class Counts:
 
 
 class BoundCall:
-    """A subroutine bound to its memory: `entry()` calls it if `cell` has the address `at`.
+    """A subroutine bound to its memory: `entry(*arguments)` calls it.
 
     It returns the cycles without waits, and those of waits `STALL_SHIFT` bits above; less than 0 if it did not return.
-    `arguments`: its words, of which the lower 32 bits count; what may have one value alone has it. `result`: the address of what
-    a call leaves in R0.
+    `result`: the address of what a call leaves in R0.
     """
 
     def __init__(
         self,
         subroutine: Subroutine,
-        bounds: Sequence[tuple[int, int]],
+        arguments: Sequence[Argument],
+        given: int,
         parts: Sequence[Placed],
         counts: Counts,
         trace: Any = None,
     ) -> None:
-        """`bounds`: the least and the largest value of each argument. `trace`: the block that accesses are reported through, if any are."""
+        """`given`: how many of the arguments come from Python, all of them first, even if some are fixed.
+
+        `trace`: the block that accesses are reported through, if any are.
+        """
         self._subroutine = subroutine
         self._kept = counts, trace  # the block has their addresses only
         translated, state = subroutine.translated, subroutine.processor.state
-        words = [*bounds, *((0, 0) for _ in range(len(bounds), len(REGISTERS)))]
+        absent = len(REGISTERS) - len(arguments)
+        words = [*arguments, *(absent * [Argument(Kind.FIXED, 0, 0)])]
         head = {
             RUN: runner().guarded,
             CODE: translated.entry,
@@ -243,19 +314,20 @@ class BoundCall:
             TOTALLED: len(counts.order),
             ADDRESS: subroutine.address,
             TOP: STACK + STACK_BYTES - WORD_BYTES * len(words),
+            GIVEN: given,
             WORDS: len(words),
             PARTS: len(parts),
             TRACE: ctypes.addressof(trace) if trace else 0,
         }
-        least, largest = ([each[side] for each in words] for side in (0, 1))
-        values = [*(head[each] for each in range(HEAD)), *least, *least, *largest]
+        values = [
+            *(head[each] for each in range(HEAD)),
+            *(word for column in zip(*words, strict=True) for word in column),
+        ]
         for each in parts:
             values += each.address, each.copy, each.nbytes, each.nbytes * each.is_written
         self._block = (ctypes.c_int64 * len(values))(*values)
-        self.at = ctypes.addressof(self._block)
-        self.arguments: Any = (ctypes.c_int64 * len(words)).from_buffer(self._block, 8 * HEAD)
         self.result = head[STATE] + 8 * SLOTS[RESULT]
-        self.entry, self.cell = _entry()
+        self.entry = _bound(ctypes.addressof(self._block))
 
     def refuse(self, outcome: int) -> NoReturn:
         """Raise KernelError for what `entry` has returned of a call that did not return."""

@@ -37,6 +37,7 @@ from bfsim.machine.core.wiring import AroundCores, parts_of
 from bfsim.machine.dma.checks import DmaSpace
 from bfsim.machine.dma.memory_dma import Dma
 from bfsim.machine.finished_frames import FinishedFrames
+from bfsim.machine.garbage import rarely_collected
 from bfsim.machine.listeners import Announcer, OnFrame, OnSeen, OnSpans, OnTime
 from bfsim.machine.loader import LoadedBuffers
 from bfsim.machine.main_loop import MainLoop
@@ -154,11 +155,12 @@ class Board:
         loops = MainLoops(self._env, self.main_loops, self._shared.turns, announcer)
         interrupted = False
         try:
-            loops.play()
-            loops.check_end(len(frames.records), has_more=capture.has_more)
-            for each in self._peripherals.values():
-                for last in each.busy:
-                    loops.play_until(last)
+            with rarely_collected():
+                loops.play()
+                loops.check_end(len(frames.records), has_more=capture.has_more)
+                for each in self._peripherals.values():
+                    for last in each.busy:
+                        loops.play_until(last)
         except KeyboardInterrupt:
             interrupted = True
             announcer.tell_seen()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import struct
 from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.blackfin.calling import ISSUE_MASK, STALL_SHIFT, BoundCall, Counts
+from bfsim.blackfin.calling import ISSUE_MASK, STALL_SHIFT, Argument, BoundCall, Counts, Kind
 from bfsim.blackfin.guard import catch_always
 from bfsim.blackfin.subroutines import STACK, STACK_BYTES, Placed, placed
 from bfsim.blackfin.tracing import Followed, block_of
@@ -19,8 +18,8 @@ from bfsim.kernel import crashes
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.function import Function
 from bfsim.kernel.objects.compiled import CompiledObject
-from bfsim.kernel.types import ArrayType, FloatType, IntType, u32
-from bfsim.kernel.work import BITS, FLOAT, Work
+from bfsim.kernel.types import ArrayType, FloatType, u32
+from bfsim.kernel.work import Work
 
 IN_MEMORY = {
     "i8": ctypes.c_int8, "u8": ctypes.c_uint8, "i16": ctypes.c_int16, "u16": ctypes.c_uint16,
@@ -63,10 +62,6 @@ class ObjectCall:
         else:
             from_host = space.window(memory) - memory.ctypes.data
             addresses = [each.ctypes.data + from_host for each in arrays]
-        kinds = [each.type for each in function.parameters]
-        self._count = len(kinds)
-        self._integers = [position for position, each in enumerate(kinds) if isinstance(each, IntType)]
-        self._floats = [position for position, each in enumerate(kinds) if isinstance(each, FloatType)]
         trace = None
         if access_trace:
             followed = [
@@ -78,9 +73,9 @@ class ObjectCall:
             trace = block_of(access_trace.address(), followed)
         _catch_faults()
         counts = Counts(totals[: len(code.order)], code.order)
-        self._call = BoundCall(code.subroutine, _bounds(function, arrays, addresses), parts, counts, trace)
-        self._entry, self._cell, self._at = self._call.entry, self._call.cell, self._call.at
-        self._words = self._call.arguments
+        given, taken = len(function.parameters), _arguments(function, arrays, addresses)
+        self._call = BoundCall(code.subroutine, taken, given, parts, counts, trace)
+        self._entry = self._call.entry
         self._result: Any = (
             IN_MEMORY[str(function.result)].from_address(self._call.result) if function.result else None
         )
@@ -93,17 +88,8 @@ class ObjectCall:
 
     def run(self, arguments: Sequence[Any]) -> Work:
         """Run the code now and say what it cost, until the next run. Of `arguments`, only the numbers are read."""
-        words = self._words
-        try:
-            for position in self._integers:
-                words[position] = arguments[position]
-        except (TypeError, IndexError):
-            self._put_as_integers(arguments)
-        if self._floats:
-            self._put_floats(arguments)
-        self._cell.value = self._at
-        outcome = self._entry()
-        if outcome < 0 or len(arguments) != self._count:
+        outcome = self._entry(*arguments)
+        if outcome < 0:
             self._check(arguments)
             self._call.refuse(outcome)
         work = self._work  # one for all runs: to make it takes Python longer than to run a short kernel
@@ -114,35 +100,26 @@ class ObjectCall:
             work.value = self._result.value
         return work
 
-    def _put_as_integers(self, arguments: Sequence[Any]) -> None:
-        """Put numbers that are none of Python's ints where the code finds them; what is no integer is refused."""
-        self._check(arguments)
-        for position in self._integers:
-            self._words[position] = int(arguments[position])
 
-    def _put_floats(self, arguments: Sequence[Any]) -> None:
-        """Put the bits of the floats there; what is no number is refused."""
-        try:
-            for position in self._floats:
-                self._words[position] = BITS.unpack(FLOAT.pack(arguments[position]))[0]
-        except (struct.error, OverflowError, IndexError):
-            self._check(arguments)
-
-
-def _bounds(
+def _arguments(
     function: Function, arrays: Sequence[NDArray[Any]], addresses: Sequence[int]
-) -> list[tuple[int, int]]:
-    """Return the least and the largest value of each argument: those of an array, its address and its length, have one."""
+) -> list[Argument]:
+    """Return what the code takes: of an array its address, and behind the parameters the lengths that it asks for."""
     places = iter(addresses)
     found = []
     for each in function.parameters:
         if isinstance(each.type, ArrayType):
-            place = next(places)
-            found.append((place, place))
+            found.append(_fixed(next(places)))
+        elif isinstance(each.type, FloatType):
+            found.append(Argument(Kind.FLOAT, *u32.bounds))
         else:
-            found.append(u32.bounds if isinstance(each.type, FloatType) else each.type.bounds)
+            found.append(Argument(Kind.INTEGER, *each.type.bounds))
     named = zip(function.array_names, arrays, strict=True)
-    return found + [(len(array), len(array)) for name, array in named if name in function.measured]
+    return found + [_fixed(len(array)) for name, array in named if name in function.measured]
+
+
+def _fixed(value: int) -> Argument:
+    return Argument(Kind.FIXED, value, value)
 
 
 @cache
