@@ -17,6 +17,7 @@ from llvmlite import ir
 from bfsim.blackfin.blocks import Block, Code
 from bfsim.blackfin.counters import Counted
 from bfsim.blackfin.decode import Instruction
+from bfsim.blackfin.divisions import AHEAD, DIVIDING, before_last_turn, can_be_made, divides
 from bfsim.blackfin.effects import I8, I32, I64, Effects, Flow
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.flow import Edge, Way
@@ -125,6 +126,8 @@ class _Translation:
         written: dict[str, None] = {}
         if self.fuel:
             self._burn(builder, block.start)
+        elif divides(block):
+            self._divide(builder, block)
         flow: Flow | None = None
         cclk = 0
         number = self.numbers[block.start, False, None]
@@ -154,6 +157,26 @@ class _Translation:
         else:
             self._loops(builder, block)
             self._fall(builder, block)
+
+    def _divide(self, builder: ir.IRBuilder, block: Block) -> None:
+        """Make all turns of a division but the last at once, where its loop begins."""
+        own = Edge(block.start, block.start, Way.REPEATS)
+        number, again = self.numbers[block.start, False, None], self.numbers.get((block.start, False, own))
+        each = self.counted[number].cclk + self.counted[number].stall_cclk
+        registers = {name: Value(builder, self._read(builder, name)) for name in DIVIDING}
+        loops = registers["LB0"].equals(block.instructions[-1].address) & registers["LT0"].equals(block.start)
+        at_once, turns = self._new("at_once"), self._new("turns")
+        builder.cbranch((loops & can_be_made(registers)).ir, at_once, turns)
+        builder.position_at_end(at_once)
+        for name, value in before_last_turn(registers).items():
+            builder.store(value.ir, self.slot(name))
+        self._add(builder, number, I64(AHEAD))
+        if again is not None:
+            self._add(builder, again, I64(AHEAD))
+            each += self.counted[again].stall_cclk
+        self._pass(builder, I64(AHEAD * each))
+        builder.branch(turns)
+        builder.position_at_end(turns)
 
     def _value(self, builder: ir.IRBuilder, register: str) -> ir.Value:
         """Return what a register is behind the instructions of the block so far."""

@@ -11,13 +11,13 @@ from bfsim.blackfin.timing import GNU, Timing
 CODE, DATA, NBYTES = 0x1000, 0x8000, 0x1000
 
 
-def processor(code: str, timing: Timing = GNU, **registers: int) -> Processor:
+def processor(code: str, timing: Timing = GNU, *, fuel: int | None = 10_000, **registers: int) -> Processor:
     """Return a core with `code` (bytes in hexadecimal) at CODE, a memory of zeros at DATA, the stack at its end, and registers."""
     space = AddressSpace()
     octets = bytes.fromhex(code)
     space.add(CODE, NBYTES).octets[: len(octets)] = np.frombuffer(octets, np.uint8)
     space.add(DATA, NBYTES)
-    found = Processor(space, timing, fuel=10_000)
+    found = Processor(space, timing, fuel=fuel)
     for name, value in {"SP": DATA + NBYTES, **registers}.items():
         found.state[name] = value
     return found
