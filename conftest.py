@@ -14,7 +14,7 @@ from contextlib import suppress
 import platformdirs
 import pytest
 
-from bfsim.__main__ import COLLECT_AFTER
+from bfsim.garbage import collect_rarely
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
@@ -30,7 +30,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """Leave what is exhaustive out of plain `pytest`; look for garbage as seldom as the commands do."""
     if is_whole(config) and not config.option.markexpr:
         config.option.markexpr = "not exhaustive"
-    gc.set_threshold(COLLECT_AFTER)
+    collect_rarely()
 
 
 def pytest_collection_finish() -> None:

@@ -5,21 +5,17 @@ Imports next to nothing, so that Ctrl-C finds somebody at home before the comman
 
 from __future__ import annotations
 
-import gc
 import os
 import signal
 import sys
 
+from bfsim.garbage import collect_rarely
 from bfsim.signals import BY_SIGNAL, hear_signals
-
-COLLECT_AFTER = 100_000
-"""So many new objects make Python look for garbage, in place of 700: nearly all live as long as the command, which took a seventh
-of its time to look through them."""
 
 
 def main() -> None:
     """Call the command line."""
-    gc.set_threshold(COLLECT_AFTER)
+    collect_rarely()
     # A stream that the shell closed (`>&-`) is None; what nobody wants to read goes nowhere.
     sys.stdout = sys.stdout or os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")
     sys.stderr = sys.stderr or os.fdopen(os.open(os.devnull, os.O_WRONLY), "w")

@@ -19,6 +19,7 @@ MAY_IMPORT = {
     "drafts": set(),
     "store": {"errors"},
     "signals": {"drafts"},
+    "garbage": set(),
     "clocks": {"errors"},
     "trace": {"errors"},
     "seen": set(),
@@ -32,7 +33,19 @@ MAY_IMPORT = {
     "kernel": {"blackfin", "errors", "machine_code", "store"},
     "compiling": {"blackfin", "errors", "kernel", "store"},
     "linker": {"file_content", "errors", "chip", "store"},
-    "machine": {"errors", "store", "signals", "clocks", "seen", "spans", "trace", "chip", "kernel", "linker"},
+    "machine": {
+        "errors",
+        "store",
+        "signals",
+        "garbage",
+        "clocks",
+        "seen",
+        "spans",
+        "trace",
+        "chip",
+        "kernel",
+        "linker",
+    },
     "api": {"chip", "compiling", "errors", "kernel", "machine", "seen", "trace"},
     "recording": {"errors", "drafts", "seen"},
     "report": {
@@ -192,7 +205,7 @@ MAY_IMPORT = {
         "verifying",
         "watchers",
     },
-    "__main__": {"cli", "endings", "signals"},
+    "__main__": {"cli", "endings", "garbage", "signals"},
 }
 MACHINE = {
     "firmware_lines": set(),

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import BoardSpec
+from bfsim.garbage import rarely_collected
 from bfsim.kernel.access_trace import AccessTrace
 from bfsim.kernel.build import ESTIMATED, Build
 from bfsim.linker import LinkMap
@@ -37,7 +38,6 @@ from bfsim.machine.core.wiring import AroundCores, parts_of
 from bfsim.machine.dma.checks import DmaSpace
 from bfsim.machine.dma.memory_dma import Dma
 from bfsim.machine.finished_frames import FinishedFrames
-from bfsim.machine.garbage import rarely_collected
 from bfsim.machine.listeners import Announcer, OnFrame, OnSeen, OnSpans, OnTime
 from bfsim.machine.loader import LoadedBuffers
 from bfsim.machine.main_loop import MainLoop

@@ -75,10 +75,11 @@ class Ahead:
 
     def note_call(self, work: Work, call: KnownCall) -> None:  # noqa: ARG002
         """Note it."""
-        accesses = work.accesses
-        first = self._access_trace.keep(accesses)
-        last = first + accesses
-        self._note(w.ACCESS, work.issue_cclk, work.stall_cclk, first, last)
+        if self._issued:
+            self._note_calls()
+        first = self._access_trace.keep(work.accesses)
+        last = first + work.accesses
+        self._noted += (w.ACCESS, work.issue_cclk, work.stall_cclk, first, last)
         if last > MOST_ACCESSES:
             self.is_full = True
 
@@ -129,8 +130,10 @@ class Ahead:
     def program_device(self, owner: str, *, writes: int, reads: int = 0) -> None:
         """Note it, or let its time pass."""
         if self.runs_ahead or self._noted:
+            if self._issued:
+                self._note_calls()
             cclk = writes * self._write_cclk + reads * self._read_cclk
-            self._note(w.SET_UP, cclk, self._account_of(owner), writes, reads)
+            self._noted += (w.SET_UP, cclk, self._account_of(owner), writes, reads)
         else:
             self._in_step.program_device(owner, writes=writes, reads=reads)
 
@@ -172,7 +175,9 @@ class Ahead:
         """Note the wait for a copy that was made ahead, and go on; else ask whether it is over."""
         if not (self.runs_ahead and isinstance(copy, int)):
             return self.has(copy)
-        self._note(w.AWAIT, self._copies - copy, COUNTER_OF[reason], self._account_of(owner))
+        if self._issued:
+            self._note_calls()
+        self._noted += (w.AWAIT, self._copies - copy, COUNTER_OF[reason], self._account_of(owner), 0)
         if len(self._noted) > MOST_WORDS:
             self.is_full = True
         return True
@@ -240,12 +245,6 @@ class Ahead:
                     self.clock.stretch(self._bus.stretches.played(self._number, len(owners)), owners)
                     first = end
                 what()
-
-    def _note(self, kind: int, one: int = 0, two: int = 0, three: int = 0, four: int = 0) -> None:
-        """Note an operation and its numbers, as in `bus.state`, behind the calls before it."""
-        if self._issued:
-            self._note_calls()
-        self._noted += (kind, one, two, three, four)
 
     def _note_calls(self) -> None:
         """Note the calls that have met nobody since the last operation, as one."""

@@ -34,7 +34,7 @@ class Core:
     def __init__(self, parts: Parts) -> None:
         self._parts = parts
         self._waits = parts.progress.waits
-        self._run = parts.tasks.run
+        self._run, self._at = parts.tasks.run, parts.pictures.at  # most that firmware asks for is these
         self.name = parts.name
         """Name of the core: A or B."""
 
@@ -135,7 +135,7 @@ class Core:
         stage; rows without columns, or no place, also until the next line of a ring over a picture as high as the camera's,
         which is the place then. It takes no cycle.
         """
-        self._parts.pictures.at(rows, columns)
+        self._at(rows, columns)
 
     def publish(self, **results: int) -> None:
         """Add numbers to the record of the current frame."""

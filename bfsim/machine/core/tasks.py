@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from typing import Any
 
 import simpy
@@ -19,6 +19,8 @@ from bfsim.machine.firmware_lines import line_at, line_of
 from bfsim.machine.memories import Row
 from bfsim.trace import REST, StallReason
 
+Charge = Callable[[Work, KnownCall], None]
+
 
 class Tasks:
     """What the firmware of core `name` does, one thing after the other."""
@@ -33,8 +35,8 @@ class Tasks:
         self._handovers = handovers
         self._events = events
         self._unclaimed: Work | None = None
-        self._call: KnownCall  # the one that was asked for last
-        self._is_traced = False  # and whether it was made ahead and has a log
+        self._call: KnownCall  # the one that was asked for last,
+        self._charge: Charge | None  # and how it is charged, if it has been made
         self._task: Generator[Any, Any, Any] | None = None  # the main loop, or the handler that came between
         self.frame_index: int | None = None
         """Index of the picture that is worked on, None between two."""
@@ -51,13 +53,12 @@ class Tasks:
         for each in call.handed_over:
             self._handovers.use(self._name, each)
         if call.stays_in_l1:
-            work = call.run(arguments)
+            self._charge = self._progress.charge_call
         elif call.is_alone and self._progress.runs_ahead:
-            self._is_traced = True
-            work = call.run(arguments)
+            self._charge = self._progress.note_call
         else:  # it may meet what others do, and runs when the simulated time is there
-            work = DeferredWork(call, arguments)
-        self._unclaimed = work
+            self._charge = None
+        work = self._unclaimed = call.run(arguments) if self._charge else DeferredWork(call, arguments)
         return work
 
     def perform(self, task: Generator[Any, Any, Any]) -> Wait:
@@ -73,16 +74,13 @@ class Tasks:
                 raise self.told(error) from error
             if item is self._unclaimed and item is not None:
                 self._unclaimed = None
-                if self._is_traced:
-                    self._is_traced = False
-                    progress.note_call(item, self._call)
+                if charge := self._charge:
+                    charge(item, self._call)
                 elif isinstance(item, DeferredWork):
                     call = self._call
                     yield from progress.sync()
                     item = self._made(item, task)
                     yield from progress.play_call(item, call)
-                else:
-                    progress.charge_call(item, self._call)
                 value = item.value
             elif isinstance(item, simpy.Event):
                 value = yield item
