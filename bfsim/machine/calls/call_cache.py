@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Generator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +70,13 @@ class KnownCall:
     stays_in_l1: bool
     is_alone: bool
     handed_over: tuple[str, ...]
+
+
+class KernelCalls(NamedTuple):
+    """The `calls` of one kernel, by the rows that `rows_of` picks out of their arguments."""
+
+    rows_of: Callable[[tuple[Row | int, ...]], object]
+    calls: dict[object, KnownCall]
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +146,7 @@ class CallCache:
         self._stack = stack
         self._groups: dict[tuple[str, Kernel, tuple[int, ...]], CallGroup] = {}
         self._in_stage: dict[str, StageGroups] = {}
-        self._calls: dict[str, dict[tuple[Kernel, object], KnownCall]] = {}
+        self._calls: dict[str, dict[Kernel, KernelCalls]] = {}
         self._count = 0
         self.on_prepared: BeforeCall = _nobody
         """Is told of each call that is prepared."""
@@ -150,7 +157,7 @@ class CallCache:
         self.stage = stage
         self._in_stage.setdefault(stage, StageGroups())
         self.known = self._calls.setdefault(stage, {})
-        """Calls of this stage by kernel and rows, ready to run."""
+        """Calls of this stage by kernel, ready to run."""
 
     def accessed(self) -> Accesses:
         """Return what the calls of the present stage have accessed in L1 since this was asked last."""
@@ -173,9 +180,9 @@ class CallCache:
         if not isinstance(kernel, Kernel):
             name = getattr(kernel, "__name__", repr(kernel))
             raise FirmwareError(f"core.run must get a function with @kernel before it, not {name}")
-        call = self.known[kernel, kernel.arrays_of(arguments)] = self._prepared(
-            kernel, arguments, was_traced=was_traced
-        )
+        call = self._prepared(kernel, arguments, was_traced=was_traced)
+        of_kernel = self.known.setdefault(kernel, KernelCalls(kernel.arrays_of, {}))
+        of_kernel.calls[kernel.arrays_of(arguments)] = call
         self._count += 1
         self.on_prepared(kernel, arguments)
         return call

@@ -34,7 +34,7 @@ class Core:
     def __init__(self, parts: Parts) -> None:
         self._parts = parts
         self._waits = parts.progress.waits
-        self._run, self._at = parts.tasks.run, parts.pictures.at  # most that firmware asks for is these
+        self._tasks, self._pictures = parts.tasks, parts.pictures  # firmware asks for these most
         self.name = parts.name
         """Name of the core: A or B."""
 
@@ -47,7 +47,7 @@ class Core:
 
     def run(self, kernel: Kernel, *arguments: Row | int) -> Work:
         """Run a kernel on rows and ints. Yield the result: the cycles are charged then, and you get its value."""
-        return self._run(kernel, arguments)
+        return self._tasks.run(kernel, arguments)
 
     @contextlib.contextmanager
     def stage(self, name: str) -> Iterator[None]:
@@ -61,7 +61,7 @@ class Core:
             self._enter(before)
 
     def _enter(self, stage: str) -> None:
-        self._parts.tasks.check_claimed()
+        self._tasks.check_claimed()
         self._parts.stages.enter(stage)
 
     # ---- memory
@@ -123,7 +123,7 @@ class Core:
     @awaited
     def next_frame(self) -> Generator[Any, Any, Frame | None]:
         """Finish the current frame and wait for the next picture; None when the recording is over."""
-        frame: Frame | None = yield from self._parts.pictures.next_frame()
+        frame: Frame | None = yield from self._pictures.next_frame()
         return frame
 
     def at(self, rows: int | range | Pixels | None = None, columns: Columns | None = None) -> None:
@@ -135,15 +135,15 @@ class Core:
         stage; rows without columns, or no place, also until the next line of a ring over a picture as high as the camera's,
         which is the place then. It takes no cycle.
         """
-        self._at(rows, columns)
+        self._pictures.at(rows, columns)
 
     def publish(self, **results: int) -> None:
         """Add numbers to the record of the current frame."""
-        self._parts.pictures.publish(**{name: index(value) for name, value in results.items()})
+        self._pictures.publish(**{name: index(value) for name, value in results.items()})
 
     def remark(self, text: str) -> None:
         """Add a sentence about the current frame to the report."""
-        self._parts.pictures.remark(text)
+        self._pictures.remark(text)
 
     def set_camera(self, settings: CameraSettings) -> None:
         """Give this core's camera new settings: its next pictures are off in brightness and colour until they have worked.
@@ -223,4 +223,4 @@ class Core:
     @awaited
     def idle(self) -> Generator[Any, Any, None]:
         """Wait for an interrupt, and let its handler run; one that was asked for already ends the wait at once."""
-        yield from self._parts.tasks.idle()
+        yield from self._tasks.idle()

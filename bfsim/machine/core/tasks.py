@@ -36,7 +36,8 @@ class Tasks:
         self._events = events
         self._unclaimed: Work | None = None
         self._call: KnownCall  # the one that was asked for last,
-        self._charge: Charge | None  # and how it is charged, if it has been made
+        self._charge: Charge | None  # and how it is charged, if it has been made:
+        self._charge_call, self._note_call = progress.charge_call, progress.note_call
         self._task: Generator[Any, Any, Any] | None = None  # the main loop, or the handler that came between
         self.frame_index: int | None = None
         """Index of the picture that is worked on, None between two."""
@@ -46,19 +47,21 @@ class Tasks:
         if self._unclaimed is not None:
             self.check_claimed()
         try:
-            call = self._calls.known[kernel, kernel.arrays_of(arguments)]
+            rows_of, calls = self._calls.known[kernel]
+            call = calls[rows_of(arguments)]
         except (LookupError, TypeError, AttributeError):  # the first time, or something is wrong
             call = self._calls.prepare(kernel, arguments)
         self._call = call
         for each in call.handed_over:
             self._handovers.use(self._name, each)
+        run = call.run
         if call.stays_in_l1:
-            self._charge = self._progress.charge_call
+            self._charge, work = self._charge_call, run(arguments)
         elif call.is_alone and self._progress.runs_ahead:
-            self._charge = self._progress.note_call
+            self._charge, work = self._note_call, run(arguments)
         else:  # it may meet what others do, and runs when the simulated time is there
-            self._charge = None
-        work = self._unclaimed = call.run(arguments) if self._charge else DeferredWork(call, arguments)
+            self._charge, work = None, DeferredWork(call, arguments)
+        self._unclaimed = work
         return work
 
     def perform(self, task: Generator[Any, Any, Any]) -> Wait:

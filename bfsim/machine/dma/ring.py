@@ -16,6 +16,8 @@ from bfsim.machine.dma.mdma import MdmaStream
 from bfsim.machine.memories import Row
 from bfsim.trace import StallReason
 
+EMPTY, FULL = StallReason.RING_EMPTY, StallReason.RING_FULL
+
 
 def _check(rows: Sequence[Row], image: Sequence[Row]) -> None:
     if not image:
@@ -61,16 +63,19 @@ class InputRing:
                 f"the ring of {self._rows[0].buffer} has no line {number}: the picture has {self._height}"
             )
         self._taken = number + 1
-        self._on_line(number, self._height)
+        timeline = progress.clock.timeline
+        if timeline:
+            self._on_line(number, self._height)
         progress.program_device(self._owner, writes=COPY_WRITES, reads=COPY_READS)
         copy = self._fetch(number) if self._coming is None else self._coming
         # one line ahead: its row is the one that the core gave up with this call
         self._coming = self._fetch(number + 1) if number + 1 < self._height else None
         progress.settle()
-        is_there = progress.goes_on(copy, StallReason.RING_EMPTY, self._owner)
-        progress.clock.tell_level(self._owner, int(is_there))
+        is_there = progress.goes_on(copy, EMPTY, self._owner)
+        if timeline:
+            progress.clock.tell_level(self._owner, int(is_there))
         if not is_there:
-            yield from progress.wait_transfer(copy, StallReason.RING_EMPTY, self._owner)
+            yield from progress.wait_transfer(copy, EMPTY, self._owner)
         return self._rows[number % self._depth]
 
     def _fetch(self, number: int) -> Copy:
@@ -107,7 +112,7 @@ class OutputRing:
         number, depth = len(self._copies), self._depth
         if number >= depth:
             progress, copy = self._progress, self._copies[number - depth]
-            why = StallReason.RING_FULL, self._owner
+            why = FULL, self._owner
             if progress.interrupts.can_come or not progress.goes_on(copy, *why):
                 yield from progress.wait_transfer(copy, *why)
         return self._rows[number % depth]
@@ -134,4 +139,4 @@ class OutputRing:
     def flush(self) -> Generator[Any, Any, None]:
         """Wait until every line that was sent has arrived."""
         if self._copies:
-            yield from self._progress.wait_transfer(self._copies[-1], StallReason.RING_FULL, self._owner)
+            yield from self._progress.wait_transfer(self._copies[-1], FULL, self._owner)
