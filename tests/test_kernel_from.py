@@ -93,6 +93,42 @@ def test_arrays_in_the_memory_of_a_board_are_not_copied() -> None:
     assert (space.at(space.window(memory) + 4096, len(ROW)) == ROW).all()
 
 
+def test_integers_of_any_kind_are_handed_over() -> None:
+    """Those of numpy, and -1, which the C interface of Python returns for a mistake, too."""
+    out = np.zeros(len(ROW), np.int32)
+    assert sums()(ROW, out, np.int16(len(ROW)), np.uint8(2)) == expected(ROW).sum()
+    assert sums()(ROW, out, -1, 2) == 0
+
+
+@pytest.mark.parametrize("count", [2.0, "2", None, 2**31, -(2**31) - 1, 2**70])
+def test_what_is_no_integer_of_32_bits_is_refused(count: object) -> None:
+    """So are arguments too few and too many; the next call is made."""
+    kernel = sums()
+    code, out = kernel.compile(GCC_O2), np.zeros(len(ROW), np.int32)
+    call = kernel.prepare(code, [ROW, out], code.new_totals())
+    with pytest.raises(KernelError, match=r"n must be an int in -2147483648..2147483647, not "):
+        call.run((ROW, out, count, 2))
+    for wrong in ((ROW, out, 5), (ROW, out, 5, 2, 1)):
+        with pytest.raises(
+            KernelError, match=f"sums must get row, out, n, first, not {len(wrong)} arguments"
+        ):
+            call.run(wrong)
+    assert call.run((ROW, out, len(ROW), 2)).value == expected(ROW).sum()
+
+
+def test_a_float_is_handed_over_as_the_bits_of_a_single() -> None:
+    """What no single can hold is refused."""
+    kernel = kernel_from(DATA / "sums.o", "sums", row=u8[:], out=i32[:], n=f32, first=i32, result=i32)
+    out = np.zeros(len(ROW), np.int32)
+    assert (
+        kernel(ROW, out, len(ROW) * 2.0**-149, 2) == expected(ROW).sum()
+    )  # the least single has the bits of 1
+    assert kernel(ROW, out, -1.0, 2) == 0
+    for wrong in (1e39, "1", True):
+        with pytest.raises(KernelError, match="n must be"):
+            kernel(ROW, out, wrong, 2)
+
+
 def test_a_window_is_there_for_as_long_as_its_memory() -> None:
     """Two memories have windows of their own; the next one takes the place of one that is gone."""
     space = AddressSpace()

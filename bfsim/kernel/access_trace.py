@@ -100,7 +100,7 @@ class AccessTrace:
         self._kept = 0
         self._state[TAGS:LOG] = EMPTY
         self._state[ARENA], self._state[END] = arena.ctypes.data, arena.ctypes.data + traced_nbytes
-        self._state[ROOM] = (len(room) - LOG) // ENTRY_WORDS
+        self._room = self._state[ROOM] = (len(room) - LOG) // ENTRY_WORDS
         if size and cached:
             self._state[LINE_BITS], self._state[SETS], self._state[WAYS] = (
                 size.line_bytes.bit_length() - 1,
@@ -120,12 +120,16 @@ class AccessTrace:
             self._state[FUNCTION] = trace_access.address()
         return int(self._state.ctypes.data)
 
+    def logs(self, address: int) -> bool:
+        """Whether accesses to memory at a host address are logged: whether it is outside of L1."""
+        return bool(self._state[ARENA] <= address < self._state[END])
+
     def take_count(self) -> int:
         """Return how many accesses the last call logged, and begin the log anew behind what is kept."""
         words, kept = self._words, self._kept
         count: int = words[ENTRIES] - kept
         words[ENTRIES] = kept
-        if count > words[ROOM] - kept:
+        if count > self._room - kept:
             self._check_room(count)
         return count
 
@@ -146,14 +150,14 @@ class AccessTrace:
 
     def sites(self, count: int) -> NDArray[np.int64]:
         """Return the sites of these entries."""
-        first = LOG + int(self._state[ROOM]) + self._kept
+        first = LOG + self._room + self._kept
         return self._state[first : first + count]
 
     def add(self, count: int, entry: int, site: int) -> int:
         """Add an entry behind the `count` of the last call; return the new count."""
         self._check_room(count + 1)
         first, words = LOG + self._kept + count, self._words
-        words[first], words[first + words[ROOM]] = entry, site
+        words[first], words[first + self._room] = entry, site
         return count + 1
 
     def insert(self, count: int, entries: NDArray[np.int64], sites: NDArray[np.int64]) -> int:
@@ -168,7 +172,7 @@ class AccessTrace:
         return total
 
     def _check_room(self, count: int) -> None:
-        room = self._words[ROOM] - self._kept
+        room = self._room - self._kept
         if count > room:
             raise KernelError(
                 f"a kernel call must access memory outside L1 at most {room} times, not {count} times: split it"

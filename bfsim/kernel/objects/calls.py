@@ -67,6 +67,7 @@ class ObjectCall:
             followed = [
                 Followed(address, array.nbytes, array.ctypes.data, first_site + number)
                 for number, (address, array) in enumerate(zip(addresses, arrays, strict=True))
+                if access_trace.logs(array.ctypes.data)
             ]
             if stack is not None:
                 followed.append(_followed_stack(stack, first_site + len(arrays)))
