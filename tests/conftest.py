@@ -22,13 +22,20 @@ settings.register_profile("search", deadline=None)  # others every time
 settings.load_profile("bfsim")
 
 PATH = os.environ["PATH"]
-WHOLE_COMMANDS = (Path(__file__).parent, Path(__file__).parent / "cli")
+TESTS = Path(__file__).parent
+WHOLE_COMMANDS = (TESTS, TESTS / "cli")
 """Folders of tests that do what users do."""
+COMPILES = TESTS / "firmware" / "test_areas.py"
+"""Its first test compiles the built-in firmware as it is estimated, which takes twenty seconds."""
 
 
 @pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
-    """Try few examples of a property in plain `pytest`, unless it says how many; what is exhaustive has all of them."""
+    """Try few examples of a property in plain `pytest`, unless it says how many; what is exhaustive has all of them.
+
+    Numpy and SciPy keep to one core in each of the workers, which begin after this: together they have all.
+    """
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if config.option.markexpr == "not exhaustive" and not config.getoption("--hypothesis-profile"):
         settings.load_profile("few")
 
@@ -47,11 +54,13 @@ def no_terminal() -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Begin with the tests of whole commands, the longest ones: at the end no core then waits for the other.
+    """Begin with what compiles: later both cores would, at the same time. Then come whole commands, the longest tests.
+
+    So at the end no core waits for the other.
 
     Properties that plain `pytest` tries on few examples are tried on all where what is exhaustive is asked for.
     """
-    items.sort(key=lambda item: item.path.parent not in WHOLE_COMMANDS)
+    items.sort(key=lambda item: (item.path != COMPILES, item.path.parent not in WHOLE_COMMANDS))
     for item in items if config.option.markexpr == "exhaustive" else ():
         if leaves_examples_open(getattr(item, "obj", None)):
             item.add_marker(pytest.mark.exhaustive)
