@@ -16,14 +16,14 @@ COMMANDS = (
     "bfsim run",
     "ruff check .",
     "ruff format --check .",
-    "mypy --strict bfsim",
     "pip install -e .[docs]",
     "mkdocs build --quiet",
+    "mypy --strict bfsim",
     "passed on other Pythons",
     "pytest",
     "pytest -m exhaustive",
 )
-"""What is called, in this order; other Pythons are tried beside them, and tell at the end of that."""
+"""What is called, in the order in which it tells: types and other Pythons are tried beside the rest, and tell before the tests."""
 
 SAYS_IT = """#!/bin/sh
 said=$(echo "$(basename "$0") $*" | sed "s/ --site-dir.*//; s/ $//")
