@@ -107,7 +107,7 @@ class Code:
             waiting += found
             if does(instruction) not in self._never_on:
                 waiting.append(instruction.end)
-            if _is_clocked(instruction):
+            if is_clocked(instruction):
                 leaders.add(address)
         for end, _ in self.loop_starts:
             if isinstance(last := self._decoded.get(end), Instruction) and last.end in self._decoded:
@@ -154,5 +154,6 @@ def does(instruction: Instruction) -> str:
     return instruction.operations[0].form.does
 
 
-def _is_clocked(instruction: Instruction) -> bool:
+def is_clocked(instruction: Instruction) -> bool:
+    """Whether an instruction must know the cycles of what was executed before it."""
     return not CLOCKED.isdisjoint(map(str, instruction.operations[0].operands.values()))

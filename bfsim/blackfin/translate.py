@@ -16,17 +16,18 @@ from llvmlite import ir
 
 from bfsim.blackfin.blocks import Block, Code
 from bfsim.blackfin.counters import Counted
+from bfsim.blackfin.counts import POINTER, add, sum_of, work_out
 from bfsim.blackfin.decode import Instruction
 from bfsim.blackfin.divisions import AHEAD, DIVIDING, before_last_turn, can_be_made, divides
 from bfsim.blackfin.effects import I8, I32, I64, Effects, Flow
 from bfsim.blackfin.event import Event
 from bfsim.blackfin.flow import Edge, Way
+from bfsim.blackfin.implied import implied
 from bfsim.blackfin.registers import SLOTS, width
 from bfsim.blackfin.semantics import SEMANTICS
 from bfsim.blackfin.tracing import Tracing
 from bfsim.blackfin.value import Value
 
-POINTER = ir.PointerType()
 REPORT = ir.FunctionType(ir.VoidType(), (POINTER, I64, I64, I64, I64))
 ALWAYS_READ = frozenset({"PC", "CLOCK", "WAITED"})
 LARGE_PROGRAM_BLOCKS = 500
@@ -85,11 +86,12 @@ class _Translation:
         self.is_large = is_large(of.code)
         self.slots: dict[str, ir.Instruction] = {}
         self.values: dict[str, ir.Value] = {}
-        self.clock = _sum(self.made, "clock", [each.cclk + each.stall_cclk for each in counted])
-        self.waited = _sum(self.made, "waited", [each.stall_cclk for each in counted])
+        self.clock = sum_of(self.made, "clock", [each.cclk + each.stall_cclk for each in counted])
+        self.waited = sum_of(self.made, "waited", [each.stall_cclk for each in counted])
         self.numbers = {
             (each.block.start, each.taken, each.along): number for number, each in enumerate(counted)
         }
+        self.implied = {} if fuel else {each.block: each for each in implied(of.code)}
 
     def module(self) -> ir.Module:
         entry = ir.IRBuilder(self.entry)
@@ -124,10 +126,7 @@ class _Translation:
         self.values.clear()
         self.misaligned = None
         written: dict[str, None] = {}
-        if self.fuel:
-            self._burn(builder, block.start)
-        elif divides(block):
-            self._divide(builder, block)
+        self._begin(builder, block)
         flow: Flow | None = None
         cclk = 0
         number = self.numbers[block.start, False, None]
@@ -143,7 +142,8 @@ class _Translation:
             self._hold_aligned(builder, block.start, self.misaligned)
         for register in written:
             builder.store(self.values[register], self.slot(register))
-        self._add(builder, number, I64(1))
+        if block.start not in self.implied:
+            self._add(builder, number, I64(1))
         self._pass(builder, I64(cclk))
         if flow and flow.condition and block.branches:
             taken = flow.condition.zero_extended(64)
@@ -157,6 +157,13 @@ class _Translation:
         else:
             self._loops(builder, block)
             self._fall(builder, block)
+
+    def _begin(self, builder: ir.IRBuilder, block: Block) -> None:
+        """Do what comes before the instructions of a block."""
+        if self.fuel:
+            self._burn(builder, block.start)
+        elif divides(block):
+            self._divide(builder, block)
 
     def _divide(self, builder: ir.IRBuilder, block: Block) -> None:
         """Make all turns of a division but the last at once, where its loop begins."""
@@ -324,8 +331,7 @@ class _Translation:
         builder.store(builder.sub(left, I64(1)), self.slot("FUEL"))
 
     def _add(self, builder: ir.IRBuilder, number: int, amount: ir.Value) -> None:
-        place = builder.gep(self.counts, [I64(8 * number)], source_etype=I8)
-        builder.store(builder.add(builder.load(place, typ=I64, align=8), amount), place, align=8)
+        add(builder, self.counts, number, amount)
 
     def _clock(self, builder: ir.IRBuilder) -> Value:
         """Add up the cycles of all that was executed: those before this call, and those of the counts; a function adds up these."""
@@ -350,6 +356,7 @@ class _Translation:
     def _leave(self) -> None:
         """Give back the registers that are read: LLVM need not keep what others hold, which is most of the flags."""
         builder = ir.IRBuilder(self.leave)
+        work_out(builder, self.counts, self.implied.values(), self.numbers)
         builder.store(self._clock(builder).ir, self.slot("CLOCK"))
         builder.store(builder.call(self.waited, [self.counts]), self.slot("WAITED"))
         for name, slot in self._copied():
@@ -375,18 +382,3 @@ class _Translation:
 
     def _place(self, builder: ir.IRBuilder, register: str) -> ir.Value:
         return builder.gep(self.state, [I64(8 * SLOTS[register])], source_etype=I8)
-
-
-def _sum(module: ir.Module, name: str, factors: list[int]) -> ir.Function:
-    """Add a function that returns the sum of all counts, each times its factor."""
-    function = ir.Function(module, ir.FunctionType(I64, (POINTER,)), name)
-    function.linkage = "internal"
-    builder = ir.IRBuilder(function.append_basic_block())
-    total = I64(0)
-    for number, factor in enumerate(factors):
-        if not factor:
-            continue
-        place = builder.gep(function.args[0], [I64(8 * number)], source_etype=I8)
-        total = builder.add(total, builder.mul(builder.load(place, typ=I64, align=8), I64(factor)))
-    builder.ret(total)
-    return function
