@@ -80,11 +80,16 @@ def owner_for(state: State, core: int, offset: int, site: int) -> int:
     """Return who owns the memory that an access of a core's site is for: no buffer, if no kernel makes it."""
     if site == w.NO_SITE:
         return w.NO_BUFFER_IN_SDRAM if offset < state[w.SDRAM_END] else w.NO_BUFFER_IN_L2
-    row = site_at(core, site)
+    return state[w.PIECES_AT + w.MAX_PIECES + piece_for(state, site_at(core, site), offset)]
+
+
+@native
+def piece_for(state: State, row: int, offset: int) -> int:
+    """Return the number of the piece of memory that `offset` is in, and keep it for the site at `row`."""
     piece = state[row + w.PIECE]
     if not state[w.PIECES_AT + piece] <= offset < state[w.PIECES_AT + piece + 1]:
         piece = state[row + w.PIECE] = piece_of(state, offset)
-    return state[w.PIECES_AT + w.MAX_PIECES + piece]
+    return piece
 
 
 @native

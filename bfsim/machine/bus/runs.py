@@ -7,7 +7,7 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.bus.sdram import access, hits_ahead, stream
 from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.traffic import count_access, count_traffic, traffic_at
-from bfsim.machine.bus.transfers import after_move, moved
+from bfsim.machine.bus.transfers import after_move, moved, soonest_wake
 
 
 @native
@@ -21,10 +21,21 @@ def alone_until(state: State, number: int, until: int) -> int:
 
 
 @native
-def l2_alone_until(state: State, number: int, until: int) -> int:
-    """Until when a master has the port of L2 to itself: nobody asks for anything before, nor is woken, to ask for it then."""
+def l2_left_until(state: State, number: int, until: int) -> int:
+    """Until when the DMAs but `number` leave the port of L2 to others: none asks for it before, nor wakes anybody, to ask for it then."""
     limit = until
-    for other in range(w.MASTERS):
+    for other in range(w.STORES_A):
+        if other != number:
+            master = w.MASTERS_AT + other
+            limit = min(limit, state[master + w.READY] if other >= w.IMDMA_0 else soonest_wake(state, master))
+    return limit
+
+
+@native
+def l2_alone_until(state: State, number: int, until: int) -> int:
+    """Until when a master has the port of L2 to itself."""
+    limit = l2_left_until(state, number, until)
+    for other in range(w.STORES_A, w.MASTERS):
         if other != number:
             limit = min(limit, state[w.MASTERS_AT + other + w.READY])
     return limit

@@ -60,6 +60,20 @@ def next_on_chip(state: State, master: int, transfer: int) -> None:
 
 
 @native
+def soonest_wake(state: State, master: int) -> int:
+    """Return a tick before which a master wakes nobody by the end of a transfer, or of a row of it: it moves an element a cycle at most."""
+    if state[master + w.TRANSFER] == w.NONE:
+        return w.NEVER
+    transfer = w.TRANSFERS_AT + state[master + w.TRANSFER] * w.TRANSFER_WORDS
+    wakes, ready = state[transfer + w.WAKE], state[master + w.READY]
+    if wakes == w.AT_ROWS or state[transfer + w.MODE] == w.ON_CHIP:
+        return ready
+    if wakes == 0 and state[transfer + w.NEXT] == w.NONE:
+        return w.NEVER
+    return ready + (state[transfer + w.LEFT] - 1) * state[w.SCLK]
+
+
+@native
 def moved(state: State, memory: Memory, transfer: int, count: int) -> None:
     """Move the bytes of `count` elements, and count what goes to and from L1."""
     count_in_l1(state, transfer, count)

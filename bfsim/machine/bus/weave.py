@@ -18,7 +18,9 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.bus.camera_words import take_hits
 from bfsim.machine.bus.core_requests import serve_core, serve_stores, start_jobs
 from bfsim.machine.bus.dma_requests import serve_dma
+from bfsim.machine.bus.fetch_requests import fetch_ahead
 from bfsim.machine.bus.pacing import arrival
+from bfsim.machine.bus.runs import l2_left_until
 from bfsim.machine.bus.sdram import hold_up
 from bfsim.machine.bus.state import Memory, State
 from bfsim.machine.bus.stretches import act, resume, who_acts
@@ -115,24 +117,35 @@ def serve_cameras(state: State, memory: Memory, number: int, at: int, until: int
 
 
 @native
-def serve_cores(state: State, number: int, at: int, until: int) -> int:
-    """Serve a core, and then the accesses of both that come before a DMA can want anything; return who is woken.
+def serve_cores(state: State, until: int) -> int:
+    """Serve the cores for as long as no DMA comes between; return who is woken.
 
-    Where buffers lie outside of L1 most requests are theirs; this saves looking at everybody each time.
+    At the port of L2 they go ahead of the DMAs that use the SDRAM bus: neither keeps the other waiting. Where buffers or code lie
+    outside of L1 most requests are the cores'; this saves looking at everybody each time.
     """
-    limit = until
+    number, at = first_request(state, w.STORES_A, until)
+    if number == w.NONE:
+        return w.NONE
+    l2_until, sdram_until = l2_left_until(state, w.NONE, until), until
     for other in range(w.STORES_A):
-        limit = min(limit, state[w.MASTERS_AT + other + w.READY])
-    while True:
-        if number >= w.CORE_A:
-            woken = serve_core(state, number - w.CORE_A, at, until)
-        else:
-            woken = serve_stores(state, number - w.STORES_A, at)
-        if woken != w.NONE:
-            return woken
-        number, at = first_request(state, w.STORES_A, limit)
-        if number == w.NONE or (state[w.MASTERS_AT + number + w.USES] == w.SDRAM and hold_up(state, at)):
+        sdram_until = min(sdram_until, state[w.MASTERS_AT + other + w.READY])
+    while number != w.NONE and at < l2_until:
+        if state[w.MASTERS_AT + number + w.USES] == w.SDRAM and (at >= sdram_until or hold_up(state, at)):
             return w.NONE
+        if number < w.CORE_A or not fetch_ahead(state, number - w.CORE_A, at, l2_until):
+            woken = serve_core_or_stores(state, number, at, l2_until)
+            if woken != w.NONE:
+                return woken
+        number, at = first_request(state, w.STORES_A, l2_until)
+    return w.NONE
+
+
+@native
+def serve_core_or_stores(state: State, number: int, at: int, until: int) -> int:
+    """Serve what a core waits for, or its store buffer; return who is woken."""
+    if number >= w.CORE_A:
+        return serve_core(state, number - w.CORE_A, at, until)
+    return serve_stores(state, number - w.STORES_A, at)
 
 
 @native
@@ -141,7 +154,7 @@ def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int
     if number <= w.PPI1 and not state[w.DEB_PERIOD]:
         return serve_cameras(state, memory, number, at, until)
     if number >= w.STORES_A:
-        return serve_cores(state, number, at, until)
+        return serve_core_or_stores(state, number, at, until)
     return serve_dma(state, memory, number, at, until)
 
 
@@ -149,6 +162,9 @@ def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int
 def grant(state: State, memory: Memory, until: int) -> int:
     """Grant all requests before tick `until`, in order; return early with who is woken, at tick DONE_AT, else NONE."""
     while True:
+        woken = serve_cores(state, until)
+        if woken != w.NONE:
+            return woken
         first, at = first_request(state, w.PPI0, until)
         if first == w.NONE:
             return w.NONE
