@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Generator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,11 +72,8 @@ class KnownCall:
     handed_over: tuple[str, ...]
 
 
-class KernelCalls(NamedTuple):
-    """The `calls` of one kernel, by the rows that `rows_of` picks out of their arguments."""
-
-    rows_of: Callable[[tuple[Row | int, ...]], object]
-    calls: dict[object, KnownCall]
+KernelCalls = tuple[Callable[[tuple[Row | int, ...]], object], dict[object, KnownCall]]
+"""What picks the rows out of the arguments of a kernel, and its calls by them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,8 +178,8 @@ class CallCache:
             name = getattr(kernel, "__name__", repr(kernel))
             raise FirmwareError(f"core.run must get a function with @kernel before it, not {name}")
         call = self._prepared(kernel, arguments, was_traced=was_traced)
-        of_kernel = self.known.setdefault(kernel, KernelCalls(kernel.arrays_of, {}))
-        of_kernel.calls[kernel.arrays_of(arguments)] = call
+        rows_of, calls = self.known.setdefault(kernel, (kernel.arrays_of, {}))
+        calls[rows_of(arguments)] = call
         self._count += 1
         self.on_prepared(kernel, arguments)
         return call

@@ -66,7 +66,7 @@ class Ledger:
         self._event_count, self._site_count = 0, w.NO_SITE + 1
         self._owners: dict[Owner, int] = {}
         self._charges: list[tuple[Rows, Rows, Rows]] = []
-        """Of each group: events, their owners, and what each costs that owner in CHARGED."""
+        """Of each group, or by owners of all that were there at the end of a frame: events, their owners, and what each costs that owner in CHARGED."""
         self._site_owners: list[int] = [0] * self._site_count
         self._before = self.snapshot()
         self.reported = self._before
@@ -115,16 +115,24 @@ class Ledger:
     def close(self, now: Snapshot) -> tuple[Sequence[Owner], Rows]:
         """Return the kernels in each stage, and what they cost since the last time: rows of an `OwnerCosts` table."""
         counted, self._before = now.since(self._before), now
-        if len(self._charges) > 1:
-            events, owners, each = map(np.concatenate, zip(*self._charges, strict=True))
-            self._charges = [(events, owners, each)]
         costs = np.zeros((len(self._owners), COLUMNS), np.int64)
-        for events, owners, each in self._charges:
-            np.add.at(costs, (owners[:, np.newaxis], CHARGED), counted.events[events, np.newaxis] * each)
+        if self._charges:
+            events, owners, each = self._charges_by_owner()
+            begins = np.flatnonzero(np.diff(owners, prepend=-1))  # add.at is slow: few rows are left for it
+            charged = np.add.reduceat(counted.events[events, np.newaxis] * each, begins)
+            np.add.at(costs, (owners[begins, np.newaxis], CHARGED), charged)
         stalled = np.flatnonzero(counted.sites[:, :FILLS].any(axis=1))
-        owners = np.array(self._site_owners)[stalled]
+        owners = np.array([self._site_owners[site] for site in stalled.tolist()], np.int64)
         np.add.at(costs, (owners[:, np.newaxis], SITE_COLUMNS), counted.sites[stalled, :FILLS])
         return tuple(self._owners), costs
+
+    def _charges_by_owner(self) -> tuple[Rows, Rows, Rows]:
+        """Return what events cost in the order of their owners."""
+        if len(self._charges) > 1:
+            events, owners, each = map(np.concatenate, zip(*self._charges, strict=True))
+            order = np.argsort(owners, kind="stable")
+            self._charges = [(events[order], owners[order], each[order])]
+        return self._charges[0]
 
 
 def stalls_by_reason(interlocks_cclk: int, at_sites: Sequence[int]) -> dict[StallReason, int]:
