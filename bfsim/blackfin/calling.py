@@ -256,17 +256,13 @@ class _Method(ctypes.Structure):
 
 
 @cache
-def _method() -> _Method:
+def _maker() -> Callable[[int], Callable[..., int]]:
+    """Return what makes a built-in function for the words at an address."""
     machine_code.add(native_code(MODULE))
-    return _Method(ENTRY.encode(), machine_code.address_of(ENTRY), METH_FASTCALL, None)
-
-
-def _bound(block: int) -> Callable[..., int]:
-    """Return the built-in function for the words at an address."""
-    make = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p)
-    new = make(("PyCFunction_NewEx", ctypes.pythonapi))
-    function: Callable[..., int] = new(ctypes.addressof(_method()), block, None)
-    return function
+    method = _Method(ENTRY.encode(), machine_code.address_of(ENTRY), METH_FASTCALL, None)
+    kind = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p)
+    new: Any = kind(("PyCFunction_NewEx", ctypes.pythonapi))
+    return lambda block: new(ctypes.addressof(method), block, None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -327,7 +323,7 @@ class BoundCall:
             values += each.address, each.copy, each.nbytes, each.nbytes * each.is_written
         self._block = (ctypes.c_int64 * len(values))(*values)
         self.result = head[STATE] + 8 * SLOTS[RESULT]
-        self.entry = _bound(ctypes.addressof(self._block))
+        self.entry = _maker()(ctypes.addressof(self._block))
 
     def refuse(self, outcome: int) -> NoReturn:
         """Raise KernelError for what `entry` has returned of a call that did not return."""

@@ -132,7 +132,7 @@ class SingleFetches:
 
     def add(self, work: Work) -> int:
         """Add as many as code has been executed since the last time."""
-        before, self._executed = self._executed, int(self._totals @ self._nbytes)
+        before, self._executed = self._executed, int(self._totals.dot(self._nbytes))
         count = -(-(self._executed - before) // FETCH_BYTES)
         if not count:
             return work.accesses

@@ -144,11 +144,9 @@ class CoreRecords:
         total = 0
         for group, events in _counted(self._groups, self._counted):
             if not of_objects or _is_object(group):
-                total += sum(
-                    events[number] * issue_cclk
-                    for number, _, counter in group.counted()
-                    for _, issue_cclk, _ in counter.line_cclk
-                )
+                _, counter, _, costs = group.code.program.routine_costs
+                _, issue_cclk, _ = costs.T
+                total += int(events[counter].dot(issue_cclk))
         return total
 
     @cached_property
@@ -166,12 +164,11 @@ def _is_object(group: CallGroup) -> bool:
     return not isinstance(group.code, CompiledKernel)
 
 
-def _counted(groups: Iterable[CallGroup], counted: Snapshot) -> Iterator[tuple[CallGroup, list[int]]]:
+def _counted(groups: Iterable[CallGroup], counted: Snapshot) -> Iterator[tuple[CallGroup, NDArray[np.int64]]]:
     """Yield the groups with the events of their counters. Those that came behind the counted moment are left out."""
     for group in groups:
         if group.first_event < len(counted.events):
-            events = counted.events[group.first_event :][: len(group.code.counters)]
-            yield group, events.tolist()
+            yield group, counted.events[group.first_event :][: len(group.code.counters)]
 
 
 class _Sums:
@@ -181,7 +178,7 @@ class _Sums:
         self.kernels: dict[tuple[str, str], _Kernel] = {}
         self.paths: dict[tuple[str, tuple[str, ...]], _Path] = defaultdict(_Path)
         for group, events in _counted(groups, counted):
-            self._add_events(group, events)
+            self._add_events(group, events.tolist())
             self._add_stalls(group, counted.sites[group.first_site :])
 
     def _kernel(self, group: CallGroup, symbol: str) -> _Kernel:
