@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cache
 
-from bfsim.kernel.emit import InlinedCall
+from bfsim.kernel.emit_values import InlinedCall
 from bfsim.kernel.function import Function
 from bfsim.kernel.gimple_size import RETURN_TIME, Estimate, estimate
 from bfsim.kernel.keys import compiled_with
