@@ -63,9 +63,24 @@ def read_sweep(path: Path, scripts: Path) -> list[Point]:
     except (ValueError, RecursionError) as error:
         raise ConfigError(f"{path} must be TOML: {cut(str(error))}") from error
     try:
-        return list(_points(plain, path.parent, scripts))
+        points = list(_points(plain, path.parent, scripts))
+        _require_apart(points)
     except ConfigError as error:
         raise ConfigError(f"{path}: {error}") from error
+    return points
+
+
+def _require_apart(points: Sequence[Point]) -> None:
+    """Raise ConfigError where two points are the same, or are called the same and differ in more than the recording."""
+    settings, known = dict[str, Options](), set[tuple[str, object]]()
+    for point in points:
+        setting = {key: value for key, value in point.options.items() if key != RECORDING}
+        if settings.setdefault(point.setting, setting) != setting:
+            raise ConfigError(f"what differs must have names that differ, and two are {shown(point.name)}")
+        run = point.setting, point.options.get(RECORDING)
+        if run in known:
+            raise ConfigError(f"a point must be there once, not twice: {shown(point.name)}")
+        known.add(run)
 
 
 def _points(plain: Mapping[str, Any], folder: Path, scripts: Path) -> Iterator[Point]:
@@ -160,7 +175,7 @@ def _tables(tables: object, where: str) -> Iterator[_Choice]:
 
 
 def _files(patterns: Sequence[object], folder: Path) -> list[object]:
-    """Return files for patterns such as drives/*.mcap, sorted; what is no pattern stays as it is."""
+    """Return files for patterns such as drives/*.mcap, sorted, each once; what is no pattern stays as it is."""
     files: list[object] = []
     for each in patterns:
         if not isinstance(each, str) or not glob.has_magic(each) or (folder / each).exists():
@@ -170,4 +185,4 @@ def _files(patterns: Sequence[object], folder: Path) -> list[object]:
         if not found:
             raise ConfigError(f"{AXES}.{RECORDING} must match a file, and {shown(each)} matches none")
         files += found
-    return files
+    return list({repr(each): each for each in files}.values())
