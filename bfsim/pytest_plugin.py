@@ -5,7 +5,8 @@ Nothing is imported until a test asks for the fixture.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 MARK = "frame_budget"
 
 _RUNS = pytest.StashKey[dict[str, "Result"]]()
+_IS_HELD = pytest.StashKey[bool]()
+"""Whether a run of the test was held against its marker."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -33,17 +36,32 @@ def pytest_configure(config: pytest.Config) -> None:
     config.stash[_RUNS] = {}
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, object]:
+    """Fail a test with a marker of its own that ran no firmware: nothing was held against its limits."""
+    result = yield
+    if any(each.name == MARK for each in pyfuncitem.own_markers) and _IS_HELD not in pyfuncitem.stash:
+        pytest.fail(
+            f"@pytest.mark.{MARK} must be of a test that runs firmware by the fixture `bfsim`; this one ran none",
+            pytrace=False,
+        )
+    return result
+
+
 @pytest.fixture
 def bfsim(request: pytest.FixtureRequest) -> Callable[..., Run]:
     """Return `bfsim.run.simulate`, which runs the same configuration once a session, and fails the test if a run breaks its `frame_budget`."""
     from bfsim.result import Run
 
-    marks = list(request.node.iter_markers(MARK))
-    required = [sentence for mark in marks for sentence in _sentences(*mark.args, **mark.kwargs)]
+    with _mistakes_of_the_marker():
+        required = [each for mark in request.node.iter_markers(MARK) for each in _sentences(mark)]
 
     def run(*recording: Any, **what: Any) -> Run:
         result = _once(request.config, *recording, **what)
-        if broken := _broken(result, required):
+        with _mistakes_of_the_marker():
+            broken = _broken(result, required)
+        request.node.stash[_IS_HELD] = True
+        if broken:
             pytest.fail(broken, pytrace=False)
         assert isinstance(result.run, Run)
         return result.run
@@ -110,12 +128,39 @@ def _result(*recording: Any, on_seen: Callable[[SeenFrame], None] | None = None,
     return result_of(simulate(*recording, on_seen=note, **what), seen)
 
 
-def _sentences(
-    *require: str, min_hz: float | None = None, stages: Mapping[str, float] | None = None
-) -> list[str]:
-    """Return what a marker says as sentences of `bfsim check`."""
-    rate = [f"frame_rate >= {min_hz:f} Hz"] if min_hz is not None else []
-    return [*require, *rate, *(f'"{stage}".max <= {ms:f} ms' for stage, ms in (stages or {}).items())]
+@contextmanager
+def _mistakes_of_the_marker() -> Iterator[None]:
+    """Fail the test with what is wrong in its marker, without the code that found it."""
+    from bfsim.errors import ConfigError
+
+    try:
+        yield
+    except ConfigError as error:
+        pytest.fail(str(error), pytrace=False)
+
+
+def _sentences(mark: pytest.Mark) -> list[str]:
+    """Return what a marker says as sentences of `bfsim check`; raise ConfigError for what it must not say."""
+    from bfsim.errors import ConfigError, cut
+
+    unknown = [each for each in mark.kwargs if each not in {"min_hz", "stages"}]
+    if unknown:
+        raise ConfigError(f"@pytest.mark.{MARK}: {cut(unknown[0])} must be min_hz or stages")
+    min_hz, stages = mark.kwargs.get("min_hz"), mark.kwargs.get("stages") or {}
+    if not isinstance(stages, Mapping):
+        raise ConfigError(f'@pytest.mark.{MARK}: stages must be a table such as {{"Edge detection": 90}}')
+    rate = [] if min_hz is None else [f"frame_rate >= {_number(min_hz, 'min_hz')} Hz"]
+    most = [f'"{stage}".max <= {_number(ms, "stages")} ms' for stage, ms in stages.items()]
+    return [*mark.args, *rate, *most]
+
+
+def _number(value: object, what: str) -> str:
+    """Return a number as a sentence has it; raise ConfigError for anything else."""
+    from bfsim.errors import ConfigError, shown
+
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ConfigError(f"@pytest.mark.{MARK}: {what} must be a number, not {shown(value)}")
+    return f"{value:f}"
 
 
 def _broken(result: Result, required: list[str]) -> str:

@@ -35,6 +35,26 @@ def test_broken(bfsim):
 def test_misspelt(bfsim):
     bfsim(frames=1)
 
+@pytest.mark.frame_budget(stages={"Edge detektion": 90})
+def test_another_stage(bfsim):
+    bfsim(frames=1)
+
+@pytest.mark.frame_budget(min_hz="15")
+def test_no_number(bfsim):
+    bfsim(frames=1)
+
+@pytest.mark.frame_budget(max_ms=3)
+def test_another_limit(bfsim):
+    bfsim(frames=1)
+
+@pytest.mark.frame_budget(min_hz=5)
+def test_that_runs_nothing(bfsim):
+    pass
+
+@pytest.mark.frame_budget(min_hz=5)
+def test_without_the_fixture():
+    pass
+
 def test_kept_limits(bfsim_check):
     runs = bfsim_check("budget.toml", "kept")
     assert list(runs) == ["kept"] and runs["kept"].frames
@@ -79,7 +99,7 @@ def suite(folder: Path, *options: str) -> str:
 def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     """The text of the failure is what broke, stages, kernels and lines, and the screen; in one process and in two workers."""
     told = suite(tmp_path, *options)
-    assert "3 failed, 4 passed" in told
+    assert "6 failed, 4 passed, 2 errors" in told
     assert "FAILED: faster than light: " in told
     assert "FAILED: kept" not in told
     assert "frame_rate must be >= 990.00 Hz, not " in told
@@ -93,6 +113,11 @@ def test_fixture_and_marker(tmp_path: Path, options: list[str]) -> None:
     lines = " ".join(told.split())
     assert "a frame (of one frame, with the wait for its picture): bound by core A's Edge detection" in lines
     assert "the unit of latency must be cycles or s or ms or us, not 'parsecs'" in told
+    assert '"Edge detektion" must be something that the run has; the nearest are "Edge detection"' in told
+    assert "@pytest.mark.frame_budget: min_hz must be a number, not '15'" in told
+    assert "@pytest.mark.frame_budget: max_ms must be min_hz or stages" in told
+    assert told.count("must be of a test that runs firmware by the fixture `bfsim`; this one ran none") >= 2
+    assert "pytest_plugin.py:" not in told  # a mistake in a marker is told without the code that found it
 
 
 def test_who_does_not_use_it_does_not_wait_for_it() -> None:
