@@ -191,9 +191,9 @@ def test_waits_for_others_only_follow() -> None:
 
 
 def test_kernels_that_came_and_went() -> None:
-    """Both are in full."""
+    """Both are in full, where their texts have nothing in common."""
     before = run(kernel(line(12, 1, 10), name="slow"))
-    after = run(kernel(line(12, 1, 4), name="fast"))
+    after = run(kernel(line(12, 1, 4), name="fast", text=[each.replace("row", "out") for each in TEXT]))
     found = difference_of(before, after)
     names = {part.name: (part.before_cclk, part.after_cclk) for part in found.stages[0].parts}
     assert names == {"slow": (10, 0), "fast": (0, 4)}
@@ -299,6 +299,17 @@ def test_kernels_of_one_name_are_the_same_in_another_file() -> None:
     assert [(each.name, each.place, each.cclk) for each in found.stages[0].parts] == [
         ("blur", "copy.py:10", 4)
     ]
+
+
+def test_a_kernel_that_was_renamed_is_the_one_with_its_lines() -> None:
+    """What grew is told, not both of them in full; another kernel that came is not taken for it."""
+    before = run(kernel(line(12, 1, 10), line(13, 1, 5)))
+    other = kernel(line(12, 1, 99), text=["@kernel\n", "def other(row):\n", "    row[3] = 4\n"], name="other")
+    found = difference_of(before, run(other, kernel(line(12, 1, 14), line(13, 1, 5), name="smooth")))
+    parts = {each.name: each for each in found.stages[0].parts}
+    assert {name: each.cclk for name, each in parts.items()} == {"other": 99, "blur → smooth": 4}
+    assert [(each.name, each.cclk) for each in parts["blur → smooth"].parts] == [("left = row[0]", 4)]
+    check_sums(found.stages, 103)
 
 
 costs = st.tuples(st.integers(0, 50), st.integers(0, 10**6), st.integers(0, 10**6))
