@@ -384,11 +384,15 @@ def test_frames_that_were_missed_make_no_run_cheaper(tmp_path: Path) -> None:
         ends = [(index + 1) * edges for index in range(count)]
         cores = [replace(core, begin_cclk=end - edges, end_cclk=end) for end in ends]
         frames = tuple(replace(one.frames[0], index=index, cores=(each,)) for index, each in enumerate(cores))
-        return replace(one, frames=frames, kernels=tuple(kernels), missed=(1,) * (count == 1))
+        published = [{"edges": edges}] * count
+        return with_results(
+            replace(one, frames=frames, kernels=tuple(kernels), missed=(1,) * (count == 1)), *published
+        )
 
     path = tmp_path / "bfsim.toml"
     measured(path, run(2, 1000))
     outcome = hold(run(1, 1500), path)
     found = difference_of_outcome(outcome)
     assert (found.before_cclk, found.after_cclk, found.cclk) == (1000, 1500, 500)
+    assert found.results == ()  # in total they would be other ones, and frame by frame they are judged
     assert any("The first side is of 2 frames, the second of 1" in each for each in explanation(outcome))

@@ -47,7 +47,7 @@ def difference_between(before: Side, after: Side) -> Difference:
         after_cclk=after.cclk,
         stages=tuple(each for each in parts if each.cclk or each.parts),
         changed_frames=_changed_frames(before.frame_cclk, after.frame_cclk),
-        results=tuple(_results(before.results, after.results)),
+        results=tuple(_results(before.results, after.results)) if measured == len(after.frames) else (),
         seen=tuple(_seen(before, after)),
     )
 
