@@ -194,8 +194,9 @@ def _write(outcomes: Sequence[Outcome], path: Path, outputs: Mapping[str, Path |
 def _append(outcomes: Sequence[Outcome], path: Path) -> None:
     """Append to the history."""
     from bfsim.report.check.history import history_lines
+    from bfsim.report.save import writing
 
-    with path.open("a", encoding="utf-8") as stream:
+    with writing(path), path.open("a", encoding="utf-8") as stream:
         stream.write(history_lines(outcomes, _commit()))
 
 

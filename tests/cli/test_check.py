@@ -14,8 +14,9 @@ from xml.etree import ElementTree as ET
 import pytest
 from click.testing import CliRunner, Result
 
+from bfsim.cli.check import _append
 from bfsim.cli.main import main
-from bfsim.errors import BfsimError
+from bfsim.errors import BfsimError, ConfigError
 from tests.test_run import FIRMWARE, record
 
 SLOWER = FIRMWARE.replace(
@@ -199,6 +200,13 @@ def test_history_has_a_line_a_run_and_draws_the_trend(repository: Path) -> None:
     assert lines[0]["configuration"] == {"recording": "drive.mcap", "firmware": "fw_eyes.py"}
     assert lines[0]["figures"] == lines[2]["figures"] != lines[1]["figures"]
     assert "▁█▁" in result.output
+
+
+def test_a_history_on_a_full_disk_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As every other file that cannot be written."""
+    monkeypatch.setattr("bfsim.report.check.history.history_lines", lambda *_: "a line\n")
+    with pytest.raises(ConfigError, match="/dev/full must be writable: No space left on device"):
+        _append([], Path("/dev/full"))
 
 
 def test_a_person_requires_more(repository: Path) -> None:
