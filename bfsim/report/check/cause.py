@@ -41,7 +41,8 @@ def explanation(outcome: Outcome) -> Iterator[str]:
         yield f"Cycles of both cores in {frames_compared(difference)}, before and now:"
     for depth, each in rows:
         before, after, more = cells(each)
-        yield f"{'  ' * (depth + 1)}{labelled(each)}: {f'{before} → {after}, ' if before else ''}{more}"
+        label = labelled(each).removesuffix(":")  # that of a `for` has one
+        yield f"{'  ' * (depth + 1)}{label}: {f'{before} → {after}, ' if before else ''}{more}"
     yield from counts_that_differ(outcome)
     yield from seen_lines(difference)
 
@@ -77,7 +78,7 @@ def dearest(side: Side, stages: Collection[str]) -> Iterator[str]:
             yield f"  {owner.name}{f' ({source.place})' if source else ''}: {_ms(side.owners[owner], side)}"
             lines = sorted(source.lines if source else (), key=lambda each: -each.cclk)
             for line in lines[:DEAREST]:
-                yield f"    {line.number}  {line.text}: {_ms(line.cclk, side)}, {line_text(line)}"
+                yield f"    {line.number}  {line.text.removesuffix(':')}: {_ms(line.cclk, side)}, {line_text(line)}"
 
 
 def _ms(cclk: int, side: Side) -> str:
