@@ -99,13 +99,16 @@ class Cluster(AbstractContextManager["Cluster"]):
         self._client.close()
 
     def _require_code(self, code: str) -> None:
-        try:
-            digests = self._client.run(code_digest)
-        except Exception as error:
-            raise ConfigError(
-                f"every Dask worker must have this bfsim installed: {type(error).__name__}: {cut(str(error))}"
-            ) from error
-        others = [address for address, digest in digests.items() if digest != code]
+        """Raise ConfigError unless every worker has this bfsim; one that dies meanwhile has none, and its points go to others."""
+        answers = self._client.run(code_digest, on_error="return")
+        for error in answers.values():
+            if isinstance(error, Exception) and not isinstance(error, OSError):
+                raise ConfigError(
+                    f"every Dask worker must have this bfsim installed: {type(error).__name__}: {cut(str(error))}"
+                ) from error
+        others = [
+            address for address, answer in answers.items() if isinstance(answer, str) and answer != code
+        ]
         if others:
             raise ConfigError(
                 f"every Dask worker must have the same bfsim as this machine, but {cut(', '.join(others))} has another"

@@ -97,6 +97,41 @@ def test_a_worker_with_another_bfsim_is_refused(address: str) -> None:
     assert not outcome.is_final
 
 
+def test_a_worker_that_dies_while_it_is_asked_for_its_bfsim(
+    address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It may go, as later; what it does not have is another bfsim."""
+    killed = tmp_path / "killed"
+
+    def dies_once() -> str:
+        import os
+        import signal
+
+        try:
+            killed.touch(exist_ok=False)
+        except FileExistsError:
+            return "mine"
+        os.kill(os.getpid(), signal.SIGKILL)
+        raise AssertionError
+
+    monkeypatch.setattr("bfsim.sweeping.cluster.code_digest", dies_once)
+    with Cluster(address, "mine"):
+        assert killed.exists()
+
+
+def test_a_worker_without_bfsim_is_refused(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With what it says."""
+
+    def missing() -> str:
+        raise ModuleNotFoundError("No module named 'bfsim'")
+
+    monkeypatch.setattr("bfsim.sweeping.cluster.code_digest", missing)
+    with pytest.raises(
+        ConfigError, match="this bfsim installed: ModuleNotFoundError: No module named 'bfsim'"
+    ):
+        Cluster(address, "mine")
+
+
 @pytest.mark.parametrize("address", ["nowhere", "tcp://127.0.0.1:1", "tcp://", ""])
 def test_an_address_without_a_scheduler(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """In a sentence."""
