@@ -342,7 +342,7 @@ def test_update_for_code_of_another_gcc_begins_anew(tmp_path: Path) -> None:
 
 
 def test_a_stage_that_is_gone(path: Path) -> None:
-    """A check refuses to guess; --update removes its limits."""
+    """A check refuses to guess; --update removes its limits, and asks for a reason: nothing holds what was one."""
     run = run_of(
         [
             frame(0, core_frame("A", 0, cost("Thinning", 900))),
@@ -354,7 +354,12 @@ def test_a_stage_that_is_gone(path: Path) -> None:
         match=r'"Edge detection"\.A must be something that the run has; the nearest are .*--update',
     ):
         hold(run, path)
-    assert not any("Edge" in each for each in measured(path, run).limits)
+    old = read_baseline(path).run[0]
+    gone = '"Edge detection".A.max <= 1.050000 ms, which the run has no more'
+    assert gone in loosened(old, result(run), path)
+    new = measured(path, run, reason="it is called Thinning now")
+    assert gone in new.loosened[0]
+    assert not any("Edge" in each for each in new.limits)
 
 
 def test_update_leaves_a_file_alone_that_is_no_baseline(tmp_path: Path) -> None:

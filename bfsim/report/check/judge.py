@@ -106,7 +106,7 @@ def _nothing_of(name: Name) -> Requirement:
 def _figure(requirement: Requirement, figures: Mapping[Name, Figure], case: Case, path: Path) -> Figure:
     figure = figures.get(requirement.name)
     if figure is None:
-        advice = "; --update removes it" if requirement.text in case.limits else ""
+        advice = "; --update --reason TEXT removes it" if requirement.text in case.limits else ""
         raise ConfigError(
             f"{path}: run {case.name!r}: {dotted(requirement.name)} must be something that the run has; the nearest are "
             f"{nearest_of(requirement.name, list(figures))}{advice}"

@@ -20,7 +20,7 @@ from bfsim.report.check.baseline import (
 from bfsim.report.check.figures import COUNTS, MISSED, SEEN, STATISTICS, Name, Unit, figures_of, statistic
 from bfsim.report.check.judge import Outcome, Verdict, judge
 from bfsim.report.check.kept import kept_costs, whole_side
-from bfsim.report.check.requirement import counts_text, limit_text
+from bfsim.report.check.requirement import Requirement, counts_text, limit_text
 from bfsim.report.check.toml_items import toml_item
 from bfsim.report.result_file import Result
 from bfsim.report.save import write_text
@@ -41,11 +41,15 @@ MOST_COUNTS = 22
 
 
 def loosened(case: Case, result: Result, path: Path) -> list[str]:
-    """Return in words which limits of a run `--update` would loosen."""
+    """Return in words which limits of a run `--update` would loosen, or take away."""
+    _, gone = _limits_of(case, result, path)
     return [
-        f"{each.requirement.text}, measured {_number(each, result.run)}"
-        for each in _held(case, result, path).verdicts
-        if each.broken and not each.is_persons
+        *(
+            f"{each.requirement.text}, measured {_number(each, result.run)}"
+            for each in _held(case, result, path).verdicts
+            if each.broken and not each.is_persons
+        ),
+        *(f"{each.text}, which the run has no more" for each in gone),
     ]
 
 
@@ -89,13 +93,22 @@ def write_cases(path: Path, cases: Mapping[str, Case]) -> None:
 
 
 def _held(case: Case, result: Result, path: Path) -> Outcome:
-    """Hold a run against those of its limits that are about the same pictures and hardware, and what there still is."""
+    """Hold a run against those of its limits that say something about it."""
+    there, _ = _limits_of(case, result, path)
+    return judge(case.model_copy(update={"limits": [each.text for each in there]}), result, path)
+
+
+def _limits_of(case: Case, result: Result, path: Path) -> tuple[list[Requirement], list[Requirement]]:
+    """Return the limits that are about the same pictures and hardware: of what the run has, and of what it has no more."""
     then, now, figures = case.measured_on, _on(result.run), figures_of(result)
-    is_same = then is not None and not any(then.differs_in(key, now) for key in COMPARABLE)
-    _, limits = requirements_of(case, path)
-    there = {each.name for each in limits if each.name in figures or (result.seen and each.name[0] in SEEN)}
-    texts = [each.text for each in limits if is_same and each.name in there]
-    return judge(case.model_copy(update={"limits": texts}), result, path)
+    if then is None or any(then.differs_in(key, now) for key in COMPARABLE):
+        return [], []
+    there: list[Requirement] = []
+    gone: list[Requirement] = []
+    for each in requirements_of(case, path)[1]:
+        has_it = each.name in figures or (result.seen and each.name[0] in SEEN)
+        (there if has_it else gone).append(each)
+    return there, gone
 
 
 def _on(run: RunRecord) -> MeasuredOn:
