@@ -148,7 +148,9 @@ def _sentences(mark: pytest.Mark) -> list[str]:
         raise ConfigError(f"@pytest.mark.{MARK}: {cut(unknown[0])} must be min_hz or stages")
     min_hz, stages = mark.kwargs.get("min_hz"), mark.kwargs.get("stages") or {}
     if not isinstance(stages, Mapping):
-        raise ConfigError(f'@pytest.mark.{MARK}: stages must be a table such as {{"Edge detection": 90}}')
+        raise ConfigError(
+            f"@pytest.mark.{MARK}: stages must be a table: the most milliseconds of each, by name"
+        )
     rate = [] if min_hz is None else [f"frame_rate >= {_number(min_hz, 'min_hz')} Hz"]
     most = [f'"{stage}".max <= {_number(ms, "stages")} ms' for stage, ms in stages.items()]
     return [*mark.args, *rate, *most]
