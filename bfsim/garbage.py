@@ -9,7 +9,7 @@ from contextlib import contextmanager
 COLLECT_AFTER = 500_000
 """So many new objects make Python look for garbage, in place of 700: it took a seventh of a command's time, and a twentieth of a run's.
 
-More than a command makes until its run begins: looking through these took 80 ms each time, and found nothing.
+More than a command makes until its run begins: looking through these took 80 ms each time.
 """
 
 

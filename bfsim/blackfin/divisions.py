@@ -42,10 +42,8 @@ def can_be_made(dividing: Mapping[str, Value]) -> Value:
 
 def before_last_turn(dividing: Mapping[str, Value]) -> dict[str, Value]:
     """Return registers as they are before the loop's last turn, made of those at its beginning."""
-    divisor, upper = (
-        dividing["R1"],
-        dividing["R0"].shift_right(1),
-    )  # the lowest bit comes down in the last turn
+    divisor = dividing["R1"]
+    upper = dividing["R0"].shift_right(1)  # the lowest bit comes down in the last turn
     quotient = Value(upper.builder, upper.builder.udiv(upper.ir, divisor.ir))
     inverted = ~quotient
     first_in = dividing["CC"].zero_extended().shift_left(AHEAD - 1)

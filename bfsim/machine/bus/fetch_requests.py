@@ -1,4 +1,4 @@
-"""Code that a core fetches from L2, compiled: the words that come while nobody else can want the port. Most fetches are such.
+"""Code that a core fetches from L2, compiled: the words that come while nobody else can want the port.
 
 What they do is what `core_requests` would do with each. Alone at the port every word stalls the core for as long as the others.
 """
@@ -11,6 +11,7 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.bus.core_requests import charge, hold_l2, next_entry
 from bfsim.machine.bus.memory_owners import piece_for
+from bfsim.machine.bus.runs import cores_quiet_until
 from bfsim.machine.bus.state import State
 from bfsim.machine.bus.traffic import count_traffic
 
@@ -20,10 +21,7 @@ def fetch_ahead(state: State, core: int, at: int, until: int) -> bool:
     """Fetch what a core fetches from tick `at` on; return whether there is anything. Until tick `until` no DMA can want the port."""
     if not state[w.JOBS_AT + core * w.JOB_WORDS + w.IN_TURN]:
         return False
-    for other in range(w.STORES_A, w.MASTERS):
-        if other != w.CORE_A + core:
-            until = min(until, state[w.MASTERS_AT + other + w.READY])
-    words = words_alone(state, core, at, until)
+    words = words_alone(state, core, at, cores_quiet_until(state, w.CORE_A + core, until))
     if words > 0:
         fetch_words(state, core, words)
     return words > 0

@@ -34,7 +34,13 @@ def l2_left_until(state: State, number: int, until: int) -> int:
 @native
 def l2_alone_until(state: State, number: int, until: int) -> int:
     """Until when a master has the port of L2 to itself."""
-    limit = l2_left_until(state, number, until)
+    return cores_quiet_until(state, number, l2_left_until(state, number, until))
+
+
+@native
+def cores_quiet_until(state: State, number: int, until: int) -> int:
+    """Until when no core asks for anything, with what it waits for or its store buffer; that of `number` does not count."""
+    limit = until
     for other in range(w.STORES_A, w.MASTERS):
         if other != number:
             limit = min(limit, state[w.MASTERS_AT + other + w.READY])

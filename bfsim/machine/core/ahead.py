@@ -229,9 +229,8 @@ class Ahead:
         """Have the bus play what was done ahead, and do at each moment what was to be done then."""
         if self._noted:
             self._note_calls()
-            words = pack(
-                f"{len(self._noted)}q", *self._noted
-            )  # numpy takes eight times as long for a list of ints
+            # numpy takes eight times as long for a list of ints
+            words = pack(f"{len(self._noted)}q", *self._noted)
             yield from self._play(np.frombuffer(words, np.int64))
 
     def _play(self, operations: NDArray[np.int64]) -> Wait:
