@@ -14,11 +14,11 @@ from pathlib import Path
 from bfsim import kernel
 from bfsim.kernel.traced_access import trace_access
 from bfsim.machine.bus.weave import advance
-from bfsim.machine.retiming.translated import write_log
+from bfsim.machine.retiming.stretch_writer import write_stretch
 from bfsim.store import KEPT
 
 FOLDER = Path(kernel.__file__).parent / KEPT
-ENTRIES = (trace_access, advance, write_log)
+ENTRIES = (trace_access, advance, write_stretch)
 
 
 def main() -> None:

@@ -46,16 +46,6 @@ class CoreLogs:
         self._words[row + w.CODE], self._words[row + w.CODE_WORDS] = offset, -(-nbytes // w.FETCH_BYTES)
         self._words[row + w.NEXT_ROUTINE] = following
 
-    def are_routines(self, core: int, sites: NDArray[np.int64]) -> bool:
-        """Whether all `sites` of a core are such of code that is kept here."""
-        kept = self.stalls_at_sites(core, w.MAX_SITES)
-        return bool((kept[sites, w.CODE_WORDS] > 0).all())
-
-    def replace(self, core: int, accesses: NDArray[np.int64]) -> None:
-        """Make the log of a core that of `accesses`, a row of entries and one of sites."""
-        room, count = self.room_of(core)[log.LOG :], accesses.shape[1]
-        room[:count], room[w.LOG_ENTRIES : w.LOG_ENTRIES + count] = accesses
-
     def first(self, core: int, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Return the first `count` entries of a core's log, and their sites."""
         room = self.room_of(core)[log.LOG :]

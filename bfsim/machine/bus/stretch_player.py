@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError
 from bfsim.machine.bus import state as w
-from bfsim.machine.bus.core_logs import CoreLogs
 from bfsim.machine.bus.ends import Ends
 from bfsim.machine.bus.transfer_plans import Played
 from bfsim.machine.simulation import Simulation
@@ -20,34 +19,28 @@ from bfsim.machine.simulation import Simulation
 class StretchPlayer:
     """The stretches of each core, and the plans of their copies, in the `state` of the bus."""
 
-    def __init__(self, env: Simulation, state: NDArray[np.int64], logs: CoreLogs, ends: Ends) -> None:
+    def __init__(self, env: Simulation, state: NDArray[np.int64], ends: Ends) -> None:
         self._env = env
         self._state = state
         self._words: Any = state.data
-        self._logs = logs
         self._ends = ends
         self._plans = 0
 
-    def play(
-        self,
-        core: int,
-        clock_cclk: int,
-        operations: NDArray[np.int64],
-        accesses: NDArray[np.int64] | None = None,
-    ) -> simpy.Event:
-        """Let a core do `operations` by itself from now on, its clock being at a cycle; return the end.
-
-        `operations`: rows of OPERATION_WORDS as in `bus.state`, or all in one, at most MAX_OPERATIONS of them. `accesses`: the log that
-        those of their calls refer to, a row of entries and one of sites, unless the core's log has it.
-        """
+    def write(self, core: int, operations: NDArray[np.int64]) -> int:
+        """Write what a core is to do, operations as in `bus.state`, all words in one, at most MAX_OPERATIONS of them; return how many."""
         first = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS
-        self._state[first : first + operations.size] = operations.reshape(-1)
-        if accesses is not None:
-            self._logs.replace(core, accesses)
+        self._state[first : first + operations.size] = operations
+        return operations.size // w.OPERATION_WORDS
+
+    def play(self, core: int, clock_cclk: int, operations: int) -> simpy.Event:
+        """Let a core do so many `operations`, which are written, by itself from now on, its clock being at a cycle; return the end.
+
+        What their calls access is in the core's log.
+        """
         play, words = w.PLAYS_AT + core * w.PLAY_WORDS, self._words
         copies = words[play + w.COPIES]
         self._state[play : play + w.PLAY_WORDS] = 0
-        words[play + w.OPERATIONS_END] = operations.size // w.OPERATION_WORDS
+        words[play + w.OPERATIONS_END] = operations
         words[play + w.CLOCK] = clock_cclk
         words[play + w.ACTS_AT] = self._env.tick
         words[play + w.AWAITED] = w.NONE

@@ -237,11 +237,12 @@ class Ahead:
         """Have the bus play operations, all in one."""
         with self.interrupts.held():  # no handler comes between,
             self.is_full = False  # and no second play of the same
-            owners, first = list(self._owners), 0
+            stretches, owners, first = self._bus.stretches, list(self._owners), 0
             for end, what in (*self._moments, (len(operations), self._begin)):
                 if end > first:
-                    yield self._bus.stretches.play(self._number, self.clock.cclk, operations[first:end])
-                    self.clock.stretch(self._bus.stretches.played(self._number, len(owners)), owners)
+                    count = stretches.write(self._number, operations[first:end])
+                    yield stretches.play(self._number, self.clock.cclk, count)
+                    self.clock.stretch(stretches.played(self._number, len(owners)), owners)
                     first = end
                 what()
 

@@ -9,7 +9,6 @@ import numpy as np
 
 from bfsim.errors import BfsimError, WorkError, shown
 from bfsim.kernel import Kernel
-from bfsim.kernel import access_trace as log
 from bfsim.kernel.types import ArrayType, IntType, Number, u8
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.bus import state as w
@@ -20,7 +19,7 @@ from bfsim.machine.core.parts import Parts
 from bfsim.machine.core.semaphore import Semaphore
 from bfsim.machine.core.spin_lock import SpinLock
 from bfsim.machine.memories import Row
-from bfsim.machine.retiming.translated import Stretch, translated
+from bfsim.machine.retiming.stretch_writer import IN_L1, StretchWriter
 from bfsim.machine.retiming.work import (
     DESTINATION,
     DESTINATION_BYTE,
@@ -49,8 +48,8 @@ class ReplayedCore(Core):
         self._works = works
         self._kernels = kernels
         self._firsts = np.array(parts.bus.owners.first, np.int64)
-        self._is_outside = self._firsts < int(parts.bus.words[w.L2_END])
-        self._kinds_of_calls: list[int] = []  # of those that were prepared: what running them is to the bus
+        self._firsts_outside = np.where(self._firsts < int(parts.bus.words[w.L2_END]), self._firsts, IN_L1)
+        self._kinds = np.zeros(0, np.int64)  # of calls that were prepared: what running them is to the bus
         self._account_names: list[str] = []
         self._copies = np.zeros((0, 3), np.int64)
         self._known_calls: dict[str, Callable[..., Any]] = {
@@ -90,28 +89,27 @@ class ReplayedCore(Core):
         self._account_names += work.accounts
         if len(work.copies):
             self._copies = np.concatenate([self._copies, self._planned(work.copies)])
-        frame = translated(work, self._firsts, self._is_outside, self._copies, self._chip.events)
-        events = np.searchsorted(work.events[:, 0], np.arange(len(work.calls) + 1)).tolist()
-        for number, stretches in enumerate(frame.stretches()):
-            for each in stretches:
-                yield from self._stretch(each)
-            if number < len(work.calls):
-                _, counters, since = work.events[events[number] : events[number + 1]].T
-                self._parts.calls.events[counters] += since
-                name, arguments = work.calls[number]
-                yield from self._call(name, arguments)
+        copies, accounts = self._copies, len(self._account_names)
+        frame = StretchWriter(
+            self._bus.state, self._parts.number, work, self._firsts_outside, copies, accounts, self._chip.events
+        )
+        ends = np.searchsorted(work.events[:, 0], np.arange(len(work.calls)), side="right").tolist()
+        begin = 0
+        for (name, arguments), end in zip(work.calls, ends, strict=True):
+            yield from self._play_stretches(frame)
+            _, counters, since = work.events[begin:end].T
+            self._parts.calls.events[counters] += since
+            begin = end
+            frame.pass_call()
+            yield from self._call(name, arguments)
+        yield from self._play_stretches(frame)
 
-    def _stretch(self, stretch: Stretch) -> Wait:
-        runs_at, kernels = stretch.calls
-        entries, sites = stretch.accesses
-        fetching = sites[entries >> log.KIND_BIT & log.KIND_MASK == log.FETCHES]
-        if not self._bus.logs.are_routines(self._parts.number, fetching):
-            raise ValueError("code is fetched from where none lies")
-        if len(runs_at):
-            stretch.operations[runs_at, 0] = np.array(self._kinds_of_calls)[kernels]
+    def _play_stretches(self, frame: StretchWriter) -> Wait:
+        """Play what is done before the next call of firmware; most often that is one stretch."""
         number, clock, stretches = self._parts.number, self._parts.clock, self._bus.stretches
-        yield stretches.play(number, clock.cclk, stretch.operations, stretch.accesses)
-        clock.stretch(stretches.played(number, len(self._account_names)), self._account_names)
+        while operations := frame.write(self._kinds):
+            yield stretches.play(number, clock.cclk, operations)
+            clock.stretch(stretches.played(number, len(self._account_names)), self._account_names)
 
     def _planned(self, copies: Table) -> Table:
         """Plan copies; return the numbers of their plans, and where they go from and to: rows of what is behind COPY.
@@ -214,7 +212,7 @@ class ReplayedCore(Core):
                 f"{', '.join(dict.fromkeys(moved_out))} must be in L1, for it was when the run was recorded, and of what lies there "
                 "the accesses are not; record a run with this LDF, which can be played where it is in L1, too"
             )
-        self._kinds_of_calls.append(w.RUN if call.stays_in_l1 else w.ACCESS)
+        self._kinds = np.append(self._kinds, w.RUN if call.stays_in_l1 else w.ACCESS)
 
     def _offset(self, place: Place) -> int:
         return int(self._firsts[place.owner]) + place.first

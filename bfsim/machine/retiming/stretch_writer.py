@@ -1,0 +1,145 @@
+"""What was recorded of a frame, written for a board, compiled: operations as a stretch, and the log of their accesses, where the bus has them."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import MutableSequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bfsim.chip.spec import EventSpec
+from bfsim.kernel import access_trace as log
+from bfsim.kernel.native import native, native_entry, words_at
+from bfsim.machine.bus import state as w
+from bfsim.machine.bus.core_logs import site_at
+from bfsim.machine.retiming.work import BYTE, CALL, KIND, OWNER, SITE, STAMP, FrameWork, Table
+
+IN_L1 = -1
+"""Where an owner begins whose memory is in L1: what accesses it is not in the log."""
+NOT_THERE, NO_CODE, NO_ROOM = -1, -2, -3
+"""Returned in place of a number of operations: a call, a copy or an account is not there, code, or room for the log."""
+PROBLEMS = {
+    NOT_THERE: "a call, a copy or an account that was not prepared",
+    NO_CODE: "code is fetched from where none lies",
+    NO_ROOM: "more accesses than a core has room for",
+}
+
+# What is written: words of one array.
+(
+    ROWS, NEXT,        # operations of the frame, and the next one to be written
+    ACCESSES, ACCESS,  # the same of accesses
+    CALLS, COPIES, ACCOUNTS,  # how many there are of each so far
+    MMR_WRITE, MMR_READ,  # cycles of a core for a register
+) = range(9)  # fmt: skip
+FRAME_WORDS = 9
+
+Words = MutableSequence[int]
+
+
+@native
+def write_accesses(state: w.State, core: int, frame: Words, accesses: Words, firsts: Words, count: int, logged: int) -> int:
+    """Write the next `count` accesses of a frame behind those that are `logged`, without those to L1; return how many are logged then."""
+    entries = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG
+    rows, access = frame[ACCESSES], frame[ACCESS]
+    if access + count > rows:
+        return NOT_THERE
+    if logged + count > w.LOG_ENTRIES:
+        return NO_ROOM
+    frame[ACCESS] = access + count
+    for number in range(access, access + count):
+        first = firsts[accesses[OWNER * rows + number]]
+        if first != IN_L1:
+            stamp, kind = accesses[STAMP * rows + number], accesses[KIND * rows + number]
+            site = accesses[SITE * rows + number]
+            if kind == log.FETCHES and state[site_at(core, site) + w.CODE_WORDS] == 0:
+                return NO_CODE
+            place = first + accesses[BYTE * rows + number]
+            state[entries + logged] = stamp << log.STAMP_BIT | kind << log.KIND_BIT | place
+            state[entries + w.LOG_ENTRIES + logged] = site
+            logged += 1
+    return logged
+
+
+@native_entry("int64", "int64*", "int64", "int64*", "int64*", "uint32*", "int64*", "int64*", "int64*")
+def write_stretch(
+    state_at: Any, core: int, frame_at: Any, operations_at: Any, accesses_at: Any, firsts_at: Any, copies_at: Any, kinds_at: Any
+) -> int:
+    """Write the next operations of a frame up to a call of its firmware or its end, or as many as a stretch can have; return how many.
+
+    The arrays: the words above; columns of operations and of accesses one after the other; where the memory of each owner begins or
+    IN_L1; rows of what is behind COPY for each copy; and what running each call is to the bus.
+    """
+    state, frame, operations, accesses = words_at(state_at), words_at(frame_at), words_at(operations_at), words_at(accesses_at)
+    firsts, copies, kinds = words_at(firsts_at), words_at(copies_at), words_at(kinds_at)
+    at, rows = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS, frame[ROWS]
+    written = logged = 0
+    while frame[NEXT] < rows and written < w.MAX_OPERATIONS:
+        number = frame[NEXT]
+        kind, one, two = operations[number], operations[rows + number], operations[2 * rows + number]
+        three, four = operations[3 * rows + number], operations[4 * rows + number]
+        if kind == CALL:
+            break
+        if kind == w.ACCESS:
+            if four >= frame[CALLS]:
+                return NOT_THERE
+            kind, begin = kinds[four], logged
+            logged = write_accesses(state, core, frame, accesses, firsts, three, logged)
+            if logged < 0:
+                return logged
+            three, four = begin, logged
+        elif kind == w.SET_UP:
+            one, two = one * frame[MMR_WRITE] + two * frame[MMR_READ], three
+            if two >= frame[ACCOUNTS]:
+                return NOT_THERE
+        elif kind == w.COPY:
+            if one >= frame[COPIES]:
+                return NOT_THERE
+            copy = 3 * one
+            one, two, three = copies[copy], copies[copy + 1], copies[copy + 2]
+        elif kind == w.AWAIT and three >= frame[ACCOUNTS]:
+            return NOT_THERE
+        state[at], state[at + 1], state[at + 2], state[at + 3], state[at + 4] = kind, one, two, three, four
+        at += w.OPERATION_WORDS
+        written += 1
+        frame[NEXT] = number + 1
+    return written
+
+
+WRITE = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 6)
+
+
+class StretchWriter:
+    """Writes the stretches of one frame's `work` into the `state` of a bus, for a core.
+
+    `firsts`: where in the arena the memory of each owner begins, IN_L1 for what lies there; `copies`: rows of what is behind COPY for
+    each copy; `accounts`: how many there are; `events`: what the core takes for registers.
+    """
+
+    def __init__(
+        self, state: NDArray[np.int64], core: int, work: FrameWork, firsts: NDArray[np.int64], copies: Table, accounts: int, events: EventSpec
+    ) -> None:  # fmt: skip
+        words = np.zeros(FRAME_WORDS, np.int64)
+        words[[ROWS, ACCESSES]] = len(work.operations), len(work.accesses)
+        words[[COPIES, ACCOUNTS]] = len(copies), accounts
+        words[[MMR_WRITE, MMR_READ]] = events.mmr_write_cclk, events.mmr_read_cclk
+        self._words: Any = words.data
+        self._kept = words, np.ascontiguousarray(work.operations.T), np.ascontiguousarray(work.accesses.T), firsts, copies
+        self._write = WRITE(write_stretch.address())
+        self._arguments = (state.ctypes.data, core, *(each.ctypes.data for each in self._kept))
+
+    def write(self, kinds: NDArray[np.int64]) -> int:
+        """Write the next stretch and return how many operations it has, 0 before a call of firmware and at the end.
+
+        `kinds`: of each call that is prepared by now, what running it is to the bus. Raises ValueError for what is not there.
+        """
+        self._words[CALLS] = len(kinds)
+        written = self._write(*self._arguments, kinds.ctypes.data)
+        if written < 0:
+            raise ValueError(PROBLEMS[written])
+        return int(written)
+
+    def pass_call(self) -> None:
+        """Go on behind a call of firmware."""
+        self._words[NEXT] += 1
