@@ -15,10 +15,11 @@ from bfsim import kernel
 from bfsim.kernel.traced_access import trace_access
 from bfsim.machine.bus.weave import advance
 from bfsim.machine.retiming.stretch_writer import write_stretch
+from bfsim.machine.retiming.work_check import are_accesses, calls_in
 from bfsim.store import KEPT
 
 FOLDER = Path(kernel.__file__).parent / KEPT
-ENTRIES = (trace_access, advance, write_stretch)
+ENTRIES = (trace_access, advance, write_stretch, calls_in, are_accesses)
 
 
 def main() -> None:

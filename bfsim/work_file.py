@@ -31,8 +31,8 @@ from bfsim.machine.retiming.work import (
     STAMP,
     FrameWork,
     Place,
-    check,
 )
+from bfsim.machine.retiming.work_check import check
 from bfsim.report.save import writing
 
 FORMAT = 6

@@ -91,7 +91,13 @@ class ReplayedCore(Core):
             self._copies = np.concatenate([self._copies, self._planned(work.copies)])
         copies, accounts = self._copies, len(self._account_names)
         frame = StretchWriter(
-            self._bus.state, self._parts.number, work, self._firsts_outside, copies, accounts, self._chip.events
+            self._bus.state,
+            self._parts.number,
+            work,
+            self._firsts_outside,
+            copies,
+            accounts,
+            self._chip.events,
         )
         ends = np.searchsorted(work.events[:, 0], np.arange(len(work.calls)), side="right").tolist()
         begin = 0

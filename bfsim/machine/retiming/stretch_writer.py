@@ -39,7 +39,19 @@ Words = MutableSequence[int]
 
 
 @native
-def write_accesses(state: w.State, core: int, frame: Words, accesses: Words, firsts: Words, count: int, logged: int) -> int:
+def is_there(frame: Words, kind: int, one: int, three: int, four: int) -> bool:
+    """Whether what the numbers of an operation refer to is there."""
+    if kind == w.ACCESS:
+        return four < frame[CALLS]
+    if kind == w.COPY:
+        return one < frame[COPIES]
+    return kind not in (w.SET_UP, w.AWAIT) or three < frame[ACCOUNTS]
+
+
+@native
+def write_accesses(
+    state: w.State, core: int, frame: Words, accesses: Words, firsts: Words, count: int, logged: int
+) -> int:
     """Write the next `count` accesses of a frame behind those that are `logged`, without those to L1; return how many are logged then."""
     entries = w.LOGS_AT + core * w.ACCESS_TRACE_WORDS + log.LOG
     rows, access = frame[ACCESSES], frame[ACCESS]
@@ -64,14 +76,26 @@ def write_accesses(state: w.State, core: int, frame: Words, accesses: Words, fir
 
 @native_entry("int64", "int64*", "int64", "int64*", "int64*", "uint32*", "int64*", "int64*", "int64*")
 def write_stretch(
-    state_at: Any, core: int, frame_at: Any, operations_at: Any, accesses_at: Any, firsts_at: Any, copies_at: Any, kinds_at: Any
+    state_at: Any,
+    core: int,
+    frame_at: Any,
+    operations_at: Any,
+    accesses_at: Any,
+    firsts_at: Any,
+    copies_at: Any,
+    kinds_at: Any,
 ) -> int:
     """Write the next operations of a frame up to a call of its firmware or its end, or as many as a stretch can have; return how many.
 
     The arrays: the words above; columns of operations and of accesses one after the other; where the memory of each owner begins or
     IN_L1; rows of what is behind COPY for each copy; and what running each call is to the bus.
     """
-    state, frame, operations, accesses = words_at(state_at), words_at(frame_at), words_at(operations_at), words_at(accesses_at)
+    state, frame, operations, accesses = (
+        words_at(state_at),
+        words_at(frame_at),
+        words_at(operations_at),
+        words_at(accesses_at),
+    )
     firsts, copies, kinds = words_at(firsts_at), words_at(copies_at), words_at(kinds_at)
     at, rows = w.OPERATIONS_AT + core * w.MAX_OPERATIONS * w.OPERATION_WORDS, frame[ROWS]
     written = logged = 0
@@ -81,9 +105,9 @@ def write_stretch(
         three, four = operations[3 * rows + number], operations[4 * rows + number]
         if kind == CALL:
             break
+        if not is_there(frame, kind, one, three, four):
+            return NOT_THERE
         if kind == w.ACCESS:
-            if four >= frame[CALLS]:
-                return NOT_THERE
             kind, begin = kinds[four], logged
             logged = write_accesses(state, core, frame, accesses, firsts, three, logged)
             if logged < 0:
@@ -91,15 +115,9 @@ def write_stretch(
             three, four = begin, logged
         elif kind == w.SET_UP:
             one, two = one * frame[MMR_WRITE] + two * frame[MMR_READ], three
-            if two >= frame[ACCOUNTS]:
-                return NOT_THERE
         elif kind == w.COPY:
-            if one >= frame[COPIES]:
-                return NOT_THERE
             copy = 3 * one
             one, two, three = copies[copy], copies[copy + 1], copies[copy + 2]
-        elif kind == w.AWAIT and three >= frame[ACCOUNTS]:
-            return NOT_THERE
         state[at], state[at + 1], state[at + 2], state[at + 3], state[at + 4] = kind, one, two, three, four
         at += w.OPERATION_WORDS
         written += 1
@@ -125,7 +143,13 @@ class StretchWriter:
         words[[COPIES, ACCOUNTS]] = len(copies), accounts
         words[[MMR_WRITE, MMR_READ]] = events.mmr_write_cclk, events.mmr_read_cclk
         self._words: Any = words.data
-        self._kept = words, np.ascontiguousarray(work.operations.T), np.ascontiguousarray(work.accesses.T), firsts, copies
+        self._kept = (
+            words,
+            np.ascontiguousarray(work.operations.T),
+            np.ascontiguousarray(work.accesses.T),
+            firsts,
+            copies,
+        )
         self._write = WRITE(write_stretch.address())
         self._arguments = (state.ctypes.data, core, *(each.ctypes.data for each in self._kept))
 

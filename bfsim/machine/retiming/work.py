@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
 
 CALL = w.AWAIT + 1
@@ -59,34 +58,3 @@ class FrameWork:
     copies: Table
     calls: tuple[tuple[str, tuple[Any, ...]], ...]
     accounts: tuple[str, ...]
-
-
-def check(work: FrameWork, owners: int) -> None:
-    """Raise ValueError unless all numbers are such as the bus can play: a file may hold anything. `owners`: how many there are."""
-    operations, accesses = work.operations, work.accesses
-    kinds = operations[:, 0]
-    counts, accounts = operations[kinds == w.ACCESS, 3], operations[kinds == w.SET_UP, 3]
-    awaits = operations[kinds == w.AWAIT]
-    ranges = (
-        (kinds, 0, CALL),
-        (operations[:, 1:], 0, 1 << 40),
-        (accounts, 0, w.MAX_ACCOUNTS - 1),
-        (awaits[:, 1], 1, w.ENDS - 1),
-        (awaits[:, 2], w.SETTING_UP, w.RING_FULL),
-        (awaits[:, 3], 0, w.MAX_ACCOUNTS - 1),
-        (accesses[:, KIND], 0, log.FETCHES),
-        (accesses[:, OWNER], 0, owners - 1),
-        (accesses[:, BYTE], 0, log.OFFSET_MASK),
-        (accesses[:, SITE], 0, w.MAX_SITES - 1),
-        (work.copies[:, STREAM], 0, 1),
-        (work.copies[:, [SOURCE, DESTINATION]], 0, owners - 1),
-        (work.copies[:, [SOURCE_BYTE, DESTINATION_BYTE]], 0, log.OFFSET_MASK),
-        (work.copies[:, NBYTES], 1, log.OFFSET_MASK),
-        (work.events, 0, 1 << 40),
-    )
-    if any(
-        len(each) and not (lowest <= each.min() and each.max() <= highest) for each, lowest, highest in ranges
-    ):
-        raise ValueError("a number is out of its range")
-    if counts.sum() != len(accesses) or (kinds == CALL).sum() != len(work.calls):
-        raise ValueError("there must be as many accesses and calls as the operations have")
