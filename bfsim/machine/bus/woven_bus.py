@@ -37,18 +37,16 @@ class WovenBus:
         self, env: Simulation, board: BoardSpec, memories: Memories, weave: Weave = compiled_weave
     ) -> None:
         self._env = env
-        self.state = new_state(board, memories)
-        """The words of `bus.state`, as an array;"""
+        self._state = new_state(board, memories)
         self._memory: Any = memories.arena.view("uint32")  # the weave has only its address
-        self.words: Any = self.state.data
-        """and as a memoryview, of which Python has one word sooner."""
-        self._advance = weave(self.state, self._memory)
+        self.words: Any = self._state.data
+        self._advance = weave(self._state, self._memory)
         self._ends = Ends(env)
         self.owners = MemoryOwners(self.words, memories.sdram_end, memories.l2_end)
         self.planner = Planner(board, memories, self.owners)
-        self.logs = CoreLogs(self.state)
+        self.logs = CoreLogs(self._state)
         self.cores: CoreCalls = WovenCalls(board, self.words, self.logs, self._ends, self.settle)
-        self.stretches = StretchPlayer(env, self.state, self._ends)
+        self.stretches = StretchPlayer(env, self._state, self._ends)
         self.records = BusRecords(board, self.words, self.owners)
         env.follow(self)
 

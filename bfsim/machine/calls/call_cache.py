@@ -158,14 +158,11 @@ class CallCache:
 
     def accessed(self) -> Accesses:
         """Return what the calls of the present stage have accessed in L1 since this was asked last."""
-        return self._subbanks.accessed(self._in_stage[self.stage], self._ledger.events)
+        return self._in_stage[self.stage].accessed(self._ledger.events)
 
     def conflicts_cclk(self, accessed: Accesses, elapsed_cclk: int) -> int:
         """Return what conflicts in L1 cost calls that have `accessed` it in `elapsed_cclk`, all since this was asked last."""
-        conflicts = self._subbanks.conflicts(accessed, elapsed_cclk)
-        if conflicts.cclk:
-            self._ledger.add_conflicts(conflicts.sites, conflicts.at_sites_cclk)
-        return conflicts.cclk
+        return self._subbanks.charge(accessed, elapsed_cclk, self._ledger.conflicts)
 
     def prepare(
         self, kernel: Kernel, arguments: tuple[Row | int, ...], *, was_traced: bool = False

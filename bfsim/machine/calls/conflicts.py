@@ -7,35 +7,94 @@ have them by their part in those accesses.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+import ctypes
+from collections.abc import MutableSequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.chip.spec import ChipSpec
+from bfsim.kernel.native import native, native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.calls.groups import CallGroup
 from bfsim.machine.memories import Memories, Row
 
+COUNTER, BANK, EACH, AMONG, SITE = range(5)
+"""What an event accesses: its counter among the core's, a sub-bank, accesses, sub-banks to share them, and the core's site that makes them."""
+
+Numbers = MutableSequence[int]
+
 
 class Accesses(NamedTuple):
-    """Accesses of L1 by calls: so many of each site, to each sub-bank."""
+    """Accesses of L1 by calls: what each event of theirs accesses, columns as above one after the other, and how many there were of it."""
 
-    banks: NDArray[np.int64]
-    made: NDArray[np.float64]
-    sites: NDArray[np.int64]
-
-
-class Conflicts(NamedTuple):
-    """Cycles that were lost, and the sites that lost how many of them."""
-
-    cclk: int
-    sites: NDArray[np.int64]
-    at_sites_cclk: NDArray[np.int64]
+    spread: NDArray[np.int64]
+    events: NDArray[np.int64]
 
 
-NO_CONFLICTS = Conflicts(0, np.zeros(0, np.int64), np.zeros(0, np.int64))
+@native
+def made(spread: Numbers, events: Numbers, count: int, number: int) -> float:
+    """Return how many accesses of a sub-bank were made."""
+    return events[number] * spread[EACH * count + number] / spread[AMONG * count + number]
+
+
+@native_entry("void", "int64*", "int64", "int64*", "int64*", "int64*")
+def count_events(spread_at: Any, count: int, counters_at: Any, before_at: Any, events_at: Any) -> None:
+    """Count what the `counters` of a core have counted since `before`, for each of `count` columns."""
+    spread, counters, before, events = (
+        words_at(spread_at), words_at(counters_at), words_at(before_at), words_at(events_at)
+    )  # fmt: skip
+    for number in range(count):
+        now = counters[spread[COUNTER * count + number]]
+        events[number] = now - before[number]
+        before[number] = now
+
+
+@native_entry(
+    "int64", "int64*", "int64*", "int64*", "float64*", "int64*", "int64*", "int64", "int64", "int64", "int64*"
+)
+def charge_conflicts(
+    state_at: Any, before_at: Any, words_moved_at: Any, accesses_at: Any, spread_at: Any, events_at: Any, count: int,
+    elapsed: int, conflict: int, at_sites_at: Any,
+) -> int:  # fmt: skip
+    """Return what conflicts cost in `elapsed` cycles, each of them `conflict`, and add it to what they cost at each site.
+
+    It is shared out by the parts of the accesses: each gets its part, rounded so that none is lost. `before`: the words that DMA had
+    moved before, by sub-bank; room for those since, and for accesses.
+    """
+    state, before, words_moved, accesses = (
+        words_at(state_at),
+        words_at(before_at),
+        words_at(words_moved_at),
+        words_at(accesses_at),
+    )
+    spread, events, at_sites = words_at(spread_at), words_at(events_at), words_at(at_sites_at)
+    for bank in range(w.MAX_SUBBANKS):
+        words_moved[bank] = state[w.SUBBANKS_AT + bank] - before[bank]
+        before[bank] += words_moved[bank]
+        accesses[bank] = 0.0
+    if elapsed <= 0:
+        return 0
+    whole, expected = 0.0, 0.0
+    for number in range(count):
+        bank = spread[BANK * count + number]
+        accesses[bank] += made(spread, events, count, number)
+        whole += made(spread, events, count, number) * words_moved[bank]
+    for bank in range(w.MAX_SUBBANKS):
+        expected += words_moved[bank] * accesses[bank]
+    cclk = int(expected / elapsed) * conflict
+    up_to, given = 0.0, 0
+    for number in range(count if cclk else 0):
+        up_to += made(spread, events, count, number) * words_moved[spread[BANK * count + number]]
+        end = cclk if number == count - 1 else int(up_to / whole * cclk)
+        at_sites[spread[SITE * count + number]] += end - given
+        given = end
+    return cclk
+
+
+COUNT = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 3)
+CHARGE = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 6, *[ctypes.c_int64] * 3, ctypes.c_void_p)
 
 
 class StageGroups:
@@ -50,36 +109,34 @@ class StageGroups:
         """Add a group. Where its rows lie is looked up when it has run."""
         self._new.append(group)
 
-    @property
-    def spread(self) -> NDArray[np.int64]:
-        """What an event of each counter accesses: see `_spread`."""
+    def accessed(self, counters: NDArray[np.int64]) -> Accesses:
+        """Return what the calls have accessed since the last time, by what the core's `counters` have counted."""
         if self._new:
             self._spread = np.concatenate([self._spread, *map(_spread, self._new)], axis=1)
+            self._before.resize(self._spread.shape[1])  # with zeros
             self._new = []
-        return self._spread
-
-    def counted(self, events: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return how often each event of `spread` was counted since the last time."""
-        counted: NDArray[np.int64] = events[self.spread[0]]
-        since = counted.copy()
-        since[: len(self._before)] -= self._before
-        self._before = counted
-        return since
+        events = np.empty_like(self._before)
+        arrays = (each.ctypes.data for each in (counters, self._before, events))
+        COUNT(count_events.address())(self._spread.ctypes.data, len(events), *arrays)
+        return Accesses(self._spread, events)
 
 
 class SubBanks:
     """The sub-banks of L1 as one core meets them."""
 
-    def __init__(self, chip: ChipSpec, memories: Memories, words: Sequence[int]) -> None:
+    def __init__(self, chip: ChipSpec, memories: Memories, words: Any) -> None:
         """`words`: the state of the bus."""
+        state: NDArray[np.int64] = np.asarray(words)
         self._bytes = chip.l1.subbank_bytes
         self._conflict_cclk = chip.l1.conflict_cclk
         self._first = memories.l1
-        self._words = words
-        self._moved = self._dma_words()
-
-    def _dma_words(self) -> NDArray[np.int64]:
-        return np.array(self._words[w.SUBBANKS_AT : w.SUBBANKS_AT + w.MAX_SUBBANKS], np.int64)
+        self._arrays = (
+            state,
+            state[w.SUBBANKS_AT : w.SUBBANKS_AT + w.MAX_SUBBANKS].copy(),  # words that DMA had moved before,
+            np.zeros(w.MAX_SUBBANKS, np.int64),  # and room for
+            np.zeros(w.MAX_SUBBANKS, np.float64),
+        )
+        self._addresses = [each.ctypes.data for each in self._arrays]
 
     def of(self, row: Row) -> range:
         """Return the sub-banks that a row lies in, none outside L1."""
@@ -88,43 +145,17 @@ class SubBanks:
         first, last = row.offset - self._first, row.offset + row.nbytes - 1 - self._first
         return range(first // self._bytes, last // self._bytes + 1)
 
-    @staticmethod
-    def accessed(groups: StageGroups, events: NDArray[np.int64]) -> Accesses:
-        """Return what the calls of `groups` have accessed since the last time, by the core's `events`."""
-        _, banks, each, parts, sites = groups.spread
-        return Accesses(banks, groups.counted(events) * each / parts, sites)
-
-    def conflicts(self, accessed: Accesses, elapsed_cclk: int) -> Conflicts:
-        """Return what conflicts cost since the last time, `elapsed_cclk` ago: all was `accessed` in these."""
-        moved = self._dma_words()
-        dma = moved - self._moved
-        self._moved = moved
-        banks, made, sites = accessed
-        if elapsed_cclk <= 0:
-            return NO_CONFLICTS
-        accesses = np.zeros(w.MAX_SUBBANKS, np.float64)
-        np.add.at(accesses, banks, made)
-        # added up in order: a product of vectors may round otherwise on another machine
-        cclk = int(sum((dma * accesses).tolist()) / elapsed_cclk) * self._conflict_cclk
-        if not cclk:
-            return NO_CONFLICTS
-        return Conflicts(cclk, sites, _shared_out(cclk, made * dma[banks]))
-
-
-def _shared_out(cclk: int, shares: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Share whole cycles out by `shares`, which are not all 0: each gets its part of them, rounded so that none is lost."""
-    up_to = np.cumsum(shares)
-    ends = np.floor(up_to / up_to[-1] * cclk).astype(np.int64)
-    ends[-1] = cclk
-    whole: NDArray[np.int64] = np.diff(ends, prepend=0)
-    return whole
+    def charge(self, accessed: Accesses, elapsed_cclk: int, at_sites: NDArray[np.int64]) -> int:
+        """Return the cycles that conflicts cost since the last time, `elapsed_cclk` ago, and add them `at_sites`: all was `accessed` in these."""
+        spread, events = (each.ctypes.data for each in accessed)
+        cclk: int = CHARGE(charge_conflicts.address())(
+            *self._addresses, spread, events, len(accessed.events), elapsed_cclk, self._conflict_cclk, at_sites.ctypes.data
+        )  # fmt: skip
+        return cclk
 
 
 def _spread(group: CallGroup) -> NDArray[np.int64]:
-    """Return what an event of each counter accesses, spread evenly over the sub-banks that the rows lie in.
-
-    Five rows: the core's number of the counter, sub-bank, accesses, sub-banks to share them, and the core's site that makes them.
-    """
+    """Return what an event of each counter accesses, columns as above, spread evenly over the sub-banks that the rows lie in."""
     banks = group.by_array(group.subbanks)
     rows = [
         (

@@ -62,7 +62,8 @@ class Ledger:
     def __init__(self, bus_stalls: Callable[[int], Rows]) -> None:
         self._bus_stalls = bus_stalls
         self._events = _zeros(MAX_EVENTS)
-        self._conflicts = _zeros(w.MAX_SITES)
+        self.conflicts = _zeros(w.MAX_SITES)
+        """Cycles that conflicts in L1 have cost at each site, to be added to."""
         self._event_count, self._site_count = 0, w.NO_SITE + 1
         self._owners: dict[Owner, int] = {}
         self._charges: list[tuple[Rows, Rows, Rows]] = []
@@ -95,10 +96,6 @@ class Ledger:
         self._site_owners.extend(owner(each.line.routine) for each in group.code.program.sites)
         self._site_owners.extend(owner(each) for each in group.fetched)
 
-    def add_conflicts(self, sites: Rows, cclk: Rows) -> None:
-        """Add cycles that conflicts in L1 cost at sites."""
-        np.add.at(self._conflicts, sites, cclk)
-
     @property
     def events(self) -> Rows:
         """The events that each counter has counted, to be read and added to."""
@@ -108,7 +105,7 @@ class Ledger:
         """Return the counts of now."""
         count = self._site_count
         on_bus = self._bus_stalls(count)
-        sites = np.column_stack([on_bus[:, : w.STALLS], self._conflicts[:count], on_bus[:, w.FILLS]])
+        sites = np.column_stack([on_bus[:, : w.STALLS], self.conflicts[:count], on_bus[:, w.FILLS]])
         sites[w.NO_SITE] = 0  # semaphores and locks are no kernel's
         return Snapshot(self._events[: self._event_count].copy(), sites)
 

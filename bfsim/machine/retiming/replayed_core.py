@@ -91,7 +91,7 @@ class ReplayedCore(Core):
             self._copies = np.concatenate([self._copies, self._planned(work.copies)])
         copies, accounts = self._copies, len(self._account_names)
         frame = StretchWriter(
-            self._bus.state,
+            self._bus.words,
             self._parts.number,
             work,
             self._firsts_outside,

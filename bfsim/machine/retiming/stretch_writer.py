@@ -129,14 +129,14 @@ WRITE = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, *[ctyp
 
 
 class StretchWriter:
-    """Writes the stretches of one frame's `work` into the `state` of a bus, for a core.
+    """Writes the stretches of one frame's `work` into the `state` of a bus, its words, for a core.
 
     `firsts`: where in the arena the memory of each owner begins, IN_L1 for what lies there; `copies`: rows of what is behind COPY for
     each copy; `accounts`: how many there are; `events`: what the core takes for registers.
     """
 
     def __init__(
-        self, state: NDArray[np.int64], core: int, work: FrameWork, firsts: NDArray[np.int64], copies: Table, accounts: int, events: EventSpec
+        self, state: Any, core: int, work: FrameWork, firsts: NDArray[np.int64], copies: Table, accounts: int, events: EventSpec
     ) -> None:  # fmt: skip
         words = np.zeros(FRAME_WORDS, np.int64)
         words[[ROWS, ACCESSES]] = len(work.operations), len(work.accesses)
@@ -151,7 +151,7 @@ class StretchWriter:
             copies,
         )
         self._write = WRITE(write_stretch.address())
-        self._arguments = (state.ctypes.data, core, *(each.ctypes.data for each in self._kept))
+        self._arguments = (np.asarray(state).ctypes.data, core, *(each.ctypes.data for each in self._kept))
 
     def write(self, kinds: NDArray[np.int64]) -> int:
         """Write the next stretch and return how many operations it has, 0 before a call of firmware and at the end.
