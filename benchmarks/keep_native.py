@@ -15,12 +15,24 @@ from bfsim import kernel
 from bfsim.kernel.traced_access import trace_access
 from bfsim.machine.bus.weave import advance
 from bfsim.machine.calls.conflicts import charge_conflicts, count_events
-from bfsim.machine.retiming.stretch_writer import write_stretch
+from bfsim.machine.calls.ledger import charge_events, charge_sites
+from bfsim.machine.retiming.stretch_writer import pass_call, write_stretch
 from bfsim.machine.retiming.work_check import are_accesses, calls_in
 from bfsim.store import KEPT
 
 FOLDER = Path(kernel.__file__).parent / KEPT
-ENTRIES = (trace_access, advance, count_events, charge_conflicts, write_stretch, calls_in, are_accesses)
+ENTRIES = (
+    trace_access,
+    advance,
+    count_events,
+    charge_conflicts,
+    charge_events,
+    charge_sites,
+    write_stretch,
+    pass_call,
+    calls_in,
+    are_accesses,
+)
 
 
 def main() -> None:

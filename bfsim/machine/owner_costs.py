@@ -43,10 +43,12 @@ class OwnerCosts(Sequence[OwnerCost]):
 
     def __init__(self, owners: Sequence[Owner], table: NDArray[np.int64]) -> None:
         rows, columns = np.nonzero(table)
-        kept, row_of = np.unique(rows, return_inverse=True)
-        self._owners = _shared(tuple(owners[each] for each in kept.tolist()))
+        is_first = np.ones(len(rows), np.bool_)  # of its row: they come in order
+        is_first[1:] = rows[1:] != rows[:-1]
+        self._owners = _shared(tuple(owners[each] for each in rows[is_first].tolist()))
         numbers = np.empty(len(rows), NUMBER)
-        numbers["owner"], numbers["column"], numbers["cclk"] = row_of, columns, table[rows, columns]
+        numbers["owner"] = np.cumsum(is_first) - 1
+        numbers["column"], numbers["cclk"] = columns, table[rows, columns]
         self._numbers = numbers.tobytes()
 
     def __len__(self) -> int:

@@ -5,15 +5,17 @@ Nothing is added up call by call. At a frame's end all counts are compared with 
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cache
 from mmap import MAP_ANONYMOUS, MAP_PRIVATE, mmap
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bfsim.errors import FirmwareError
+from bfsim.kernel.native import native_entry, words_at
 from bfsim.machine.bus import state as w
 from bfsim.machine.bus.stalls import BUS_STALLS
 from bfsim.machine.calls.groups import CallGroup
@@ -24,8 +26,7 @@ SITE_STALLS = (*BUS_STALLS, StallReason.L1_CONFLICT)
 """What is counted of a site, in the order of a snapshot; the lines that its accesses filled are behind them."""
 FILLS = len(SITE_STALLS)
 SITE_COLUMNS = np.array([COLUMN_OF[each] for each in SITE_STALLS])
-CHARGED = np.array([CALLS, ISSUE, COLUMN_OF[StallReason.INTERLOCK]])
-"""The columns of what an event of a counter costs."""
+INTERLOCKS = COLUMN_OF[StallReason.INTERLOCK]
 
 MAX_EVENTS = 1 << 20
 NO_ROOM = "firmware must call its kernels in fewer stages, or with fewer different buffers: there are too many to keep apart"
@@ -33,19 +34,53 @@ NO_ROOM = "firmware must call its kernels in fewer stages, or with fewer differe
 Rows = NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True)
-class Snapshot:
+class Snapshot(NamedTuple):
     """The counts at one moment: events of each counter, and of each site its stalls and line fills."""
 
     events: Rows
     sites: Rows
 
-    def since(self, before: Snapshot) -> Snapshot:
-        """Return what was counted since `before`."""
-        events, sites = self.events.copy(), self.sites.copy()
-        events[: len(before.events)] -= before.events
-        sites[: len(before.sites)] -= before.sites
-        return Snapshot(events, sites)
+
+EVENT, OWNER, OF_CALLS, OF_ISSUE, OF_INTERLOCKS = range(5)
+"""A charge: what an event of a counter costs an owner, in calls, issue cycles and interlocks."""
+
+
+@native_entry("void", "int64*", "int64", "int64*", "int64*", "int64*")
+def charge_events(charges_at: Any, count: int, now_at: Any, before_at: Any, costs_at: Any) -> None:
+    """Add to a table of costs, a row of COLUMNS for each owner, what `count` charges make of the events between two moments.
+
+    The arrays: columns of charges one after the other, the counts at both moments, and the table.
+    """
+    charges, now, before, costs = (
+        words_at(charges_at),
+        words_at(now_at),
+        words_at(before_at),
+        words_at(costs_at),
+    )
+    for number in range(count):
+        event = charges[EVENT * count + number]
+        events, row = now[event] - before[event], charges[OWNER * count + number] * COLUMNS
+        costs[row + CALLS] += events * charges[OF_CALLS * count + number]
+        costs[row + ISSUE] += events * charges[OF_ISSUE * count + number]
+        costs[row + INTERLOCKS] += events * charges[OF_INTERLOCKS * count + number]
+
+
+@native_entry("void", "int64*", "int64", "int64*", "int64*", "int64*", "int64*")
+def charge_sites(
+    owners_at: Any, count: int, columns_at: Any, now_at: Any, before_at: Any, costs_at: Any
+) -> None:
+    """Add to such a table what `count` sites have stalled between two moments: by the owner of each and the column of each reason."""
+    owners, columns = words_at(owners_at), words_at(columns_at)
+    now, before, costs = words_at(now_at), words_at(before_at), words_at(costs_at)
+    for site in range(count):
+        for reason in range(FILLS):
+            at = site * (FILLS + 1) + reason
+            if now[at] != before[at]:
+                costs[owners[site] * COLUMNS + columns[reason]] += now[at] - before[at]
+
+
+CHARGE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 3)
+CHARGE_SITES = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 4)
 
 
 def _zeros(count: int) -> Rows:
@@ -66,9 +101,10 @@ class Ledger:
         """Cycles that conflicts in L1 have cost at each site, to be added to."""
         self._event_count, self._site_count = 0, w.NO_SITE + 1
         self._owners: dict[Owner, int] = {}
-        self._charges: list[tuple[Rows, Rows, Rows]] = []
-        """Of each group, or by owners of all that were there at the end of a frame: events, their owners, and what each costs that owner in CHARGED."""
+        self._charges = np.zeros((5, 0), np.int64)
+        self._new_charges: list[Rows] = []
         self._site_owners: list[int] = [0] * self._site_count
+        self._owners_of_sites = np.zeros(self._site_count, np.int64)  # the same at the end of the last frame
         self._before = self.snapshot()
         self.reported = self._before
         """The counts at the end of the last frame that is on record."""
@@ -92,7 +128,7 @@ class Ledger:
 
         symbols, counter, routine, costs = group.code.program.routine_costs
         owners = np.array([owner(each) for each in symbols], np.int64)
-        self._charges.append((group.first_event + counter, owners[routine], costs))
+        self._new_charges.append(np.vstack([group.first_event + counter, owners[routine], costs.T]))
         self._site_owners.extend(owner(each.line.routine) for each in group.code.program.sites)
         self._site_owners.extend(owner(each) for each in group.fetched)
 
@@ -111,25 +147,32 @@ class Ledger:
 
     def close(self, now: Snapshot) -> tuple[Sequence[Owner], Rows]:
         """Return the kernels in each stage, and what they cost since the last time: rows of an `OwnerCosts` table."""
-        counted, self._before = now.since(self._before), now
+        before, self._before = self._before, now
         costs = np.zeros((len(self._owners), COLUMNS), np.int64)
-        if self._charges:
-            events, owners, each = self._charges_by_owner()
-            begins = np.flatnonzero(np.diff(owners, prepend=-1))  # add.at is slow: few rows are left for it
-            charged = np.add.reduceat(counted.events[events, np.newaxis] * each, begins)
-            np.add.at(costs, (owners[begins, np.newaxis], CHARGED), charged)
-        stalled = np.flatnonzero(counted.sites[:, :FILLS].any(axis=1))
-        owners = np.array([self._site_owners[site] for site in stalled.tolist()], np.int64)
-        np.add.at(costs, (owners[:, np.newaxis], SITE_COLUMNS), counted.sites[stalled, :FILLS])
+        if self._new_charges:
+            self._charges = np.concatenate([self._charges, *self._new_charges], axis=1)
+            self._owners_of_sites = np.array(self._site_owners, np.int64)
+            self._new_charges = []
+            before = Snapshot(*(_as_long(*each) for each in zip(before, now, strict=True)))
+        charges, site_owners = self._charges, self._owners_of_sites
+        events, sites = zip(now, before, strict=True)
+        _call(CHARGE(charge_events.address()), charges, charges.shape[1], *events, costs)
+        _call(
+            CHARGE_SITES(charge_sites.address()), site_owners, len(site_owners), SITE_COLUMNS, *sites, costs
+        )
         return tuple(self._owners), costs
 
-    def _charges_by_owner(self) -> tuple[Rows, Rows, Rows]:
-        """Return what events cost in the order of their owners."""
-        if len(self._charges) > 1:
-            events, owners, each = map(np.concatenate, zip(*self._charges, strict=True))
-            order = np.argsort(owners, kind="stable")
-            self._charges = [(events[order], owners[order], each[order])]
-        return self._charges[0]
+
+def _call(entry: Callable[..., object], *arguments: Rows | int) -> None:
+    """Call compiled code with arrays and numbers."""
+    entry(*(each if isinstance(each, int) else each.ctypes.data for each in arguments))
+
+
+def _as_long(before: Rows, now: Rows) -> Rows:
+    """Return `before` with zeros behind it, as long as `now`."""
+    padded = np.zeros_like(now)
+    padded[: len(before)] = before
+    return padded
 
 
 def stalls_by_reason(interlocks_cclk: int, at_sites: Sequence[int]) -> dict[StallReason, int]:

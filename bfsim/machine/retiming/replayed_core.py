@@ -99,14 +99,9 @@ class ReplayedCore(Core):
             accounts,
             self._chip.events,
         )
-        ends = np.searchsorted(work.events[:, 0], np.arange(len(work.calls)), side="right").tolist()
-        begin = 0
-        for (name, arguments), end in zip(work.calls, ends, strict=True):
+        for name, arguments in work.calls:
             yield from self._play_stretches(frame)
-            _, counters, since = work.events[begin:end].T
-            self._parts.calls.events[counters] += since
-            begin = end
-            frame.pass_call()
+            frame.pass_call(self._parts.calls.events)
             yield from self._call(name, arguments)
         yield from self._play_stretches(frame)
 

@@ -19,9 +19,9 @@ from bfsim.machine.retiming.work import BYTE, CALL, KIND, OWNER, SITE, STAMP, Fr
 IN_L1 = -1
 """Where an owner begins whose memory is in L1: what accesses it is not in the log."""
 NOT_THERE, NO_CODE, NO_ROOM = -1, -2, -3
-"""Returned in place of a number of operations: a call, a copy or an account is not there, code, or room for the log."""
+"""Returned in place of a number of operations: what one refers to is not there, or no code, or no room for the log."""
 PROBLEMS = {
-    NOT_THERE: "a call, a copy or an account that was not prepared",
+    NOT_THERE: "a call, a copy, an account or a counter that was not prepared",
     NO_CODE: "code is fetched from where none lies",
     NO_ROOM: "more accesses than a core has room for",
 }
@@ -29,11 +29,13 @@ PROBLEMS = {
 # What is written: words of one array.
 (
     ROWS, NEXT,        # operations of the frame, and the next one to be written
-    ACCESSES, ACCESS,  # the same of accesses
-    CALLS, COPIES, ACCOUNTS,  # how many there are of each so far
+    ACCESSES, ACCESS,  # the same of accesses,
+    EVENTS, EVENT,     # and of rows of events,
+    PASSED,            # which are counted up to this call of firmware
+    CALLS, COPIES, ACCOUNTS, COUNTERS,  # how many there are of each so far
     MMR_WRITE, MMR_READ,  # cycles of a core for a register
-) = range(9)  # fmt: skip
-FRAME_WORDS = 9
+) = range(13)  # fmt: skip
+FRAME_WORDS = 13
 
 Words = MutableSequence[int]
 
@@ -125,6 +127,26 @@ def write_stretch(
     return written
 
 
+@native_entry("int64", "int64*", "int64*", "int64*")
+def pass_call(frame_at: Any, events_at: Any, counters_at: Any) -> int:
+    """Count the events up to the next call of firmware, and go on behind it; return 0, or NOT_THERE for a counter that is none.
+
+    The arrays: the words above, columns of events one after the other, and the core's counters.
+    """
+    frame, events, counters = words_at(frame_at), words_at(events_at), words_at(counters_at)
+    rows = frame[EVENTS]
+    while frame[EVENT] < rows and events[frame[EVENT]] == frame[PASSED]:
+        counter = events[rows + frame[EVENT]]
+        if counter >= frame[COUNTERS]:
+            return NOT_THERE
+        counters[counter] += events[2 * rows + frame[EVENT]]
+        frame[EVENT] += 1
+    frame[PASSED] += 1
+    frame[NEXT] += 1
+    return 0
+
+
+PASS = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_void_p] * 3)
 WRITE = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, *[ctypes.c_void_p] * 6)
 
 
@@ -139,19 +161,16 @@ class StretchWriter:
         self, state: Any, core: int, work: FrameWork, firsts: NDArray[np.int64], copies: Table, accounts: int, events: EventSpec
     ) -> None:  # fmt: skip
         words = np.zeros(FRAME_WORDS, np.int64)
-        words[[ROWS, ACCESSES]] = len(work.operations), len(work.accesses)
+        words[[ROWS, ACCESSES, EVENTS]] = len(work.operations), len(work.accesses), len(work.events)
         words[[COPIES, ACCOUNTS]] = len(copies), accounts
         words[[MMR_WRITE, MMR_READ]] = events.mmr_write_cclk, events.mmr_read_cclk
         self._words: Any = words.data
-        self._kept = (
-            words,
-            np.ascontiguousarray(work.operations.T),
-            np.ascontiguousarray(work.accesses.T),
-            firsts,
-            copies,
-        )
-        self._write = WRITE(write_stretch.address())
-        self._arguments = (np.asarray(state).ctypes.data, core, *(each.ctypes.data for each in self._kept))
+        tables = (np.ascontiguousarray(each.T) for each in (work.operations, work.accesses, work.events))
+        self._kept = words, *tables, firsts, copies
+        frame, operations, accesses, counted, *places = (each.ctypes.data for each in self._kept)
+        self._write, self._pass = WRITE(write_stretch.address()), PASS(pass_call.address())
+        self._stretch = np.asarray(state).ctypes.data, core, frame, operations, accesses, *places
+        self._call = frame, counted
 
     def write(self, kinds: NDArray[np.int64]) -> int:
         """Write the next stretch and return how many operations it has, 0 before a call of firmware and at the end.
@@ -159,11 +178,18 @@ class StretchWriter:
         `kinds`: of each call that is prepared by now, what running it is to the bus. Raises ValueError for what is not there.
         """
         self._words[CALLS] = len(kinds)
-        written = self._write(*self._arguments, kinds.ctypes.data)
-        if written < 0:
-            raise ValueError(PROBLEMS[written])
-        return int(written)
+        return _done(self._write(*self._stretch, kinds.ctypes.data))
 
-    def pass_call(self) -> None:
-        """Go on behind a call of firmware."""
-        self._words[NEXT] += 1
+    def pass_call(self, counters: NDArray[np.int64]) -> None:
+        """Go on behind a call of firmware: let the core's `counters` count what its kernels have until then.
+
+        Raises ValueError where one is not there.
+        """
+        self._words[COUNTERS] = len(counters)
+        _done(self._pass(*self._call, counters.ctypes.data))
+
+
+def _done(outcome: int) -> int:
+    if outcome < 0:
+        raise ValueError(PROBLEMS[outcome])
+    return outcome
