@@ -12,7 +12,7 @@ from bfsim.machine.bus import state as w
 from bfsim.machine.bus.core_logs import site_at
 from bfsim.machine.bus.memory_owners import owner_for
 from bfsim.machine.bus.pacing import aligned
-from bfsim.machine.bus.runs import l2_alone_until
+from bfsim.machine.bus.runs import cores_quiet_until
 from bfsim.machine.bus.sdram import access, stream
 from bfsim.machine.bus.state import State
 from bfsim.machine.bus.traffic import count_access, count_traffic
@@ -233,7 +233,10 @@ def is_in_buffer(state: State, job: int, offset: int, nbytes: int) -> bool:
 
 @native
 def serve_core(state: State, core: int, at: int, until: int) -> int:
-    """Make the core's present access at tick `at`; return the number of its job when that is done, else NONE."""
+    """Make the core's present access at tick `at`; return the number of its job when that is done, else NONE.
+
+    Until tick `until` no DMA can want the port of L2.
+    """
     job = w.JOBS_AT + core * w.JOB_WORDS
     entry = state[job + w.PRESENT]
     kind, offset = entry >> log.KIND_BIT & log.KIND_MASK, entry & log.OFFSET_MASK
@@ -275,13 +278,13 @@ def wait_for_l2(state: State, core: int, at: int) -> None:
 def test_and_set(state: State, core: int, at: int, until: int) -> int:
     """Read and write a byte of L2 with the port locked; return when that is done.
 
-    A core that spins on a lock does it again and again: at once as often as nobody else can want the port.
+    A core that spins on a lock does it again and again: at once as often as nobody else can want the port, no DMA before tick `until`.
     """
     job = w.JOBS_AT + core * w.JOB_WORDS
     locked, more = state[w.L2_READ] + state[w.L2_NEXT], 0
     if state[job + w.SPIN]:
         turn = locked + state[job + w.SPIN]
-        more = max(0, (l2_alone_until(state, w.CORE_A + core, until) - at - 1) // turn)
+        more = max(0, (cores_quiet_until(state, w.CORE_A + core, until) - at - 1) // turn)
         at += more * turn
     else:
         wait_for_l2(state, core, at)

@@ -142,7 +142,7 @@ def serve_cores(state: State, until: int) -> int:
 
 @native
 def serve_core_or_stores(state: State, number: int, at: int, until: int) -> int:
-    """Serve what a core waits for, or its store buffer; return who is woken."""
+    """Serve what a core waits for, or its store buffer, no DMA wanting the port of L2 before tick `until`; return who is woken."""
     if number >= w.CORE_A:
         return serve_core(state, number - w.CORE_A, at, until)
     return serve_stores(state, number - w.STORES_A, at)
@@ -154,7 +154,7 @@ def serve(state: State, memory: Memory, number: int, at: int, until: int) -> int
     if number <= w.PPI1 and not state[w.DEB_PERIOD]:
         return serve_cameras(state, memory, number, at, until)
     if number >= w.STORES_A:
-        return serve_core_or_stores(state, number, at, until)
+        return serve_core_or_stores(state, number, at, l2_left_until(state, w.NONE, until))
     return serve_dma(state, memory, number, at, until)
 
 
