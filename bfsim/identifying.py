@@ -20,6 +20,7 @@ from bfsim.loading import LoadedFirmware
 from bfsim.machine.board import Fidelity
 from bfsim.machine.buffers import FrameSize
 from bfsim.machine.cameras.capture import Feed
+from bfsim.reading_ahead import read_ahead
 from bfsim.recording import RecordingReader, StereoFrame
 from bfsim.trace import Identity
 
@@ -38,7 +39,7 @@ class DigestedFrames:
         self._times_ns: dict[int, dict[str, int]] = {}
 
     def __iter__(self) -> Iterator[StereoFrame]:
-        for frame in self._reader.frames(self.total):
+        for frame in read_ahead(self._reader.frames(self.total)):
             self._digest.update(f"{frame.left.shape} {frame.left_ns} {frame.right_ns}\n".encode())
             self._digest.update(frame.left.tobytes())
             self._digest.update(frame.right.tobytes())

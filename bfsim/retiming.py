@@ -18,6 +18,7 @@ from bfsim.machine.board import Board, Fidelity
 from bfsim.machine.core.core import Core
 from bfsim.machine.core.parts import Parts
 from bfsim.machine.named_kernels import kernels_named
+from bfsim.reading_ahead import read_ahead
 from bfsim.report.save import growing_file
 from bfsim.trace import Identity
 
@@ -138,7 +139,7 @@ def playing_work(
 def _replayed(reader: WorkReader, kernels: dict[str, Kernel], parts: Parts) -> Core:
     from bfsim.machine.retiming.replayed_core import ReplayedCore
 
-    return ReplayedCore(parts, kernels, reader.works(parts.name))
+    return ReplayedCore(parts, kernels, read_ahead(reader.works(parts.name)))
 
 
 def _check(reader: WorkReader, machine: Board, identity: Identity, total: int) -> None:
