@@ -211,7 +211,8 @@ def write_log(logs: CoreLogs, core: int, entries: Sequence[int], fetches: int) -
     """Make the log of a core that of a call with these accesses and `fetches` of its code; return how many entries it has."""
     last = [fetches << log.STAMP_BIT | log.FETCHES << log.KIND_BIT] if fetches else []
     sites = [w.NO_SITE] * len(entries) + [1] * len(last)
-    logs.replace(core, np.array([[*entries, *last], sites]))
+    room, sites_room = logs.first(core, len(sites))
+    room[:], sites_room[:] = [*entries, *last], sites
     return len(sites)
 
 

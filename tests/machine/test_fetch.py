@@ -217,7 +217,8 @@ def test_code_is_fetched_in_turn_evenly_over_its_call() -> None:
     bus.logs.keep_routine(0, 5, offset=96, nbytes=20, following=6)
     bus.logs.keep_routine(0, 6, offset=4096, nbytes=8, following=5)
     logged = [(entry(0, log.LOAD, 8), 1), (entry(5, log.STORE, 12), 2), (entry(6, log.FETCHES, 0), 5)]
-    bus.logs.replace(0, np.array(logged).T)
+    for written, column in zip(bus.logs.first(0, len(logged)), zip(*logged, strict=True), strict=True):
+        written[:] = column
     fetched = [(0, 96, 5), (2, 104, 5), (5, 112, 5), (7, 4096, 6), (10, 96, 5), (12, 104, 5)]
     fetches = [(entry(stamp, log.FETCH, place), site) for stamp, place, site in fetched]
     expected = [logged[0], *fetches[:2], logged[1], *fetches[2:]]
