@@ -158,11 +158,11 @@ class CallCache:
 
     def accessed(self) -> Accesses:
         """Return what the calls of the present stage have accessed in L1 since this was asked last."""
-        return self._in_stage[self.stage].accessed(self._ledger.events)
+        return self._in_stage[self.stage].accessed(self._ledger.events_at)
 
     def conflicts_cclk(self, accessed: Accesses, elapsed_cclk: int) -> int:
         """Return what conflicts in L1 cost calls that have `accessed` it in `elapsed_cclk`, all since this was asked last."""
-        return self._subbanks.charge(accessed, elapsed_cclk, self._ledger.conflicts)
+        return self._subbanks.charge(accessed, elapsed_cclk, self._ledger.conflicts_at)
 
     def prepare(
         self, kernel: Kernel, arguments: tuple[Row | int, ...], *, was_traced: bool = False
@@ -183,8 +183,13 @@ class CallCache:
 
     @property
     def events(self) -> NDArray[np.int64]:
-        """The events that the kernels have counted, counter by counter, to be read and added to."""
+        """The events that the kernels have counted, counter by counter."""
         return self._ledger.events
+
+    @property
+    def counters_at(self) -> tuple[int, int]:
+        """The address of these, to be added to, and how many there are."""
+        return self._ledger.events_at, self._ledger.event_count
 
     def snapshot(self) -> Snapshot:
         """Return what the kernels have counted so far."""

@@ -27,10 +27,14 @@ Numbers = MutableSequence[int]
 
 
 class Accesses(NamedTuple):
-    """Accesses of L1 by calls: what each event of theirs accesses, columns as above one after the other, and how many there were of it."""
+    """Accesses of L1 by calls: what each event of theirs accesses, columns as above one after the other, and how many there were of it.
+
+    `addresses`: of both arrays, for numpy takes longer to find one than compiled code needs for both.
+    """
 
     spread: NDArray[np.int64]
     events: NDArray[np.int64]
+    addresses: tuple[int, int]
 
 
 @native
@@ -104,21 +108,23 @@ class StageGroups:
         self._new: list[CallGroup] = []
         self._spread = np.zeros((5, 0), np.int64)
         self._before = np.zeros(0, np.int64)
+        self._addresses = 0, 0  # of these
 
     def add(self, group: CallGroup) -> None:
         """Add a group. Where its rows lie is looked up when it has run."""
         self._new.append(group)
 
-    def accessed(self, counters: NDArray[np.int64]) -> Accesses:
-        """Return what the calls have accessed since the last time, by what the core's `counters` have counted."""
+    def accessed(self, counters_at: int) -> Accesses:
+        """Return what the calls have accessed since the last time, by what the core's counters, at an address, have counted."""
         if self._new:
             self._spread = np.concatenate([self._spread, *map(_spread, self._new)], axis=1)
             self._before.resize(self._spread.shape[1])  # with zeros
+            self._addresses = self._spread.ctypes.data, self._before.ctypes.data
             self._new = []
         events = np.empty_like(self._before)
-        arrays = (each.ctypes.data for each in (counters, self._before, events))
-        COUNT(count_events.address())(self._spread.ctypes.data, len(events), *arrays)
-        return Accesses(self._spread, events)
+        (spread_at, before_at), events_at = self._addresses, events.ctypes.data
+        COUNT(count_events.address())(spread_at, len(events), counters_at, before_at, events_at)
+        return Accesses(self._spread, events, (spread_at, events_at))
 
 
 class SubBanks:
@@ -145,11 +151,13 @@ class SubBanks:
         first, last = row.offset - self._first, row.offset + row.nbytes - 1 - self._first
         return range(first // self._bytes, last // self._bytes + 1)
 
-    def charge(self, accessed: Accesses, elapsed_cclk: int, at_sites: NDArray[np.int64]) -> int:
-        """Return the cycles that conflicts cost since the last time, `elapsed_cclk` ago, and add them `at_sites`: all was `accessed` in these."""
-        spread, events = (each.ctypes.data for each in accessed)
+    def charge(self, accessed: Accesses, elapsed_cclk: int, at_sites_at: int) -> int:
+        """Return the cycles that conflicts cost since the last time, `elapsed_cclk` ago: all was `accessed` in these.
+
+        They are added to what conflicts cost at each site, at an address.
+        """
         cclk: int = CHARGE(charge_conflicts.address())(
-            *self._addresses, spread, events, len(accessed.events), elapsed_cclk, self._conflict_cclk, at_sites.ctypes.data
+            *self._addresses, *accessed.addresses, len(accessed.events), elapsed_cclk, self._conflict_cclk, at_sites_at
         )  # fmt: skip
         return cclk
 

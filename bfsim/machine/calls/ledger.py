@@ -97,9 +97,10 @@ class Ledger:
     def __init__(self, bus_stalls: Callable[[int], Rows]) -> None:
         self._bus_stalls = bus_stalls
         self._events = _zeros(MAX_EVENTS)
-        self.conflicts = _zeros(w.MAX_SITES)
-        """Cycles that conflicts in L1 have cost at each site, to be added to."""
-        self._event_count, self._site_count = 0, w.NO_SITE + 1
+        self._conflicts = _zeros(w.MAX_SITES)
+        self.events_at, self.conflicts_at = self._events.ctypes.data, self._conflicts.ctypes.data
+        """Addresses of what each counter has counted, and of what conflicts in L1 have cost at each site, which is added to there."""
+        self.event_count, self._site_count = 0, w.NO_SITE + 1
         self._owners: dict[Owner, int] = {}
         self._charges = np.zeros((5, 0), np.int64)
         self._new_charges: list[Rows] = []
@@ -111,12 +112,12 @@ class Ledger:
 
     def room(self, events: int, sites: int) -> tuple[Rows, int, int]:
         """Make room for another group: return where it counts its events, the number of the first, and of the first site."""
-        first_event, first_site = self._event_count, self._site_count
-        self._event_count += events
+        first_event, first_site = self.event_count, self._site_count
+        self.event_count += events
         self._site_count += sites
-        if self._event_count > MAX_EVENTS or self._site_count > w.MAX_SITES:
+        if self.event_count > MAX_EVENTS or self._site_count > w.MAX_SITES:
             raise FirmwareError(NO_ROOM)
-        return self._events[first_event : self._event_count], first_event, first_site
+        return self._events[first_event : self.event_count], first_event, first_site
 
     def add(self, group: CallGroup) -> None:
         """Note who owns what a new group counts."""
@@ -134,16 +135,16 @@ class Ledger:
 
     @property
     def events(self) -> Rows:
-        """The events that each counter has counted, to be read and added to."""
-        return self._events[: self._event_count]
+        """The events that each counter has counted."""
+        return self._events[: self.event_count]
 
     def snapshot(self) -> Snapshot:
         """Return the counts of now."""
         count = self._site_count
         on_bus = self._bus_stalls(count)
-        sites = np.column_stack([on_bus[:, : w.STALLS], self.conflicts[:count], on_bus[:, w.FILLS]])
+        sites = np.column_stack([on_bus[:, : w.STALLS], self._conflicts[:count], on_bus[:, w.FILLS]])
         sites[w.NO_SITE] = 0  # semaphores and locks are no kernel's
-        return Snapshot(self._events[: self._event_count].copy(), sites)
+        return Snapshot(self._events[: self.event_count].copy(), sites)
 
     def close(self, now: Snapshot) -> tuple[Sequence[Owner], Rows]:
         """Return the kernels in each stage, and what they cost since the last time: rows of an `OwnerCosts` table."""

@@ -101,7 +101,7 @@ class ReplayedCore(Core):
         )
         for name, arguments in work.calls:
             yield from self._play_stretches(frame)
-            frame.pass_call(self._parts.calls.events)
+            frame.pass_call(*self._parts.calls.counters_at)
             yield from self._call(name, arguments)
         yield from self._play_stretches(frame)
 

@@ -171,22 +171,26 @@ class StretchWriter:
         self._write, self._pass = WRITE(write_stretch.address()), PASS(pass_call.address())
         self._stretch = np.asarray(state).ctypes.data, core, frame, operations, accesses, *places
         self._call = frame, counted
+        self._kinds, self._kinds_at = np.zeros(0, np.int64), 0
 
     def write(self, kinds: NDArray[np.int64]) -> int:
         """Write the next stretch and return how many operations it has, 0 before a call of firmware and at the end.
 
         `kinds`: of each call that is prepared by now, what running it is to the bus. Raises ValueError for what is not there.
         """
-        self._words[CALLS] = len(kinds)
-        return _done(self._write(*self._stretch, kinds.ctypes.data))
+        if (
+            kinds is not self._kinds
+        ):  # numpy takes longer to find its address than this to write most stretches
+            self._kinds, self._kinds_at, self._words[CALLS] = kinds, kinds.ctypes.data, len(kinds)
+        return _done(self._write(*self._stretch, self._kinds_at))
 
-    def pass_call(self, counters: NDArray[np.int64]) -> None:
-        """Go on behind a call of firmware: let the core's `counters` count what its kernels have until then.
+    def pass_call(self, counters_at: int, counters: int) -> None:
+        """Go on behind a call of firmware: let the core's counters, so many at an address, count what its kernels have until then.
 
         Raises ValueError where one is not there.
         """
-        self._words[COUNTERS] = len(counters)
-        _done(self._pass(*self._call, counters.ctypes.data))
+        self._words[COUNTERS] = counters
+        _done(self._pass(*self._call, counters_at))
 
 
 def _done(outcome: int) -> int:
