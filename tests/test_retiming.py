@@ -17,7 +17,7 @@ import zstandard
 from bfsim.errors import ConfigError, WorkError
 from bfsim.kernel import access_trace as log
 from bfsim.machine.bus import state as w
-from bfsim.machine.retiming.work import CALL, KIND, SITE, FrameWork
+from bfsim.machine.retiming.work import BYTE, CALL, KIND, SITE, FrameWork
 from bfsim.machine.retiming.work_check import check
 from bfsim.result import Run
 from bfsim.run import Feed, Fidelity, simulate
@@ -221,20 +221,58 @@ def test_a_broken_frame_is_refused(work: Path, folder: Path, frame: bytes) -> No
         simulate(frames=FRAMES, work=broken)
 
 
-def test_a_fetch_of_code_that_is_none_is_refused(work: Path, folder: Path) -> None:
-    """Its site must be that of a routine outside of L1."""
-    odd = folder / "fetch.work"
-    with zipfile.ZipFile(work) as old, zipfile.ZipFile(odd, "w") as new:
+def changed(work: Path, path: Path, change: Callable[[FrameWork], None]) -> Path:
+    """Write a recorded run with other numbers in the second frame of core A."""
+    with zipfile.ZipFile(work) as old, zipfile.ZipFile(path, "w") as new:
         for name in old.namelist():
             content = old.read(name)
             if name == "A/000001":
                 done = _read("A", zstandard.decompress(content))
-                assert (done.accesses[:, KIND] == log.FETCHES).any()
-                done.accesses[done.accesses[:, KIND] == log.FETCHES, SITE] = w.MAX_SITES - 1
+                change(done)
                 content = zstandard.compress(_written(done))
             new.writestr(name, content)
+    return path
+
+
+def test_a_fetch_of_code_that_is_none_is_refused(work: Path, folder: Path) -> None:
+    """Its site must be that of a routine outside of L1."""
+
+    def change(done: FrameWork) -> None:
+        assert (done.accesses[:, KIND] == log.FETCHES).any()
+        done.accesses[done.accesses[:, KIND] == log.FETCHES, SITE] = w.MAX_SITES - 1
+
     with pytest.raises(WorkError, match="code is fetched from where none lies"):
-        simulate(frames=FRAMES, work=odd)
+        simulate(frames=FRAMES, work=changed(work, folder / "fetch.work", change))
+
+
+@pytest.mark.parametrize(
+    ("kind", "column", "number"),
+    [(w.ACCESS, 4, 1 << 30), (w.COPY, 1, 1 << 30), (w.SET_UP, 3, w.MAX_ACCOUNTS - 1), (w.AWAIT, 3, w.MAX_ACCOUNTS - 1)],
+)  # fmt: skip
+def test_operations_with_what_is_not_there_are_refused(
+    work: Path, folder: Path, kind: int, column: int, number: int
+) -> None:
+    """Calls, copies and accounts that nothing has prepared, in words and not in memory that is somebody else's."""
+
+    def change(done: FrameWork) -> None:
+        done.operations[done.operations[:, 0] == kind, column] = number
+
+    with pytest.raises(WorkError, match="that is not there"):
+        simulate(frames=FRAMES, work=changed(work, folder / "odd.work", change))
+
+
+def test_memory_and_counters_that_are_not_there_are_refused(work: Path, folder: Path) -> None:
+    """As above."""
+
+    def far(done: FrameWork) -> None:
+        done.accesses[:, BYTE] = log.OFFSET_MASK
+
+    def many(done: FrameWork) -> None:
+        done.events[:, 1] = 1 << 30
+
+    for change in (far, many):
+        with pytest.raises(WorkError, match="that is not there"):
+            simulate(frames=FRAMES, work=changed(work, folder / "odd.work", change))
 
 
 def rewritten(work: Path, path: Path, change: Callable[[dict[str, Any]], None]) -> Path:

@@ -21,7 +21,7 @@ IN_L1 = -1
 NOT_THERE, NO_CODE, NO_ROOM = -1, -2, -3
 """Returned in place of a number of operations: what one refers to is not there, or no code, or no room for the log."""
 PROBLEMS = {
-    NOT_THERE: "a call, a copy, an account or a counter that was not prepared",
+    NOT_THERE: "a call, a copy, an account, a counter or memory that is not there",
     NO_CODE: "code is fetched from where none lies",
     NO_ROOM: "more accesses than a core has room for",
 }
@@ -70,6 +70,8 @@ def write_accesses(
             if kind == log.FETCHES and state[site_at(core, site) + w.CODE_WORDS] == 0:
                 return NO_CODE
             place = first + accesses[BYTE * rows + number]
+            if place > log.OFFSET_MASK:
+                return NOT_THERE
             state[entries + logged] = stamp << log.STAMP_BIT | kind << log.KIND_BIT | place
             state[entries + w.LOG_ENTRIES + logged] = site
             logged += 1
